@@ -1,0 +1,119 @@
+//! Crossings of two paths, and the paper's descriptor of the region at each (Tables III, IV and VII).
+//!
+//! The regions themselves do not need crossings: paths that only come near each other collide as well (paper
+//! Fig. 14a). The descriptor is for those who want to print, compare or transmit what the paper prints.
+
+use crate::geometry::Direction;
+use crate::motion::Motion;
+use crate::pair::footprint::Footprint;
+use crate::pair::offset::{Carrier, Relative};
+use crate::region::PieceType;
+use crate::scalar::Scalar;
+use crate::segment::{Curve, Segment};
+
+/// An intersection of the paths of an ordered pair of agents, with the parameters of its collision region:
+/// `CR(T, L, r̂, v, θ, ς_ego, ς_other, dir)` in Table VII.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "S: serde::Serialize, S::Angle: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, S::Angle: serde::Deserialize<'de>"
+    ))
+)]
+#[cfg_attr(feature = "defmt", defmt(bound = "S: defmt::Format, S::Angle: defmt::Format"))]
+pub struct Crossing<S: Scalar> {
+    /// Shapes of the segments that cross.
+    pub piece_type: PieceType,
+    /// Places of the segments in the ego's and in the other's path.
+    pub segments: [usize; 2],
+    /// T: when the other agent passes, for the first time \[s\].
+    pub time: S,
+    /// L: length along the ego's path \[m\].
+    pub length: S,
+    /// Length along the other's path \[m\].
+    pub other_length: S,
+    /// r̂: sum of the radii \[m\].
+    pub combined_radius: S,
+    /// v: speed of the other agent as it passes \[m/s\].
+    pub speed: S,
+    /// θ: heading of the other less heading of the ego. Both accumulate along their paths; formats whose
+    /// angles do not hold more than one turn give it modulo one turn.
+    pub theta: S::Angle,
+    /// Shape of the ego's segment, with ς and dir of an arc.
+    pub ego_curve: Curve<S>,
+    /// Shape of the other's segment, with ς and dir of an arc.
+    pub other_curve: Curve<S>,
+}
+
+/// The crossings of two paths, in the order of the other's segments. Each end of a segment belongs to one of
+/// its neighbours, so that a crossing at a joint counts once. Where paths touch, or run on one another, they do not
+/// cross: the angle has to move the paths apart by more than the slack over the length of a combined radius.
+///
+/// Cost: a box test a pair of segments; a square root and a few arctangents where they overlap.
+pub fn crossings<'a, S: Scalar>(
+    ego: &'a Motion<'a, S>,
+    other: &'a Motion<'a, S>,
+) -> impl Iterator<Item = Crossing<S>> + 'a {
+    let slack = S::slack(ego.extent() + other.extent());
+    let theirs = other.path().segments().iter().enumerate();
+    theirs.flat_map(move |(j, their)| {
+        let own = ego.path().segments().iter().enumerate();
+        let near = own.filter(move |(_, own)| own.bounds.within(their.bounds, slack));
+        near.flat_map(move |(i, own)| {
+            let roots = Relative::new(their, Carrier::from(own), &Footprint::of(own.start, their)).lengths_at(S::ZERO);
+            let roots = distinct(roots).into_iter().flatten();
+            roots.filter_map(move |s| Crossing::at(ego, other, [i, j], own, their, s))
+        })
+    })
+}
+
+/// One of two equal roots.
+fn distinct<S: Scalar>(roots: Option<[S; 2]>) -> [Option<S>; 2] {
+    match roots {
+        Some([a, b]) if a == b => [Some(a), None],
+        Some([a, b]) => [Some(a), Some(b)],
+        None => [None, None],
+    }
+}
+
+impl<S: Scalar> Crossing<S> {
+    fn at(
+        ego: &Motion<'_, S>,
+        other: &Motion<'_, S>,
+        [i, j]: [usize; 2],
+        own: &Segment<S>,
+        their: &Segment<S>,
+        s: S,
+    ) -> Option<Self> {
+        let slack = S::slack(ego.extent() + other.extent());
+        let combined_radius = ego.radius() + other.radius();
+        let last = |motion: &Motion<'_, S>, index: usize| index + 1 == motion.path().segments().len();
+        let on = |segment: &Segment<S>, u: S, last: bool| {
+            u >= S::ZERO && (u < segment.length || last && u <= segment.length)
+        };
+        let l = Footprint::of(their.point_at(s), own).foot(own);
+        if !on(their, s, last(other, j)) || !on(own, l, last(ego, i)) {
+            return None;
+        }
+        let theta = their.heading_at(s) - own.heading_at(l);
+        let apart = combined_radius.scale(Direction::<S>::at(theta).sin).abs();
+        (apart > slack).then(|| {
+            let time = other.time().lo + other.profile().first_time_at(their.from + s);
+            Self {
+                piece_type: PieceType::of(own.curve, their.curve),
+                segments: [i, j],
+                time,
+                length: own.from + l,
+                other_length: their.from + s,
+                combined_radius,
+                speed: other.speed_at(time),
+                theta,
+                ego_curve: own.curve,
+                other_curve: their.curve,
+            }
+        })
+    }
+}

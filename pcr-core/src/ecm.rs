@@ -1,0 +1,258 @@
+//! The extended collision map: all collision regions of a fleet, both directions of every pair.
+
+use crate::error::Full;
+use crate::motion::Motion;
+use crate::pair::Pair;
+use crate::pieces::{List, NONE, Piece, Pieces};
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+/// Entry of the table: a region of an unordered pair of agents. 8 bytes.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Region {
+    /// The pair, lower index first.
+    agents: [u16; 2],
+    /// First of its pieces.
+    head: u32,
+}
+
+const _: () = assert!(size_of::<Region>() == 8, "the documented size of an entry");
+
+impl Region {
+    /// A free entry, to fill a storage with.
+    pub const EMPTY: Self = Self { agents: [0; 2], head: NONE };
+
+    fn agents(self) -> [usize; 2] {
+        self.agents.map(usize::from)
+    }
+}
+
+impl Default for Region {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+/// Fixed-capacity table of the collision regions of a fleet: the paper's extended collision map (Section 3.1), in
+/// which every agent, the one of the highest priority included, finds its regions with every other.
+///
+/// The storage is the caller's: arrays (`[Region; R]`, `[Piece<S>; P]`), mutable slices or, on a host, vectors.
+/// A region is stored once for both directions of a pair, in coordination space; its times follow from the
+/// motions when they are asked for. Hence a later start of an agent changes nothing in the table: shift its
+/// [`Motion`] and go on.
+///
+/// The fleet itself is handed to each method, always the same one; [`Ecm::replace`] exchanges one of its agents.
+///
+/// ```
+/// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
+/// let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
+/// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
+/// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
+///
+/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+/// let region = ecm.row(&fleet, 0).next().unwrap();
+/// assert_eq!(region.other(), 1);
+/// let (time, length) = (region.time(), region.length());
+/// assert!((time.lo - 2.0).abs() < 1e-9 && (time.hi - 3.0).abs() < 1e-9);
+/// assert!((length.lo - 1.5).abs() < 1e-9 && (length.hi - 2.5).abs() < 1e-9);
+/// assert!(region.contains(2.5, 2.4) && !region.contains(2.1, 2.4));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Ecm<S, R, P> {
+    /// Sorted by the pair; regions of one pair in the order of their first pieces along the second path.
+    regions: R,
+    len: usize,
+    pieces: Pieces<S, P>,
+}
+
+impl<S: Scalar, R, P> Ecm<S, R, P> {
+    /// An empty table.
+    pub const fn new(regions: R, pieces: P) -> Self {
+        Self { regions, len: 0, pieces: Pieces::new(pieces) }
+    }
+
+    /// Number of regions stored; each counts for both directions of its pair.
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are no regions.
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Number of pieces stored.
+    pub const fn pieces(&self) -> usize {
+        self.pieces.len()
+    }
+}
+
+impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
+    /// The regions of all ordered pairs, by the ego, then by the other agent. O(agents × regions).
+    pub fn regions<'a>(&'a self, fleet: &'a [Motion<'a, S>]) -> impl Iterator<Item = RegionRef<'a, S>> {
+        (0..fleet.len()).flat_map(move |ego| self.row(fleet, ego))
+    }
+
+    /// The regions that an agent has to keep out of, by the other agent. O(regions).
+    pub fn row<'a>(&'a self, fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = RegionRef<'a, S>> + Clone {
+        // In the order of the entries, those of lower partners come first and in order, then those of higher ones.
+        let entries = self.entries().iter().filter(move |region| region.agents().contains(&ego));
+        entries.filter_map(move |region| self.view(fleet, region, ego))
+    }
+
+    /// The regions that an agent has with another one. O(log regions).
+    pub fn pair<'a>(
+        &'a self,
+        fleet: &'a [Motion<'a, S>],
+        ego: usize,
+        other: usize,
+    ) -> impl Iterator<Item = RegionRef<'a, S>> + Clone {
+        let agents = [ego.min(other), ego.max(other)];
+        let begin = self.entries().partition_point(|region| region.agents() < agents);
+        let entries = self.entries().iter().skip(begin).take_while(move |region| region.agents() == agents);
+        entries.filter_map(move |region| self.view(fleet, region, ego))
+    }
+
+    fn view<'a>(&'a self, fleet: &'a [Motion<'a, S>], region: &Region, ego: usize) -> Option<RegionRef<'a, S>> {
+        let agents = region.agents();
+        let pair = Pair::new(fleet.get(agents[0])?, fleet.get(agents[1])?);
+        Some(RegionRef::new(pair, List::new(self.pieces.slots(), region.head), agents, agents[1] == ego))
+    }
+
+    fn entries(&self) -> &[Region] {
+        self.regions.as_ref().get(..self.len).unwrap_or_default()
+    }
+}
+
+impl<S, R, P> Ecm<S, R, P>
+where
+    S: Scalar,
+    R: AsRef<[Region]> + AsMut<[Region]>,
+    P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
+{
+    /// The table of a whole fleet of at most 65535 agents.
+    ///
+    /// Cost: a box test a pair of agents, and a few hundred operations a pair of segments that meet.
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small.
+    pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
+        let mut ecm = Self::new(regions, pieces);
+        for first in 0..fleet.len() {
+            for second in first + 1..fleet.len() {
+                ecm.add_pair(fleet, [first, second])?;
+            }
+        }
+        Ok(ecm)
+    }
+
+    /// Adds the regions of one agent with all others of the fleet. The table must not hold any of it.
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small; the table is then as it was.
+    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+        let partners = (0..fleet.len()).filter(|&partner| partner != agent);
+        for partner in partners {
+            if let Err(full) = self.add_pair(fleet, [agent.min(partner), agent.max(partner)]) {
+                self.remove(agent);
+                return Err(full);
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the regions of one agent with all others. O(regions).
+    pub fn remove(&mut self, agent: usize) {
+        let mut kept = 0;
+        for index in 0..self.len {
+            let regions = self.regions.as_mut();
+            let Some(&region) = regions.get(index) else {
+                break;
+            };
+            if region.agents().contains(&agent) {
+                self.pieces.release(region.head);
+            } else {
+                regions.swap(kept, index);
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
+    /// Exchanges the motion of one agent and computes its regions anew; those of the others are not touched.
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small; the fleet and the table are then as they were.
+    pub fn replace<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<(), Full> {
+        let Some(place) = fleet.get_mut(agent) else {
+            return Ok(());
+        };
+        let before = core::mem::replace(place, motion);
+        self.remove(agent);
+        let outcome = self.insert(fleet, agent);
+        if outcome.is_err()
+            && let Some(place) = fleet.get_mut(agent)
+        {
+            // What was there fits: it is the same computation on the same motions.
+            *place = before;
+            self.insert(fleet, agent)?;
+        }
+        outcome
+    }
+
+    fn add_pair(&mut self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Full> {
+        let [Some(first), Some(second)] = agents.map(|agent| fleet.get(agent)) else {
+            return Ok(());
+        };
+        if let Err(full) = Pair::new(first, second).find(&mut self.pieces) {
+            self.pieces.take_back();
+            return Err(full);
+        }
+        let mut index = self.entries().partition_point(|region| region.agents() < agents);
+        let begin = index;
+        while let Some(head) = self.pieces.take_region() {
+            if let Err(full) = self.insert_entry(index, agents, head) {
+                self.pieces.release(head);
+                self.pieces.take_back();
+                self.remove_entries(begin, index);
+                return Err(full);
+            }
+            index += 1;
+        }
+        Ok(())
+    }
+
+    fn insert_entry(&mut self, index: usize, agents: [usize; 2], head: u32) -> Result<(), Full> {
+        let [Ok(first), Ok(second)] = agents.map(u16::try_from) else {
+            return Err(Full::Agents);
+        };
+        let regions = self.regions.as_mut().get_mut(index..=self.len).ok_or(Full::Regions)?;
+        regions.rotate_right(1);
+        if let Some(place) = regions.first_mut() {
+            *place = Region { agents: [first, second], head };
+        }
+        self.len += 1;
+        Ok(())
+    }
+
+    fn remove_entries(&mut self, begin: usize, end: usize) {
+        if let Some(tail) = self.regions.as_mut().get_mut(begin..self.len) {
+            let gone = end - begin;
+            for region in tail.iter().take(gone) {
+                self.pieces.release(region.head);
+            }
+            tail.rotate_left(gone.min(tail.len()));
+            self.len -= gone;
+        }
+    }
+}

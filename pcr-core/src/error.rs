@@ -1,0 +1,90 @@
+//! What the constructors refuse, and why.
+
+use core::fmt;
+
+/// Why a path, a profile or a motion was refused. The string names the offending quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Invalid {
+    /// It is NaN or infinite.
+    NonFinite(&'static str),
+    /// It is below zero.
+    Negative(&'static str),
+    /// It must be above zero.
+    NonPositive(&'static str),
+    /// Its magnitude is above [`Scalar::LIMIT`](crate::Scalar::LIMIT).
+    OutOfRange(&'static str),
+    /// An arc may sweep one full turn; split longer ones.
+    SweepOverOneTurn,
+    /// It does not begin where its predecessor ends.
+    Disconnected(&'static str),
+    /// The profile does not end where the path does.
+    LengthMismatch,
+    /// The capacity is used up.
+    Full(&'static str),
+}
+
+impl fmt::Display for Invalid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFinite(what) => write!(f, "{what} is not a finite number"),
+            Self::Negative(what) => write!(f, "{what} is below zero"),
+            Self::NonPositive(what) => write!(f, "{what} is not above zero"),
+            Self::OutOfRange(what) => write!(f, "{what} is out of range"),
+            Self::SweepOverOneTurn => f.write_str("the arc sweeps more than one turn"),
+            Self::Disconnected(what) => write!(f, "the {what} does not begin where its predecessor ends"),
+            Self::LengthMismatch => f.write_str("the profile does not travel the length of the path"),
+            Self::Full(what) => write!(f, "there is no room for another {what}"),
+        }
+    }
+}
+
+impl core::error::Error for Invalid {}
+
+/// The table has no room for what was to be stored. What was there is intact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Full {
+    /// More pieces are needed.
+    Pieces,
+    /// More regions are needed.
+    Regions,
+    /// The fleet has more than 65535 agents.
+    Agents,
+}
+
+impl fmt::Display for Full {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pieces => f.write_str("there is no room for another piece"),
+            Self::Regions => f.write_str("there is no room for another region"),
+            Self::Agents => f.write_str("the fleet has more than 65535 agents"),
+        }
+    }
+}
+
+impl core::error::Error for Full {}
+
+/// `value` if it is finite and within the limits of its format.
+pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
+    if !value.is_finite() {
+        return Err(Invalid::NonFinite(what));
+    }
+    if value.abs() > S::LIMIT {
+        return Err(Invalid::OutOfRange(what));
+    }
+    Ok(value)
+}
+
+/// `value` if it is in range and not negative.
+pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
+    if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }
+}
+
+/// `value` if it is in range and above zero.
+pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
+    if in_range(value, what)? > S::ZERO { Ok(value) } else { Err(Invalid::NonPositive(what)) }
+}

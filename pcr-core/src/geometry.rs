@@ -1,0 +1,212 @@
+//! Points, directions, poses, intervals and boxes of the plane.
+//!
+//! One sign convention for the whole library: `x` along the direction of travel, `y` to its left, angles and
+//! turns counter-clockwise positive.
+
+use crate::scalar::{Angle, Scalar, Unit};
+use core::ops::{Add, Sub};
+
+/// Point of the plane \[m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Point<S> {
+    /// Abscissa \[m\].
+    pub x: S,
+    /// Ordinate \[m\].
+    pub y: S,
+}
+
+impl<S> Point<S> {
+    /// The point `(x, y)`.
+    pub const fn new(x: S, y: S) -> Self {
+        Self { x, y }
+    }
+}
+
+impl<S: Scalar> Sub for Point<S> {
+    type Output = Vector<S>;
+    fn sub(self, from: Self) -> Vector<S> {
+        Vector { x: self.x - from.x, y: self.y - from.y }
+    }
+}
+
+impl<S: Scalar> Add<Vector<S>> for Point<S> {
+    type Output = Self;
+    fn add(self, by: Vector<S>) -> Self {
+        Self { x: self.x + by.x, y: self.y + by.y }
+    }
+}
+
+/// Difference of two points \[m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Vector<S> {
+    /// Component along the x-axis \[m\].
+    pub x: S,
+    /// Component along the y-axis \[m\].
+    pub y: S,
+}
+
+impl<S: Scalar> Vector<S> {
+    /// Component along a direction \[m\].
+    pub fn along(self, direction: Direction<S>) -> S {
+        self.x.scale(direction.cos) + self.y.scale(direction.sin)
+    }
+
+    /// Component across a direction, left positive \[m\].
+    pub fn across(self, direction: Direction<S>) -> S {
+        self.y.scale(direction.cos) - self.x.scale(direction.sin)
+    }
+
+    /// Square of the Euclidean norm \[m²\].
+    pub fn norm_squared(self) -> S::Wide {
+        self.x.times(self.x) + self.y.times(self.y)
+    }
+}
+
+/// Unit vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "S::Unit: serde::Serialize", deserialize = "S::Unit: serde::Deserialize<'de>"))
+)]
+#[cfg_attr(feature = "defmt", defmt(bound = "S::Unit: defmt::Format"))]
+pub struct Direction<S: Scalar> {
+    /// Cosine of the angle from the x-axis.
+    pub cos: S::Unit,
+    /// Sine of the angle from the x-axis.
+    pub sin: S::Unit,
+}
+
+impl<S: Scalar> Direction<S> {
+    /// The x-axis.
+    pub const X: Self = Self { cos: S::Unit::ONE, sin: S::Unit::ZERO };
+
+    /// The direction at an angle from the x-axis.
+    pub fn at(angle: S::Angle) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { cos, sin }
+    }
+
+    /// Cosine of the angle to another direction.
+    pub fn dot(self, other: Self) -> S::Unit {
+        self.cos.times(other.cos) + self.sin.times(other.sin)
+    }
+
+    /// Sine of the angle to another direction, positive if it lies to the left.
+    pub fn cross(self, other: Self) -> S::Unit {
+        self.cos.times(other.sin) - self.sin.times(other.cos)
+    }
+
+    /// The vector with these components along and across the direction.
+    pub fn vector(self, along: S, across: S) -> Vector<S> {
+        Vector { x: along.scale(self.cos) - across.scale(self.sin), y: along.scale(self.sin) + across.scale(self.cos) }
+    }
+}
+
+/// Position and heading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "S: serde::Serialize, S::Angle: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, S::Angle: serde::Deserialize<'de>"
+    ))
+)]
+#[cfg_attr(feature = "defmt", defmt(bound = "S: defmt::Format, S::Angle: defmt::Format"))]
+pub struct Pose<S: Scalar> {
+    /// Position \[m\].
+    pub position: Point<S>,
+    /// Angle of the direction of travel from the x-axis.
+    pub heading: S::Angle,
+}
+
+/// Closed interval, `lo <= hi`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Interval<S> {
+    /// Lower end.
+    pub lo: S,
+    /// Upper end.
+    pub hi: S,
+}
+
+impl<S: Scalar> Interval<S> {
+    /// The interval from `lo` to `hi`.
+    pub const fn new(lo: S, hi: S) -> Self {
+        Self { lo, hi }
+    }
+
+    /// Whether `x` lies in it, ends included.
+    pub fn contains(self, x: S) -> bool {
+        self.lo <= x && x <= self.hi
+    }
+
+    /// Whether the two have a point in common.
+    pub fn meets(self, other: Self) -> bool {
+        self.lo <= other.hi && other.lo <= self.hi
+    }
+
+    /// The smallest interval that holds both.
+    pub fn hull(self, other: Self) -> Self {
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// `hi - lo`.
+    pub fn length(self) -> S {
+        self.hi - self.lo
+    }
+
+    /// The point halfway.
+    pub fn middle(self) -> S {
+        self.lo + (self.hi - self.lo).half()
+    }
+
+    /// Both ends moved apart by `by`, but not out of `[lo, hi]` of `within`.
+    pub(crate) fn widen(self, by: S, within: Self) -> Self {
+        Self { lo: (self.lo - by).clamp(within.lo, within.hi), hi: (self.hi + by).clamp(within.lo, within.hi) }
+    }
+}
+
+/// Axis-parallel box \[m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Bounds<S> {
+    /// Abscissas.
+    pub x: Interval<S>,
+    /// Ordinates.
+    pub y: Interval<S>,
+}
+
+impl<S: Scalar> Bounds<S> {
+    /// The smallest box around two points.
+    pub fn around(a: Point<S>, b: Point<S>) -> Self {
+        Self { x: Interval::new(a.x.min(b.x), a.x.max(b.x)), y: Interval::new(a.y.min(b.y), a.y.max(b.y)) }
+    }
+
+    /// The smallest box that holds both.
+    pub fn hull(self, other: Self) -> Self {
+        Self { x: self.x.hull(other.x), y: self.y.hull(other.y) }
+    }
+
+    /// Whether the two come nearer than `reach` to one another in both coordinates.
+    pub fn within(self, other: Self, reach: S) -> bool {
+        self.x.lo - other.x.hi <= reach
+            && other.x.lo - self.x.hi <= reach
+            && self.y.lo - other.y.hi <= reach
+            && other.y.lo - self.y.hi <= reach
+    }
+
+    /// Largest magnitude of a coordinate \[m\].
+    pub fn extent(self) -> S {
+        self.x.lo.abs().max(self.x.hi.abs()).max(self.y.lo.abs()).max(self.y.hi.abs())
+    }
+}

@@ -1,0 +1,58 @@
+//! Exact collision regions of discs that move on lines and arcs: `no_std`, allocation-free, panic-free.
+//!
+//! Agents are discs on given paths. For every ordered pair, the set of (time, travelled length) at which the two
+//! overlap is a union of *collision regions* with a boundary in closed form. This crate computes them without
+//! sampling, iteration or meshes: no speed assumption, every degenerate case included.
+//!
+//! Data flows one way through the modules:
+//!
+//! ```text
+//! scalar     numbers: f32, f64, or your own format          Scalar, Wide, Unit, Angle
+//! geometry   points, directions, intervals, boxes           Point, Pose, Interval
+//! segment    lines and arcs, placed in the plane            Segment, Curve, Turn
+//! path       G1 chains of them (ρ of Eq. 1)                 Path, PathRef
+//! profile    speed over time (λ of Eq. 1-3), and inverse    Profile, ProfileRef, Limits
+//! motion     disc + path + profile + start (Eq. 2)          Motion
+//! pair       closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)
+//! pieces     their fixed-capacity store                     Piece
+//! region     connected regions in path-time space (t, l)    RegionRef
+//! ecm        all regions of a fleet                         Ecm
+//! crossing   the paper's descriptors (Table VII)            Crossing, crossings
+//! ```
+//!
+//! Start at [`Ecm`], which has an example. Signs: `x` along the direction of travel, `y` to its left, angles and turns
+//! counter-clockwise positive. Units: metres, seconds, radians.
+//!
+//! # Features
+//! - `libm` (default): `f32` and `f64`;
+//! - `std`: square roots by the standard library, the same bits in less time;
+//! - `defmt`, `serde`: their traits on the public data types.
+#![no_std]
+
+pub mod scalar;
+
+mod crossing;
+mod ecm;
+mod error;
+mod geometry;
+mod motion;
+mod pair;
+mod path;
+mod pieces;
+mod profile;
+mod region;
+mod segment;
+
+pub use crossing::{Crossing, crossings};
+pub use ecm::{Ecm, Region};
+pub use error::{Full, Invalid};
+pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
+pub use motion::Motion;
+pub use path::{Path, PathRef};
+pub use pieces::Piece;
+pub use profile::{Limits, Phase, Profile, ProfileRef};
+pub use region::{PieceRef, PieceType, RegionRef, Slice};
+#[cfg(feature = "libm")]
+pub use scalar::Radians;
+pub use scalar::Scalar;
+pub use segment::{Curve, Segment, Turn};

@@ -1,0 +1,168 @@
+//! A pair of agents in coordination space: all pieces of their collision regions, joined.
+//!
+//! Coordination space (l₁, l₂) holds the lengths along both paths. The set of colliding lengths there depends
+//! on the paths and the combined radius alone, so it serves both directions of the pair and every motion on the paths.
+
+pub(crate) mod cells;
+pub(crate) mod events;
+pub(crate) mod footprint;
+pub(crate) mod offset;
+
+use crate::error::Full;
+use crate::geometry::Interval;
+use crate::motion::Motion;
+use crate::pieces::{Piece, Pieces};
+use crate::scalar::Scalar;
+use cells::SegmentPair;
+use footprint::{Footprint, Lap};
+
+/// Two agents, seen as a pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair<'a, S: Scalar> {
+    pub(crate) first: &'a Motion<'a, S>,
+    pub(crate) second: &'a Motion<'a, S>,
+    /// Residual that rounding may cause \[m\].
+    pub(crate) slack: S,
+    /// Sum of the radii plus slack \[m\]: what is computed with contains what is asked for.
+    pub(crate) radius: S,
+}
+
+impl<'a, S: Scalar> Pair<'a, S> {
+    pub(crate) fn new(first: &'a Motion<'a, S>, second: &'a Motion<'a, S>) -> Self {
+        let slack = S::slack(first.extent() + second.extent());
+        Self { first, second, slack, radius: first.radius() + second.radius() + slack }
+    }
+
+    /// Adds the pieces of the pair to the pending ones, joined where they are connected, as lengths along the paths.
+    ///
+    /// Cost: a box test a pair of segments, and a few hundred operations a pair of segments that meet.
+    pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
+        let (first, second, reach) = (self.first.bounds(), self.second.bounds(), self.radius + self.slack);
+        if !first.within(second, reach) {
+            return Ok(());
+        }
+        for (j, other) in (0_u16..).zip(self.second.path().segments()) {
+            if !other.bounds.within(first, reach) {
+                continue;
+            }
+            for (i, own) in (0_u16..).zip(self.first.path().segments()) {
+                if own.bounds.within(other.bounds, reach) {
+                    SegmentPair { first: own, second: other, indices: [i, j], radius: self.radius }.find(pieces)?;
+                }
+            }
+        }
+        self.join(pieces);
+        self.place(pieces);
+        Ok(())
+    }
+
+    /// Joins pieces across the joints of either path (paper Fig. 14c).
+    fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
+        let mut a = pieces.first_pending();
+        while let Some(&before) = pieces.slots().get(a as usize) {
+            let mut b = pieces.first_pending();
+            while let Some(&after) = pieces.slots().get(b as usize) {
+                if self.meet_at_joint_of_second(&before, &after) || self.meet_at_joint_of_first(&before, &after) {
+                    pieces.join(a, b);
+                }
+                b = after.next;
+            }
+            a = before.next;
+        }
+    }
+
+    /// At a joint of the second path both pieces end in the slice about the same point, so that the same lap is
+    /// the same interval.
+    fn meet_at_joint_of_second(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
+        let Some(segment) = self.second.path().segments().get(usize::from(before.second_segment)) else {
+            return false;
+        };
+        after.first_segment == before.first_segment
+            && after.second_segment.checked_sub(1) == Some(before.second_segment)
+            && before.second.hi == segment.length
+            && after.second.lo == S::ZERO
+            && (before.lap == after.lap || before.lap == Lap::Whole || after.lap == Lap::Whole)
+    }
+
+    /// At a joint of the first path the pieces share intervals of the second segment: those within reach of
+    /// the joint. They meet if the middle of one of them belongs to both.
+    fn meet_at_joint_of_first(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
+        let paths = (self.first.path().segments(), self.second.path().segments());
+        let (Some(own), Some(next)) =
+            (paths.0.get(usize::from(before.first_segment)), paths.0.get(usize::from(after.first_segment)))
+        else {
+            return false;
+        };
+        let Some(other) = paths.1.get(usize::from(before.second_segment)) else {
+            return false;
+        };
+        let candidates = after.second_segment == before.second_segment
+            && after.first_segment.checked_sub(1) == Some(before.first_segment)
+            && before.first.hi == own.length
+            && after.first.lo == S::ZERO
+            && before.second.meets(after.second);
+        let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
+            let reach = Footprint::of(other.point_at(s), segment).reach(segment, self.radius);
+            let slice = reach.on(segment, piece.lap);
+            piece.second.contains(s)
+                && slice.is_some_and(|slice| slice.lo - self.slack <= l && l <= slice.hi + self.slack)
+        };
+        candidates && {
+            let reach = Footprint::of(own.end, other).reach(other, self.radius);
+            Lap::ALL.into_iter().filter_map(|lap| reach.on(other, lap)).any(|shared| {
+                let s = shared.middle();
+                belongs(before, own, s, own.length) && belongs(after, next, s, S::ZERO)
+            })
+        }
+    }
+
+    /// Turns lengths along segments into lengths along paths, rounded outward.
+    fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
+        let (first, second) = (self.first.path(), self.second.path());
+        let place = |local: Interval<S>, from: S, length: S| {
+            let all = Interval::new(S::ZERO, length);
+            Interval::new(local.lo + from, local.hi + from).widen(self.slack, all)
+        };
+        let mut index = pieces.first_pending();
+        while let Some(piece) = pieces.get_mut(index) {
+            if let Some(own) = first.segments().get(usize::from(piece.first_segment)) {
+                piece.first = place(piece.first, own.from, first.length());
+            }
+            if let Some(other) = second.segments().get(usize::from(piece.second_segment)) {
+                piece.second = place(piece.second, other.from, second.length());
+            }
+            index = piece.next;
+        }
+    }
+
+    /// The part of the first path that a piece covers at the length `s` of the second one.
+    pub(crate) fn slice_of_first(&self, piece: &Piece<S>, s: S) -> Option<Interval<S>> {
+        if !piece.second.contains(s) {
+            return None;
+        }
+        let own = self.first.path().segments().get(usize::from(piece.first_segment))?;
+        let other = self.second.path().segments().get(usize::from(piece.second_segment))?;
+        let centre = other.point_at(s - other.from);
+        let slice = Footprint::of(centre, own).reach(own, self.radius).on(own, piece.lap)?;
+        Some(self.outward(slice, own.from, self.first))
+    }
+
+    /// The part of the second path, on this lap, that a piece covers at the length `l` of the first one.
+    pub(crate) fn slice_of_second(&self, piece: &Piece<S>, l: S, lap: Lap) -> Option<Interval<S>> {
+        if !piece.first.contains(l) {
+            return None;
+        }
+        let own = self.first.path().segments().get(usize::from(piece.first_segment))?;
+        let other = self.second.path().segments().get(usize::from(piece.second_segment))?;
+        let centre = own.point_at(l - own.from);
+        let slice = Footprint::of(centre, other).reach(other, self.radius).on(other, lap)?;
+        // One interval of the second segment is connected, hence part of one region: that of its middle.
+        let middle = slice.middle() + other.from;
+        self.slice_of_first(piece, middle)?.contains(l).then(|| self.outward(slice, other.from, self.second))
+    }
+
+    fn outward(&self, slice: Interval<S>, from: S, motion: &Motion<'_, S>) -> Interval<S> {
+        let all = Interval::new(S::ZERO, motion.path().length());
+        Interval::new(slice.lo + from, slice.hi + from).widen(self.slack, all)
+    }
+}

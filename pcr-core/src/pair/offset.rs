@@ -1,0 +1,123 @@
+//! P3, offset against piece: where a piece J runs at the lateral offset `c` from the carrier of a piece I.
+//!
+//! Take as base the foot of I's start on the carrier of J. There, `n` is the offset of I's start from J and
+//! `α` the angle from I to J; with the signed curvatures `κ` the square of the distance between J's point at
+//! half-tangent `T = tan(κ_J u / 2) / κ_J` and I's centre gives one quadratic for all four types,
+//!
+//! ```text
+//! A T² - 4 sin α T + G = 0
+//! G = 2 (c + n cos α) + κ_I (n² - c²)
+//! A = 4 κ_I - 4 κ_J (κ_I n + cos α) + κ_J² G,
+//! ```
+//!
+//! multiplied below by the radii, so that it holds lengths and products of lengths only. The base is near
+//! I, hence no coefficient is large against what it is made of. With `c = ±R` the roots are the first and last
+//! contacts of Eq. (17), (23), (33), (37); with `c = 0` the crossings of the two paths. For an arc I with `R > ϱ`
+//! the offset beyond the centre is the circle of radius `R - ϱ`, included.
+
+use super::footprint::Footprint;
+use crate::geometry::{Direction, Point};
+use crate::scalar::{Angle, Scalar, Wide};
+use crate::segment::{Curve, Segment, Turn};
+
+/// An infinite line or a full circle: start, direction there, shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carrier<S: Scalar> {
+    pub(crate) start: Point<S>,
+    pub(crate) direction: Direction<S>,
+    pub(crate) curve: Curve<S>,
+}
+
+impl<S: Scalar> From<&Segment<S>> for Carrier<S> {
+    fn from(segment: &Segment<S>) -> Self {
+        Self { start: segment.start, direction: segment.direction, curve: segment.curve }
+    }
+}
+
+/// A carrier seen from a segment (mirrored if that turns right).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Relative<'a, S: Scalar> {
+    segment: &'a Segment<S>,
+    /// Length along the segment at the foot of the carrier's start.
+    foot: S,
+    /// Offset of the carrier's start from the segment.
+    n: S,
+    /// Angle from the carrier to the segment.
+    cos: S::Unit,
+    sin: S::Unit,
+    /// Signed radius of the carrier, left positive; `None` for a line.
+    bend: Option<S>,
+}
+
+impl<'a, S: Scalar> Relative<'a, S> {
+    /// The carrier whose start has this footprint on the segment.
+    pub(crate) fn new(segment: &'a Segment<S>, carrier: Carrier<S>, start: &Footprint<S>) -> Self {
+        let mirror = segment.mirrored();
+        let (cos, sin) = (segment.direction.dot(carrier.direction), segment.direction.cross(carrier.direction));
+        let towards = Direction::<S> { cos, sin: if mirror { -sin } else { sin } };
+        let base = start.direction(segment);
+        let bend = match carrier.curve {
+            Curve::Line => None,
+            Curve::Arc { radius, turn } => Some(if mirror == (turn == Turn::Right) { radius } else { -radius }),
+        };
+        Self {
+            segment,
+            foot: start.foot(segment),
+            n: start.offset,
+            cos: towards.dot(base),
+            sin: towards.cross(base),
+            bend,
+        }
+    }
+
+    /// Lengths along the segment's carrier, on its first lap, at which it has the offset `c` from the other.
+    pub(crate) fn lengths_at(&self, c: S) -> Option<[S; 2]> {
+        let Self { segment, foot, n, cos, sin, bend } = *self;
+        let lateral = c + n.scale(cos);
+        let Curve::Arc { radius: r, .. } = segment.curve else {
+            // J is a line: 2 T = u.
+            let roots = match bend {
+                // SS: (c + n cos α) / sin α, the one division by a sine.
+                None => {
+                    let root = lateral.quotient_unit(sin)?;
+                    [root, root]
+                }
+                // I is an arc: u² - 2 ϱ sin α u + ϱ G = 0.
+                Some(bend) => S::quadratic_roots(-bend.scale(sin), Self::constant(bend, lateral, n, c))?,
+            };
+            return Some(roots.map(|u| foot + u));
+        };
+        // J is an arc: T = r τ.
+        let roots = match bend {
+            // I is a line, equation times r / 2: G = 2 lateral.
+            None => {
+                let far = lateral - r.scale(cos).double();
+                S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral))?
+            }
+            // Both are arcs, equation times r² ϱ (κ_I = 1/ϱ).
+            Some(bend) => {
+                let g = Self::constant(bend, lateral, n, c);
+                let centre = n + bend.scale(cos) - r;
+                let a = g - r.double().times(centre.double());
+                S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g)?
+            }
+        };
+        Some(roots.map(|angle| on_first_lap(foot + angle.arc_length(r), segment)))
+    }
+
+    /// `ϱ G = 2 ϱ (c + n cos α) + n² - c²`.
+    fn constant(bend: S, lateral: S, n: S, c: S) -> S::Wide {
+        bend.times(lateral).double() + (n - c).times(n + c)
+    }
+}
+
+/// A length along a circle, less than one lap away, moved onto its first lap. Lines have one lap only.
+pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>) -> S {
+    if length < S::ZERO {
+        length + segment.circumference
+    } else if length > segment.circumference && segment.circumference > S::ZERO {
+        length - segment.circumference
+    } else {
+        length
+    }
+}

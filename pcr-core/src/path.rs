@@ -1,0 +1,141 @@
+//! Paths: G1 chains of lines and arcs (Eq. 1, the map ρ from travelled length to position).
+
+use crate::error::Invalid;
+use crate::geometry::{Bounds, Point, Pose};
+use crate::scalar::Scalar;
+use crate::segment::{Curve, Segment, Turn};
+use heapless::Vec;
+
+/// A path of at most `N` lines and arcs. Each begins in the pose in which the one before it ends.
+///
+/// ```
+/// use pcr_core::{Path, Point, Pose, Radians, Turn};
+/// let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+/// let quarter = core::f64::consts::FRAC_PI_2;
+/// let path = Path::<f64, 2>::starting_at(start)?.line(3.0)?.arc(1.0, Turn::Left, quarter)?;
+/// let end = path.as_path().pose_at(3.0 + quarter).position;
+/// assert!((end.x - 4.0).abs() < 1e-15 && (end.y - 1.0).abs() < 1e-15);
+/// # Ok::<(), pcr_core::Invalid>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Path<S: Scalar, const N: usize> {
+    origin: Segment<S>,
+    segments: Vec<Segment<S>, N>,
+}
+
+impl<S: Scalar, const N: usize> Path<S, N> {
+    /// The path of length 0 at `pose`: an agent that stands.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
+    pub fn starting_at(pose: Pose<S>) -> Result<Self, Invalid> {
+        Ok(Self { origin: Segment::standing(pose)?, segments: Vec::new() })
+    }
+
+    /// Continued by a line of this length \[m\]; a length of 0 adds nothing.
+    ///
+    /// # Errors
+    /// As [`Segment::then_line`], and [`Invalid::Full`] if there are `N` segments already.
+    pub fn line(self, length: S) -> Result<Self, Invalid> {
+        let next = self.last().then_line(length)?;
+        self.with(next)
+    }
+
+    /// Continued by an arc of this radius \[m\] and length \[m\], at most a full turn; a length of 0 adds nothing.
+    ///
+    /// # Errors
+    /// As [`Segment::then_arc`], and [`Invalid::Full`] if there are `N` segments already.
+    pub fn arc(self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
+        let next = self.last().then_arc(radius, turn, length)?;
+        self.with(next)
+    }
+
+    /// The path as the algorithms take it.
+    pub fn as_path(&self) -> PathRef<'_, S> {
+        let segments = if self.segments.is_empty() { core::slice::from_ref(&self.origin) } else { &self.segments[..] };
+        PathRef { segments }
+    }
+
+    fn last(&self) -> &Segment<S> {
+        self.segments.last().unwrap_or(&self.origin)
+    }
+
+    fn with(mut self, next: Segment<S>) -> Result<Self, Invalid> {
+        if next.length > S::ZERO {
+            self.segments.push(next).map_err(|_| Invalid::Full("segment"))?;
+        }
+        Ok(self)
+    }
+}
+
+/// A path of any capacity, borrowed: at least one segment, each beginning where the one before it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct PathRef<'a, S: Scalar> {
+    segments: &'a [Segment<S>],
+}
+
+impl<'a, S: Scalar> PathRef<'a, S> {
+    /// A path of segments that were built one after the other.
+    ///
+    /// # Errors
+    /// [`Invalid::Disconnected`] if they were not, or if there are none; [`Invalid::Full`] above 65535 segments.
+    pub fn new(segments: &'a [Segment<S>]) -> Result<Self, Invalid> {
+        if segments.len() > usize::from(u16::MAX) {
+            return Err(Invalid::Full("segment"));
+        }
+        let first = segments.first().ok_or(Invalid::Disconnected("path"))?;
+        if first.from != S::ZERO {
+            return Err(Invalid::Disconnected("path"));
+        }
+        for (before, after) in segments.iter().zip(segments.iter().skip(1)) {
+            let joined = after.start == before.end
+                && after.from == before.from + before.length
+                && after.heading_at(S::ZERO) == before.heading_at(before.length);
+            if !joined {
+                return Err(Invalid::Disconnected("segment"));
+            }
+        }
+        Ok(Self { segments })
+    }
+
+    /// The lines and arcs.
+    pub fn segments(self) -> &'a [Segment<S>] {
+        self.segments
+    }
+
+    /// Total length \[m\].
+    pub fn length(self) -> S {
+        self.segments.last().map_or(S::ZERO, |last| last.from + last.length)
+    }
+
+    /// Position and heading at a travelled length \[m\], limited to `[0, length]`. O(log segments).
+    pub fn pose_at(self, length: S) -> Pose<S> {
+        let (segment, u) = self.locate(length);
+        Pose { position: segment.point_at(u), heading: segment.heading_at(u) }
+    }
+
+    /// Position at a travelled length \[m\], limited to `[0, length]`. O(log segments).
+    pub fn point_at(self, length: S) -> Point<S> {
+        let (segment, u) = self.locate(length);
+        segment.point_at(u)
+    }
+
+    /// Shape of the segment at a travelled length \[m\]: its curvature is `± 1 / radius`, or 0 on a line.
+    pub fn curve_at(self, length: S) -> Curve<S> {
+        self.locate(length).0.curve
+    }
+
+    /// Box around the path \[m\].
+    pub fn bounds(self) -> Bounds<S> {
+        let mut rest = self.segments.iter().map(|segment| segment.bounds);
+        let first = rest.next().unwrap_or_default();
+        rest.fold(first, Bounds::hull)
+    }
+
+    fn locate(self, length: S) -> (&'a Segment<S>, S) {
+        let after = self.segments.partition_point(|segment| segment.from <= length);
+        let index = after.saturating_sub(1);
+        let segment = &self.segments[index.min(self.segments.len() - 1)];
+        (segment, length - segment.from)
+    }
+}

@@ -1,0 +1,226 @@
+//! Fixed-capacity store of region pieces: the part of a region that one pair of segments makes.
+//!
+//! Pieces of one region are a linked list inside the storage, so that a region of any number of pieces can be
+//! added and removed without moving others. While a pair of agents is being computed its pieces form one
+//! *pending* list in which joined pieces carry the same group; it becomes regions at the end, or is taken
+//! back as a whole when the storage is full.
+
+use crate::error::Full;
+use crate::geometry::Interval;
+use crate::pair::footprint::Lap;
+use crate::scalar::Scalar;
+use core::marker::PhantomData;
+
+/// No piece: the end of a list.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// The part of a collision region that one closed form describes: one segment against one segment.
+///
+/// It holds the lengths along both paths between which it lies; between them it is bounded by the slices
+/// of [`RegionRef`](crate::RegionRef). 28 bytes for `f32`, 48 for `f64`.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Piece<S> {
+    pub(crate) first: Interval<S>,
+    pub(crate) second: Interval<S>,
+    pub(crate) first_segment: u16,
+    pub(crate) second_segment: u16,
+    pub(crate) lap: Lap,
+    group: u16,
+    pub(crate) next: u32,
+}
+
+const _: () = assert!(size_of::<Piece<f32>>() == 28, "the documented size of a piece");
+const _: () = assert!(size_of::<Piece<f64>>() == 48, "the documented size of a piece");
+
+impl<S: Scalar> Piece<S> {
+    /// A free slot, to fill a storage with.
+    pub const EMPTY: Self = Self {
+        first: Interval::new(S::ZERO, S::ZERO),
+        second: Interval::new(S::ZERO, S::ZERO),
+        first_segment: 0,
+        second_segment: 0,
+        lap: Lap::Same,
+        group: 0,
+        next: NONE,
+    };
+
+    pub(crate) fn new(segments: [u16; 2], lap: Lap, first: Interval<S>, second: Interval<S>) -> Self {
+        let [first_segment, second_segment] = segments;
+        Self { first, second, first_segment, second_segment, lap, group: 0, next: NONE }
+    }
+}
+
+impl<S: Scalar> Default for Piece<S> {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+/// The store: slots of the caller, used ones in lists, free ones in a list of their own.
+#[derive(Clone, Debug)]
+pub(crate) struct Pieces<S, P> {
+    slots: P,
+    /// Slots from here on were never used.
+    fresh: u32,
+    /// The slots that were given back.
+    free: u32,
+    /// Number of slots in use.
+    used: u32,
+    pending: Pending,
+    scalar: PhantomData<S>,
+}
+
+/// The list of the pair that is being computed.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    first: u32,
+    last: u32,
+    /// Number of groups handed out.
+    groups: u16,
+}
+
+impl Pending {
+    const NOTHING: Self = Self { first: NONE, last: NONE, groups: 0 };
+}
+
+impl<S, P> Pieces<S, P> {
+    pub(crate) const fn new(slots: P) -> Self {
+        Self { slots, fresh: 0, free: NONE, used: 0, pending: Pending::NOTHING, scalar: PhantomData }
+    }
+
+    /// Number of pieces stored.
+    pub(crate) const fn len(&self) -> usize {
+        self.used as usize
+    }
+
+    /// The first pending piece, or [`NONE`].
+    pub(crate) const fn first_pending(&self) -> u32 {
+        self.pending.first
+    }
+}
+
+impl<S, P: AsRef<[Piece<S>]>> Pieces<S, P> {
+    /// The slots, to follow a list in.
+    pub(crate) fn slots(&self) -> &[Piece<S>] {
+        self.slots.as_ref()
+    }
+}
+
+impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
+    /// Adds a piece to the pending list, in a group of its own.
+    pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, Full> {
+        let Pending { first, last, groups } = self.pending;
+        let index = if self.free == NONE { self.fresh } else { self.free };
+        let groups = groups.checked_add(1).ok_or(Full::Pieces)?;
+        let slots = self.slots.as_mut();
+        let slot = slots.get_mut(index as usize).ok_or(Full::Pieces)?;
+        if self.free == NONE {
+            self.fresh += 1;
+        } else {
+            self.free = slot.next;
+        }
+        *slot = Piece { group: groups, next: NONE, ..piece };
+        if let Some(last) = slots.get_mut(last as usize) {
+            last.next = index;
+        }
+        self.used += 1;
+        self.pending = Pending { first: if first == NONE { index } else { first }, last: index, groups };
+        Ok(index)
+    }
+
+    /// The pending piece at an index that [`Pieces::push`] gave out.
+    pub(crate) fn get_mut(&mut self, index: u32) -> Option<&mut Piece<S>> {
+        self.slots.as_mut().get_mut(index as usize)
+    }
+
+    /// Makes two pending pieces, and all that were joined with them, parts of one region. O(pending pieces).
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
+        let slots = self.slots.as_mut();
+        let group = |index: u32| slots.get(index as usize).map(|piece| piece.group);
+        let (kept, gone) = (group(a), group(b));
+        if kept == gone {
+            return;
+        }
+        let mut index = self.pending.first;
+        while let Some(piece) = slots.get_mut(index as usize) {
+            if Some(piece.group) == gone {
+                piece.group = kept.unwrap_or(piece.group);
+            }
+            index = piece.next;
+        }
+    }
+
+    /// Takes the pieces that were joined with the first pending one out of the pending list, as a list of
+    /// their own. O(pending pieces).
+    pub(crate) fn take_region(&mut self) -> Option<u32> {
+        let slots = self.slots.as_mut();
+        let head = self.pending.first;
+        let group = slots.get(head as usize)?.group;
+        let (mut taken, mut rest) = (NONE, NONE);
+        let (mut index, mut rest_head) = (head, NONE);
+        while let Some(piece) = slots.get_mut(index as usize) {
+            let (member, next) = (piece.group == group, piece.next);
+            piece.next = NONE;
+            let tail = if member { &mut taken } else { &mut rest };
+            let before = core::mem::replace(tail, index);
+            match slots.get_mut(before as usize) {
+                Some(before) => before.next = index,
+                None if !member => rest_head = index,
+                None => {}
+            }
+            index = next;
+        }
+        self.pending = Pending { first: rest_head, last: rest, ..self.pending };
+        if rest_head == NONE {
+            self.pending = Pending::NOTHING;
+        }
+        Some(head)
+    }
+
+    /// Gives the pieces of a list back.
+    pub(crate) fn release(&mut self, head: u32) {
+        let mut index = head;
+        while let Some(piece) = self.slots.as_mut().get_mut(index as usize) {
+            let next = core::mem::replace(&mut piece.next, self.free);
+            self.free = index;
+            self.used -= 1;
+            index = next;
+        }
+    }
+
+    /// Gives all pending pieces back.
+    pub(crate) fn take_back(&mut self) {
+        let head = self.pending.first;
+        self.pending = Pending::NOTHING;
+        self.release(head);
+    }
+}
+
+/// Iterator over the pieces of a list.
+#[derive(Debug)]
+pub(crate) struct List<'a, S> {
+    slots: &'a [Piece<S>],
+    next: u32,
+}
+
+impl<S> Clone for List<'_, S> {
+    fn clone(&self) -> Self {
+        Self { ..*self }
+    }
+}
+
+impl<'a, S> List<'a, S> {
+    pub(crate) const fn new(slots: &'a [Piece<S>], head: u32) -> Self {
+        Self { slots, next: head }
+    }
+}
+
+impl<'a, S> Iterator for List<'a, S> {
+    type Item = &'a Piece<S>;
+    fn next(&mut self) -> Option<&'a Piece<S>> {
+        let piece = self.slots.get(self.next as usize)?;
+        self.next = piece.next;
+        Some(piece)
+    }
+}

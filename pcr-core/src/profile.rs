@@ -1,0 +1,267 @@
+//! Speed profiles: the map λ from time to travelled length (Eq. 1-3), and its inverse, in closed form.
+//!
+//! A profile is a chain of phases of constant acceleration; a phase at speed 0 is a wait. Time is measured
+//! from the start of the motion, so that a delay changes nothing here. Both maps are evaluated from the slow
+//! end of a phase, where the square root of the inverse does not cancel (docs/equations.md, time map).
+
+use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::geometry::Interval;
+use crate::scalar::{Scalar, Wide};
+use heapless::Vec;
+
+/// Motion at constant acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Phase<S> {
+    /// Time since the start of the motion \[s\].
+    time: Interval<S>,
+    /// Travelled length \[m\].
+    length: Interval<S>,
+    /// Speed at the beginning and at the end \[m/s\].
+    speed: [S; 2],
+    /// Acceleration \[m/s²\].
+    acceleration: S,
+}
+
+impl<S: Scalar> Phase<S> {
+    /// The first phase of a profile: from speed `speed` \[m/s\], `duration` \[s\] at `acceleration` \[m/s²\].
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] for the duration and either speed.
+    /// A final speed that is negative by rounding only is taken as 0.
+    pub fn starting_at(speed: S, duration: S, acceleration: S) -> Result<Self, Invalid> {
+        not_negative(speed, "initial speed")?;
+        let origin = Interval::new(S::ZERO, S::ZERO);
+        let at_rest = Self { time: origin, length: origin, speed: [speed, speed], acceleration: S::ZERO };
+        at_rest.then(duration, acceleration)
+    }
+
+    /// The phase that follows `self`: `duration` \[s\] at `acceleration` \[m/s²\].
+    ///
+    /// # Errors
+    /// As [`Phase::starting_at`].
+    pub fn then(&self, duration: S, acceleration: S) -> Result<Self, Invalid> {
+        not_negative(duration, "duration")?;
+        in_range(acceleration, "acceleration")?;
+        let [_, before] = self.speed;
+        let gain = acceleration.times(duration).narrow();
+        let mut after = in_range(before + gain, "speed")?;
+        if after < S::ZERO {
+            if after < -S::slack(before) {
+                return Err(Invalid::Negative("speed"));
+            }
+            after = S::ZERO;
+        }
+        let travelled = (before + after).half().times(duration).narrow();
+        let time = Interval::new(self.time.hi, in_range(self.time.hi + duration, "duration of the profile")?);
+        let length = Interval::new(self.length.hi, in_range(self.length.hi + travelled, "length of the profile")?);
+        Ok(Self { time, length, speed: [before, after], acceleration })
+    }
+
+    /// Time since the start of the motion \[s\].
+    pub fn time(&self) -> Interval<S> {
+        self.time
+    }
+
+    /// Travelled length \[m\].
+    pub fn length(&self) -> Interval<S> {
+        self.length
+    }
+
+    /// Speed at a time since the start of the motion \[m/s\].
+    pub fn speed_at(&self, time: S) -> S {
+        let [before, after] = self.speed;
+        let gain = self.acceleration.times(time - self.time.lo).narrow();
+        (before + gain).clamp(before.min(after), before.max(after))
+    }
+
+    fn slows(&self) -> bool {
+        self.acceleration < S::ZERO
+    }
+
+    fn length_at(&self, time: S) -> S {
+        // Slow end: v Δt + a Δt² / 2 from the start of a phase that speeds up, from the end of one that slows.
+        let [before, after] = self.speed;
+        let (slow, elapsed) = if self.slows() { (after, self.time.hi - time) } else { (before, time - self.time.lo) };
+        let mean = slow + self.acceleration.abs().half().times(elapsed).narrow();
+        let way = mean.times(elapsed).narrow();
+        let length = if self.slows() { self.length.hi - way } else { self.length.lo + way };
+        length.clamp(self.length.lo, self.length.hi)
+    }
+
+    fn time_at(&self, length: S) -> S {
+        // Slow end: Δt = 2 Δl / (v + √(v² + 2 a Δl)). The division is that of a length by a speed.
+        let [before, after] = self.speed;
+        let (slow, way) =
+            if self.slows() { (after, self.length.hi - length) } else { (before, length - self.length.lo) };
+        let fast = (slow.times(slow) + self.acceleration.abs().times(way).double()).sqrt();
+        let elapsed = way.double().quotient(slow + fast);
+        let time = if self.slows() { self.time.hi - elapsed } else { self.time.lo + elapsed };
+        time.clamp(self.time.lo, self.time.hi)
+    }
+}
+
+/// Speed and acceleration that an agent may not exceed (Eq. 3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Limits<S> {
+    /// Largest speed \[m/s\].
+    pub speed: S,
+    /// Largest acceleration and deceleration \[m/s²\].
+    pub acceleration: S,
+}
+
+/// A profile of at most `N` phases.
+///
+/// ```
+/// use pcr_core::{Limits, Profile};
+/// let limits = Limits { speed: 1.0, acceleration: 0.5 };
+/// let profile = Profile::<f64, 3>::rest_to_rest(5.0, limits)?;
+/// let profile = profile.as_profile();
+/// assert_eq!(profile.duration(), 7.0); // 2 s to speed up, 3 s of cruise, 2 s to stop
+/// assert_eq!(profile.length_at(3.5), 2.5);
+/// assert_eq!(profile.first_time_at(2.5), 3.5);
+/// # Ok::<(), pcr_core::Invalid>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Profile<S: Scalar, const N: usize> {
+    phases: Vec<Phase<S>, N>,
+}
+
+impl<S: Scalar> Profile<S, 3> {
+    /// The trapezoid over `length` \[m\] from rest to rest in the least time (Eq. 3); a triangle where the
+    /// largest speed is not reached.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] (length), [`Invalid::NonPositive`] (limits).
+    pub fn rest_to_rest(length: S, limits: Limits<S>) -> Result<Self, Invalid> {
+        not_negative(length, "length")?;
+        positive(limits.speed, "largest speed")?;
+        positive(limits.acceleration, "largest acceleration")?;
+        let mut phases = Vec::new();
+        if length > S::ZERO {
+            let peak = limits.speed.min(length.times(limits.acceleration).sqrt());
+            // The divisions of this constructor: a speed by an acceleration, a length by a speed.
+            let ramp = peak.quotient(limits.acceleration);
+            let ramp_length = peak.times(ramp).narrow().half().min(length.half());
+            let cruise_length = (length - ramp_length.double()).max(S::ZERO);
+            let cruise = cruise_length.quotient(peak);
+            let end = in_range(ramp.double() + cruise, "duration of the profile")?;
+            let times = [S::ZERO, ramp, ramp + cruise, end];
+            let lengths = [S::ZERO, ramp_length, ramp_length + cruise_length, length];
+            let speeds = [S::ZERO, peak, peak, S::ZERO];
+            let accelerations = [limits.acceleration, S::ZERO, -limits.acceleration];
+            for k in 0..3 {
+                let phase = Phase {
+                    time: Interval::new(times[k], times[k + 1]),
+                    length: Interval::new(lengths[k], lengths[k + 1]),
+                    speed: [speeds[k], speeds[k + 1]],
+                    acceleration: accelerations[k],
+                };
+                if phase.time.lo < phase.time.hi {
+                    phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
+                }
+            }
+        }
+        Ok(Self { phases })
+    }
+}
+
+impl<S: Scalar, const N: usize> Profile<S, N> {
+    /// Speed `speed` \[m/s\] at the start, then each acceleration \[m/s²\] for its duration \[s\].
+    ///
+    /// # Errors
+    /// As [`Phase::starting_at`], and [`Invalid::Full`] for more than `N` pieces.
+    pub fn from_pieces(speed: S, pieces: impl IntoIterator<Item = (S, S)>) -> Result<Self, Invalid> {
+        let mut phases: Vec<Phase<S>, N> = Vec::new();
+        for (duration, acceleration) in pieces {
+            let phase = match phases.last() {
+                None => Phase::starting_at(speed, duration, acceleration)?,
+                Some(last) => last.then(duration, acceleration)?,
+            };
+            phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
+        }
+        Ok(Self { phases })
+    }
+
+    /// The profile as the algorithms take it.
+    pub fn as_profile(&self) -> ProfileRef<'_, S> {
+        ProfileRef { phases: &self.phases }
+    }
+}
+
+/// A profile of any capacity, borrowed: phases that follow one another; none for an agent that stands.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileRef<'a, S> {
+    phases: &'a [Phase<S>],
+}
+
+impl<'a, S: Scalar> ProfileRef<'a, S> {
+    /// A profile of phases that were built one after the other.
+    ///
+    /// # Errors
+    /// [`Invalid::Disconnected`] if they were not.
+    pub fn new(phases: &'a [Phase<S>]) -> Result<Self, Invalid> {
+        let mut end = (S::ZERO, S::ZERO, phases.first().map_or(S::ZERO, |first| first.speed[0]));
+        for phase in phases {
+            if (phase.time.lo, phase.length.lo, phase.speed[0]) != end {
+                return Err(Invalid::Disconnected("phase"));
+            }
+            end = (phase.time.hi, phase.length.hi, phase.speed[1]);
+        }
+        Ok(Self { phases })
+    }
+
+    /// The phases.
+    pub fn phases(self) -> &'a [Phase<S>] {
+        self.phases
+    }
+
+    /// Time from start to end \[s\].
+    pub fn duration(self) -> S {
+        self.phases.last().map_or(S::ZERO, |last| last.time.hi)
+    }
+
+    /// Travelled length from start to end \[m\].
+    pub fn length(self) -> S {
+        self.phases.last().map_or(S::ZERO, |last| last.length.hi)
+    }
+
+    /// λ: length travelled at a time since the start \[m\]; standing before 0 and after the end. O(log phases).
+    pub fn length_at(self, time: S) -> S {
+        self.at(time).map_or(S::ZERO, |phase| phase.length_at(time.clamp(phase.time.lo, phase.time.hi)))
+    }
+
+    /// Speed at a time since the start \[m/s\]; 0 before 0 and after the end. O(log phases).
+    pub fn speed_at(self, time: S) -> S {
+        if time < S::ZERO || time > self.duration() {
+            return S::ZERO;
+        }
+        self.at(time).map_or(S::ZERO, |phase| phase.speed_at(time))
+    }
+
+    /// Inverse of λ: first time since the start at which `length` \[m\] is reached. O(log phases).
+    pub fn first_time_at(self, length: S) -> S {
+        let index = self.phases.partition_point(|phase| phase.length.hi < length);
+        match self.phases.get(index) {
+            Some(phase) => phase.time_at(length.max(phase.length.lo)),
+            None => self.duration(),
+        }
+    }
+
+    /// Inverse of λ: last time since the start at which `length` \[m\] is not exceeded; waits are over. O(log phases).
+    pub fn last_time_at(self, length: S) -> S {
+        let index = self.phases.partition_point(|phase| phase.length.lo <= length);
+        match index.checked_sub(1).and_then(|last| self.phases.get(last)) {
+            Some(phase) if phase.length.hi <= length => phase.time.hi,
+            Some(phase) => phase.time_at(length),
+            None => S::ZERO,
+        }
+    }
+
+    fn at(self, time: S) -> Option<&'a Phase<S>> {
+        let index = self.phases.partition_point(|phase| phase.time.hi < time);
+        self.phases.get(index).or(self.phases.last())
+    }
+}

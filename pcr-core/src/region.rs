@@ -1,0 +1,226 @@
+//! Collision regions in path-time space: what an agent must keep out of (Eq. 38).
+
+use crate::geometry::Interval;
+use crate::motion::Motion;
+use crate::pair::Pair;
+use crate::pair::footprint::Lap;
+use crate::pieces::{List, Piece};
+use crate::scalar::Scalar;
+use crate::segment::{Curve, Segment};
+
+/// One collision region of an ordered pair of agents: the connected set of (time, length along the path of
+/// the *ego*) in which the ego's disc overlaps that of the *other* agent.
+///
+/// It contains the exact region of the combined radius and lies within the exact region of that radius plus
+/// the slack of its number format ([`Scalar::slack`]).
+#[derive(Clone, Debug)]
+pub struct RegionRef<'a, S: Scalar> {
+    pair: Pair<'a, S>,
+    pieces: List<'a, S>,
+    agents: [usize; 2],
+    /// Whether the ego is the second agent of the pair.
+    transposed: bool,
+}
+
+/// One segment of the ego against one segment of the other: the part of a region that one closed form describes.
+#[derive(Clone, Copy, Debug)]
+pub struct PieceRef<'a, S: Scalar> {
+    /// Segment of the ego's path.
+    pub ego: &'a Segment<S>,
+    /// Segment of the other's path.
+    pub other: &'a Segment<S>,
+    /// Places of both segments in their paths.
+    pub segments: [usize; 2],
+    /// Length range along the ego's path \[m\].
+    pub length: Interval<S>,
+    /// Length range along the other's path \[m\].
+    pub other_length: Interval<S>,
+}
+
+/// The types of Section 3.3 of the paper; the first letter is the ego's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum PieceType {
+    /// Straight against straight.
+    SS,
+    /// Straight ego against an arc.
+    SA,
+    /// Ego on an arc against straight.
+    AS,
+    /// Arc against arc.
+    AA,
+}
+
+impl PieceType {
+    /// The type of a pair of shapes.
+    pub fn of<S>(ego: Curve<S>, other: Curve<S>) -> Self {
+        match (ego, other) {
+            (Curve::Line, Curve::Line) => Self::SS,
+            (Curve::Line, Curve::Arc { .. }) => Self::SA,
+            (Curve::Arc { .. }, Curve::Line) => Self::AS,
+            (Curve::Arc { .. }, Curve::Arc { .. }) => Self::AA,
+        }
+    }
+}
+
+impl core::fmt::Display for PieceType {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(match self {
+            Self::SS => "SS",
+            Self::SA => "SA",
+            Self::AS => "AS",
+            Self::AA => "AA",
+        })
+    }
+}
+
+impl<S: Scalar> PieceRef<'_, S> {
+    /// Type of the piece.
+    pub fn piece_type(&self) -> PieceType {
+        PieceType::of(self.ego.curve(), self.other.curve())
+    }
+}
+
+impl<'a, S: Scalar> RegionRef<'a, S> {
+    pub(crate) fn new(pair: Pair<'a, S>, pieces: List<'a, S>, agents: [usize; 2], transposed: bool) -> Self {
+        Self { pair, pieces, agents, transposed }
+    }
+
+    /// Index of the ego in the fleet.
+    pub fn ego(&self) -> usize {
+        self.agents[usize::from(self.transposed)]
+    }
+
+    /// Index of the other agent in the fleet.
+    pub fn other(&self) -> usize {
+        self.agents[usize::from(!self.transposed)]
+    }
+
+    /// Length range along the ego's path \[m\], rounded outward.
+    pub fn length(&self) -> Interval<S> {
+        self.hull(|piece| self.own(piece))
+    }
+
+    /// Length range along the other's path \[m\], rounded outward.
+    pub fn other_length(&self) -> Interval<S> {
+        self.hull(|piece| self.others(piece))
+    }
+
+    /// Time range \[s\], rounded outward: the other agent is then in [`RegionRef::other_length`].
+    pub fn time(&self) -> Interval<S> {
+        self.other_motion().time_in(self.other_length())
+    }
+
+    /// Whether the region begins with the other agent standing at its start: it then reaches back as a strip
+    /// of constant slice.
+    pub fn is_open_at_start(&self) -> bool {
+        self.other_length().lo <= S::ZERO
+    }
+
+    /// Whether the region ends with the other agent standing at its end: it then goes on as a strip of
+    /// constant slice.
+    pub fn is_open_at_end(&self) -> bool {
+        self.other_length().hi >= self.other_motion().path().length()
+    }
+
+    /// The lengths along the ego's path inside the region at a time \[m\], as disjoint intervals in increasing
+    /// order, rounded outward. Before the other agent sets off and after its arrival this is the strip of the
+    /// agent standing there.
+    ///
+    /// Cost: two to three times the pieces of the region, for each interval.
+    pub fn slice_at(&self, time: S) -> Slice<'a, S> {
+        Slice { region: self.clone(), at: self.other_motion().length_at(time), after: None }
+    }
+
+    /// Whether the ego at this length of its path \[m\] overlaps the other agent at this time \[s\] in this region.
+    pub fn contains(&self, time: S, length: S) -> bool {
+        let at = self.other_motion().length_at(time);
+        self.intervals(at).any(|interval| interval.contains(length))
+    }
+
+    /// The pieces, at least one.
+    pub fn pieces(&self) -> impl Iterator<Item = PieceRef<'a, S>> {
+        let (pair, transposed) = (self.pair, self.transposed);
+        self.pieces.clone().filter_map(move |piece| {
+            let indices = [usize::from(piece.first_segment), usize::from(piece.second_segment)];
+            let first = pair.first.path().segments().get(indices[0])?;
+            let second = pair.second.path().segments().get(indices[1])?;
+            Some(if transposed {
+                let segments = [indices[1], indices[0]];
+                PieceRef { ego: second, other: first, segments, length: piece.second, other_length: piece.first }
+            } else {
+                PieceRef {
+                    ego: first,
+                    other: second,
+                    segments: indices,
+                    length: piece.first,
+                    other_length: piece.second,
+                }
+            })
+        })
+    }
+
+    /// The motion of the other agent.
+    pub fn other_motion(&self) -> &'a Motion<'a, S> {
+        if self.transposed { self.pair.first } else { self.pair.second }
+    }
+
+    fn own(&self, piece: &Piece<S>) -> Interval<S> {
+        if self.transposed { piece.second } else { piece.first }
+    }
+
+    fn others(&self, piece: &Piece<S>) -> Interval<S> {
+        if self.transposed { piece.first } else { piece.second }
+    }
+
+    fn hull(&self, part: impl Fn(&Piece<S>) -> Interval<S>) -> Interval<S> {
+        let mut parts = self.pieces.clone().map(part);
+        let first = parts.next().unwrap_or_default();
+        parts.fold(first, Interval::hull)
+    }
+
+    /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
+    fn intervals(&self, at: S) -> impl Iterator<Item = Interval<S>> {
+        let (pair, transposed) = (self.pair, self.transposed);
+        self.pieces.clone().flat_map(move |piece| {
+            Lap::ALL.into_iter().filter_map(move |lap| {
+                if transposed {
+                    pair.slice_of_second(piece, at, lap)
+                } else if lap == piece.lap {
+                    pair.slice_of_first(piece, at)
+                } else {
+                    None
+                }
+            })
+        })
+    }
+}
+
+/// Disjoint intervals of a slice, in increasing order.
+#[derive(Clone, Debug)]
+pub struct Slice<'a, S: Scalar> {
+    region: RegionRef<'a, S>,
+    at: S,
+    after: Option<S>,
+}
+
+impl<S: Scalar> Iterator for Slice<'_, S> {
+    type Item = Interval<S>;
+
+    fn next(&mut self) -> Option<Interval<S>> {
+        let beyond = |interval: &Interval<S>| self.after.is_none_or(|after| interval.lo > after);
+        let lowest = |a: Interval<S>, b: Interval<S>| if b.lo < a.lo { b } else { a };
+        let mut next = self.region.intervals(self.at).filter(beyond).reduce(lowest)?;
+        // Intervals of neighbouring segments meet at the joint.
+        loop {
+            let grown = self.region.intervals(self.at).filter(|other| other.meets(next)).fold(next, Interval::hull);
+            if grown == next {
+                break;
+            }
+            next = grown;
+        }
+        self.after = Some(next.hi);
+        Some(next)
+    }
+}

@@ -1,0 +1,237 @@
+//! Lines and arcs, placed in the plane.
+//!
+//! A segment knows where it starts, its heading there, its curvature and its length; everything else of it is
+//! derived here, once, when it is built. A point of an arc is reached over the half chord,
+//!
+//! ```text
+//! p(u) = p₀ + 2ϱ sin(h) e(ϑ + h),   h = u / 2ϱ  to the left,
+//! ```
+//!
+//! which keeps its relative accuracy for every radius, nearly straight arcs included.
+
+use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
+use crate::scalar::{Angle, Scalar, Unit};
+
+/// Side to which an arc bends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Turn {
+    /// Counter-clockwise.
+    Left,
+    /// Clockwise.
+    Right,
+}
+
+/// Shape of a segment: the S and A of the paper's SCC paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Curve<S> {
+    /// Straight line.
+    Line,
+    /// Circular arc.
+    Arc {
+        /// Radius of curvature \[m\], positive.
+        radius: S,
+        /// Side to which it bends.
+        turn: Turn,
+    },
+}
+
+/// A line or an arc placed in the plane, part of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "defmt", defmt(bound = "S: defmt::Format, S::Unit: defmt::Format, S::Angle: defmt::Format"))]
+pub struct Segment<S: Scalar> {
+    pub(crate) start: Point<S>,
+    pub(crate) end: Point<S>,
+    pub(crate) direction: Direction<S>,
+    heading: S::Angle,
+    heading_at_end: S::Angle,
+    pub(crate) curve: Curve<S>,
+    /// Length of the whole circle of an arc \[m\].
+    pub(crate) circumference: S,
+    pub(crate) length: S,
+    /// Length of the path before this segment \[m\].
+    pub(crate) from: S,
+    pub(crate) bounds: Bounds<S>,
+}
+
+impl<S: Scalar> Segment<S> {
+    /// The line of length 0 at which a path begins.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
+    pub fn standing(pose: Pose<S>) -> Result<Self, Invalid> {
+        in_range(pose.position.x, "x")?;
+        in_range(pose.position.y, "y")?;
+        if !pose.heading.is_finite() {
+            return Err(Invalid::NonFinite("heading"));
+        }
+        Ok(Self {
+            start: pose.position,
+            end: pose.position,
+            direction: Direction::at(pose.heading),
+            heading: pose.heading,
+            heading_at_end: pose.heading,
+            curve: Curve::Line,
+            circumference: S::ZERO,
+            length: S::ZERO,
+            from: S::ZERO,
+            bounds: Bounds::around(pose.position, pose.position),
+        })
+    }
+
+    /// The line of this length \[m\] that continues the path at the end of `self`.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::Negative`], [`Invalid::OutOfRange`] (also for the end point and the
+    /// length of the path).
+    pub fn then_line(&self, length: S) -> Result<Self, Invalid> {
+        not_negative(length, "length")?;
+        let direction = Direction::at(self.heading_at_end);
+        let end = self.end + direction.vector(length, S::ZERO);
+        Self {
+            start: self.end,
+            end,
+            direction,
+            heading: self.heading_at_end,
+            heading_at_end: self.heading_at_end,
+            curve: Curve::Line,
+            circumference: S::ZERO,
+            length,
+            from: self.from + self.length,
+            bounds: Bounds::around(self.end, end),
+        }
+        .checked()
+    }
+
+    /// The arc of this radius \[m\] and length \[m\] that continues the path at the end of `self`.
+    ///
+    /// # Errors
+    /// As [`Segment::then_line`], [`Invalid::NonPositive`] for the radius and [`Invalid::SweepOverOneTurn`].
+    pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
+        positive(radius, "radius")?;
+        not_negative(length, "length")?;
+        let circumference = S::Angle::circumference(radius);
+        // A full turn may come in with the rounding of `sweep * radius`.
+        if length > circumference + S::slack(circumference) {
+            return Err(Invalid::SweepOverOneTurn);
+        }
+        let length = length.min(circumference);
+        let sweep = S::Angle::subtended(length, radius);
+        let mut arc = Self {
+            start: self.end,
+            end: self.end,
+            direction: Direction::at(self.heading_at_end),
+            heading: self.heading_at_end,
+            heading_at_end: match turn {
+                Turn::Left => self.heading_at_end + sweep,
+                Turn::Right => self.heading_at_end - sweep,
+            },
+            curve: Curve::Arc { radius, turn },
+            circumference,
+            length,
+            from: self.from + self.length,
+            bounds: Bounds::default(),
+        };
+        arc.end = arc.start + arc.chord(length);
+        arc.bounds = arc.arc_bounds(radius);
+        arc.checked()
+    }
+
+    fn checked(self) -> Result<Self, Invalid> {
+        in_range(self.end.x, "x")?;
+        in_range(self.end.y, "y")?;
+        in_range(self.from + self.length, "length of the path")?;
+        Ok(self)
+    }
+
+    /// Shape.
+    pub fn curve(&self) -> Curve<S> {
+        self.curve
+    }
+
+    /// Length \[m\].
+    pub fn length(&self) -> S {
+        self.length
+    }
+
+    /// Length of the path before this segment \[m\].
+    pub fn from(&self) -> S {
+        self.from
+    }
+
+    /// Box around it \[m\].
+    pub fn bounds(&self) -> Bounds<S> {
+        self.bounds
+    }
+
+    /// The point after `u` metres of this segment, `u` limited to `[0, length]`. One sine and cosine on an arc.
+    pub fn point_at(&self, u: S) -> Point<S> {
+        if u >= self.length {
+            self.end
+        } else if u <= S::ZERO {
+            self.start
+        } else {
+            self.start + self.chord(u)
+        }
+    }
+
+    /// Angle of the direction of travel after `u` metres, `u` limited to `[0, length]`.
+    pub fn heading_at(&self, u: S) -> S::Angle {
+        if u >= self.length {
+            return self.heading_at_end;
+        }
+        match self.curve {
+            Curve::Arc { radius, turn: Turn::Left } => self.heading + S::Angle::subtended(u.max(S::ZERO), radius),
+            Curve::Arc { radius, turn: Turn::Right } => self.heading - S::Angle::subtended(u.max(S::ZERO), radius),
+            Curve::Line => self.heading,
+        }
+    }
+
+    /// Whether it bends to the right: coordinates along it are then mirrored, so that all arcs turn left.
+    pub(crate) fn mirrored(&self) -> bool {
+        matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })
+    }
+
+    /// Vector from the start to the point after `u` metres.
+    fn chord(&self, u: S) -> Vector<S> {
+        let Curve::Arc { radius, .. } = self.curve else {
+            return self.direction.vector(u, S::ZERO);
+        };
+        let (sin, cos) = S::Angle::subtended(u, radius).half().sin_cos();
+        let chord = radius.double().scale(sin);
+        let across = chord.scale(sin);
+        self.direction.vector(chord.scale(cos), if self.mirrored() { -across } else { across })
+    }
+
+    /// Box of an arc. Below half a turn a coordinate is extreme at an end, or on the axis where the
+    /// other component of the heading changes its sign; from half a turn on the whole circle is taken.
+    fn arc_bounds(&self, radius: S) -> Bounds<S> {
+        let ends = Bounds::around(self.start, self.end);
+        let left = if self.mirrored() { -radius } else { radius };
+        let centre = self.start + self.direction.vector(S::ZERO, left);
+        let low = Point::new(centre.x - radius, centre.y - radius);
+        let high = Point::new(centre.x + radius, centre.y + radius);
+        if self.length.double() >= self.circumference {
+            return ends.hull(Bounds::around(low, high));
+        }
+        let (start, end) = (self.direction, Direction::<S>::at(self.heading_at_end));
+        let sign = |unit: S::Unit| unit < S::Unit::ZERO;
+        let mut bounds = ends;
+        match (sign(start.cos), sign(end.cos)) {
+            (false, true) => bounds.x.hi = bounds.x.hi.max(high.x),
+            (true, false) => bounds.x.lo = bounds.x.lo.min(low.x),
+            _ => {}
+        }
+        match (sign(start.sin), sign(end.sin)) {
+            (false, true) => bounds.y.hi = bounds.y.hi.max(high.y),
+            (true, false) => bounds.y.lo = bounds.y.lo.min(low.y),
+            _ => {}
+        }
+        bounds
+    }
+}
