@@ -1,3 +1,4 @@
-//! x
+//! The tool `pcr` on a desktop: scenario files in, collision regions, tables and pictures out.
+
 pub mod fleet;
 pub mod scenario;

@@ -1,0 +1,3 @@
+//! The command `pcr`.
+
+fn main() {}
