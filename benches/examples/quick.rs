@@ -11,7 +11,7 @@ fn main() {
         let ecm = build_ecm(&m).unwrap();
         let mut best = f64::MAX;
         let (mut r, mut p) = (vec![pcr_core::Region::EMPTY; ecm.len()], vec![pcr_core::Piece::EMPTY; ecm.pieces()]);
-        for _ in 0..200 {
+        for _ in 0..std::env::args().nth(1).map_or(200, |a| a.parse().unwrap()) {
             let t = Instant::now();
             let e = pcr_core::Ecm::build(&mut r[..], &mut p[..], &m).unwrap();
             let d = t.elapsed().as_secs_f64();

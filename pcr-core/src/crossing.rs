@@ -63,20 +63,19 @@ pub fn crossings<'a, S: Scalar>(
         let own = ego.path().segments().iter().enumerate();
         let near = own.filter(move |(_, own)| own.bounds.within(their.bounds, slack));
         near.flat_map(move |(i, own)| {
-            let roots = Relative::new(their, Carrier::from(own), &Footprint::of(own.start, their)).lengths_at(S::ZERO);
-            let roots = distinct(roots).into_iter().flatten();
+            let start = Footprint::of(own.start, their);
+            let (mut roots, mut count) = ([None; 2], 0);
+            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], |s| {
+                // Two equal roots are one crossing.
+                if count < roots.len() && !roots.contains(&Some(s)) {
+                    roots[count] = Some(s);
+                    count += 1;
+                }
+            });
+            let roots = roots.into_iter().flatten();
             roots.filter_map(move |s| Crossing::at(ego, other, [i, j], own, their, s))
         })
     })
-}
-
-/// One of two equal roots.
-fn distinct<S: Scalar>(roots: Option<[S; 2]>) -> [Option<S>; 2] {
-    match roots {
-        Some([a, b]) if a == b => [Some(a), None],
-        Some([a, b]) => [Some(a), Some(b)],
-        None => [None, None],
-    }
 }
 
 impl<S: Scalar> Crossing<S> {

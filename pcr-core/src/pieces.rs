@@ -98,12 +98,22 @@ impl<S, P> Pieces<S, P> {
     pub(crate) const fn first_pending(&self) -> u32 {
         self.pending.first
     }
+
+    /// The last pending piece, or [`NONE`].
+    pub(crate) const fn last_pending(&self) -> u32 {
+        self.pending.last
+    }
 }
 
 impl<S, P: AsRef<[Piece<S>]>> Pieces<S, P> {
     /// The slots, to follow a list in.
     pub(crate) fn slots(&self) -> &[Piece<S>] {
         self.slots.as_ref()
+    }
+
+    /// The pending piece after this one; the first after [`NONE`].
+    pub(crate) fn pending_after(&self, index: u32) -> u32 {
+        self.slots().get(index as usize).map_or(self.pending.first, |piece| piece.next)
     }
 }
 

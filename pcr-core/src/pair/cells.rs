@@ -1,14 +1,14 @@
 //! From events to pieces: the collision region of one segment against one segment.
 //!
 //! The events cut the second segment into slabs. In a slab, every lap of the first segment that the disc
-//! covers is a cell whose ends are monotone; cells of neighbouring slabs with the same lap are parts of one piece.
-//! Cells of different laps can only meet where the disc covers the whole circle. The lengths of a piece are the hull
-//! of its slices at the slab ends: nothing between them can be extreme (math: pair/events.rs).
+//! covers is a cell; cells of neighbouring slabs with the same lap are parts of one piece. Cells of different
+//! laps can only meet where the disc covers the whole circle. The lengths of a piece are the hull of its slices at
+//! the slab ends and at the turning points: nothing between them can be extreme.
 
-use super::events::{Events, wraps};
+use super::events::{Events, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, shift};
 use crate::error::Full;
-use crate::geometry::{Interval, Point};
+use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
@@ -23,10 +23,10 @@ pub(crate) struct SegmentPair<'a, S: Scalar> {
     pub(crate) radius: S,
 }
 
-/// What the disc covers at one length of the second segment.
+/// What the disc covers of the first segment at one length of the second.
 #[derive(Clone, Copy)]
 struct Section<S> {
-    foot: S,
+    footprint: Footprint<S>,
     reach: Reach<S>,
 }
 
@@ -38,6 +38,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
         let events = Events::of(self.first, self.second, self.radius);
         let events = events.in_order();
+        let begin = pieces.last_pending();
         let mut open = Open::default();
         let mut before: Option<Section<S>> = None;
         for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
@@ -47,15 +48,19 @@ impl<S: Scalar> SegmentPair<'_, S> {
             }
             let slab = Interval::new(lo, hi);
             let middle = self.section(slab.middle());
-            let laps = before.map_or(0, |before| self.laps_lost(&before, &middle, lo));
-            open = self.extend(pieces, slab, &middle, open, laps)?;
+            let laps_lost = before.map_or(0, |before| self.laps_lost(&before, &middle, lo));
+            open = self.extend(pieces, slab, &middle, open, laps_lost)?;
             before = Some(middle);
+        }
+        if pieces.last_pending() != begin {
+            turning_points(self.first, self.second, self.radius, |s| self.turn_back(pieces, begin, s));
         }
         Ok(())
     }
 
     fn section(&self, s: S) -> Section<S> {
-        Section::of(self.first, self.second.point_at(s), self.radius)
+        let footprint = Footprint::of(self.second.point_at(s), self.first);
+        Section { footprint, reach: footprint.reach(self.first, self.radius) }
     }
 
     /// Adds the cells of one slab to the pieces that are open at its beginning; returns those open at its end.
@@ -71,12 +76,12 @@ impl<S: Scalar> SegmentPair<'_, S> {
         if middle.reach == Reach::Nothing {
             return Ok(now);
         }
-        let ends = [self.section(slab.lo), self.section(slab.hi)];
+        let mut ends = None;
         for lap in Lap::ALL {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
             };
-            for end in &ends {
+            for end in ends.get_or_insert_with(|| [self.section(slab.lo), self.section(slab.hi)]) {
                 covered = covered.hull(self.limit(end, middle, lap));
             }
             let ongoing = lap.less(laps_lost).and_then(|lap| open[lap as usize]);
@@ -102,19 +107,33 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Ok(now)
     }
 
+    /// Adds the slices at a turning point to the pieces after `begin` that cover it.
+    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, s: S) {
+        let reach = self.section(s).reach;
+        let mut index = pieces.pending_after(begin);
+        while let Some(piece) = pieces.get_mut(index) {
+            if piece.second.contains(s)
+                && let Some(covered) = reach.on(self.first, piece.lap)
+            {
+                piece.first = piece.first.hull(covered);
+            }
+            index = piece.next;
+        }
+    }
+
     /// The slice of a cell at an end of its slab. There it may have shrunk to a point, or grown to the whole
     /// circle, and rounding may have taken it a little beyond.
     fn limit(&self, end: &Section<S>, middle: &Section<S>, lap: Lap) -> Interval<S> {
         let all = Interval::new(S::ZERO, self.first.length);
-        let half = match (end.reach, lap) {
+        let (mut foot, half) = match (end.reach, lap) {
             (_, Lap::Whole) => return all,
-            (Reach::Nothing, _) => S::ZERO,
-            (Reach::Around { half, .. }, _) => half,
-            (Reach::Whole, _) => self.first.circumference.half(),
+            (Reach::Around { foot, half }, _) => (foot, half),
+            (Reach::Nothing, _) => (end.foot(self.first), S::ZERO),
+            (Reach::Whole, _) => (end.foot(self.first), self.first.circumference.half()),
         };
-        let mut foot = end.foot;
-        if self.changes_lap(middle, end, end) {
-            foot = if middle.foot > foot { foot + self.first.circumference } else { foot - self.first.circumference };
+        if wraps(self.first, self.radius) && self.changes_lap(middle, end, end) {
+            let lap = self.first.circumference;
+            foot = if middle.foot(self.first) > foot { foot + lap } else { foot - lap };
         }
         let foot = shift(foot, self.first, lap);
         Interval::new(foot - half, foot + half).widen(S::ZERO, all)
@@ -124,7 +143,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
     fn laps_lost(&self, before: &Section<S>, after: &Section<S>, event: S) -> i8 {
         if !wraps(self.first, self.radius) || !self.changes_lap(before, after, &self.section(event)) {
             0
-        } else if before.foot > after.foot {
+        } else if before.foot(self.first) > after.foot(self.first) {
             1
         } else {
             -1
@@ -135,17 +154,17 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// left its lap, at `between`, on the far half of the circle.
     fn changes_lap(&self, a: &Section<S>, b: &Section<S>, between: &Section<S>) -> bool {
         let middle = self.first.length.half();
-        let far = (between.foot - middle).abs() > self.first.circumference.half().half();
-        self.first.circumference > S::ZERO && (a.foot > middle) != (b.foot > middle) && far
+        let beyond = |section: &Section<S>| section.foot(self.first) > middle;
+        let quarter = self.first.circumference.half().half();
+        beyond(a) != beyond(b) && (between.foot(self.first) - middle).abs() > quarter
     }
 }
 
 impl<S: Scalar> Section<S> {
-    fn of(segment: &Segment<S>, centre: Point<S>, radius: S) -> Self {
-        let footprint = Footprint::of(centre, segment);
-        match footprint.reach(segment, radius) {
-            reach @ Reach::Around { foot, .. } => Self { foot, reach },
-            reach => Self { foot: footprint.foot(segment), reach },
+    fn foot(&self, segment: &Segment<S>) -> S {
+        match self.reach {
+            Reach::Around { foot, .. } => foot,
+            Reach::Nothing | Reach::Whole => self.footprint.foot(segment),
         }
     }
 }

@@ -1,26 +1,26 @@
-//! Where, along the second segment, the part of the first one that the disc covers can change its structure.
+//! Where, along the second segment, the part of the first one that the disc covers can change its structure,
+//! and where it can be extreme.
 //!
-//! Between two neighbouring events the number of covered intervals is constant, and their ends move
-//! continuously and monotonically (math: an end moves by the implicit function theorem until the connecting vector
-//! is normal to a segment, or reaches an end of one). The events are
+//! Between two neighbouring [`Events`] the number of covered intervals is constant and their ends move continuously.
+//! They are
 //!
 //! - the ends of the second segment;
 //! - contacts with an end of the first segment: P1 about it;
-//! - contacts normal to the first segment, `c = ±R` from its carrier: slices begin, end, split (P3);
-//! - contacts normal to the second segment: a slice end turns back (P3 with the roles swapped);
+//! - contacts normal to the first segment, `c = ±R` from its carrier: intervals begin, end, split (P3);
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
-//! A superfluous event costs time and changes nothing.
+//! An end of a covered interval turns back only where the contact is normal to the second segment
+//! ([`turning_points`]), or at an event. Superfluous events and turning points cost time and change nothing.
 
 use super::footprint::{Footprint, Reach};
 use super::offset::{Carrier, Relative, on_first_lap};
-use crate::geometry::{Direction, Point};
+use crate::geometry::Direction;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 use heapless::Vec;
 
-/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 + 8 normal contacts, 2 changes of lap.
-pub(crate) const MAX_EVENTS: usize = 20;
+/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 2 changes of lap.
+pub(crate) const MAX_EVENTS: usize = 12;
 
 /// Events of a pair of segments, in order.
 pub(crate) struct Events<S>(Vec<S, MAX_EVENTS>);
@@ -29,33 +29,19 @@ impl<S: Scalar> Events<S> {
     /// The events along `second`, for discs whose radii add up to `radius`.
     pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S) -> Self {
         let mut events = Self(Vec::new());
-        events.add(S::ZERO, second);
-        events.add(second.length, second);
+        events.add(S::ZERO);
+        events.add(second.length);
 
         let start = Footprint::of(first.start, second);
         events.add_ends(&start, second, radius);
         if first.length > S::ZERO {
             events.add_ends(&Footprint::of(first.end, second), second, radius);
         }
-
-        let along_second = Relative::new(second, Carrier::from(first), &start);
-        let along_first = Relative::new(first, Carrier::from(second), &Footprint::of(second.start, first));
-        for c in [radius, -radius] {
-            for s in along_second.lengths_at(c).into_iter().flatten() {
-                events.add(s, second);
-            }
-            for l in along_first.lengths_at(c).into_iter().flatten() {
-                if S::ZERO <= l && l <= first.length {
-                    events.add_turning_point(first.point_at(l), second, radius);
-                }
-            }
-        }
-
+        let normal = Relative::new(second, Carrier::from(first), &start);
+        normal.lengths_at(&[radius, -radius], |s| events.add(s));
         if let Some(cut) = cut(first, radius) {
-            let along_second = Relative::new(second, cut, &Footprint::of(cut.start, second));
-            for s in along_second.lengths_at(S::ZERO).into_iter().flatten() {
-                events.add(s, second);
-            }
+            let start = Footprint::of(cut.start, second);
+            Relative::new(second, cut, &start).lengths_at(&[S::ZERO], |s| events.add(s));
         }
         events
     }
@@ -65,11 +51,8 @@ impl<S: Scalar> Events<S> {
         &self.0
     }
 
-    /// Inserts at its place what lies on the segment.
-    fn add(&mut self, s: S, second: &Segment<S>) {
-        if s < S::ZERO || s > second.length {
-            return;
-        }
+    /// Inserts an event at its place.
+    fn add(&mut self, s: S) {
         // The capacity is the most that `of` can add.
         if self.0.push(s).is_ok() {
             let mut at = self.0.len() - 1;
@@ -82,21 +65,33 @@ impl<S: Scalar> Events<S> {
 
     fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S) {
         if let Reach::Around { foot, half } = footprint.reach(second, radius) {
-            self.add(on_first_lap(foot - half, second), second);
-            self.add(on_first_lap(foot + half, second), second);
+            for s in [foot - half, foot + half].map(|s| on_first_lap(s, second)) {
+                if S::ZERO <= s && s <= second.length {
+                    self.add(s);
+                }
+            }
         }
     }
+}
 
-    fn add_turning_point(&mut self, contact: Point<S>, second: &Segment<S>, radius: S) {
-        let foot = Footprint::of(contact, second).foot(second);
-        self.add(on_first_lap(foot, second), second);
+/// The lengths of `second` at which a contact with `first` is normal to `second`.
+pub(crate) fn turning_points<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, mut found: impl FnMut(S)) {
+    let start = Footprint::of(second.start, first);
+    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], |l| {
+        let foot = Footprint::of(first.point_at(l), second).foot(second);
+        let mut add = |s: S| {
+            if S::ZERO <= s && s <= second.length {
+                found(s);
+            }
+        };
+        add(on_first_lap(foot, second));
         // A disc larger than the circle also touches from beyond the centre.
         if let Curve::Arc { radius: own, .. } = second.curve
             && own < radius
         {
-            self.add(on_first_lap(foot - second.circumference.half(), second), second);
+            add(on_first_lap(foot - second.circumference.half(), second));
         }
-    }
+    });
 }
 
 /// Whether both ends of an arc can be covered while its middle is not: two laps at once.

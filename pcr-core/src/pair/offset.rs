@@ -38,20 +38,24 @@ impl<S: Scalar> From<&Segment<S>> for Carrier<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Relative<'a, S: Scalar> {
     segment: &'a Segment<S>,
-    /// Length along the segment at the foot of the carrier's start.
-    foot: S,
-    /// Offset of the carrier's start from the segment.
-    n: S,
-    /// Angle from the carrier to the segment.
+    /// The carrier's start.
+    start: &'a Footprint<S>,
+    /// Angle from the carrier to the segment at the foot of its start.
     cos: S::Unit,
     sin: S::Unit,
     /// Signed radius of the carrier, left positive; `None` for a line.
     bend: Option<S>,
 }
 
+/// Roots as they come out of the equation: lengths from the base on a line, angles on an arc.
+enum Roots<S: Scalar> {
+    Lengths([S; 2]),
+    Angles([S::Angle; 2], S),
+}
+
 impl<'a, S: Scalar> Relative<'a, S> {
     /// The carrier whose start has this footprint on the segment.
-    pub(crate) fn new(segment: &'a Segment<S>, carrier: Carrier<S>, start: &Footprint<S>) -> Self {
+    pub(crate) fn new(segment: &'a Segment<S>, carrier: Carrier<S>, start: &'a Footprint<S>) -> Self {
         let mirror = segment.mirrored();
         let (cos, sin) = (segment.direction.dot(carrier.direction), segment.direction.cross(carrier.direction));
         let towards = Direction::<S> { cos, sin: if mirror { -sin } else { sin } };
@@ -60,35 +64,43 @@ impl<'a, S: Scalar> Relative<'a, S> {
             Curve::Line => None,
             Curve::Arc { radius, turn } => Some(if mirror == (turn == Turn::Right) { radius } else { -radius }),
         };
-        Self {
-            segment,
-            foot: start.foot(segment),
-            n: start.offset,
-            cos: towards.dot(base),
-            sin: towards.cross(base),
-            bend,
+        Self { segment, start, cos: towards.dot(base), sin: towards.cross(base), bend }
+    }
+
+    /// The lengths of the segment, ends included, at which it has one of the offsets `c` from the carrier.
+    pub(crate) fn lengths_at(&self, offsets: &[S], mut found: impl FnMut(S)) {
+        let mut foot = None;
+        for &c in offsets {
+            let Some(roots) = self.roots(c) else {
+                continue;
+            };
+            let foot = *foot.get_or_insert_with(|| self.start.foot(self.segment));
+            let lengths = match roots {
+                Roots::Lengths(lengths) => lengths.map(|u| foot + u),
+                Roots::Angles(angles, radius) => {
+                    angles.map(|angle| on_first_lap(foot + angle.arc_length(radius), self.segment))
+                }
+            };
+            let on_segment = |&u: &S| S::ZERO <= u && u <= self.segment.length;
+            lengths.into_iter().filter(on_segment).for_each(&mut found);
         }
     }
 
-    /// Lengths along the segment's carrier, on its first lap, at which it has the offset `c` from the other.
-    pub(crate) fn lengths_at(&self, c: S) -> Option<[S; 2]> {
-        let Self { segment, foot, n, cos, sin, bend } = *self;
+    fn roots(&self, c: S) -> Option<Roots<S>> {
+        let Self { cos, sin, bend, .. } = *self;
+        let n = self.start.offset;
         let lateral = c + n.scale(cos);
-        let Curve::Arc { radius: r, .. } = segment.curve else {
+        let Curve::Arc { radius: r, .. } = self.segment.curve else {
             // J is a line: 2 T = u.
-            let roots = match bend {
+            return Some(Roots::Lengths(match bend {
                 // SS: (c + n cos α) / sin α, the one division by a sine.
-                None => {
-                    let root = lateral.quotient_unit(sin)?;
-                    [root, root]
-                }
+                None => [lateral.quotient_unit(sin)?; 2],
                 // I is an arc: u² - 2 ϱ sin α u + ϱ G = 0.
                 Some(bend) => S::quadratic_roots(-bend.scale(sin), Self::constant(bend, lateral, n, c))?,
-            };
-            return Some(roots.map(|u| foot + u));
+            }));
         };
         // J is an arc: T = r τ.
-        let roots = match bend {
+        let angles = match bend {
             // I is a line, equation times r / 2: G = 2 lateral.
             None => {
                 let far = lateral - r.scale(cos).double();
@@ -102,7 +114,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
                 S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g)?
             }
         };
-        Some(roots.map(|angle| on_first_lap(foot + angle.arc_length(r), segment)))
+        Some(Roots::Angles(angles, r))
     }
 
     /// `ϱ G = 2 ϱ (c + n cos α) + n² - c²`.
