@@ -218,6 +218,9 @@ where
             self.pieces.take_back();
             return Err(full);
         }
+        if self.pieces.first_pending() == NONE {
+            return Ok(());
+        }
         let mut index = self.entries().partition_point(|region| region.agents() < agents);
         let begin = index;
         while let Some(head) = self.pieces.take_region() {

@@ -46,8 +46,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
                 continue;
             }
             for (i, own) in (0_u16..).zip(self.first.path().segments()) {
-                if own.bounds.within(other.bounds, reach) {
-                    SegmentPair { first: own, second: other, indices: [i, j], radius: self.radius }.find(pieces)?;
+                if own.bounds.within(other.bounds, reach) && own.near(other, reach) {
+                    SegmentPair::new(own, other, [i, j], self.radius).find(pieces)?;
                 }
             }
         }

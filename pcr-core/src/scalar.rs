@@ -126,6 +126,10 @@ pub trait Unit: Copy + PartialOrd + Debug + Add<Output = Self> + Sub<Output = Se
     const ONE: Self;
     /// `self · rhs`, rounded to nearest.
     fn times(self, rhs: Self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self {
+        if self < Self::ZERO { -self } else { self }
+    }
 }
 
 /// Plane angle, counter-clockwise positive.

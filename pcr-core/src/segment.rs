@@ -57,6 +57,9 @@ pub struct Segment<S: Scalar> {
     /// Length of the path before this segment \[m\].
     pub(crate) from: S,
     pub(crate) bounds: Bounds<S>,
+    /// Middle and half extents of the box along and across `direction` \[m\].
+    middle: Point<S>,
+    half: [S; 2],
 }
 
 impl<S: Scalar> Segment<S> {
@@ -81,6 +84,8 @@ impl<S: Scalar> Segment<S> {
             length: S::ZERO,
             from: S::ZERO,
             bounds: Bounds::around(pose.position, pose.position),
+            middle: pose.position,
+            half: [S::ZERO; 2],
         })
     }
 
@@ -104,6 +109,8 @@ impl<S: Scalar> Segment<S> {
             length,
             from: self.from + self.length,
             bounds: Bounds::around(self.end, end),
+            middle: self.end + direction.vector(length.half(), S::ZERO),
+            half: [length.half(), S::ZERO],
         }
         .checked()
     }
@@ -136,9 +143,21 @@ impl<S: Scalar> Segment<S> {
             length,
             from: self.from + self.length,
             bounds: Bounds::default(),
+            middle: self.end,
+            half: [S::ZERO; 2],
         };
         arc.end = arc.start + arc.chord(length);
-        arc.bounds = arc.arc_bounds(radius);
+        arc.bounds = arc.arc_bounds(arc.start, arc.end, arc.direction, Direction::at(arc.heading_at_end));
+        // The same box in the frame of the start.
+        let chord = arc.end - arc.start;
+        let end = Point::new(chord.along(arc.direction), chord.across(arc.direction));
+        let turned = match turn {
+            Turn::Left => sweep,
+            Turn::Right => -sweep,
+        };
+        let own = arc.arc_bounds(Point::new(S::ZERO, S::ZERO), end, Direction::X, Direction::at(turned));
+        arc.middle = arc.start + arc.direction.vector(own.x.middle(), own.y.middle());
+        arc.half = [own.x.length().half(), own.y.length().half()];
         arc.checked()
     }
 
@@ -208,26 +227,42 @@ impl<S: Scalar> Segment<S> {
         self.direction.vector(chord.scale(cos), if self.mirrored() { -across } else { across })
     }
 
-    /// Box of an arc. Below half a turn a coordinate is extreme at an end, or on the axis where the
-    /// other component of the heading changes its sign; from half a turn on the whole circle is taken.
-    fn arc_bounds(&self, radius: S) -> Bounds<S> {
-        let ends = Bounds::around(self.start, self.end);
-        let left = if self.mirrored() { -radius } else { radius };
-        let centre = self.start + self.direction.vector(S::ZERO, left);
+    /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do.
+    pub(crate) fn near(&self, other: &Self, reach: S) -> bool {
+        let (cos, sin) = (self.direction.dot(other.direction).abs(), self.direction.cross(other.direction).abs());
+        let apart = other.middle - self.middle;
+        let separated = |a: &Self, b: &Self| {
+            apart.along(a.direction).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach
+                || apart.across(a.direction).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach
+        };
+        !separated(self, other) && !separated(other, self)
+    }
+
+    /// Box of an arc with these ends and directions there. Below half a turn a coordinate is extreme at an end, or
+    /// on the axis where the other component of the heading changes its sign; from half a turn on the
+    /// whole circle is taken.
+    fn arc_bounds(&self, start: Point<S>, end: Point<S>, leaving: Direction<S>, arriving: Direction<S>) -> Bounds<S> {
+        let Curve::Arc { radius, turn } = self.curve else {
+            return Bounds::around(start, end);
+        };
+        let left = match turn {
+            Turn::Left => radius,
+            Turn::Right => -radius,
+        };
+        let centre = start + leaving.vector(S::ZERO, left);
         let low = Point::new(centre.x - radius, centre.y - radius);
         let high = Point::new(centre.x + radius, centre.y + radius);
+        let mut bounds = Bounds::around(start, end);
         if self.length.double() >= self.circumference {
-            return ends.hull(Bounds::around(low, high));
+            return bounds.hull(Bounds::around(low, high));
         }
-        let (start, end) = (self.direction, Direction::<S>::at(self.heading_at_end));
-        let sign = |unit: S::Unit| unit < S::Unit::ZERO;
-        let mut bounds = ends;
-        match (sign(start.cos), sign(end.cos)) {
+        let negative = |unit: S::Unit| unit < S::Unit::ZERO;
+        match (negative(leaving.cos), negative(arriving.cos)) {
             (false, true) => bounds.x.hi = bounds.x.hi.max(high.x),
             (true, false) => bounds.x.lo = bounds.x.lo.min(low.x),
             _ => {}
         }
-        match (sign(start.sin), sign(end.sin)) {
+        match (negative(leaving.sin), negative(arriving.sin)) {
             (false, true) => bounds.y.hi = bounds.y.hi.max(high.y),
             (true, false) => bounds.y.lo = bounds.y.lo.min(low.y),
             _ => {}

@@ -5,7 +5,7 @@
 //! laps can only meet where the disc covers the whole circle. The lengths of a piece are the hull of its slices at
 //! the slab ends and at the turning points: nothing between them can be extreme.
 
-use super::events::{Events, turning_points, wraps};
+use super::events::{Events, TurningPoint, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, shift};
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -21,6 +21,8 @@ pub(crate) struct SegmentPair<'a, S: Scalar> {
     pub(crate) indices: [u16; 2],
     /// Combined radius, slack included \[m\].
     pub(crate) radius: S,
+    /// Whether two laps of the first segment can be covered at once.
+    pub(crate) wraps: bool,
 }
 
 /// What the disc covers of the first segment at one length of the second.
@@ -33,7 +35,11 @@ struct Section<S> {
 /// The piece that is open in each lap, by [`Lap`].
 type Open = [Option<u32>; Lap::ALL.len()];
 
-impl<S: Scalar> SegmentPair<'_, S> {
+impl<'a, S: Scalar> SegmentPair<'a, S> {
+    pub(crate) fn new(first: &'a Segment<S>, second: &'a Segment<S>, indices: [u16; 2], radius: S) -> Self {
+        Self { first, second, indices, radius, wraps: wraps(first, radius) }
+    }
+
     /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
         let events = Events::of(self.first, self.second, self.radius);
@@ -41,6 +47,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         let begin = pieces.last_pending();
         let mut open = Open::default();
         let mut before: Option<Section<S>> = None;
+        let mut edge: Option<Section<S>> = None;
         for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
             // Events may coincide; a second segment of length 0 has this one slab only.
             if lo >= hi && self.second.length > S::ZERO {
@@ -49,11 +56,18 @@ impl<S: Scalar> SegmentPair<'_, S> {
             let slab = Interval::new(lo, hi);
             let middle = self.section(slab.middle());
             let laps_lost = before.map_or(0, |before| self.laps_lost(&before, &middle, lo));
-            open = self.extend(pieces, slab, &middle, open, laps_lost)?;
+            open = if middle.reach == Reach::Nothing {
+                edge = None;
+                Open::default()
+            } else {
+                let ends = [edge.unwrap_or_else(|| self.section(lo)), self.section(hi)];
+                edge = Some(ends[1]);
+                self.extend(pieces, slab, &middle, &ends, open, laps_lost)?
+            };
             before = Some(middle);
         }
         if pieces.last_pending() != begin {
-            turning_points(self.first, self.second, self.radius, |s| self.turn_back(pieces, begin, s));
+            turning_points(self.first, self.second, self.radius, |point| self.turn_back(pieces, begin, &point));
         }
         Ok(())
     }
@@ -69,19 +83,16 @@ impl<S: Scalar> SegmentPair<'_, S> {
         pieces: &mut Pieces<S, P>,
         slab: Interval<S>,
         middle: &Section<S>,
+        ends: &[Section<S>; 2],
         open: Open,
         laps_lost: i8,
     ) -> Result<Open, Full> {
         let mut now = Open::default();
-        if middle.reach == Reach::Nothing {
-            return Ok(now);
-        }
-        let mut ends = None;
         for lap in Lap::ALL {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
             };
-            for end in ends.get_or_insert_with(|| [self.section(slab.lo), self.section(slab.hi)]) {
+            for end in ends {
                 covered = covered.hull(self.limit(end, middle, lap));
             }
             let ongoing = lap.less(laps_lost).and_then(|lap| open[lap as usize]);
@@ -107,15 +118,21 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Ok(now)
     }
 
-    /// Adds the slices at a turning point to the pieces after `begin` that cover it.
-    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, s: S) {
-        let reach = self.section(s).reach;
+    /// Adds the slice at a turning point to the pieces after `begin` that cover it.
+    fn turn_back<P>(&self, pieces: &mut Pieces<S, P>, begin: u32, point: &TurningPoint<S>)
+    where
+        P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
+    {
+        // Seen from the near side the point itself is in contact; with one lap there is no doubt whose it is.
+        let reach = if self.wraps || point.beyond_centre { Some(self.section(point.second).reach) } else { None };
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
-            if piece.second.contains(s)
-                && let Some(covered) = reach.on(self.first, piece.lap)
-            {
-                piece.first = piece.first.hull(covered);
+            if piece.second.contains(point.second) {
+                let covered = match reach {
+                    Some(reach) => reach.on(self.first, piece.lap),
+                    None => Some(Interval::new(point.first, point.first)),
+                };
+                piece.first = covered.map_or(piece.first, |covered| piece.first.hull(covered));
             }
             index = piece.next;
         }
@@ -131,7 +148,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
             (Reach::Nothing, _) => (end.foot(self.first), S::ZERO),
             (Reach::Whole, _) => (end.foot(self.first), self.first.circumference.half()),
         };
-        if wraps(self.first, self.radius) && self.changes_lap(middle, end, end) {
+        if self.wraps && self.changes_lap(middle, end, end) {
             let lap = self.first.circumference;
             foot = if middle.foot(self.first) > foot { foot + lap } else { foot - lap };
         }
@@ -141,7 +158,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
 
     /// How many laps the foot has lost between two slabs: it passes from the end of the lap to its beginning.
     fn laps_lost(&self, before: &Section<S>, after: &Section<S>, event: S) -> i8 {
-        if !wraps(self.first, self.radius) || !self.changes_lap(before, after, &self.section(event)) {
+        if !self.wraps || !self.changes_lap(before, after, &self.section(event)) {
             0
         } else if before.foot(self.first) > after.foot(self.first) {
             1

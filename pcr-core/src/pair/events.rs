@@ -74,22 +74,36 @@ impl<S: Scalar> Events<S> {
     }
 }
 
-/// The lengths of `second` at which a contact with `first` is normal to `second`.
-pub(crate) fn turning_points<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, mut found: impl FnMut(S)) {
+/// A contact that is normal to the second segment.
+pub(crate) struct TurningPoint<S> {
+    /// Length along the first segment.
+    pub(crate) first: S,
+    /// Length along the second segment.
+    pub(crate) second: S,
+    /// Whether the disc touches from beyond the centre of the second segment, if it does.
+    pub(crate) beyond_centre: bool,
+}
+
+/// Where a contact with `first` is normal to `second`.
+pub(crate) fn turning_points<S: Scalar>(
+    first: &Segment<S>,
+    second: &Segment<S>,
+    radius: S,
+    mut found: impl FnMut(TurningPoint<S>),
+) {
     let start = Footprint::of(second.start, first);
     Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], |l| {
         let foot = Footprint::of(first.point_at(l), second).foot(second);
-        let mut add = |s: S| {
+        let mut add = |s: S, beyond_centre| {
             if S::ZERO <= s && s <= second.length {
-                found(s);
+                found(TurningPoint { first: l, second: s, beyond_centre });
             }
         };
-        add(on_first_lap(foot, second));
-        // A disc larger than the circle also touches from beyond the centre.
+        add(on_first_lap(foot, second), false);
         if let Curve::Arc { radius: own, .. } = second.curve
             && own < radius
         {
-            add(on_first_lap(foot - second.circumference.half(), second));
+            add(on_first_lap(foot - second.circumference.half(), second), true);
         }
     });
 }

@@ -124,6 +124,9 @@ macro_rules! impl_float {
             fn times(self, rhs: Self) -> Self {
                 self * rhs
             }
+            fn abs(self) -> Self {
+                $t::abs(self)
+            }
         }
 
         impl Angle<$t> for Radians<$t> {
