@@ -13,6 +13,7 @@ use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
+use crate::segment::Segment;
 use cells::SegmentPair;
 use footprint::{Footprint, Lap};
 
@@ -74,62 +75,60 @@ impl<'a, S: Scalar> Pair<'a, S> {
     /// At a joint of the second path both pieces end in the slice about the same point, so that the same lap is
     /// the same interval.
     fn meet_at_joint_of_second(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
-        let Some(segment) = self.second.path().segments().get(usize::from(before.second_segment)) else {
-            return false;
-        };
         after.first_segment == before.first_segment
             && after.second_segment.checked_sub(1) == Some(before.second_segment)
-            && before.second.hi == segment.length
             && after.second.lo == S::ZERO
             && (before.lap == after.lap || before.lap == Lap::Whole || after.lap == Lap::Whole)
+            && segment(self.second, before.second_segment).is_some_and(|other| before.second.hi == other.length)
     }
 
     /// At a joint of the first path the pieces share intervals of the second segment: those within reach of
     /// the joint. They meet if the middle of one of them belongs to both.
     fn meet_at_joint_of_first(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
-        let paths = (self.first.path().segments(), self.second.path().segments());
-        let (Some(own), Some(next)) =
-            (paths.0.get(usize::from(before.first_segment)), paths.0.get(usize::from(after.first_segment)))
-        else {
-            return false;
-        };
-        let Some(other) = paths.1.get(usize::from(before.second_segment)) else {
-            return false;
-        };
-        let candidates = after.second_segment == before.second_segment
+        let neighbours = after.second_segment == before.second_segment
             && after.first_segment.checked_sub(1) == Some(before.first_segment)
-            && before.first.hi == own.length
             && after.first.lo == S::ZERO
             && before.second.meets(after.second);
+        if !neighbours {
+            return false;
+        }
+        let (Some(own), Some(next), Some(other)) = (
+            segment(self.first, before.first_segment),
+            segment(self.first, after.first_segment),
+            segment(self.second, before.second_segment),
+        ) else {
+            return false;
+        };
+        if before.first.hi != own.length {
+            return false;
+        }
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
             let reach = Footprint::of(other.point_at(s), segment).reach(segment, self.radius);
             let slice = reach.on(segment, piece.lap);
             piece.second.contains(s)
                 && slice.is_some_and(|slice| slice.lo - self.slack <= l && l <= slice.hi + self.slack)
         };
-        candidates && {
-            let reach = Footprint::of(own.end, other).reach(other, self.radius);
-            Lap::ALL.into_iter().filter_map(|lap| reach.on(other, lap)).any(|shared| {
-                let s = shared.middle();
-                belongs(before, own, s, own.length) && belongs(after, next, s, S::ZERO)
-            })
-        }
+        let reach = Footprint::of(own.end, other).reach(other, self.radius);
+        Lap::ALL.into_iter().filter_map(|lap| reach.on(other, lap)).any(|shared| {
+            let s = shared.middle();
+            belongs(before, own, s, own.length) && belongs(after, next, s, S::ZERO)
+        })
     }
 
     /// Turns lengths along segments into lengths along paths, rounded outward.
     fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
-        let (first, second) = (self.first.path(), self.second.path());
+        let (first, second) = (self.first.path().length(), self.second.path().length());
         let place = |local: Interval<S>, from: S, length: S| {
             let all = Interval::new(S::ZERO, length);
             Interval::new(local.lo + from, local.hi + from).widen(self.slack, all)
         };
         let mut index = pieces.first_pending();
         while let Some(piece) = pieces.get_mut(index) {
-            if let Some(own) = first.segments().get(usize::from(piece.first_segment)) {
-                piece.first = place(piece.first, own.from, first.length());
+            if let Some(own) = segment(self.first, piece.first_segment) {
+                piece.first = place(piece.first, own.from, first);
             }
-            if let Some(other) = second.segments().get(usize::from(piece.second_segment)) {
-                piece.second = place(piece.second, other.from, second.length());
+            if let Some(other) = segment(self.second, piece.second_segment) {
+                piece.second = place(piece.second, other.from, second);
             }
             index = piece.next;
         }
@@ -140,8 +139,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if !piece.second.contains(s) {
             return None;
         }
-        let own = self.first.path().segments().get(usize::from(piece.first_segment))?;
-        let other = self.second.path().segments().get(usize::from(piece.second_segment))?;
+        let own = segment(self.first, piece.first_segment)?;
+        let other = segment(self.second, piece.second_segment)?;
         let centre = other.point_at(s - other.from);
         let slice = Footprint::of(centre, own).reach(own, self.radius).on(own, piece.lap)?;
         Some(self.outward(slice, own.from, self.first))
@@ -152,8 +151,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if !piece.first.contains(l) {
             return None;
         }
-        let own = self.first.path().segments().get(usize::from(piece.first_segment))?;
-        let other = self.second.path().segments().get(usize::from(piece.second_segment))?;
+        let own = segment(self.first, piece.first_segment)?;
+        let other = segment(self.second, piece.second_segment)?;
         let centre = own.point_at(l - own.from);
         let slice = Footprint::of(centre, other).reach(other, self.radius).on(other, lap)?;
         // One interval of the second segment is connected, hence part of one region: that of its middle.
@@ -165,4 +164,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let all = Interval::new(S::ZERO, motion.path().length());
         Interval::new(slice.lo + from, slice.hi + from).widen(self.slack, all)
     }
+}
+
+fn segment<'a, S: Scalar>(motion: &'a Motion<'_, S>, index: u16) -> Option<&'a Segment<S>> {
+    motion.path().segments().get(usize::from(index))
 }

@@ -2,8 +2,11 @@
 //!
 //! The events cut the second segment into slabs. In a slab, every lap of the first segment that the disc
 //! covers is a cell; cells of neighbouring slabs with the same lap are parts of one piece. Cells of different
-//! laps can only meet where the disc covers the whole circle. The lengths of a piece are the hull of its slices at
-//! the slab ends and at the turning points: nothing between them can be extreme.
+//! laps can only meet where the disc covers the whole circle.
+//!
+//! The lengths of a piece are the hull of its slices at the turning points, at the ends of the second segment, and
+//! in the middle of each slab: where a length is extreme, the contact is normal to the second segment, or
+//! the second segment ends, or the first one does, and then its end is covered throughout the slab.
 
 use super::events::{Events, TurningPoint, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, shift};
@@ -47,7 +50,6 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         let begin = pieces.last_pending();
         let mut open = Open::default();
         let mut before: Option<Section<S>> = None;
-        let mut edge: Option<Section<S>> = None;
         for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
             // Events may coincide; a second segment of length 0 has this one slab only.
             if lo >= hi && self.second.length > S::ZERO {
@@ -56,13 +58,9 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             let slab = Interval::new(lo, hi);
             let middle = self.section(slab.middle());
             let laps_lost = before.map_or(0, |before| self.laps_lost(&before, &middle, lo));
-            open = if middle.reach == Reach::Nothing {
-                edge = None;
-                Open::default()
-            } else {
-                let ends = [edge.unwrap_or_else(|| self.section(lo)), self.section(hi)];
-                edge = Some(ends[1]);
-                self.extend(pieces, slab, &middle, &ends, open, laps_lost)?
+            open = match middle.reach {
+                Reach::Nothing => Open::default(),
+                _ => self.extend(pieces, slab, &middle, open, laps_lost)?,
             };
             before = Some(middle);
         }
@@ -70,6 +68,11 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             turning_points(self.first, self.second, self.radius, |point| self.turn_back(pieces, begin, &point));
         }
         Ok(())
+    }
+
+    /// The laps that can be covered.
+    fn laps(&self) -> &'static [Lap] {
+        if self.wraps { &Lap::ALL } else { &[Lap::Same] }
     }
 
     fn section(&self, s: S) -> Section<S> {
@@ -83,16 +86,19 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         pieces: &mut Pieces<S, P>,
         slab: Interval<S>,
         middle: &Section<S>,
-        ends: &[Section<S>; 2],
         open: Open,
         laps_lost: i8,
     ) -> Result<Open, Full> {
         let mut now = Open::default();
-        for lap in Lap::ALL {
+        let ends = [
+            (slab.lo <= S::ZERO).then(|| self.section(slab.lo)),
+            (slab.hi >= self.second.length).then(|| self.section(slab.hi)),
+        ];
+        for &lap in self.laps() {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
             };
-            for end in ends {
+            for end in ends.iter().flatten() {
                 covered = covered.hull(self.limit(end, middle, lap));
             }
             let ongoing = lap.less(laps_lost).and_then(|lap| open[lap as usize]);
@@ -108,6 +114,9 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             if let (Some(index), Some(ongoing)) = (index, ongoing) {
                 pieces.join(ongoing, index);
             }
+        }
+        if !self.wraps {
+            return Ok(now);
         }
         // Where the whole circle is covered every lap meets.
         for (whole, laps) in [(now[Lap::Whole as usize], open), (open[Lap::Whole as usize], now)] {
@@ -138,7 +147,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         }
     }
 
-    /// The slice of a cell at an end of its slab. There it may have shrunk to a point, or grown to the whole
+    /// The slice of a cell at an end of the second segment. There it may have shrunk to a point, or grown to the whole
     /// circle, and rounding may have taken it a little beyond.
     fn limit(&self, end: &Section<S>, middle: &Section<S>, lap: Lap) -> Interval<S> {
         let all = Interval::new(S::ZERO, self.first.length);
