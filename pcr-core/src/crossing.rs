@@ -57,7 +57,7 @@ pub fn crossings<'a, S: Scalar>(
     ego: &'a Motion<'a, S>,
     other: &'a Motion<'a, S>,
 ) -> impl Iterator<Item = Crossing<S>> + 'a {
-    let slack = S::slack(ego.extent() + other.extent());
+    let slack = S::slack(ego.extent().max(other.extent()));
     let theirs = other.path().segments().iter().enumerate();
     theirs.flat_map(move |(j, their)| {
         let own = ego.path().segments().iter().enumerate();
@@ -87,7 +87,7 @@ impl<S: Scalar> Crossing<S> {
         their: &Segment<S>,
         s: S,
     ) -> Option<Self> {
-        let slack = S::slack(ego.extent() + other.extent());
+        let slack = S::slack(ego.extent().max(other.extent()));
         let combined_radius = ego.radius() + other.radius();
         let last = |motion: &Motion<'_, S>, index: usize| index + 1 == motion.path().segments().len();
         let on = |segment: &Segment<S>, u: S, last: bool| {

@@ -30,7 +30,7 @@ pub(crate) struct Pair<'a, S: Scalar> {
 
 impl<'a, S: Scalar> Pair<'a, S> {
     pub(crate) fn new(first: &'a Motion<'a, S>, second: &'a Motion<'a, S>) -> Self {
-        let slack = S::slack(first.extent() + second.extent());
+        let slack = S::slack(first.extent().max(second.extent()));
         Self { first, second, slack, radius: first.radius() + second.radius() + slack }
     }
 

@@ -37,11 +37,8 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
     }
 }
 
-/// Rounding of one operation enters a distance at most this often, in unit roundoffs of the extent.
-const SLACK: f32 = 16.0;
-
 macro_rules! impl_float {
-    ($t:ident, limit: $limit:literal, sqrt: $sqrt:path, atan2: $atan2:path, sin_cos: $sin_cos:path) => {
+    ($t:ident, limit: $limit:literal, slack: $slack:literal, sqrt: $sqrt:path, atan2: $atan2:path, sin_cos: $sin_cos:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -104,7 +101,7 @@ macro_rules! impl_float {
                 Some([angle(q, a), angle(g, q)])
             }
             fn slack(extent: Self) -> Self {
-                SLACK as $t * 0.5 * $t::EPSILON * extent
+                0.5 * $slack * $t::EPSILON * extent
             }
         }
 
@@ -156,8 +153,9 @@ macro_rules! impl_float {
     };
 }
 
-impl_float!(f64, limit: 1e12, sqrt: sqrt_f64, atan2: libm::atan2, sin_cos: libm::sincos);
-impl_float!(f32, limit: 1e6, sqrt: sqrt_f32, atan2: libm::atan2f, sin_cos: sin_cos_f32);
+// `slack` in unit roundoffs of the extent.
+impl_float!(f64, limit: 1e12, slack: 8.0, sqrt: sqrt_f64, atan2: libm::atan2, sin_cos: libm::sincos);
+impl_float!(f32, limit: 1e6, slack: 16.0, sqrt: sqrt_f32, atan2: libm::atan2f, sin_cos: sin_cos_f32);
 
 #[cfg(feature = "std")]
 extern crate std;
