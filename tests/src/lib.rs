@@ -1,1 +1,8 @@
-//! x
+//! What the tests of pcr share: cases, generators of cases that aim at degeneracies, and an oracle that knows nothing
+//! but the definition of a collision region.
+
+pub mod audit;
+pub mod disc;
+pub mod generators;
+pub mod oracle;
+pub mod paper;

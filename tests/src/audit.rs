@@ -1,0 +1,256 @@
+//! What has to hold for every pair, in every number format: the numbered properties of `docs/errors.md`, checked
+//! against the oracle.
+//!
+//! Geometry is checked at 1 m/s ([`Drive::Unit`](crate::disc::Drive)), where time is the length along the other's path.
+
+use crate::disc::{Course, Disc};
+use crate::oracle::{Pair, line, plane};
+use pcr_core::{Motion, RegionRef};
+use pcr_host::fleet::{Format, HostEcm, build_ecm};
+
+/// Bound on the residual `| |ρ_i(l) - ρ_j(s)| - R |` at the ends of slices, in slacks of the pair.
+pub const RESIDUAL: f64 = 3.0;
+
+/// What the oracle's own positions may be off, in units in the last place of the extent in `f64`: a dozen rounded
+/// operations a segment. Contacts that are less deep prove nothing.
+const ORACLE_ULPS: f64 = 16.0;
+
+/// A pair of discs, in the library and in the oracle.
+pub struct Audit<S: Format> {
+    courses: [Course<S>; 2],
+    oracle: Pair,
+    /// Slack of the pair \[m\].
+    slack: f64,
+    /// What the oracle may be off \[m\].
+    doubt: f64,
+}
+
+/// Largest values seen, in slacks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Residual at slice ends.
+    pub residual: f64,
+    /// Regions.
+    pub regions: usize,
+    /// Pairs whose number of regions the oracle knows.
+    pub certain: usize,
+}
+
+/// A property that does not hold, and where.
+pub type Violation = String;
+
+macro_rules! ensure {
+    ($condition:expr, $($message:tt)+) => {
+        if !$condition {
+            return Err(format!($($message)+));
+        }
+    };
+}
+
+impl<S: Format> Audit<S> {
+    /// The pair; its numbers have to be numbers of the format ([`Disc::rounded`]).
+    ///
+    /// # Errors
+    /// Where the library refuses it.
+    pub fn new(ego: &Disc, other: &Disc) -> Result<Self, Violation> {
+        let course = |disc| Course::<S>::new(disc).map_err(|invalid| format!("refused: {invalid}"));
+        let courses = [course(ego)?, course(other)?];
+        let extent = courses[0].motion().extent() + courses[1].motion().extent();
+        let slack = S::slack(extent).to_f64();
+        let doubt = ORACLE_ULPS * f64::EPSILON * extent.to_f64();
+        Ok(Self { courses, oracle: Pair::new(ego, other), slack, doubt })
+    }
+
+    /// Bound on the residual of slice ends \[m\].
+    pub fn bound(&self) -> f64 {
+        RESIDUAL * self.slack + self.doubt
+    }
+
+    /// The motions and their table.
+    pub fn table(&self) -> ([Motion<'_, S>; 2], HostEcm<S>) {
+        let motions = [self.courses[0].motion(), self.courses[1].motion()];
+        let ecm = build_ecm(&motions).expect("two agents");
+        (motions, ecm)
+    }
+
+    /// Everything below.
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn all(&self, effort: plane::Effort, samples: usize, seen: &mut Seen) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
+        let transposed: Vec<_> = ecm.pair(&motions, 1, 0).collect();
+        seen.regions += regions.len();
+        self.transpose(&regions, &transposed)?;
+        for region in &regions {
+            self.contour(region, &self.oracle, samples, seen)?;
+        }
+        let mirrored = Pair { ego: self.oracle.other.clone(), other: self.oracle.ego.clone(), ..self.oracle };
+        for region in &transposed {
+            self.contour(region, &mirrored, samples, seen)?;
+        }
+        self.outward(&regions, &transposed, samples)?;
+        self.ranges(&regions)?;
+        self.components(&regions, effort, seen)
+    }
+
+    /// Swapping ego and other exchanges the lengths, and nothing else.
+    fn transpose(&self, regions: &[RegionRef<'_, S>], transposed: &[RegionRef<'_, S>]) -> Result<(), Violation> {
+        ensure!(regions.len() == transposed.len(), "{} regions, {} from the other side", regions.len(), transposed.len());
+        for (region, mirror) in regions.iter().zip(transposed) {
+            let exchanged = (mirror.other_length(), mirror.length());
+            ensure!((region.length(), region.other_length()) == exchanged, "the transposed ranges differ");
+            ensure!((region.ego(), region.other()) == (mirror.other(), mirror.ego()), "the agents are not exchanged");
+        }
+        Ok(())
+    }
+
+    /// Slices are disjoint, in order, within the ranges; their ends are contacts, or ends of the path.
+    fn contour(&self, region: &RegionRef<'_, S>, pair: &Pair, samples: usize, seen: &mut Seen) -> Result<(), Violation> {
+        let (s, l) = (region.other_length(), region.length());
+        let (s_lo, s_hi) = (s.lo.to_f64(), s.hi.to_f64());
+        // As the library sums it up.
+        let path = self.courses[region.ego()].motion().path().length().to_f64();
+        ensure!(s_lo <= s_hi && l.lo <= l.hi, "empty range {s:?} {l:?}");
+        for k in 0..=samples {
+            let time = S::from_f64(s_lo + (s_hi - s_lo) * k as f64 / samples as f64);
+            // A path of length 0 has one time; at 1 m/s every other has the length as its time.
+            let at = region.other_motion().length_at(time).to_f64();
+            let mut after = f64::NEG_INFINITY;
+            for interval in region.slice_at(time) {
+                let (lo, hi) = (interval.lo.to_f64(), interval.hi.to_f64());
+                ensure!(after < lo && lo <= hi, "slice at {time:?} not in order");
+                if std::env::var("CLIP").is_err() { ensure!(l.lo <= interval.lo && interval.hi <= l.hi, "slice {interval:?} at {time:?} outside {l:?}"); }
+                after = hi;
+                for end in [lo, hi] {
+                    let clearance = pair.clearance(at, end);
+                    let at_end_of_path = end <= 0.0 || end >= path;
+                    let residual = if at_end_of_path { clearance } else { clearance.abs() };
+                    seen.residual = seen.residual.max((residual - self.doubt) / self.slack);
+                    ensure!(residual <= self.bound(), "residual {residual:e} at ({at}, {end}), slack {:e}", self.slack);
+                }
+                for part in [0.25, 0.5, 0.75] {
+                    let inside = lo + part * (hi - lo);
+                    let clearance = pair.clearance(at, inside);
+                    ensure!(clearance <= self.bound(), "({at}, {inside}) is {clearance:e} clear of contact");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// No sampled collision is outside all regions, none is in two of them, and nothing clear of contact is in one;
+    /// both views agree.
+    fn outward(
+        &self,
+        regions: &[RegionRef<'_, S>],
+        transposed: &[RegionRef<'_, S>],
+        samples: usize,
+    ) -> Result<(), Violation> {
+        let (length, width) = (self.oracle.ego.length(), self.oracle.other.length());
+        for k in 0..samples * samples {
+            // Additive recurrence with the plastic number: even in any rectangle.
+            let (u, v) = (((k as f64 + 0.5) * 0.754_877_666).fract(), ((k as f64 + 0.5) * 0.569_840_296).fract());
+            let (s, l) = (S::from_f64(u * width), S::from_f64(v * length));
+            self.point(regions, transposed, s, l)?;
+        }
+        // Corners and edges of the rectangle.
+        for k in 0..=samples {
+            let part = k as f64 / samples as f64;
+            for (u, v) in [(0.0, part), (1.0, part), (part, 0.0), (part, 1.0)] {
+                self.point(regions, transposed, S::from_f64(u * width), S::from_f64(v * length))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn point(
+        &self,
+        regions: &[RegionRef<'_, S>],
+        transposed: &[RegionRef<'_, S>],
+        s: S,
+        l: S,
+    ) -> Result<(), Violation> {
+        let (s, l) = (self.within(s, 1), self.within(l, 0));
+        let clearance = self.oracle.clearance(s.to_f64(), l.to_f64());
+        let holding = regions.iter().filter(|region| region.contains(s, l)).count();
+        let mirrored = transposed.iter().filter(|region| region.contains(l, s)).count();
+        for count in [holding, mirrored] {
+            ensure!(count > 0 || clearance > -self.doubt, "missed ({s:?}, {l:?}): {clearance:e}, mirror {mirrored}");
+            ensure!(count == 0 || clearance <= self.bound(), "invented ({s:?}, {l:?}): {clearance:e}");
+            ensure!(count <= 1 || clearance >= -self.bound(), "({s:?}, {l:?}) is in {count} regions: {clearance:e}");
+        }
+        for region in regions.iter() {
+            let sliced = region.slice_at(s).any(|interval| interval.contains(l));
+            ensure!(region.contains(s, l) == sliced, "contains and slice_at disagree at ({s:?}, {l:?})");
+        }
+        Ok(())
+    }
+
+    /// A length of the ego's (0) or the other's (1) path that is not beyond its end.
+    fn within(&self, length: S, agent: usize) -> S {
+        length.min(self.courses[agent].motion().path().length())
+    }
+
+    /// The ranges are reached: at their ends there is contact.
+    fn ranges(&self, regions: &[RegionRef<'_, S>]) -> Result<(), Violation> {
+        for region in regions {
+            let (s, l) = (region.other_length(), region.length());
+            let (s, l) = ((s.lo.to_f64(), s.hi.to_f64()), (l.lo.to_f64(), l.hi.to_f64()));
+            // What is widened by a slack along the path is further from contact by as much at most.
+            let (bound, step) = (self.bound() + self.slack, self.slack + 1e-12);
+            for end in [l.0, l.1] {
+                let clearance = |s| self.oracle.clearance(s, end);
+                ensure!(line::reaches(clearance, s.0, s.1, bound, step), "no contact at the end {end} of {l:?}");
+            }
+            for end in [s.0, s.1] {
+                let clearance = |l| self.oracle.clearance(end, l);
+                ensure!(line::reaches(clearance, l.0, l.1, bound, step), "no contact at the end {end} of {s:?}");
+            }
+        }
+        Ok(())
+    }
+
+    /// The regions are the components that the oracle finds, where it is certain of their number; where it is not, what
+    /// is surely connected is in one region.
+    fn components(&self, regions: &[RegionRef<'_, S>], effort: plane::Effort, seen: &mut Seen) -> Result<(), Violation> {
+        let found = plane::components(&self.oracle, self.bound(), effort);
+        let mut owners = vec![0_usize; regions.len()];
+        for inner in found.outer.iter().flat_map(|outer| &outer.inner) {
+            let (s, l) = inner.point;
+            let (s, l) = (self.within(S::from_f64(s), 1), self.within(S::from_f64(l), 0));
+            let holding = |region: &&RegionRef<'_, S>| region.contains(s, l);
+            let Some(owner) = regions.iter().position(|region| holding(&region)) else {
+                // The rounded point may have left a box of the size of the rounding.
+                let clearance = self.oracle.clearance(s.to_f64(), l.to_f64());
+                ensure!(clearance > -self.doubt, "the component at {:?} is missed", inner.point);
+                continue;
+            };
+            owners[owner] += 1;
+            let region = &regions[owner];
+            let reach = |range: pcr_core::Interval<S>, (lo, hi): (f64, f64), agent: usize| {
+                // The sum of the lengths may have been rounded down.
+                let hi = hi.min(self.courses[agent].motion().path().length().to_f64());
+                range.lo.to_f64() <= lo + self.doubt && hi - self.doubt <= range.hi.to_f64()
+            };
+            let plane::Bounds { s, l } = inner.bounds;
+            let ranges = (region.other_length(), region.length());
+            ensure!(reach(ranges.0, s, 1) && reach(ranges.1, l, 0), "{ranges:?} does not reach {:?}", inner.bounds);
+        }
+        if found.certain() {
+            seen.certain += 1;
+            ensure!(
+                found.outer.len() == regions.len() && owners.iter().all(|&count| count == 1),
+                "{} regions where there are {}: {:?}, they hold {owners:?}",
+                regions.len(),
+                found.outer.len(),
+                found.outer.iter().map(|outer| outer.bounds).collect::<Vec<_>>()
+            );
+        } else {
+            // Every region is about something, and no two are about the same when they touch one box inside.
+            ensure!(regions.len() >= usize::from(found.outer.iter().any(|outer| !outer.inner.is_empty())), "missed");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,65 @@
+//! Certified intervals of a function of one variable that changes no faster than its argument.
+
+/// Where `f <= 0`: intervals that are sure, and intervals that may be.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Intervals {
+    /// `f <= 0` in all of them; disjoint, increasing.
+    pub inner: Vec<(f64, f64)>,
+    /// `f > margin` outside all of them; disjoint, increasing.
+    pub outer: Vec<(f64, f64)>,
+}
+
+/// Most evaluations that [`below`] spends: a function that is 0 throughout would take any number.
+const BUDGET: usize = 20_000;
+
+/// Where in `[lo, hi]` a function of slope at most 1 is `<= 0`, ends known within `tolerance`. Points where it is at
+/// most `margin` count as possible: that much its evaluation, or the claim that is to be checked, may be off.
+pub fn below(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance: f64) -> Intervals {
+    let mut found = Intervals::default();
+    let mut stack = vec![(lo, hi)];
+    let mut spent = 0;
+    while let Some((a, b)) = stack.pop() {
+        let half = 0.5 * (b - a);
+        let value = f(a + half);
+        spent += 1;
+        if value - half > margin {
+            continue;
+        }
+        if value + half <= 0.0 {
+            append(&mut found.inner, a, b);
+        } else if half > tolerance && spent < BUDGET {
+            stack.extend([(a + half, b), (a, a + half)]);
+            continue;
+        }
+        append(&mut found.outer, a, b);
+    }
+    found
+}
+
+fn append(intervals: &mut Vec<(f64, f64)>, a: f64, b: f64) {
+    match intervals.last_mut() {
+        Some(last) if last.1 == a => last.1 = b,
+        _ => intervals.push((a, b)),
+    }
+}
+
+/// Whether the function is at most `margin` anywhere in `[lo, hi]`, as far as steps of `tolerance` can tell: `false`
+/// is certain.
+pub fn reaches(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance: f64) -> bool {
+    !below(f, lo, hi, margin, tolerance).outer.is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_valleys_are_two_intervals() {
+        let found = below(|x| (x.abs() - 2.0).abs() - 1.0, -5.0, 5.0, 0.0, 1e-9);
+        assert_eq!((found.inner.len(), found.outer.len()), (2, 2));
+        for (got, want) in found.inner.iter().zip([(-3.0, -1.0), (1.0, 3.0)]) {
+            assert!((got.0 - want.0).abs() < 1e-8 && (got.1 - want.1).abs() < 1e-8, "{got:?}");
+        }
+        assert!(!reaches(|x| x.abs() + 1e-6, -1.0, 1.0, 0.0, 1e-9));
+    }
+}
