@@ -2,9 +2,9 @@
 //!
 //! The oracle and the library are both built from this description, which is why it holds no geometry.
 
-use pcr_core::{Curve, Invalid, Limits, Motion, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
+use pcr_core::{Invalid, Limits, Motion, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
 use pcr_host::fleet::Format;
-use pcr_host::scenario::{Agent, PathSegment};
+use pcr_host::scenario::{Agent, MotionSpec, PathSegment};
 use std::f64::consts::TAU;
 
 /// A line or an arc of a path, by its length \[m\].
@@ -140,6 +140,16 @@ pub enum Drive {
     Pieces(f64, Vec<(f64, f64)>),
 }
 
+impl Drive {
+    /// The motion of an agent of a scenario.
+    pub fn of_agent(agent: &Agent) -> Self {
+        match &agent.motion {
+            MotionSpec::RestToRest { v_max, a_max } => Self::Limits(*v_max, *a_max),
+            MotionSpec::Profile { v0, pieces } => Self::Pieces(*v0, pieces.clone()),
+        }
+    }
+}
+
 /// What a motion of the library borrows.
 #[derive(Clone, Debug)]
 pub struct Course<S: Format> {
@@ -209,11 +219,6 @@ impl<S: Format> Course<S> {
     /// The motion.
     pub fn motion(&self) -> Motion<'_, S> {
         self.try_motion().expect("checked by the constructor")
-    }
-
-    /// Whether some segment is an arc.
-    pub fn bends(&self) -> bool {
-        self.segments.iter().any(|segment| segment.curve() != Curve::Line)
     }
 
     fn try_motion(&self) -> Result<Motion<'_, S>, Invalid> {
