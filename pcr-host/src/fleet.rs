@@ -1,11 +1,13 @@
 //! From scenarios to motions and maps, in any number format of the tool.
 
+mod speed;
+
 use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
     Scalar, Segment, Turn,
 };
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// A number format that scenario files can be read into.
@@ -18,6 +20,8 @@ pub trait Format: Scalar {
     fn to_f64(self) -> f64;
     /// The nearest angle of the format.
     fn angle(radians: f64) -> Self::Angle;
+    /// The exact angle \[rad\].
+    fn radians(angle: Self::Angle) -> f64;
 }
 
 impl Format for f64 {
@@ -31,6 +35,9 @@ impl Format for f64 {
     fn angle(radians: f64) -> Radians<f64> {
         Radians(radians)
     }
+    fn radians(angle: Radians<f64>) -> f64 {
+        angle.0
+    }
 }
 
 impl Format for f32 {
@@ -41,31 +48,57 @@ impl Format for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
+    /// Whole turns are taken off first: they would cost the digits of the rest.
     fn angle(radians: f64) -> Radians<f32> {
-        Radians(radians as f32)
+        Radians((if radians.abs() > PI { radians - TAU * (radians / TAU).round() } else { radians }) as f32)
+    }
+    fn radians(angle: Radians<f32>) -> f64 {
+        f64::from(angle.0)
     }
 }
 
-/// Why a motion could not be built from an agent of a scenario.
+/// Why an agent of a scenario does not fit a number format: agent, segment, field, value and what is allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
     agent: u64,
-    segment: Option<usize>,
+    part: Option<(&'static str, usize)>,
     format: &'static str,
-    reason: Invalid,
+    problem: String,
 }
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "agent {}", self.agent)?;
-        if let Some(segment) = self.segment {
-            write!(f, ", segment {}", segment + 1)?;
+        if let Some((part, index)) = self.part {
+            write!(f, ", {part} {}", index + 1)?;
         }
-        write!(f, ": {} in {}", self.reason, self.format)
+        write!(f, ", {} ({})", self.problem, self.format)
     }
 }
 
 impl std::error::Error for Refused {}
+
+/// The number of the format for a field; what it would overflow or lose altogether is refused.
+fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
+    let number = S::from_f64(value);
+    if !number.is_finite() || number.abs() > S::LIMIT {
+        let limit = S::LIMIT.to_f64();
+        Err(format!("{field}: {value:e} is out of range; allowed is up to {limit:e} in magnitude"))
+    } else if number == S::ZERO && value != 0.0 {
+        Err(format!("{field}: {value:e} is out of range; it is so small that it becomes 0"))
+    } else {
+        Ok(number)
+    }
+}
+
+/// What the core refused: a value that follows from several fields.
+fn derived<S: Format>(reason: Invalid) -> String {
+    let limit = S::LIMIT.to_f64();
+    match reason {
+        Invalid::OutOfRange(what) => format!("{what} out of range; allowed is up to {limit:e} in magnitude"),
+        reason => reason.to_string(),
+    }
+}
 
 /// The paths and profiles of a scenario in one number format.
 #[derive(Clone, Debug)]
@@ -90,16 +123,16 @@ impl<S: Format> Fleet<S> {
     /// # Errors
     /// [`Refused`] where a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
-        let agents: Vec<_> = scenario.agents.iter().map(Parts::new).collect::<Result<_, _>>()?;
-        let fleet = Self { agents };
-        for (parts, agent) in fleet.agents.iter().zip(&scenario.agents) {
-            parts.motion().map_err(|reason| Refused { agent: agent.id, segment: None, format: S::NAME, reason })?;
-        }
-        Ok(fleet)
+        let agents = scenario.agents.iter().map(|agent| {
+            let refused = |(part, problem)| Refused { agent: agent.id, part, format: S::NAME, problem };
+            Parts::new(agent).map_err(refused)
+        });
+        Ok(Self { agents: agents.collect::<Result<_, _>>()? })
     }
 
     /// The motions, in the order of the scenario.
     pub fn motions(&self) -> Vec<Motion<'_, S>> {
+        // `Parts::new` has built each of them once.
         self.agents.iter().filter_map(|parts| parts.motion().ok()).collect()
     }
 
@@ -109,54 +142,26 @@ impl<S: Format> Fleet<S> {
     }
 }
 
+/// Segment or piece of a profile (from 0) where there is one, and what is wrong there.
+type Fault = (Option<(&'static str, usize)>, String);
+
+/// A fault of the agent as a whole.
+fn of_agent(problem: String) -> Fault {
+    (None, problem)
+}
+
 impl<S: Format> Parts<S> {
-    fn new(agent: &Agent) -> Result<Self, Refused> {
-        let refused = |segment| move |reason| Refused { agent: agent.id, segment, format: S::NAME, reason };
-        let [x, y, heading] = agent.start;
-        let pose = Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading) };
-        let origin = Segment::standing(pose).map_err(refused(None))?;
-        let (mut segments, mut sources) = (Vec::<Segment<S>>::new(), Vec::new());
-        for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
-            let turns = match segment {
-                PathSegment::Line { .. } => 1.0,
-                PathSegment::Arc { sweep, .. } => (sweep.abs() / TAU * (1.0 - 1e-12)).ceil(),
-            };
-            for _ in 0..turns as usize {
-                let last = segments.last().unwrap_or(&origin);
-                let length = S::from_f64(segment.length() / turns);
-                let next = match *segment {
-                    PathSegment::Line { .. } => last.then_line(length),
-                    PathSegment::Arc { radius, sweep } => {
-                        last.then_arc(S::from_f64(radius), if sweep > 0.0 { Turn::Left } else { Turn::Right }, length)
-                    }
-                };
-                segments.push(next.map_err(refused(Some(source)))?);
-                sources.push(source);
-            }
+    fn new(agent: &Agent) -> Result<Self, Fault> {
+        let (segments, sources) = place(agent)?;
+        let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
+        let phases = phases(agent, path.length())?;
+        let radius = number("radius", agent.radius).map_err(of_agent)?;
+        let start = number("t_start", agent.t_start).map_err(of_agent)?;
+        let parts = Self { segments, sources, phases, radius, start };
+        match parts.motion() {
+            Ok(_) => Ok(parts),
+            Err(reason) => Err(of_agent(derived::<S>(reason))),
         }
-        if segments.is_empty() {
-            segments.push(origin);
-        }
-        let length = PathRef::new(&segments).map_err(refused(None))?.length();
-        let phases = match &agent.motion {
-            MotionSpec::RestToRest { v_max, a_max } => {
-                let limits = Limits { speed: S::from_f64(*v_max), acceleration: S::from_f64(*a_max) };
-                Profile::rest_to_rest(length, limits).map_err(refused(None))?.as_profile().phases().to_vec()
-            }
-            MotionSpec::Profile { v0, pieces } => {
-                let mut phases = Vec::<Phase<S>>::new();
-                for &(duration, accel) in pieces {
-                    let (duration, accel) = (S::from_f64(duration), S::from_f64(accel));
-                    let next = match phases.last() {
-                        None => Phase::starting_at(S::from_f64(*v0), duration, accel),
-                        Some(last) => last.then(duration, accel),
-                    };
-                    phases.push(next.map_err(refused(None))?);
-                }
-                phases
-            }
-        };
-        Ok(Self { segments, sources, phases, radius: S::from_f64(agent.radius), start: S::from_f64(agent.t_start) })
     }
 
     fn motion(&self) -> Result<Motion<'_, S>, Invalid> {
@@ -164,20 +169,95 @@ impl<S: Format> Parts<S> {
     }
 }
 
+/// The segments of a path, placed one after the other, and the place of each in the scenario.
+fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Fault> {
+    let [x, y, heading] = agent.start;
+    let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
+    let pose = Pose { position, heading: S::angle(heading) };
+    let origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
+    let (mut segments, mut sources) = (Vec::<Segment<S>>::new(), Vec::new());
+    for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
+        let at = |problem| (Some(("segment", source)), problem);
+        let turns = segment.turns();
+        let length = number("length", segment.length() / turns).map_err(at)?;
+        for _ in 0..turns as usize {
+            let last = segments.last().unwrap_or(&origin);
+            let next = match *segment {
+                PathSegment::Line { .. } => last.then_line(length),
+                PathSegment::Arc { radius, sweep } => {
+                    let turn = if sweep > 0.0 { Turn::Left } else { Turn::Right };
+                    last.then_arc(number("radius", radius).map_err(at)?, turn, length)
+                }
+            };
+            segments.push(next.map_err(|reason| at(derived::<S>(reason)))?);
+            sources.push(source);
+        }
+    }
+    if segments.is_empty() {
+        segments.push(origin);
+    }
+    Ok((segments, sources))
+}
+
+/// The phases of the motion over a path of this length.
+fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
+    let duration = agent.duration();
+    // The core's division saturates, so what takes too long has to be found here.
+    if S::from_f64(duration) >= S::LIMIT {
+        let limit = S::LIMIT.to_f64();
+        return Err(of_agent(format!("the motion takes {duration:e} s; allowed is below {limit:e} s")));
+    }
+    match &agent.motion {
+        MotionSpec::RestToRest { v_max, a_max } => {
+            let speed = number("v_max", *v_max).map_err(of_agent)?;
+            let acceleration = number("a_max", *a_max).map_err(of_agent)?;
+            let profile = Profile::rest_to_rest(length, Limits { speed, acceleration });
+            let profile = profile.map_err(|reason| of_agent(derived::<S>(reason)))?;
+            Ok(profile.as_profile().phases().to_vec())
+        }
+        MotionSpec::Profile { v0, pieces } => speed::phases(*v0, pieces, length).map_err(|(piece, problem)| {
+            let part = piece.map(|piece| ("profile piece", piece));
+            (part, problem)
+        }),
+    }
+}
+
 /// A table on the heap.
 pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
+
+/// Pieces that the core joins at once: those of one pair of agents.
+const PIECES_OF_A_PAIR: usize = u16::MAX as usize;
 
 /// The extended collision map of a fleet of any size: the storage grows until it is large enough.
 ///
 /// # Errors
-/// [`Full::Agents`] for more than 65535 agents.
+/// [`Full::Agents`] for more than 65535 agents, [`Full::Pieces`] where one pair of agents has more than 65535 pieces
+/// of regions.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
-    let (mut regions, mut pieces) = (4 * motions.len() + 16, 8 * motions.len() + 16);
+    let (mut regions, mut pieces) = (8 * motions.len() + 16, 16 * motions.len() + 16);
     loop {
-        match Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions) {
+        let table = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions);
+        match table {
             Err(Full::Regions) => regions *= 2,
-            Err(Full::Pieces) => pieces *= 2,
+            Err(Full::Pieces) => {
+                // Beyond this a pair may be at fault that no storage helps.
+                if pieces > PIECES_OF_A_PAIR {
+                    every_pair_fits(motions)?;
+                }
+                pieces *= 2;
+            }
             done => return done,
         }
     }
+}
+
+fn every_pair_fits<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<(), Full> {
+    let mut table = Ecm::new(vec![Region::EMPTY; PIECES_OF_A_PAIR], vec![Piece::EMPTY; PIECES_OF_A_PAIR]);
+    for (index, first) in motions.iter().enumerate() {
+        for second in motions.iter().skip(index + 1) {
+            table.insert(&[*first, *second], 1)?;
+            table.remove(1);
+        }
+    }
+    Ok(())
 }

@@ -1,0 +1,81 @@
+//! A scenario's speed profile as phases of the core.
+
+use super::{Format, derived, number};
+use crate::scenario::speed_after;
+use pcr_core::Phase;
+use pcr_core::scalar::Wide;
+
+/// Rounds in which the last digits of the travelled length are settled. One does it; a second one mends
+/// its rounding.
+const ROUNDS: usize = 3;
+
+/// Piece of the profile (from 0) where there is one, and what is wrong.
+type Fault = (Option<usize>, String);
+
+/// The phases of `pieces` (durations \[s\] and accelerations \[m/s²\]) from speed `v0` \[m/s\].
+///
+/// Each phase aims at the speed that the piece reaches exactly, so that speeds do not drift and a stop is a stop. What
+/// rounding leaves of the difference to `length` \[m\] goes into the duration of the fastest piece, where it costs
+/// the least time.
+pub(super) fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
+    let targets = targets(v0, pieces);
+    let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));
+    let moving = (0..pieces.len()).filter(|&k| pieces.get(k).is_some_and(|(duration, _)| *duration > 0.0));
+    let fastest = moving.max_by(|&a, &b| mean(a).total_cmp(&mean(b)));
+    let mut correction = 0.0;
+    let mut phases = Vec::new();
+    for _ in 0..ROUNDS {
+        phases.clear();
+        for (k, (&(duration, _), speeds)) in pieces.iter().zip(targets.windows(2)).enumerate() {
+            let &[before, after] = speeds else { continue };
+            let longer = if Some(k) == fastest { correction } else { 0.0 };
+            let phase = phase(phases.last(), [before, after], duration + longer).map_err(|problem| (Some(k), problem));
+            phases.push(phase?);
+        }
+        let travelled = phases.last().map_or(S::ZERO, |last| last.length().hi);
+        let short = (length - travelled).to_f64();
+        match fastest {
+            Some(fastest) if short != 0.0 && mean(fastest) > 0.0 => correction += short / mean(fastest),
+            _ => break,
+        }
+    }
+    Ok(phases)
+}
+
+/// The speeds at the joints of the pieces, one more than there are pieces.
+fn targets(v0: f64, pieces: &[(f64, f64)]) -> Vec<f64> {
+    let (mut speed, mut fastest) = (v0, v0);
+    let mut speeds = vec![v0];
+    for (duration, accel) in pieces {
+        speed = speed_after(speed + accel * duration, fastest);
+        fastest = fastest.max(speed);
+        speeds.push(speed);
+    }
+    speeds
+}
+
+/// The phase between two speeds that follows `last`.
+fn phase<S: Format>(last: Option<&Phase<S>>, speeds: [f64; 2], duration: f64) -> Result<Phase<S>, String> {
+    let [first, after] = speeds;
+    let first = number::<S>("speed", first)?;
+    let before = last.map_or(first, |last| last.speed_at(last.time().hi));
+    let duration = number::<S>("duration", duration)?;
+    let mut acceleration = S::ZERO;
+    if duration > S::ZERO {
+        let gain = number::<S>("speed", after)? - before;
+        acceleration = number("accel", gain.to_f64() / duration.to_f64())?;
+        if after == 0.0 {
+            // Down to 0 and not to a rounding above it: the core takes as 0 what is below it by rounding.
+            for _ in 0..ROUNDS {
+                if before + acceleration.times(duration).narrow() > S::ZERO {
+                    acceleration = acceleration - S::slack(acceleration.abs()).half().half();
+                }
+            }
+        }
+    }
+    let phase = match last {
+        None => Phase::starting_at(before, duration, acceleration),
+        Some(last) => last.then(duration, acceleration),
+    };
+    phase.map_err(derived::<S>)
+}

@@ -1,0 +1,100 @@
+//! Where scenarios come from, and errors that say where the fault is.
+
+use crate::scenario::{Scenario, ScenarioError};
+use std::fmt;
+use std::fs;
+use std::io::{self, BufRead, Read};
+use std::path::{Path, PathBuf};
+
+/// Why there is no scenario.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum InputError {
+    /// The file, or standard input (`None`), could not be read.
+    Unreadable(Option<PathBuf>, io::Error),
+    /// It is not text in UTF-8.
+    NotText(Option<PathBuf>),
+    /// It is not a scenario.
+    Refused(Option<PathBuf>, ScenarioError),
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |file: &Option<PathBuf>| {
+            file.as_ref().map_or("standard input".to_owned(), |file| file.display().to_string())
+        };
+        match self {
+            Self::Unreadable(file, error) => write!(f, "{}: cannot be read: {error}", name(file)),
+            Self::NotText(file) => write!(f, "{}: not text in UTF-8", name(file)),
+            Self::Refused(file, error) => write!(f, "{}:{}: {error}", name(file), error.line()),
+        }
+    }
+}
+
+impl std::error::Error for InputError {}
+
+/// The scenario in a file, or on standard input for `-`.
+///
+/// # Errors
+/// [`InputError`], naming the file and, for a refused scenario, the line.
+pub fn read(file: &Path) -> Result<Scenario, InputError> {
+    let name = (file != Path::new("-")).then(|| file.to_owned());
+    let bytes = match &name {
+        Some(file) => fs::read(file),
+        None => {
+            let mut bytes = Vec::new();
+            io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+        }
+    };
+    let bytes = bytes.map_err(|error| InputError::Unreadable(name.clone(), error))?;
+    let text = String::from_utf8(bytes).map_err(|_| InputError::NotText(name.clone()))?;
+    Scenario::from_json(&text).map_err(|error| InputError::Refused(name, error))
+}
+
+/// A line of JSON Lines that is not blank.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Counted from 1, blank lines included.
+    pub number: usize,
+    /// The scenario, or the name as far as it could be read and what is wrong.
+    pub scenario: Result<Scenario, (String, String)>,
+}
+
+/// The scenarios in JSON Lines, one at a time as they come in.
+#[derive(Debug)]
+pub struct Lines<R> {
+    reader: R,
+    number: usize,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// The lines that `reader` gives.
+    pub fn new(reader: R) -> Self {
+        Self { reader, number: 0 }
+    }
+}
+
+impl<R: BufRead> Iterator for Lines<R> {
+    type Item = Result<Line, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let mut bytes = Vec::new();
+            match self.reader.read_until(b'\n', &mut bytes) {
+                Ok(0) => return None,
+                Ok(_) => self.number += 1,
+                Err(error) => return Some(Err(InputError::Unreadable(None, error))),
+            }
+            let scenario = match String::from_utf8(bytes) {
+                Ok(text) if text.trim_start_matches('\u{feff}').trim().is_empty() => continue,
+                Ok(text) => {
+                    Scenario::from_json(&text).map_err(|error| (error.scenario().to_owned(), error.to_string()))
+                }
+                Err(_) => Err((String::new(), "not text in UTF-8".to_owned())),
+            };
+            let number = self.number;
+            let scenario = scenario.map_err(|(name, problem)| (name, format!("line {number}: {problem}")));
+            return Some(Ok(Line { number, scenario }));
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! JSON text as a tree that forgets nothing a refusal needs.
+//!
+//! A general parser stops at `NaN` (which Python writes) and at `1e999`, and keeps the last of two equal keys. A
+//! scenario with such a fault is to be refused with its agent, segment and field, which are known only when the tree
+//! is walked. So numbers stay as written here, words for what is not finite count as numbers, equal keys are kept,
+//! and every value knows its line. Otherwise this is RFC 8259; the tests compare it with `serde_json`.
+
+/// A value and where it begins.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Json {
+    /// Line of the text, counted from 1.
+    pub(crate) line: usize,
+    pub(crate) data: Data,
+}
+
+/// The kinds of values.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Data {
+    Null,
+    Bool(bool),
+    /// As written: a JSON number, or `NaN` or `Infinity` in one of their spellings.
+    Number(String),
+    Text(String),
+    Array(Vec<Json>),
+    /// In the order of the text, equal keys included.
+    Object(Vec<(String, Json)>),
+}
+
+/// Why a text is not JSON.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SyntaxError {
+    /// Counted from 1.
+    pub(crate) line: usize,
+    /// Character in the line, counted from 1.
+    pub(crate) column: usize,
+    pub(crate) problem: String,
+}
+
+/// Arrays and objects inside one another; a scenario needs 6. The parser recurses, so this bounds the stack.
+const DEEPEST: usize = 64;
+
+/// Characters of the text that a message quotes.
+pub(crate) const QUOTED: usize = 40;
+
+/// The value in a text.
+pub(crate) fn parse(text: &str) -> Result<Json, SyntaxError> {
+    let mut parser = Parser { text, at: 0, line: 1, line_start: 0 };
+    let value = parser.value(0)?;
+    match parser.peek() {
+        None => Ok(value),
+        Some(_) => Err(parser.error("more text after the end of the scenario (JSON Lines: on standard input, with -)")),
+    }
+}
+
+struct Parser<'t> {
+    text: &'t str,
+    /// Byte that is read next; always at the border of a character.
+    at: usize,
+    line: usize,
+    /// First byte of the line.
+    line_start: usize,
+}
+
+impl<'t> Parser<'t> {
+    fn value(&mut self, depth: usize) -> Result<Json, SyntaxError> {
+        let next = self.peek();
+        let line = self.line;
+        let data = match next {
+            Some('{' | '[') if depth == DEEPEST => {
+                return Err(self.error(format!("arrays and objects nested more than {DEEPEST} deep")));
+            }
+            Some('{') => Data::Object(self.members(depth)?),
+            Some('[') => Data::Array(self.elements(depth)?),
+            Some('"') => Data::Text(self.string()?),
+            _ => self.word()?,
+        };
+        Ok(Json { line, data })
+    }
+
+    fn elements(&mut self, depth: usize) -> Result<Vec<Json>, SyntaxError> {
+        let mut elements = Vec::new();
+        self.advance(1);
+        if self.accept(']') {
+            return Ok(elements);
+        }
+        loop {
+            elements.push(self.value(depth + 1)?);
+            if self.accept(']') {
+                return Ok(elements);
+            }
+            self.expect(',', "`,` or `]`")?;
+        }
+    }
+
+    fn members(&mut self, depth: usize) -> Result<Vec<(String, Json)>, SyntaxError> {
+        let mut members = Vec::new();
+        self.advance(1);
+        if self.accept('}') {
+            return Ok(members);
+        }
+        loop {
+            if self.peek() != Some('"') {
+                return Err(self.expected("a key in quotes"));
+            }
+            let key = self.string()?;
+            self.expect(':', "`:`")?;
+            members.push((key, self.value(depth + 1)?));
+            if self.accept('}') {
+                return Ok(members);
+            }
+            self.expect(',', "`,` or `}`")?;
+        }
+    }
+
+    fn string(&mut self) -> Result<String, SyntaxError> {
+        let mut string = String::new();
+        self.advance(1);
+        loop {
+            let plain = self.rest().find(|c| c == '"' || c == '\\' || c < ' ').unwrap_or(self.rest().len());
+            string.push_str(self.rest().get(..plain).unwrap_or_default());
+            self.advance(plain);
+            match self.rest().chars().next() {
+                Some('"') => {
+                    self.advance(1);
+                    return Ok(string);
+                }
+                Some('\\') => string.push(self.escape()?),
+                Some(_) => return Err(self.error("a control character in a string; write it as \\u00XX")),
+                None => return Err(self.error("the text ends within a string")),
+            }
+        }
+    }
+
+    fn escape(&mut self) -> Result<char, SyntaxError> {
+        const SIMPLE: [(char, char); 8] = [
+            ('"', '"'),
+            ('\\', '\\'),
+            ('/', '/'),
+            ('b', '\u{8}'),
+            ('f', '\u{c}'),
+            ('n', '\n'),
+            ('r', '\r'),
+            ('t', '\t'),
+        ];
+        let letter = self.rest().chars().nth(1);
+        if let Some((_, meant)) = SIMPLE.into_iter().find(|&(escaped, _)| Some(escaped) == letter) {
+            self.advance(2);
+            return Ok(meant);
+        }
+        let units = (self.unit(0), self.unit(6));
+        let (meant, long) = match units {
+            (Some(high @ 0xd800..0xdc00), Some(low @ 0xdc00..0xe000)) => {
+                (char::from_u32(0x10000 + ((high - 0xd800) << 10) + (low - 0xdc00)), 12)
+            }
+            (Some(unit), _) => (char::from_u32(unit), 6),
+            (None, _) => (None, 0),
+        };
+        let meant = meant.ok_or_else(|| self.error("an unknown escape in a string"))?;
+        self.advance(long);
+        Ok(meant)
+    }
+
+    /// The UTF-16 unit of an escape `\uXXXX` that many bytes on.
+    fn unit(&self, offset: usize) -> Option<u32> {
+        let digits = self.rest().get(offset..offset + 6)?.strip_prefix("\\u")?;
+        let hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+        hex.then(|| u32::from_str_radix(digits, 16).ok())?
+    }
+
+    /// A number, or a value that is written as a word.
+    fn word(&mut self) -> Result<Data, SyntaxError> {
+        let belongs = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.' | '_');
+        let end = self.rest().find(|c| !belongs(c)).unwrap_or(self.rest().len());
+        let word = self.rest().get(..end).unwrap_or_default();
+        let data = match word {
+            "true" => Data::Bool(true),
+            "false" => Data::Bool(false),
+            "null" => Data::Null,
+            number if is_number(number) || is_not_finite(number) => Data::Number(number.to_owned()),
+            _ => return Err(self.expected("a value")),
+        };
+        self.advance(end);
+        Ok(data)
+    }
+
+    fn rest(&self) -> &'t str {
+        self.text.get(self.at..).unwrap_or_default()
+    }
+
+    fn advance(&mut self, bytes: usize) {
+        self.at += bytes;
+    }
+
+    /// The next character that is not white space.
+    fn peek(&mut self) -> Option<char> {
+        loop {
+            let next = self.rest().chars().next();
+            match next {
+                Some('\n') => {
+                    self.advance(1);
+                    self.line += 1;
+                    self.line_start = self.at;
+                }
+                Some(' ' | '\t' | '\r') => self.advance(1),
+                _ => return next,
+            }
+        }
+    }
+
+    fn accept(&mut self, mark: char) -> bool {
+        let there = self.peek() == Some(mark);
+        if there {
+            self.advance(mark.len_utf8());
+        }
+        there
+    }
+
+    fn expect(&mut self, mark: char, name: &str) -> Result<(), SyntaxError> {
+        if self.accept(mark) { Ok(()) } else { Err(self.expected(name)) }
+    }
+
+    fn expected(&self, what: &str) -> SyntaxError {
+        let rest = self.rest();
+        let length = rest.find(|c: char| c.is_whitespace() || ",:]}\"".contains(c)).unwrap_or(rest.len());
+        let found: String = rest.chars().take(length.clamp(1, QUOTED)).collect();
+        if found.is_empty() {
+            self.error(format!("the text ends where {what} is expected"))
+        } else {
+            self.error(format!("{} where {what} is expected", found.escape_debug()))
+        }
+    }
+
+    fn error(&self, problem: impl Into<String>) -> SyntaxError {
+        let line = self.text.get(self.line_start..self.at).unwrap_or_default();
+        SyntaxError { line: self.line, column: line.chars().count() + 1, problem: problem.into() }
+    }
+}
+
+/// `-? (0 | [1-9][0-9]*) (\. [0-9]+)? ([eE] [+-]? [0-9]+)?`
+fn is_number(word: &str) -> bool {
+    let word = word.strip_prefix('-').unwrap_or(word);
+    let (mantissa, exponent) = word.split_once(['e', 'E']).map_or((word, None), |(m, e)| (m, Some(e)));
+    let (whole, fraction) = mantissa.split_once('.').map_or((mantissa, None), |(w, f)| (w, Some(f)));
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    digits(whole)
+        && (whole == "0" || !whole.starts_with('0'))
+        && fraction.is_none_or(digits)
+        && exponent.is_none_or(|exponent| digits(exponent.strip_prefix(['+', '-']).unwrap_or(exponent)))
+}
+
+/// What Python, JavaScript and C write for numbers that are not finite.
+fn is_not_finite(word: &str) -> bool {
+    let word = word.strip_prefix(['+', '-']).unwrap_or(word);
+    ["nan", "inf", "infinity"].iter().any(|name| word.eq_ignore_ascii_case(name))
+}
+
+impl From<&serde_json::Value> for Json {
+    fn from(value: &serde_json::Value) -> Self {
+        use serde_json::Value;
+        let data = match value {
+            Value::Null => Data::Null,
+            Value::Bool(value) => Data::Bool(*value),
+            Value::Number(number) => Data::Number(number.to_string()),
+            Value::String(text) => Data::Text(text.clone()),
+            Value::Array(elements) => Data::Array(elements.iter().map(Self::from).collect()),
+            Value::Object(members) => {
+                Data::Object(members.iter().map(|(key, value)| (key.clone(), value.into())).collect())
+            }
+        };
+        Self { line: 1, data }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+
+    /// What `serde_json` makes of the same tree.
+    fn value(json: &Json) -> Value {
+        match &json.data {
+            Data::Null => Value::Null,
+            Data::Bool(value) => Value::Bool(*value),
+            Data::Number(text) => serde_json::from_str(text).unwrap(),
+            Data::Text(text) => Value::String(text.clone()),
+            Data::Array(elements) => elements.iter().map(value).collect(),
+            Data::Object(members) => members.iter().map(|(key, member)| (key.clone(), value(member))).collect(),
+        }
+    }
+
+    const SEEDS: [&str; 4] = [
+        include_str!("../scenarios/paper12.json"),
+        r#"{"a": [1, -0.5, 2e3, 1E-7, true, false, null, [], {}], "b\n\"\\\/\u00e9\ud83d\ude00": "é😀 \b\f\r\t", "": {"c": [[[0]]]}}"#,
+        "\t[ 0 , -0 , 0.0e+0 ]\r\n",
+        r#""plain""#,
+    ];
+
+    #[test]
+    fn trees_are_those_of_serde_json() {
+        for seed in SEEDS {
+            assert_eq!(value(&parse(seed).unwrap()), serde_json::from_str::<Value>(seed).unwrap());
+        }
+    }
+
+    /// Texts with one character changed: both parsers accept and refuse the same ones, but for what this one is for.
+    #[test]
+    fn damaged_texts_are_refused_like_by_serde_json() {
+        let marks: Vec<char> = "{}[]\",:\\/0123456789+-.eEtrufalsn \n\t\u{1}é😀x".chars().collect();
+        let mut random = 88_172_645_463_325_252_u64;
+        let mut next = |bound: usize| {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            (random % bound as u64) as usize
+        };
+        let (mut accepted, mut refused) = (0, 0);
+        for _ in 0..40_000 {
+            let seed: Vec<char> = SEEDS[1 + next(3)].chars().collect();
+            let (place, mark) = (next(seed.len()), marks[next(marks.len())]);
+            let skip = next(2);
+            let head = seed[..place].iter();
+            let text: String = head.chain([&mark]).chain(&seed[(place + skip).min(seed.len())..]).collect();
+            match (parse(&text), serde_json::from_str::<Value>(&text)) {
+                (Ok(json), Ok(expected)) => {
+                    assert_eq!(value(&json), expected, "{text}");
+                    accepted += 1;
+                }
+                (Err(_), Err(_)) => refused += 1,
+                (mine, theirs) => panic!("{text}\n{mine:?}\n{theirs:?}"),
+            }
+        }
+        assert!(accepted > 1000 && refused > 1000, "{accepted} accepted, {refused} refused");
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_kept_as_written() {
+        for word in ["NaN", "nan", "Infinity", "-Infinity", "inf", "-inf", "1e999", "-1e99999"] {
+            assert_eq!(parse(word).unwrap().data, Data::Number(word.into()));
+        }
+    }
+
+    #[test]
+    fn equal_keys_are_kept() {
+        let Data::Object(members) = parse(r#"{"a": 1, "a": 2}"#).unwrap().data else { panic!() };
+        assert_eq!(members.len(), 2);
+    }
+
+    #[test]
+    fn values_know_their_lines_and_errors_their_columns() {
+        let json = parse("[\n 1,\n\n {\"a\":\n2}]").unwrap();
+        let Data::Array(elements) = &json.data else { panic!() };
+        let Data::Object(members) = &elements[1].data else { panic!() };
+        assert_eq!((json.line, elements[0].line, elements[1].line, members[0].1.line), (1, 2, 4, 5));
+        let error = parse("{\n  \"é\": nonsense}").unwrap_err();
+        assert_eq!((error.line, error.column), (2, 8));
+        assert_eq!(error.problem, "nonsense where a value is expected");
+    }
+
+    #[test]
+    fn nesting_is_bounded() {
+        let nested = |depth: usize| "[".repeat(depth) + &"]".repeat(depth);
+        assert!(parse(&nested(DEEPEST)).is_ok());
+        let error = parse(&nested(1_000_000)).unwrap_err();
+        assert_eq!(error.problem, "arrays and objects nested more than 64 deep");
+    }
+
+    #[test]
+    fn texts_that_end_early_say_so() {
+        for text in ["", " ", "[1", "{\"a\"", "{\"a\":", "[1,"] {
+            let problem = parse(text).unwrap_err().problem;
+            assert!(problem.starts_with("the text ends where "), "{text:?}: {problem}");
+        }
+        assert_eq!(parse("\"ab").unwrap_err().problem, "the text ends within a string");
+    }
+}

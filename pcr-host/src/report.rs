@@ -1,0 +1,81 @@
+//! Answers as text: JSON and CSV for programs, tables for people.
+
+mod columns;
+mod overview;
+mod table;
+
+pub use overview::overview;
+pub use table::table;
+
+use crate::regions::{Answer, Region};
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+/// One line of JSON.
+///
+/// # Errors
+/// Those of the writer.
+pub fn json(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+    serde_json::to_writer(&mut *out, answer)?;
+    out.write_all(b"\n")
+}
+
+/// The header line of [`csv`].
+pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings\n";
+
+/// A line a region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`.
+///
+/// # Errors
+/// Those of the writer.
+pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+    let name = if answer.name.contains(['"', ',', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", answer.name.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(&answer.name)
+    };
+    for region in &answer.regions {
+        let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;
+        let (open_start, open_end) = (u8::from(region.open_start), u8::from(region.open_end));
+        let crossings = crossings(region);
+        let types = types(region);
+        writeln!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings}")?;
+    }
+    Ok(())
+}
+
+/// Number of crossings in a region.
+fn crossings(region: &Region) -> usize {
+    region.pieces.iter().map(|piece| piece.crossings.len()).sum()
+}
+
+/// The types of the pieces with their numbers, in the order in which they first occur.
+fn types(region: &Region) -> String {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for piece in &region.pieces {
+        match counts.iter_mut().find(|(piece_type, _)| *piece_type == piece.piece_type) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((&piece.piece_type, 1)),
+        }
+    }
+    let mut text = String::new();
+    for (piece_type, count) in counts {
+        let plus = if text.is_empty() { "" } else { "+" };
+        let count = if count > 1 { count.to_string() } else { String::new() };
+        // Writing to a `String` does not fail.
+        let _ = write!(text, "{plus}{count}{piece_type}");
+    }
+    text
+}
+
+/// A name on a terminal: whatever would move the cursor or change colours is escaped.
+fn printable(name: &str) -> String {
+    name.chars().fold(String::new(), |mut text, c| {
+        if c.is_control() {
+            text.extend(c.escape_default());
+        } else {
+            text.push(c);
+        }
+        text
+    })
+}

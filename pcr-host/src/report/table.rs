@@ -1,0 +1,117 @@
+//! Regions and crossings for reading.
+
+use super::columns::Columns;
+use super::{crossings, printable, types};
+use crate::regions::{Answer, Descriptor, Region};
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+/// A crossing with its place in the paper's numbering.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Numbered<'a> {
+    pub(super) i: u64,
+    pub(super) j: u64,
+    /// Counted along the path of `i`, from 1, for each `j`.
+    pub(super) k: usize,
+    pub(super) piece_type: &'a str,
+    pub(super) crossing: &'a Descriptor,
+    /// Index of its region.
+    region: usize,
+}
+
+/// The crossings in the order of Table VII: by ego, then along its path.
+pub(super) fn numbered(regions: &[Region]) -> Vec<Numbered<'_>> {
+    let mut all: Vec<Numbered<'_>> = Vec::new();
+    for (index, region) in regions.iter().enumerate() {
+        for piece in &region.pieces {
+            let crossings = piece.crossings.iter();
+            all.extend(crossings.map(|crossing| Numbered {
+                i: region.i,
+                j: region.j,
+                k: 0,
+                piece_type: &piece.piece_type,
+                crossing,
+                region: index,
+            }));
+        }
+    }
+    all.sort_by(|a, b| a.i.cmp(&b.i).then(a.crossing.length.total_cmp(&b.crossing.length)));
+    let mut counts = HashMap::new();
+    for numbered in &mut all {
+        let count = counts.entry((numbered.i, numbered.j)).or_insert(0);
+        *count += 1;
+        numbered.k = *count;
+    }
+    all
+}
+
+/// An arc of a descriptor: radius and turn.
+pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
+    match (sigma, dir) {
+        (Some(sigma), Some(dir)) => format!("{sigma:.3} {}", if dir > 0 { "ccw" } else { "cw " }),
+        _ => "-".into(),
+    }
+}
+
+/// The crossings in the form of the paper's Table VII, then the regions.
+///
+/// # Errors
+/// Those of the writer.
+pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+    let all = numbered(&answer.regions);
+    let name = if answer.name.is_empty() { "scenario".into() } else { printable(&answer.name) };
+    let (regions, number) = (answer.regions.len(), all.len());
+    writeln!(out, "{name}: {regions} collision regions, {number} crossings ({})", answer.scalar)?;
+    if !all.is_empty() {
+        writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
+        let mut columns = Columns::new(&[
+            "i",
+            "j",
+            "k",
+            "<type",
+            "T [s]",
+            "L [m]",
+            "r_hat [m]",
+            "v_j [m/s]",
+            "theta",
+            "arc of i",
+            "arc of j",
+        ]);
+        for Numbered { i, j, k, piece_type, crossing, .. } in &all {
+            let mut row = vec![i.to_string(), j.to_string(), k.to_string(), (*piece_type).to_owned()];
+            let numbers = [crossing.time, crossing.length, crossing.r_hat, crossing.v, crossing.theta];
+            row.extend(numbers.map(|number| format!("{number:.3}")));
+            row.extend([arc(crossing.sigma_i, crossing.dir_i), arc(crossing.sigma_j, crossing.dir_j)]);
+            columns.row(row);
+        }
+        columns.write(out)?;
+    }
+    if !answer.regions.is_empty() {
+        writeln!(out, "\nRegions: i must not be in l_a..l_b while j makes it so, some time in t_a..t_b")?;
+        let mut columns =
+            Columns::new(&["i", "j", "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
+        let mut held: HashMap<usize, Vec<String>> = HashMap::new();
+        for crossing in &all {
+            held.entry(crossing.region).or_default().push(crossing.k.to_string());
+        }
+        for (index, region) in answer.regions.iter().enumerate() {
+            let mut row = vec![region.i.to_string(), region.j.to_string()];
+            row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(|number| format!("{number:.3}")));
+            let open = match (region.open_start, region.open_end) {
+                (false, false) => "-",
+                (true, false) => "start",
+                (false, true) => "end",
+                (true, true) => "both",
+            };
+            let held = held.get(&index).map_or("-".into(), |held| held.join(","));
+            row.extend([open.to_owned(), held, types(region)]);
+            columns.row(row);
+        }
+        columns.write(out)?;
+        let near = answer.regions.iter().filter(|region| crossings(region) == 0).count();
+        if near > 0 {
+            writeln!(out, "k -: the paths come near but do not cross ({near} of {regions})")?;
+        }
+    }
+    Ok(())
+}

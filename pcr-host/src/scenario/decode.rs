@@ -1,0 +1,409 @@
+//! From JSON to a scenario, and what is refused on the way.
+
+use super::{Agent, MotionSpec, PathSegment, Scenario};
+use crate::json::{self, Data, Json, QUOTED};
+use serde_json::Value;
+use std::collections::HashSet;
+use std::fmt;
+
+/// Largest magnitude of a number in a scenario, in its unit, and of the length and the duration of a path.
+///
+/// It leaves room for coordinates of a map projection and for seconds since 1970. Results are exact to 10⁻¹⁵ of the
+/// largest coordinate, hence at the limit to a micrometre. Number formats other than `f64` may allow less.
+pub const LIMIT: f64 = 1e9;
+
+/// Relative difference between the travelled length and the length of the path that is still scaled away.
+pub const LENGTH_TOLERANCE: f64 = 1e-6;
+
+/// Speed below zero that a profile may reach by the rounding of its numbers, relative to its largest speed (or to
+/// 1 m/s if that is more): nine digits, which is what files carry.
+const SPEED_TOLERANCE: f64 = 1e-9;
+
+/// Agents, and segments of a path, that the core can number. An arc counts once for each turn begun.
+const MOST: usize = u16::MAX as usize;
+
+/// Why a scenario was refused: agent, segment, field, value and what is allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioError {
+    scenario: String,
+    line: usize,
+    place: Place,
+    field: String,
+    problem: String,
+}
+
+impl ScenarioError {
+    /// Line of the text, counted from 1. It is not part of the message.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Name of the scenario, empty if it was not readable or not given.
+    pub fn scenario(&self) -> &str {
+        &self.scenario
+    }
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let part = self.place.part.map(|(part, number)| format!("{part} {number}"));
+        let field = Some(self.field.clone()).filter(|field| !field.is_empty());
+        let place: Vec<String> = [self.place.agent.clone(), part, field].into_iter().flatten().collect();
+        if !place.is_empty() {
+            write!(f, "{}: ", place.join(", "))?;
+        }
+        f.write_str(&self.problem)
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+/// Where in the scenario we are.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Place {
+    /// Its number, or its place in the file where it has none.
+    agent: Option<String>,
+    /// Segment of the path or piece of the profile, counted from 1.
+    part: Option<(&'static str, usize)>,
+}
+
+impl Place {
+    fn error(&self, line: usize, field: impl Into<String>, problem: impl Into<String>) -> ScenarioError {
+        let (place, field, problem) = (self.clone(), field.into(), problem.into());
+        ScenarioError { scenario: String::new(), line, place, field, problem }
+    }
+
+    fn part(&self, name: &'static str, index: usize) -> Self {
+        Self { agent: self.agent.clone(), part: Some((name, index + 1)) }
+    }
+
+    /// The fields of an object that has no others than these.
+    fn fields<'j>(&self, json: &'j Json, known: &[&str]) -> Result<Fields<'j>, ScenarioError> {
+        let Data::Object(members) = &json.data else {
+            return Err(self.error(json.line, "", format!("{} where an object is expected", brief(json))));
+        };
+        for (index, (key, value)) in members.iter().enumerate() {
+            if !known.contains(&key.as_str()) {
+                let problem = format!("unknown key; known are {}", known.join(", "));
+                return Err(self.error(value.line, shortened(key), problem));
+            }
+            // At most as many steps as there are known keys before one of them is given twice.
+            if members.iter().take(index).any(|(before, _)| before == key) {
+                return Err(self.error(value.line, key, "given twice"));
+            }
+        }
+        Ok(Fields { place: self.clone(), inside: "", line: json.line, members })
+    }
+}
+
+/// The members of an object whose keys are known.
+struct Fields<'j> {
+    place: Place,
+    /// What precedes its fields in messages.
+    inside: &'static str,
+    line: usize,
+    members: &'j [(String, Json)],
+}
+
+impl<'j> Fields<'j> {
+    fn error(&self, line: usize, field: &str, problem: impl Into<String>) -> ScenarioError {
+        self.place.error(line, format!("{}{field}", self.inside), problem)
+    }
+
+    fn get(&self, field: &str) -> Option<&'j Json> {
+        self.members.iter().find(|(key, _)| key == field).map(|(_, value)| value)
+    }
+
+    fn required(&self, field: &str) -> Result<&'j Json, ScenarioError> {
+        self.get(field).ok_or_else(|| self.error(self.line, field, "missing"))
+    }
+
+    fn unexpected(&self, field: &str, found: &Json, expected: &str) -> ScenarioError {
+        self.error(found.line, field, format!("{} where {expected} is expected", brief(found)))
+    }
+
+    fn array(&self, field: &str) -> Result<&'j [Json], ScenarioError> {
+        let found = self.required(field)?;
+        match &found.data {
+            Data::Array(elements) => Ok(elements),
+            _ => Err(self.unexpected(field, found, "an array")),
+        }
+    }
+
+    fn object(&self, field: &str, inside: &'static str, known: &[&str]) -> Result<Fields<'j>, ScenarioError> {
+        let found = self.required(field)?;
+        match &found.data {
+            Data::Object(_) => {
+                let named = |error: ScenarioError| ScenarioError { field: format!("{inside}{}", error.field), ..error };
+                Ok(Fields { inside, ..self.place.fields(found, known).map_err(named)? })
+            }
+            _ => Err(self.unexpected(field, found, "an object")),
+        }
+    }
+
+    fn number(&self, field: &str, range: Range) -> Result<f64, ScenarioError> {
+        let found = self.required(field)?;
+        let Data::Number(text) = &found.data else {
+            return Err(self.unexpected(field, found, "a number"));
+        };
+        // A number of the grammar always parses; what is too large becomes infinite, and is then refused.
+        match text.parse::<f64>() {
+            Ok(number) if range.allows(number) => Ok(number),
+            _ => {
+                let problem = format!("{} is out of range; allowed is {range}", shortened(text));
+                Err(self.error(found.line, field, problem))
+            }
+        }
+    }
+}
+
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(QUOTED) {
+        Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
+        None => text.to_owned(),
+    }
+}
+
+fn brief(json: &Json) -> String {
+    match &json.data {
+        Data::Null => "null".into(),
+        Data::Bool(value) => value.to_string(),
+        Data::Number(text) => shortened(text),
+        Data::Text(text) => format!("{:?}", shortened(text)),
+        Data::Array(_) => "an array".into(),
+        Data::Object(_) => "an object".into(),
+    }
+}
+
+/// What a number may be. NaN is in no range.
+#[derive(Clone, Copy)]
+enum Range {
+    Any,
+    NotNegative,
+    Positive,
+}
+
+impl Range {
+    fn allows(self, number: f64) -> bool {
+        let sign = match self {
+            Self::Any => true,
+            Self::NotNegative => number >= 0.0,
+            Self::Positive => number > 0.0,
+        };
+        sign && number.abs() <= LIMIT
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Any => write!(f, "-{LIMIT:e} to {LIMIT:e}"),
+            Self::NotNegative => write!(f, "0 to {LIMIT:e}"),
+            Self::Positive => write!(f, "above 0, up to {LIMIT:e}"),
+        }
+    }
+}
+
+impl Scenario {
+    /// The scenario in a JSON text; a byte order mark at its start is skipped.
+    ///
+    /// # Errors
+    /// [`ScenarioError`], naming agent, segment, field, value and what is allowed there; the column where the text is not JSON.
+    pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            return Err(Place::default().error(1, "", "empty; a scenario is an object with a list of agents"));
+        }
+        let json = json::parse(text).map_err(|error| {
+            let problem = format!("column {}: {}", error.column, error.problem);
+            Place::default().error(error.line, "", problem)
+        })?;
+        Self::decode(&json)
+    }
+
+    /// The scenario in a JSON value.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_json`].
+    pub fn from_value(value: &Value) -> Result<Self, ScenarioError> {
+        Self::decode(&Json::from(value))
+    }
+
+    fn decode(json: &Json) -> Result<Self, ScenarioError> {
+        let name = match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == "name"),
+            _ => None,
+        };
+        let name = match name {
+            Some((_, Json { data: Data::Text(name), .. })) => name.clone(),
+            _ => String::new(),
+        };
+        match Self::agents(json) {
+            Ok(agents) => Ok(Self { name, agents }),
+            Err(error) => Err(ScenarioError { scenario: name, ..error }),
+        }
+    }
+
+    fn agents(json: &Json) -> Result<Vec<Agent>, ScenarioError> {
+        let fields = Place::default().fields(json, &["name", "agents"])?;
+        if let Some(name) = fields.get("name")
+            && !matches!(name.data, Data::Text(_))
+        {
+            return Err(fields.unexpected("name", name, "a string"));
+        }
+        let list = fields.array("agents")?;
+        if list.len() > MOST {
+            let problem = format!("{} agents; allowed are up to {MOST}", list.len());
+            return Err(fields.error(fields.line, "agents", problem));
+        }
+        let mut agents = Vec::with_capacity(list.len());
+        let mut ids = HashSet::new();
+        for (index, json) in list.iter().enumerate() {
+            let agent = Agent::decode(json, index)?;
+            if !ids.insert(agent.id) {
+                let place = Place { agent: Some(format!("agent {}", agent.id)), part: None };
+                return Err(place.error(json.line, "id", format!("{} is given to two agents", agent.id)));
+            }
+            agents.push(agent);
+        }
+        Ok(agents)
+    }
+}
+
+impl Agent {
+    fn decode(json: &Json, index: usize) -> Result<Self, ScenarioError> {
+        const KNOWN: [&str; 8] = ["id", "radius", "v_max", "a_max", "t_start", "start", "path", "profile"];
+        let given = match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == "id").map(|(_, id)| id),
+            _ => None,
+        };
+        let id = match given {
+            Some(Json { data: Data::Number(text), .. }) => text.parse::<u64>().ok(),
+            _ => None,
+        };
+        let agent = match id {
+            Some(id) => format!("agent {id}"),
+            None => format!("agent at place {}", index + 1),
+        };
+        let place = Place { agent: Some(agent), part: None };
+        let fields = place.fields(json, &KNOWN)?;
+        let given = fields.required("id")?;
+        let id = id.ok_or_else(|| fields.unexpected("id", given, "a whole number from 0"))?;
+        let radius = fields.number("radius", Range::Positive)?;
+        let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
+        let start = fields.object("start", "start.", &["x", "y", "heading"])?;
+        let start =
+            [start.number("x", Range::Any)?, start.number("y", Range::Any)?, start.number("heading", Range::Any)?];
+        let path = fields.array("path")?.iter().enumerate();
+        let path = path.map(|(index, json)| PathSegment::decode(json, &place.part("segment", index)));
+        let path: Vec<PathSegment> = path.collect::<Result<_, _>>()?;
+        let refused = |field, problem| {
+            let line = fields.get(field).map_or(fields.line, |json| json.line);
+            Err(fields.error(line, field, problem))
+        };
+        let length: f64 = path.iter().map(PathSegment::length).sum();
+        if length > LIMIT {
+            return refused("path", format!("{length:e} m long; allowed is up to {LIMIT:e}"));
+        }
+        let segments: f64 = path.iter().map(PathSegment::turns).sum();
+        if segments > MOST as f64 {
+            let problem = format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST}");
+            return refused("path", problem);
+        }
+        let moves = fields.get("profile").is_none();
+        let limit = |field| match fields.get(field) {
+            None if !moves => Ok(None),
+            _ => fields.number(field, Range::Positive).map(Some),
+        };
+        let motion = match (limit("v_max")?, limit("a_max")?) {
+            (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
+            _ => MotionSpec::decode(&fields, length)?,
+        };
+        let agent = Self { id, radius, t_start, start, path, motion };
+        let duration = agent.duration();
+        if duration > LIMIT || (t_start + duration).abs() > LIMIT {
+            let field = if !moves {
+                "profile"
+            } else if duration > LIMIT {
+                "v_max, a_max"
+            } else {
+                "t_start"
+            };
+            let problem = format!("the motion takes {duration:e} s from {t_start:e} s; allowed is up to {LIMIT:e}");
+            return refused(field, problem);
+        }
+        Ok(agent)
+    }
+}
+
+impl PathSegment {
+    fn decode(json: &Json, place: &Place) -> Result<Self, ScenarioError> {
+        let kind = match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
+            _ => None,
+        };
+        match kind.map(|kind| &kind.data) {
+            Some(Data::Text(kind)) if kind == "line" => {
+                let fields = place.fields(json, &["kind", "length"])?;
+                Ok(Self::Line { length: fields.number("length", Range::NotNegative)? })
+            }
+            Some(Data::Text(kind)) if kind == "arc" => {
+                let fields = place.fields(json, &["kind", "radius", "sweep"])?;
+                let radius = fields.number("radius", Range::Positive)?;
+                Ok(Self::Arc { radius, sweep: fields.number("sweep", Range::Any)? })
+            }
+            _ => {
+                let fields = place.fields(json, &["kind", "length", "radius", "sweep"])?;
+                let kind = fields.required("kind")?;
+                Err(fields.error(kind.line, "kind", format!("{}; allowed is \"line\" or \"arc\"", brief(kind))))
+            }
+        }
+    }
+}
+
+impl MotionSpec {
+    /// The profile of an agent, scaled onto the length of its path.
+    fn decode(agent: &Fields<'_>, length: f64) -> Result<Self, ScenarioError> {
+        let fields = agent.object("profile", "profile.", &["v0", "pieces"])?;
+        let v0 = fields.number("v0", Range::NotNegative)?;
+        let (mut speed, mut fastest, mut travelled) = (v0, v0, 0.0);
+        let mut pieces = Vec::new();
+        for (index, json) in fields.array("pieces")?.iter().enumerate() {
+            let place = agent.place.part("profile piece", index);
+            let fields = place.fields(json, &["duration", "accel"])?;
+            let duration = fields.number("duration", Range::NotNegative)?;
+            let accel = fields.number("accel", Range::Any)?;
+            let after = speed + accel * duration;
+            if after < -SPEED_TOLERANCE * f64::max(1.0, fastest) {
+                let problem = format!("{accel} brings the speed to {after} m/s; allowed is 0 and above");
+                return Err(fields.error(json.line, "accel", problem));
+            }
+            let after = speed_after(after, fastest);
+            travelled += 0.5 * (speed + after) * duration;
+            pieces.push((duration, if duration > 0.0 { (after - speed) / duration } else { 0.0 }));
+            (speed, fastest) = (after, fastest.max(after));
+        }
+        if fastest > LIMIT || (travelled - length).abs() > LENGTH_TOLERANCE * length {
+            let problem = if fastest > LIMIT {
+                format!("reaches {fastest:e} m/s; allowed is up to {LIMIT:e}")
+            } else {
+                format!(
+                    "travels {travelled} m on a path of {length} m; allowed is a relative difference of {LENGTH_TOLERANCE:e}"
+                )
+            };
+            return Err(agent.error(fields.line, "profile", problem));
+        }
+        let scale = if travelled > 0.0 { length / travelled } else { 1.0 };
+        for (_, accel) in &mut pieces {
+            *accel *= scale;
+        }
+        Ok(Self::Profile { v0: v0 * scale, pieces })
+    }
+}
+
+/// The speed after a piece of a profile: what rounding leaves of a stop is no speed.
+pub(crate) fn speed_after(speed: f64, fastest: f64) -> f64 {
+    /// Some hundred roundings of the largest speed, far below any speed that matters.
+    const STOP: f64 = 1e-12;
+    if speed < STOP * fastest { 0.0 } else { speed }
+}
