@@ -6,6 +6,7 @@
 //! regions    the answer as plain numbers, and its JSON            Answer, Request
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
+//! picture    SVG, PNG and a page for the browser              write
 //! paper      the embedded scenario and the paper's numbers
 //! progress   a line on the terminal about long work
 //! ```
@@ -14,6 +15,7 @@ pub mod fleet;
 pub mod input;
 mod json;
 pub mod paper;
+pub mod picture;
 pub mod progress;
 pub mod regions;
 pub mod report;

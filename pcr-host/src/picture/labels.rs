@@ -1,0 +1,98 @@
+//! Places for labels: each goes to the first of its candidate places that is free, or to the least crowded one.
+
+/// A box: left, top, right, bottom \[px\].
+type Area = [f64; 4];
+
+/// What an overlap with a label, in square pixels, weighs against a line that runs through a label.
+const OVERLAP: f64 = 4.0;
+
+/// Weight of a line that runs through a label, a point of the line.
+const CROSSED: f64 = 3.0;
+
+/// Weight of each step down the list of candidates.
+const RANK: f64 = 0.6;
+
+/// The labels of a picture, and what they should keep off.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Labels {
+    taken: Vec<Area>,
+    lines: Vec<[f64; 2]>,
+}
+
+impl Labels {
+    /// Keeps labels off an area.
+    pub(super) fn block(&mut self, area: Area) {
+        self.taken.push(area);
+    }
+
+    /// Keeps labels off a line through these points.
+    pub(super) fn avoid(&mut self, points: impl IntoIterator<Item = [f64; 2]>) {
+        self.lines.extend(points);
+    }
+
+    /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. The
+    /// first candidate weighs nothing by itself, and each further one a little more. `None` without candidates.
+    pub(super) fn place(
+        &mut self,
+        size: [f64; 2],
+        candidates: impl IntoIterator<Item = [f64; 2]>,
+        within: Area,
+    ) -> Option<[f64; 2]> {
+        let around = |[x, y]: [f64; 2]| [x - size[0] / 2.0, y - size[1] / 2.0, x + size[0] / 2.0, y + size[1] / 2.0];
+        let mut best: Option<(f64, [f64; 2])> = None;
+        for (rank, candidate) in candidates.into_iter().enumerate() {
+            let area = around(candidate);
+            let outside = size[0] * size[1] - overlap(area, within);
+            let covered: f64 = self.taken.iter().map(|taken| overlap(*taken, area)).sum();
+            let cost = RANK * rank as f64 + OVERLAP * (outside + covered);
+            if best.is_some_and(|(least, _)| least <= cost) {
+                continue;
+            }
+            let crossed = self.lines.iter().filter(|point| holds(area, **point)).count();
+            let cost = cost + CROSSED * crossed as f64;
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, candidate));
+            }
+        }
+        let (_, place) = best?;
+        self.taken.push(around(place));
+        Some(place)
+    }
+}
+
+fn overlap(a: Area, b: Area) -> f64 {
+    let width = a[2].min(b[2]) - a[0].max(b[0]);
+    let height = a[3].min(b[3]) - a[1].max(b[1]);
+    width.max(0.0) * height.max(0.0)
+}
+
+fn holds(area: Area, [x, y]: [f64; 2]) -> bool {
+    area[0] <= x && x <= area[2] && area[1] <= y && y <= area[3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: Area = [0.0, 0.0, 100.0, 100.0];
+
+    #[test]
+    fn labels_avoid_one_another_and_the_edge() {
+        let mut labels = Labels::default();
+        let places = [[50.0, 50.0], [98.0, 50.0], [50.0, 70.0]];
+        assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
+        assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 70.0]));
+    }
+
+    #[test]
+    fn labels_avoid_lines() {
+        let mut labels = Labels::default();
+        labels.avoid((0..10).map(|k| [45.0 + f64::from(k), 50.0]));
+        assert_eq!(labels.place([20.0, 10.0], [[50.0, 50.0], [50.0, 60.0]], ALL), Some([50.0, 60.0]));
+    }
+
+    #[test]
+    fn a_label_without_candidates_has_no_place() {
+        assert_eq!(Labels::default().place([1.0, 1.0], [], ALL), None);
+    }
+}

@@ -1,0 +1,112 @@
+//! What the lines and colours of a map mean.
+
+use super::super::axis::TICK_SIZE;
+use super::super::palette::Colour;
+use super::super::scene::{Scene, Shape};
+use super::super::svg::{Pixels, Svg, text_width};
+
+/// Height of a row \[px\].
+const ROW: f64 = 15.0;
+
+/// Width of the sample of an entry with its gap \[px\].
+const SAMPLE: f64 = 19.0;
+
+/// Distance from one entry to the next \[px\].
+const GAP: f64 = 9.0;
+
+/// The legend of a map, laid out in rows.
+#[derive(Debug)]
+pub(in super::super) struct Legend {
+    entries: Vec<Entry>,
+    rows: usize,
+}
+
+#[derive(Debug)]
+struct Entry {
+    row: usize,
+    /// Left end \[px\].
+    x: f64,
+    sample: Sample,
+    text: String,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Sample {
+    Trajectory,
+    Region,
+    Strip,
+    Agent(Colour),
+}
+
+impl Legend {
+    /// The legend of a map between two abscissas \[px\].
+    pub(in super::super) fn new(scene: &Scene<'_>, ego: usize, shapes: &[Shape], [from, to]: [f64; 2]) -> Self {
+        let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.id(ego)))];
+        if !shapes.is_empty() {
+            all.push((Sample::Region, "collision region, labelled by the other agent".into()));
+        }
+        if shapes.iter().any(|shape| !shape.before.is_empty() || !shape.after.is_empty()) {
+            all.push((Sample::Strip, "the other agent stands at its start or end".into()));
+        }
+        let mut others: Vec<usize> = shapes.iter().map(|shape| shape.other).collect();
+        others.sort_unstable();
+        others.dedup();
+        let explained = all.len();
+        all.extend(others.iter().map(|other| (Sample::Agent(scene.colour(*other)), scene.id(*other).to_string())));
+        let (mut row, mut x) = (0, from);
+        let mut entries = Vec::new();
+        for (k, (sample, text)) in all.into_iter().enumerate() {
+            let width = SAMPLE + text_width(&text, TICK_SIZE);
+            if x > from && (k == explained || x + width > to) {
+                (row, x) = (row + 1, from);
+            }
+            entries.push(Entry { row, x, sample, text });
+            x += width + GAP;
+        }
+        Self { entries, rows: row + 1 }
+    }
+
+    /// \[px\]
+    pub(in super::super) fn height(&self) -> f64 {
+        self.rows as f64 * ROW
+    }
+
+    /// Draws it below `top` \[px\].
+    pub(in super::super) fn draw(&self, svg: &mut Svg, top: f64) {
+        svg.start("g", &[("font-size", &Pixels(TICK_SIZE)), ("fill", &"#1d2125")]);
+        for entry in &self.entries {
+            let y = top + (entry.row as f64 + 0.5) * ROW;
+            let rect = |svg: &mut Svg, fill: &dyn std::fmt::Display, opacity: f64, stroke: &dyn std::fmt::Display| {
+                svg.empty(
+                    "rect",
+                    &[
+                        ("x", &Pixels(entry.x)),
+                        ("y", &Pixels(y - 4.0)),
+                        ("width", &"14"),
+                        ("height", &"8"),
+                        ("fill", fill),
+                        ("fill-opacity", &opacity),
+                        ("stroke", stroke),
+                        ("stroke-width", &"0.9"),
+                    ],
+                );
+            };
+            match entry.sample {
+                Sample::Trajectory => {
+                    let line = format_args!("M{} {}h14", Pixels(entry.x), Pixels(y)).to_string();
+                    svg.empty("path", &[("d", &line), ("stroke", &"#111"), ("stroke-width", &"1.7")]);
+                }
+                Sample::Region => rect(svg, &"#6b7178", 0.3, &"#6b7178"),
+                Sample::Strip => {
+                    rect(svg, &"none", 1.0, &"#6b7178");
+                    let lines =
+                        format_args!("M{} {}l4 -8m1 8l4 -8m1 8l4 -8", Pixels(entry.x), Pixels(y + 4.0)).to_string();
+                    svg.empty("path", &[("d", &lines), ("stroke", &"#6b7178"), ("stroke-width", &"0.7")]);
+                }
+                Sample::Agent(colour) => rect(svg, &colour, 0.3, &colour),
+            }
+            svg.label([entry.x + SAMPLE, y + 0.35 * TICK_SIZE], "start", &[], &entry.text);
+        }
+        svg.end();
+    }
+}

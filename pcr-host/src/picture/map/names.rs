@@ -1,0 +1,86 @@
+//! The labels of regions: the number of the other agent, in the region or beside it.
+
+use super::super::axis::Frame;
+use super::super::labels::Labels;
+use super::super::scene::{Scene, Shape};
+use super::super::svg::{Pixels, Svg, text_width};
+use pcr_core::Interval;
+
+/// Size of the labels of regions \[px\].
+const LABEL_SIZE: f64 = 9.5;
+
+/// Writes the labels, off the ego's trajectory, off one another and, where possible, off outlines.
+pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
+    let mut labels = Labels::default();
+    if let Some(motion) = scene.motions.get(ego) {
+        let [left, _, right, _] = frame.edges;
+        let steps = ((right - left) / 3.0).max(1.0) as usize;
+        let (from, step) = (frame.x.values().lo, frame.x.values().length() / steps as f64);
+        labels.avoid((0..=steps).map(|k| {
+            let time = from + step * k as f64;
+            frame.at([time, motion.length_at(time)])
+        }));
+    }
+    for shape in shapes {
+        labels.avoid(shape.outline.iter().flatten().map(|point| frame.at(*point)));
+    }
+    svg.start(
+        "g",
+        &[
+            ("font-size", &Pixels(LABEL_SIZE)),
+            ("stroke", &"#fff"),
+            ("stroke-width", &"2.2"),
+            ("paint-order", &"stroke"),
+        ],
+    );
+    // Small regions have the smallest choice.
+    let mut order: Vec<&Shape> = shapes.iter().collect();
+    let area = |shape: &Shape| shape.time.length() * shape.length.length();
+    order.sort_by(|a, b| area(a).total_cmp(&area(b)));
+    for shape in order {
+        let text = scene.id(shape.other).to_string();
+        let size = [text_width(&text, LABEL_SIZE) + 2.0, LABEL_SIZE];
+        let Some([x, y]) = labels.place(size, candidates(shape, size, frame), frame.edges) else {
+            continue;
+        };
+        let ink = scene.colour(shape.other).ink();
+        svg.label([x, y + 0.36 * LABEL_SIZE], "middle", &[("fill", &ink), ("stroke-linejoin", &"round")], &text);
+    }
+    svg.end();
+}
+
+/// Where the label of a region may go: into its roomiest slices, into its strips, or about it.
+fn candidates(shape: &Shape, [width, height]: [f64; 2], frame: &Frame) -> Vec<[f64; 2]> {
+    let [left, _, right, _] = frame.edges;
+    let ends = [shape.time.lo, shape.time.hi].map(|time| frame.x.at(time));
+    let mut inner: Vec<(f64, [f64; 2])> = Vec::new();
+    for (time, slice) in &shape.slices {
+        let [x, y] = frame.at([*time, slice.middle()]);
+        let tall = (frame.y.at(slice.lo) - frame.y.at(slice.hi)) / height;
+        let wide = 2.0 * (x - ends[0]).min(ends[1] - x) / width;
+        inner.push((tall.min(wide), [x, y]));
+    }
+    inner.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (mut places, cramped): (Vec<_>, Vec<_>) = inner.into_iter().partition(|(room, _)| *room > 1.0);
+    let beside = |x: f64, slices: &[Interval<f64>]| -> Vec<(f64, [f64; 2])> {
+        slices.iter().map(|slice| (0.0, [x, frame.y.at(slice.middle())])).collect()
+    };
+    places.extend(beside(left + width, &shape.before));
+    places.extend(beside(right - width, &shape.after));
+    let (x, y) = ((ends[0] + ends[1]) / 2.0, frame.y.at(shape.length.middle()));
+    let top = frame.y.at(shape.length.hi) - height / 2.0 - 2.0;
+    let bottom = frame.y.at(shape.length.lo) + height / 2.0 + 2.0;
+    let (before, after) = (ends[0] - width / 2.0 - 2.0, ends[1] + width / 2.0 + 2.0);
+    let around = [
+        [after, y],
+        [before, y],
+        [x, top],
+        [x, bottom],
+        [after, top],
+        [before, top],
+        [after, bottom],
+        [before, bottom],
+    ];
+    places.extend(cramped.into_iter().take(1));
+    places.into_iter().map(|(_, place)| place).chain(around).collect()
+}

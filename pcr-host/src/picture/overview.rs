@@ -1,0 +1,38 @@
+//! The workspace beside the extended collision map of the agent with the most regions.
+
+use super::axis::{Frame, ROOM_BELOW, room_at_left};
+use super::map::{self, Legend, ROOM_ABOVE};
+use super::scene::Scene;
+use super::svg::Svg;
+use super::workspace;
+
+/// Largest width and height of either plot \[px\].
+const SIDE: f64 = 400.0;
+
+/// Smallest height of the map \[px\].
+const LEAST: f64 = 260.0;
+
+/// The agent with the most regions, the first of them; the first agent of a fleet without any.
+pub(super) fn busiest(scene: &Scene<'_>) -> usize {
+    let places = 0..scene.motions.len();
+    places.rev().max_by_key(|place| scene.count(*place)).unwrap_or(0)
+}
+
+/// The picture.
+pub(super) fn picture(scene: &Scene<'_>) -> String {
+    let space = workspace::frame(scene, SIDE, [0.0, 0.0]);
+    let ego = busiest(scene);
+    let [time, length] = map::spans(scene, ego);
+    let [_, _, between, bottom] = space.edges;
+    let bottom = bottom.max(ROOM_ABOVE + LEAST);
+    let left = between + 16.0 + room_at_left(length, bottom - ROOM_ABOVE);
+    let frame = Frame::new(time, length, [left, ROOM_ABOVE, left + SIDE, bottom]);
+    let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
+    let legend = Legend::new(scene, ego, &shapes, [space.edges[0], frame.edges[2]]);
+    let title = format!("Workspace and extended collision map of agent {}", scene.id(ego));
+    let mut svg = Svg::new(frame.edges[2] + 12.0, bottom + ROOM_BELOW + legend.height() + 6.0, &title);
+    workspace::draw(&mut svg, scene, &space);
+    map::draw(&mut svg, scene, ego, &shapes, &frame);
+    legend.draw(&mut svg, bottom + ROOM_BELOW);
+    svg.finish()
+}

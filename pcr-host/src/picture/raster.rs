@@ -1,0 +1,42 @@
+//! From SVG to PNG, with a font that is part of the program: the same picture on every machine.
+
+use resvg::{tiny_skia, usvg};
+use std::io;
+use std::sync::Arc;
+
+/// Pixels of the PNG for each of the SVG: 300 dots an inch at the width of a column (85 mm).
+const SCALE: f32 = 2.5;
+
+/// Largest width and height of a PNG \[px\].
+const LARGEST: f32 = 8192.0;
+
+static FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+
+/// Draws SVG pictures as PNG.
+pub(super) struct Raster {
+    options: usvg::Options<'static>,
+}
+
+impl Raster {
+    /// With the font loaded.
+    pub(super) fn new() -> Self {
+        let mut options = usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
+        Arc::make_mut(&mut options.fontdb).load_font_data(FONT.to_vec());
+        Self { options }
+    }
+
+    /// The PNG of a picture.
+    ///
+    /// # Errors
+    /// Those of the drawing library.
+    pub(super) fn png(&self, svg: &str) -> io::Result<Vec<u8>> {
+        let tree = usvg::Tree::from_str(svg, &self.options).map_err(io::Error::other)?;
+        let size = tree.size();
+        let scale = SCALE.min(LARGEST / size.width()).min(LARGEST / size.height());
+        let side = |pixels: f32| (pixels * scale).ceil().max(1.0) as u32;
+        let mut pixmap = tiny_skia::Pixmap::new(side(size.width()), side(size.height()))
+            .ok_or_else(|| io::Error::other("picture without extent"))?;
+        resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
+        pixmap.encode_png().map_err(io::Error::other)
+    }
+}
