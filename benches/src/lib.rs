@@ -1,1 +1,67 @@
-//! x
+//! Fleets and tables that the benchmarks share.
+
+use pcr_core::{Ecm, Motion, Piece, Region, Scalar};
+use pcr_host::fleet::{Fleet, Format, build_ecm};
+use pcr_host::scenario::Scenario;
+use std::path::Path;
+
+/// A fleet of the test data, by the name of its file.
+///
+/// # Panics
+/// If the file is not there or is refused.
+pub fn fleet<S: Format>(name: &str) -> Fleet<S> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name).with_extension("json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    from_json(&text)
+}
+
+/// A fleet from a scenario.
+///
+/// # Panics
+/// If it is refused.
+pub fn from_json<S: Format>(json: &str) -> Fleet<S> {
+    let scenario = Scenario::from_json(json).unwrap_or_else(|error| panic!("{error}"));
+    Fleet::new(&scenario).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// `columns` by `columns` agents on short lines so far apart that none can meet another.
+///
+/// # Panics
+/// Never: the scenario is valid.
+pub fn scattered<S: Format>(columns: u32) -> Fleet<S> {
+    let agents = (0..columns * columns).map(|k| {
+        let (x, y) = (10 * (k % columns), 10 * (k / columns));
+        format!(
+            r#"{{"id":{k},"radius":0.2,"v_max":1,"a_max":1,"start":{{"x":{x},"y":{y},"heading":0.5}},"path":[{{"kind":"line","length":3}}]}}"#
+        )
+    });
+    from_json(&format!(r#"{{"agents":[{}]}}"#, agents.collect::<Vec<_>>().join(",")))
+}
+
+/// Storage that holds exactly the table of a fleet.
+#[derive(Clone, Debug)]
+pub struct Storage<S: Scalar> {
+    /// Entries.
+    pub regions: Vec<Region>,
+    /// Pieces.
+    pub pieces: Vec<Piece<S>>,
+}
+
+impl<S: Scalar> Storage<S> {
+    /// As large as the table of this fleet.
+    ///
+    /// # Panics
+    /// If the fleet has more than 65535 agents.
+    pub fn of(fleet: &[Motion<'_, S>]) -> Self {
+        let ecm = build_ecm(fleet).unwrap_or_else(|full| panic!("{full}"));
+        Self { regions: vec![Region::EMPTY; ecm.len()], pieces: vec![Piece::EMPTY; ecm.pieces()] }
+    }
+
+    /// The table of the fleet, in this storage.
+    ///
+    /// # Panics
+    /// If the storage is that of a smaller table.
+    pub fn table(&mut self, fleet: &[Motion<'_, S>]) -> Ecm<S, &mut [Region], &mut [Piece<S>]> {
+        Ecm::build(&mut self.regions[..], &mut self.pieces[..], fleet).unwrap_or_else(|full| panic!("{full}"))
+    }
+}
