@@ -22,15 +22,17 @@ pub(super) fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Re
     let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));
     let moving = (0..pieces.len()).filter(|&k| pieces.get(k).is_some_and(|(duration, _)| *duration > 0.0));
     let fastest = moving.max_by(|&a, &b| mean(a).total_cmp(&mean(b)));
+    let first = number::<S>("v0", v0).map_err(|problem| (None, problem))?;
     let mut correction = 0.0;
-    let mut phases = Vec::new();
+    let mut phases = Vec::<Phase<S>>::new();
     for _ in 0..ROUNDS {
         phases.clear();
-        for (k, (&(duration, _), speeds)) in pieces.iter().zip(targets.windows(2)).enumerate() {
-            let &[before, after] = speeds else { continue };
+        let mut speed = first;
+        for (k, (&(duration, _), &after)) in pieces.iter().zip(targets.iter().skip(1)).enumerate() {
             let longer = if Some(k) == fastest { correction } else { 0.0 };
-            let phase = phase(phases.last(), [before, after], duration + longer).map_err(|problem| (Some(k), problem));
-            phases.push(phase?);
+            let next = phase(phases.last(), speed, after, duration + longer).map_err(|problem| (Some(k), problem))?;
+            phases.push(next.0);
+            speed = next.1;
         }
         let travelled = phases.last().map_or(S::ZERO, |last| last.length().hi);
         let short = (length - travelled).to_f64();
@@ -54,22 +56,22 @@ fn targets(v0: f64, pieces: &[(f64, f64)]) -> Vec<f64> {
     speeds
 }
 
-/// The phase between two speeds that follows `last`.
-fn phase<S: Format>(last: Option<&Phase<S>>, speeds: [f64; 2], duration: f64) -> Result<Phase<S>, String> {
-    let [first, after] = speeds;
-    let first = number::<S>("speed", first)?;
-    let before = last.map_or(first, |last| last.speed_at(last.time().hi));
+/// The phase that follows `last` from the speed `before` to the speed `after`, and the speed that it reaches: `after`
+/// but for rounding, and 0 exactly.
+fn phase<S: Format>(last: Option<&Phase<S>>, before: S, after: f64, duration: f64) -> Result<(Phase<S>, S), String> {
     let duration = number::<S>("duration", duration)?;
     let mut acceleration = S::ZERO;
     if duration > S::ZERO {
         let gain = number::<S>("speed", after)? - before;
         acceleration = number("accel", gain.to_f64() / duration.to_f64())?;
-        if after == 0.0 {
-            // Down to 0 and not to a rounding above it: the core takes as 0 what is below it by rounding.
-            for _ in 0..ROUNDS {
-                if before + acceleration.times(duration).narrow() > S::ZERO {
-                    acceleration = acceleration - S::slack(acceleration.abs()).half().half();
-                }
+    }
+    // The core's own sum, so that both know the same speed.
+    let reached = |acceleration: S| before + acceleration.times(duration).narrow();
+    if after == 0.0 {
+        // Down to 0 and not to a rounding above it: the core takes as 0 what is below it by rounding.
+        for _ in 0..ROUNDS {
+            if reached(acceleration) > S::ZERO {
+                acceleration = acceleration - S::slack(acceleration.abs()).half().half();
             }
         }
     }
@@ -77,5 +79,5 @@ fn phase<S: Format>(last: Option<&Phase<S>>, speeds: [f64; 2], duration: f64) ->
         None => Phase::starting_at(before, duration, acceleration),
         Some(last) => last.then(duration, acceleration),
     };
-    phase.map_err(derived::<S>)
+    Ok((phase.map_err(derived::<S>)?, reached(acceleration).max(S::ZERO)))
 }
