@@ -15,7 +15,7 @@ use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 use cells::SegmentPair;
-use footprint::{Footprint, Lap};
+use footprint::Footprint;
 
 /// Two agents, seen as a pair.
 #[derive(Clone, Copy, Debug)]
@@ -72,14 +72,24 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// At a joint of the second path both pieces end in the slice about the same point, so that the same lap is
-    /// the same interval.
+    /// At a joint of the second path both pieces end in slices about the same point. They meet if they share one.
     fn meet_at_joint_of_second(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
-        after.first_segment == before.first_segment
+        let neighbours = after.first_segment == before.first_segment
             && after.second_segment.checked_sub(1) == Some(before.second_segment)
             && after.second.lo == S::ZERO
-            && (before.lap == after.lap || before.lap == Lap::Whole || after.lap == Lap::Whole)
-            && segment(self.second, before.second_segment).is_some_and(|other| before.second.hi == other.length)
+            && before.first.meets(after.first);
+        let (Some(own), Some(other)) =
+            (segment(self.first, before.first_segment), segment(self.second, before.second_segment))
+        else {
+            return false;
+        };
+        if !neighbours || before.second.hi != other.length {
+            return false;
+        }
+        let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
+        let shares = |piece: &Piece<S>| piece.share.of(slices, piece.first);
+        let after = shares(after);
+        shares(before).into_iter().flatten().any(|slice| after.contains(&Some(slice)))
     }
 
     /// At a joint of the first path the pieces share intervals of the second segment: those within reach of
@@ -89,9 +99,6 @@ impl<'a, S: Scalar> Pair<'a, S> {
             && after.first_segment.checked_sub(1) == Some(before.first_segment)
             && after.first.lo == S::ZERO
             && before.second.meets(after.second);
-        if !neighbours {
-            return false;
-        }
         let (Some(own), Some(next), Some(other)) = (
             segment(self.first, before.first_segment),
             segment(self.first, after.first_segment),
@@ -99,17 +106,16 @@ impl<'a, S: Scalar> Pair<'a, S> {
         ) else {
             return false;
         };
-        if before.first.hi != own.length {
+        if !neighbours || before.first.hi != own.length {
             return false;
         }
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
-            let reach = Footprint::of(other.point_at(s), segment).reach(segment, self.radius);
-            let slice = reach.on(segment, piece.lap);
-            piece.second.contains(s)
-                && slice.is_some_and(|slice| slice.lo - self.slack <= l && l <= slice.hi + self.slack)
+            let slices = Footprint::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
+            let near = |slice: Interval<S>| slice.lo - self.slack <= l && l <= slice.hi + self.slack;
+            piece.second.contains(s) && piece.share.of(slices, piece.first).into_iter().flatten().any(near)
         };
-        let reach = Footprint::of(own.end, other).reach(other, self.radius);
-        Lap::ALL.into_iter().filter_map(|lap| reach.on(other, lap)).any(|shared| {
+        let shared = Footprint::of(own.end, other).reach(other, self.radius).intervals(other);
+        shared.into_iter().flatten().any(|shared| {
             let s = shared.middle();
             belongs(before, own, s, own.length) && belongs(after, next, s, S::ZERO)
         })
@@ -134,30 +140,38 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// The part of the first path that a piece covers at the length `s` of the second one.
-    pub(crate) fn slice_of_first(&self, piece: &Piece<S>, s: S) -> Option<Interval<S>> {
+    /// The parts of the first path that a piece covers at the length `s` of the second one.
+    pub(crate) fn slices_of_first(&self, piece: &Piece<S>, s: S) -> [Option<Interval<S>>; 2] {
         if !piece.second.contains(s) {
-            return None;
+            return [None; 2];
         }
-        let own = segment(self.first, piece.first_segment)?;
-        let other = segment(self.second, piece.second_segment)?;
-        let centre = other.point_at(s - other.from);
-        let slice = Footprint::of(centre, own).reach(own, self.radius).on(own, piece.lap)?;
-        Some(self.outward(slice, own.from, self.first))
+        let (Some(own), Some(other)) = self.segments(piece) else {
+            return [None; 2];
+        };
+        let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
+        let placed = covered.map(|slice| slice.map(|slice| self.outward(slice, own.from, self.first)));
+        piece.share.of(placed, piece.first)
     }
 
-    /// The part of the second path, on this lap, that a piece covers at the length `l` of the first one.
-    pub(crate) fn slice_of_second(&self, piece: &Piece<S>, l: S, lap: Lap) -> Option<Interval<S>> {
+    /// The parts of the second path that a piece covers at the length `l` of the first one.
+    pub(crate) fn slices_of_second(&self, piece: &Piece<S>, l: S) -> [Option<Interval<S>>; 2] {
         if !piece.first.contains(l) {
-            return None;
+            return [None; 2];
         }
-        let own = segment(self.first, piece.first_segment)?;
-        let other = segment(self.second, piece.second_segment)?;
-        let centre = own.point_at(l - own.from);
-        let slice = Footprint::of(centre, other).reach(other, self.radius).on(other, lap)?;
+        let (Some(own), Some(other)) = self.segments(piece) else {
+            return [None; 2];
+        };
+        let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
         // One interval of the second segment is connected, hence part of one region: that of its middle.
-        let middle = slice.middle() + other.from;
-        self.slice_of_first(piece, middle)?.contains(l).then(|| self.outward(slice, other.from, self.second))
+        let belongs = |slice: &Interval<S>| {
+            let slices = self.slices_of_first(piece, slice.middle() + other.from);
+            slices.into_iter().flatten().any(|slice| slice.contains(l))
+        };
+        covered.map(|slice| slice.filter(belongs).map(|slice| self.outward(slice, other.from, self.second)))
+    }
+
+    fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {
+        (segment(self.first, piece.first_segment), segment(self.second, piece.second_segment))
     }
 
     fn outward(&self, slice: Interval<S>, from: S, motion: &Motion<'_, S>) -> Interval<S> {

@@ -7,7 +7,7 @@
 
 use crate::error::Full;
 use crate::geometry::Interval;
-use crate::pair::footprint::Lap;
+use crate::pair::footprint::{Lap, Share};
 use crate::scalar::Scalar;
 use core::marker::PhantomData;
 
@@ -25,7 +25,9 @@ pub struct Piece<S> {
     pub(crate) second: Interval<S>,
     pub(crate) first_segment: u16,
     pub(crate) second_segment: u16,
+    /// Lap of the first segment, for joining.
     pub(crate) lap: Lap,
+    pub(crate) share: Share,
     group: u16,
     pub(crate) next: u32,
 }
@@ -41,13 +43,14 @@ impl<S: Scalar> Piece<S> {
         first_segment: 0,
         second_segment: 0,
         lap: Lap::Same,
+        share: Share::Only,
         group: 0,
         next: NONE,
     };
 
-    pub(crate) fn new(segments: [u16; 2], lap: Lap, first: Interval<S>, second: Interval<S>) -> Self {
+    pub(crate) fn new(segments: [u16; 2], lap: Lap, share: Share, first: Interval<S>, second: Interval<S>) -> Self {
         let [first_segment, second_segment] = segments;
-        Self { first, second, first_segment, second_segment, lap, group: 0, next: NONE }
+        Self { first, second, first_segment, second_segment, lap, share, group: 0, next: NONE }
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pair::Pair;
-use crate::pair::footprint::Lap;
 use crate::pieces::{List, Piece};
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
@@ -183,17 +182,10 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
     fn intervals(&self, at: S) -> impl Iterator<Item = Interval<S>> {
         let (pair, transposed) = (self.pair, self.transposed);
-        self.pieces.clone().flat_map(move |piece| {
-            Lap::ALL.into_iter().filter_map(move |lap| {
-                if transposed {
-                    pair.slice_of_second(piece, at, lap)
-                } else if lap == piece.lap {
-                    pair.slice_of_first(piece, at)
-                } else {
-                    None
-                }
-            })
-        })
+        let slices = move |piece| {
+            if transposed { pair.slices_of_second(piece, at) } else { pair.slices_of_first(piece, at) }
+        };
+        self.pieces.clone().flat_map(slices).flatten()
     }
 }
 

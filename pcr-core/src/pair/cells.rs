@@ -8,8 +8,8 @@
 //! in the middle of each slab: where a length is extreme, the contact is normal to the second segment, or
 //! the second segment ends, or the first one does, and then its end is covered throughout the slab.
 
-use super::events::{Events, TurningPoint, turning_points, wraps};
-use super::footprint::{Footprint, Lap, Reach, shift};
+use super::events::{Events, turning_points, wraps};
+use super::footprint::{Footprint, Lap, Reach, Share, shift};
 use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
@@ -65,7 +65,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             before = Some(middle);
         }
         if pieces.last_pending() != begin {
-            turning_points(self.first, self.second, self.radius, |point| self.turn_back(pieces, begin, &point));
+            turning_points(self.first, self.second, self.radius, |l, s| self.turn_back(pieces, begin, l, s));
         }
         Ok(())
     }
@@ -94,6 +94,8 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             (slab.lo <= S::ZERO).then(|| self.section(slab.lo)),
             (slab.hi >= self.second.length).then(|| self.section(slab.hi)),
         ];
+        let several = middle.reach.intervals(self.first)[1].is_some();
+        let mut share = if several { Share::Lower } else { Share::Only };
         for &lap in self.laps() {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
@@ -103,16 +105,19 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             }
             let ongoing = lap.less(laps_lost).and_then(|lap| open[lap as usize]);
             let index = match ongoing.and_then(|index| pieces.get_mut(index)) {
-                Some(piece) if laps_lost == 0 => {
+                Some(piece) if piece.lap == lap && piece.share == share => {
                     piece.first = piece.first.hull(covered);
                     piece.second.hi = slab.hi;
                     ongoing
                 }
-                _ => Some(pieces.push(Piece::new(self.indices, lap, covered, slab))?),
+                _ => Some(pieces.push(Piece::new(self.indices, lap, share, covered, slab))?),
             };
             now[lap as usize] = index;
             if let (Some(index), Some(ongoing)) = (index, ongoing) {
                 pieces.join(ongoing, index);
+            }
+            if several {
+                share = Share::Upper;
             }
         }
         if !self.wraps {
@@ -127,21 +132,19 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         Ok(now)
     }
 
-    /// Adds the slice at a turning point to the pieces after `begin` that cover it.
-    fn turn_back<P>(&self, pieces: &mut Pieces<S, P>, begin: u32, point: &TurningPoint<S>)
+    /// Adds the slice at a turning point, which ends at `l`, to the pieces after `begin` that cover it.
+    fn turn_back<P>(&self, pieces: &mut Pieces<S, P>, begin: u32, l: S, s: S)
     where
         P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
     {
-        // Seen from the near side the point itself is in contact; with one lap there is no doubt whose it is.
-        let reach = if self.wraps || point.beyond_centre { Some(self.section(point.second).reach) } else { None };
+        // With one lap there is no doubt whose end it is.
+        let point = [Some(Interval::new(l, l)), None];
+        let intervals = self.wraps.then(|| self.section(s).reach.intervals(self.first));
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
-            if piece.second.contains(point.second) {
-                let covered = match reach {
-                    Some(reach) => reach.on(self.first, piece.lap),
-                    None => Some(Interval::new(point.first, point.first)),
-                };
-                piece.first = covered.map_or(piece.first, |covered| piece.first.hull(covered));
+            if piece.second.contains(s) {
+                let covered = intervals.map_or(point, |intervals| piece.share.of(intervals, piece.first));
+                piece.first = covered.into_iter().flatten().fold(piece.first, Interval::hull);
             }
             index = piece.next;
         }

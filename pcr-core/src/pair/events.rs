@@ -6,7 +6,8 @@
 //!
 //! - the ends of the second segment;
 //! - contacts with an end of the first segment: P1 about it;
-//! - contacts normal to the first segment, `c = ±R` from its carrier: intervals begin, end, split (P3);
+//! - contacts normal to the first segment, `c = ±R` from its carrier: intervals begin and end (P3);
+//! - where the disc begins or ceases to cover the whole circle of the first segment: P1 about its centre;
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
@@ -19,8 +20,9 @@ use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 use heapless::Vec;
 
-/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 2 changes of lap.
-pub(crate) const MAX_EVENTS: usize = 12;
+/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 2 for the whole circle and 2
+/// changes of lap.
+const MAX_EVENTS: usize = 14;
 
 /// Events of a pair of segments, in order.
 pub(crate) struct Events<S>(Vec<S, MAX_EVENTS>);
@@ -39,9 +41,13 @@ impl<S: Scalar> Events<S> {
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
         normal.lengths_at(&[radius, -radius], |s| events.add(s));
-        if let Some(cut) = cut(first, radius) {
-            let start = Footprint::of(cut.start, second);
-            Relative::new(second, cut, &start).lengths_at(&[S::ZERO], |s| events.add(s));
+        if let Curve::Arc { radius: own, .. } = first.curve
+            && wraps(first, radius)
+        {
+            let diameter = middle_diameter(first, own);
+            let centre = Footprint::of(diameter.start, second);
+            Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], |s| events.add(s));
+            events.add_ends(&centre, second, radius - own);
         }
         events
     }
@@ -74,36 +80,20 @@ impl<S: Scalar> Events<S> {
     }
 }
 
-/// A contact that is normal to the second segment.
-pub(crate) struct TurningPoint<S> {
-    /// Length along the first segment.
-    pub(crate) first: S,
-    /// Length along the second segment.
-    pub(crate) second: S,
-    /// Whether the disc touches from beyond the centre of the second segment, if it does.
-    pub(crate) beyond_centre: bool,
-}
-
-/// Where a contact with `first` is normal to `second`.
+/// Where a contact with `first` is normal to `second`, as lengths along the two. Contacts from beyond the centre of
+/// `second` are left out: there an interval is shortest.
 pub(crate) fn turning_points<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
     radius: S,
-    mut found: impl FnMut(TurningPoint<S>),
+    mut found: impl FnMut(S, S),
 ) {
     let start = Footprint::of(second.start, first);
     Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], |l| {
         let foot = Footprint::of(first.point_at(l), second).foot(second);
-        let mut add = |s: S, beyond_centre| {
-            if S::ZERO <= s && s <= second.length {
-                found(TurningPoint { first: l, second: s, beyond_centre });
-            }
-        };
-        add(on_first_lap(foot, second), false);
-        if let Curve::Arc { radius: own, .. } = second.curve
-            && own < radius
-        {
-            add(on_first_lap(foot - second.circumference.half(), second), true);
+        let s = on_first_lap(foot, second);
+        if S::ZERO <= s && s <= second.length {
+            found(l, s);
         }
     });
 }
@@ -116,18 +106,11 @@ pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S) -> bool {
     }
 }
 
-/// The diameter through the middle of an arc that wraps: the foot changes its lap on the far half of it.
-fn cut<S: Scalar>(segment: &Segment<S>, radius: S) -> Option<Carrier<S>> {
-    let Curve::Arc { radius: own, .. } = segment.curve else {
-        return None;
-    };
-    if !wraps(segment, radius) {
-        return None;
-    }
-    let middle = segment.point_at(segment.length.half());
-    let heading = Direction::<S>::at(segment.heading_at(segment.length.half()));
-    let across = if segment.mirrored() { -own } else { own };
-    let start = middle + heading.vector(S::ZERO, across);
+/// The diameter through the middle of an arc, from the centre: the foot changes its lap on the far half of it.
+fn middle_diameter<S: Scalar>(arc: &Segment<S>, radius: S) -> Carrier<S> {
+    let middle = arc.point_at(arc.length.half());
+    let heading = Direction::<S>::at(arc.heading_at(arc.length.half()));
+    let start = middle + heading.vector(S::ZERO, if arc.mirrored() { -radius } else { radius });
     let direction = Direction { cos: -heading.sin, sin: heading.cos };
-    Some(Carrier { start, direction, curve: Curve::Line })
+    Carrier { start, direction, curve: Curve::Line }
 }

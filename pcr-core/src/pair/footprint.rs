@@ -106,7 +106,6 @@ impl<S: Scalar> Footprint<S> {
 
 /// Which of the intervals that a disc cuts out of a circle: its foot, moved by so many laps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub(crate) enum Lap {
@@ -148,6 +147,53 @@ impl<S: Scalar> Reach<S> {
                 (lo <= all.hi && hi >= all.lo).then(|| Interval::new(lo, hi).widen(S::ZERO, all))
             }
             _ => None,
+        }
+    }
+}
+
+impl<S: Scalar> Reach<S> {
+    /// What is covered of the segment, at most two intervals in increasing order.
+    pub(crate) fn intervals(self, segment: &Segment<S>) -> [Option<Interval<S>>; 2] {
+        let mut intervals = [None; 2];
+        for interval in Lap::ALL.into_iter().filter_map(|lap| self.on(segment, lap)) {
+            match intervals {
+                [None, _] => intervals[0] = Some(interval),
+                [Some(low), None] if !interval.meets(low) => intervals[1] = Some(interval),
+                // Rounding where the whole circle is about to be covered.
+                [Some(low), None] => intervals[0] = Some(low.hull(interval)),
+                [Some(low), Some(high)] => intervals = [Some(low.hull(high).hull(interval)), None],
+            }
+        }
+        intervals
+    }
+}
+
+/// Which of the intervals that are covered at one length a piece stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub(crate) enum Share {
+    /// The only one.
+    Only,
+    /// The lower one of two.
+    Lower,
+    /// The upper one of two.
+    Upper,
+}
+
+impl Share {
+    /// The intervals it stands for, of those that are covered. Next to an end of the piece rounding may show one
+    /// too many or one too few; then those that reach into `hull`, where the piece lies.
+    pub(crate) fn of<S: Scalar>(
+        self,
+        intervals: [Option<Interval<S>>; 2],
+        hull: Interval<S>,
+    ) -> [Option<Interval<S>>; 2] {
+        match (self, intervals) {
+            (Self::Only, [only, None]) => [only, None],
+            (Self::Lower, [lower @ Some(_), Some(_)]) => [lower, None],
+            (Self::Upper, [Some(_), upper @ Some(_)]) => [upper, None],
+            _ => intervals.map(|interval| interval.filter(|interval| interval.meets(hull))),
         }
     }
 }
