@@ -6,7 +6,7 @@
 //! regions    the answer as plain numbers, and its JSON            Answer, Request
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
-//! picture    SVG, PNG and a page for the browser              write
+//! picture    SVG, PNG and a page for the browser                  write
 //! paper      the embedded scenario and the paper's numbers
 //! progress   a line on the terminal about long work
 //! ```

@@ -4,6 +4,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use pcr_host::fleet::{Fleet, build_ecm};
 use pcr_host::input::{self, InputError, Lines};
 use pcr_host::paper;
+use pcr_host::picture;
 use pcr_host::progress::Progress;
 use pcr_host::regions::{Answer, Failure, Request};
 use pcr_host::report;
@@ -39,7 +40,19 @@ Examples:
   pcr regions fleet.json --format json --slices 9   with the lengths covered at 9 times of each region
   pcr regions - --format json < fleets.jsonl        JSON Lines: a scenario a line in, a line a scenario out";
 
+const MAP_EXAMPLES: &str = "\
+Examples:
+  pcr map -o pcr-out                  the paper's 12 agents
+  pcr map fleet.json -o pictures      any other scenario";
+
+/// Directory for the pictures of `pcr` alone.
+const DIRECTORY: &str = "pcr-out";
+
 /// Exact collision regions of discs on line/arc paths.
+///
+/// Agents are discs that move on given paths of lines and arcs. pcr computes, for each of them, at what times it must
+/// not be where on its path because of each other one: in closed form, without sampling. Without a command it shows
+/// the paper's simulation of 12 agents and draws it to pcr-out/.
 #[derive(Parser)]
 #[command(version, about, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 struct Arguments {
@@ -66,6 +79,15 @@ enum Command {
         /// Number format of the computation
         #[arg(long, value_enum, default_value_t = Number::F64)]
         scalar: Number,
+    },
+    /// Draw a scenario: its paths, and the extended collision map of each agent, as SVG and PNG
+    #[command(after_help = format!("{MAP_EXAMPLES}\n\n{STATUSES}"))]
+    Map {
+        /// Scenario (JSON); `-` reads it from standard input; the paper's 12 agents if left out
+        file: Option<PathBuf>,
+        /// Directory for the pictures; created where it does not exist, files in it are overwritten
+        #[arg(short, long, value_name = "DIR")]
+        output: PathBuf,
     },
 }
 
@@ -130,6 +152,7 @@ fn main() -> ExitCode {
             let request = Request { agent, slices: slices.map(|slices| slices as usize) };
             regions(file.as_deref(), format, scalar, request)
         }
+        Some(Command::Map { file, output }) => map(file.as_deref(), &output),
     };
     match done {
         Ok(()) | Err(Stop::Closed) => ExitCode::SUCCESS,
@@ -159,6 +182,31 @@ fn overview() -> Result<(), Stop> {
     let answer = Answer::of::<f64>(&scenario, Request::default())?;
     let mut out = io::stdout().lock();
     report::overview(&scenario, &answer, took, &mut out)?;
+    draw(&scenario, Path::new(DIRECTORY), &mut out)
+}
+
+fn map(file: Option<&Path>, directory: &Path) -> Result<(), Stop> {
+    let scenario = file.map_or_else(paper12, |file| Ok(input::read(file)?))?;
+    // What is wrong with the scenario is said before anything is written.
+    let named = |failure: Failure| match file {
+        Some(file) => Stop::Error(format!("{}: {failure}", file.display()), WRONG_INPUT),
+        None => failure.into(),
+    };
+    let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
+    build_ecm(&fleet.motions()).map_err(|full| named(full.into()))?;
+    draw(&scenario, directory, &mut io::stdout().lock())
+}
+
+fn draw(scenario: &Scenario, directory: &Path, out: &mut impl Write) -> Result<(), Stop> {
+    let progress = Progress::new("pictures");
+    let files = picture::write(scenario, directory, &mut |done, total| progress.set(done, total));
+    drop(progress);
+    let files = files
+        .map_err(|error| Stop::Error(format!("{}: cannot be written: {error}", directory.display()), NOT_WRITTEN))?;
+    let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
+    if let Some(first) = page.or(files.first()) {
+        writeln!(out, "Pictures: {} files in {}; begin with {}", files.len(), directory.display(), first.display())?;
+    }
     Ok(())
 }
 

@@ -4,9 +4,11 @@
 //! agent, the segment, the field, the value and what is allowed there.
 
 mod decode;
+mod fields;
 
+pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::speed_after;
-pub use decode::{LENGTH_TOLERANCE, LIMIT, ScenarioError};
+pub use fields::{LIMIT, ScenarioError};
 use std::f64::consts::TAU;
 
 /// A fleet as a file describes it. SI units, angles in radians.
