@@ -2,7 +2,7 @@
 
 mod speed;
 
-use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario};
+use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
     Scalar, Segment, Turn,
@@ -82,10 +82,10 @@ impl std::error::Error for Refused {}
 fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
     let number = S::from_f64(value);
     if !number.is_finite() || number.abs() > S::LIMIT {
-        let limit = S::LIMIT.to_f64();
-        Err(format!("{field}: {value:e} is out of range; allowed is up to {limit:e} in magnitude"))
+        let (value, limit) = (figure(value), S::LIMIT.to_f64());
+        Err(format!("{field}: {value} is out of range; allowed is up to {limit:e} in magnitude"))
     } else if number == S::ZERO && value != 0.0 {
-        Err(format!("{field}: {value:e} is out of range; it is so small that it becomes 0"))
+        Err(format!("{field}: {} is out of range; it is so small that it becomes 0", figure(value)))
     } else {
         Ok(number)
     }
@@ -95,7 +95,7 @@ fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
 fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
-        Invalid::OutOfRange(what) => format!("{what} out of range; allowed is up to {limit:e} in magnitude"),
+        Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
         reason => reason.to_string(),
     }
 }
@@ -205,7 +205,8 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
     // The core's division saturates, so what takes too long has to be found here.
     if S::from_f64(duration) >= S::LIMIT {
         let limit = S::LIMIT.to_f64();
-        return Err(of_agent(format!("the motion takes {duration:e} s; allowed is below {limit:e} s")));
+        let duration = figure(duration);
+        return Err(of_agent(format!("the motion takes {duration} s; allowed is below {limit:e} s")));
     }
     match &agent.motion {
         MotionSpec::RestToRest { v_max, a_max } => {

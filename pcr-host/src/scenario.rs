@@ -1,15 +1,41 @@
 //! Scenario files: agents with their paths and motions, as JSON.
 //!
-//! The format is described in `docs/formats.md`. Decoded by hand from the JSON tree, so that every refusal names the
-//! agent, the segment, the field, the value and what is allowed there.
+//! ```
+//! # use pcr_host::scenario::Scenario;
+//! let scenario = Scenario::from_json(r#"
+//!     { "name": "crossing",
+//!       "agents": [
+//!         { "id": 1, "radius": 0.11, "v_max": 0.58, "a_max": 0.30, "t_start": 0.0,
+//!           "start": { "x": 0.0, "y": 0.0, "heading": 0.0 },
+//!           "path": [ { "kind": "line", "length": 2.0 },
+//!                     { "kind": "arc", "radius": 1.1, "sweep": -1.2 } ] } ] }"#)?;
+//! assert_eq!(scenario.agents[0].structure(), "SA");
+//! # Ok::<(), pcr_host::scenario::ScenarioError>(())
+//! ```
+//!
+//! - Metres, seconds, radians. `sweep` is positive to the left and may be more than a turn. A segment starts in the
+//!   pose in which the one before it ends; one of length 0 is skipped.
+//! - An empty path, or one of length 0, is an agent that stands at its start for the whole time.
+//! - The motion is from rest to rest in the least time under `v_max` and `a_max`. Instead an agent may have
+//!   `"profile": { "v0": 0.5, "pieces": [ { "duration": 2.0, "accel": 0.0 } ] }`: the speed at the start, then constant
+//!   accelerations, never below speed 0. It has to travel the length of the path within [`LENGTH_TOLERANCE`] and is
+//!   scaled onto it.
+//! - `name` and `t_start` may be left out, and with a profile `v_max` and `a_max`. An unknown key is refused.
+//!
+//! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
+//! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
 
 mod decode;
 mod fields;
 
 pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::speed_after;
+pub(crate) use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
 use std::f64::consts::TAU;
+
+#[cfg(test)]
+mod tests;
 
 /// A fleet as a file describes it. SI units, angles in radians.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! From JSON to a scenario: what each field means, and what holds between fields.
 
-use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief};
+use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
 use super::{Agent, MotionSpec, PathSegment, Scenario};
 use crate::json::{self, Data, Json};
 use serde_json::Value;
@@ -52,7 +52,10 @@ impl Scenario {
         };
         match Self::agents(json) {
             Ok(agents) => Ok(Self { name, agents }),
-            Err(error) => Err(ScenarioError { scenario: name, ..error }),
+            Err(mut error) => {
+                error.scenario = name;
+                Err(error)
+            }
         }
     }
 
@@ -115,7 +118,7 @@ impl Agent {
         };
         let length: f64 = path.iter().map(PathSegment::length).sum();
         if length > LIMIT {
-            return refused("path", format!("{length:e} m long; allowed is up to {LIMIT:e}"));
+            return refused("path", format!("{} m long; allowed is up to {LIMIT:e}", figure(length)));
         }
         let segments: f64 = path.iter().map(PathSegment::turns).sum();
         if segments > MOST as f64 {
@@ -141,7 +144,11 @@ impl Agent {
             } else {
                 "t_start"
             };
-            let problem = format!("the motion takes {duration:e} s from {t_start:e} s; allowed is up to {LIMIT:e}");
+            let problem = format!(
+                "the motion takes {} s from {} s; allowed is up to {LIMIT:e} s",
+                figure(duration),
+                figure(t_start)
+            );
             return refused(field, problem);
         }
         Ok(agent)
@@ -187,7 +194,8 @@ impl MotionSpec {
             let accel = fields.number("accel", Range::Any)?;
             let after = speed + accel * duration;
             if after < -SPEED_TOLERANCE * f64::max(1.0, fastest) {
-                let problem = format!("{accel} brings the speed to {after} m/s; allowed is 0 and above");
+                let problem =
+                    format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
                 return Err(fields.error(json.line, "accel", problem));
             }
             let after = speed_after(after, fastest);
@@ -197,10 +205,12 @@ impl MotionSpec {
         }
         if fastest > LIMIT || (travelled - length).abs() > LENGTH_TOLERANCE * length {
             let problem = if fastest > LIMIT {
-                format!("reaches {fastest:e} m/s; allowed is up to {LIMIT:e}")
+                format!("reaches {} m/s; allowed is up to {LIMIT:e}", figure(fastest))
             } else {
                 format!(
-                    "travels {travelled} m on a path of {length} m; allowed is a relative difference of {LENGTH_TOLERANCE:e}"
+                    "travels {} m on a path of {} m; allowed is a relative difference of {LENGTH_TOLERANCE:e}",
+                    figure(travelled),
+                    figure(length)
                 )
             };
             return Err(agent.error(fields.line, "profile", problem));

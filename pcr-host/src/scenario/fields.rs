@@ -5,9 +5,9 @@ use std::fmt;
 
 /// Largest magnitude of a number in a scenario, in its unit, and of the length and the duration of a path.
 ///
-/// It leaves room for coordinates of a map projection and for seconds since 1970. Results are exact to 10⁻¹⁵ of the
-/// largest coordinate, hence at the limit to a micrometre. Number formats other than `f64` may allow less.
-pub const LIMIT: f64 = 1e9;
+/// It leaves room for coordinates of a map projection and for seconds since 1970. Results are exact to some 10⁻¹⁵ of
+/// the largest coordinate or time, hence to 10⁻⁵ at the limit. Number formats other than `f64` may allow less.
+pub const LIMIT: f64 = 1e10;
 
 /// Why a scenario was refused: agent, segment, field, value and what is allowed.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,6 +154,12 @@ fn shortened(text: &str) -> String {
         Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
         None => text.to_owned(),
     }
+}
+
+/// A number as messages give it: short, and exact.
+pub(crate) fn figure(number: f64) -> String {
+    let plain = number == 0.0 || (1e-3..1e6).contains(&number.abs());
+    if plain { number.to_string() } else { format!("{number:e}") }
 }
 
 /// A value as messages quote it.

@@ -1,0 +1,233 @@
+//! Every kind of refusal, with the whole message; and what must not be refused.
+
+use super::*;
+use serde_json::{Value, json};
+
+fn agent(id: u64) -> Value {
+    json!({
+        "id": id, "radius": 0.5, "v_max": 1.0, "a_max": 0.5,
+        "start": { "x": 0.0, "y": 0.0, "heading": 0.0 },
+        "path": [{ "kind": "line", "length": 2.0 }, { "kind": "arc", "radius": 1.0, "sweep": -1.5 }],
+    })
+}
+
+/// Agent 7 in the second place, with a value put in (or, if null, a key taken out).
+fn with(pointer: &str, value: &Value) -> Value {
+    let mut scenario = json!({ "agents": [agent(3), agent(7)] });
+    let changed = &mut scenario["agents"][1];
+    let (parent, key) = pointer.rsplit_once('/').unwrap();
+    let parent = changed.pointer_mut(parent).unwrap();
+    match (parent, value) {
+        (Value::Object(members), Value::Null) => drop(members.remove(key).unwrap()),
+        (Value::Object(members), value) => drop(members.insert(key.into(), value.clone())),
+        (Value::Array(elements), value) => elements[key.parse::<usize>().unwrap()] = value.clone(),
+        _ => panic!("{pointer}"),
+    }
+    scenario
+}
+
+#[track_caller]
+fn refused(scenario: &Value, message: &str) {
+    assert_eq!(Scenario::from_value(scenario).unwrap_err().to_string(), message);
+}
+
+#[track_caller]
+fn refused_text(text: &str, line: usize, message: &str) {
+    let error = Scenario::from_json(text).unwrap_err();
+    assert_eq!((error.line(), error.to_string().as_str()), (line, message));
+}
+
+#[test]
+fn missing_fields_are_named() {
+    for field in ["radius", "v_max", "a_max", "start", "path"] {
+        refused(&with(&format!("/{field}"), &Value::Null), &format!("agent 7, {field}: missing"));
+    }
+    refused(&with("/id", &Value::Null), "agent at place 2, id: missing");
+    refused(&with("/start/x", &Value::Null), "agent 7, start.x: missing");
+    refused(&with("/path/0/length", &Value::Null), "agent 7, segment 1, length: missing");
+    refused(&with("/path/1/radius", &Value::Null), "agent 7, segment 2, radius: missing");
+    refused(&with("/path/1/kind", &Value::Null), "agent 7, segment 2, kind: missing");
+    refused(&json!({}), "agents: missing");
+}
+
+#[test]
+fn unknown_keys_are_refused_with_those_that_are_known() {
+    refused(
+        &with("/path/1/length", &json!(1)),
+        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep",
+    );
+    refused(&with("/path/0/sweep", &json!(1)), "agent 7, segment 1, sweep: unknown key; known are kind, length");
+    refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading");
+    refused(
+        &with("/speed", &json!(1)),
+        "agent 7, speed: unknown key; known are id, radius, v_max, a_max, t_start, start, path, profile",
+    );
+    refused(&json!({ "agents": [], "units": "m" }), "units: unknown key; known are name, agents");
+}
+
+#[test]
+fn numbers_out_of_range_come_with_the_range() {
+    for (pointer, field) in [("/radius", "radius"), ("/v_max", "v_max"), ("/a_max", "a_max")] {
+        for value in [0.0, -0.25, 2e10] {
+            let message = format!("agent 7, {field}: {} is out of range; allowed is above 0, up to 1e10", json!(value));
+            refused(&with(pointer, &json!(value)), &message);
+        }
+    }
+    let any = "is out of range; allowed is -1e10 to 1e10";
+    refused(&with("/t_start", &json!(-2e10)), &format!("agent 7, t_start: -20000000000.0 {any}"));
+    refused(&with("/start/heading", &json!(1e300)), &format!("agent 7, start.heading: 1e+300 {any}"));
+    refused(&with("/path/1/sweep", &json!(1e11)), &format!("agent 7, segment 2, sweep: 100000000000.0 {any}"));
+    let length = "agent 7, segment 1, length: -1 is out of range; allowed is 0 to 1e10";
+    refused(&with("/path/0/length", &json!(-1)), length);
+    let radius = "agent 7, segment 2, radius: 0 is out of range; allowed is above 0, up to 1e10";
+    refused(&with("/path/1/radius", &json!(0)), radius);
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_refused_where_they_stand() {
+    for word in ["NaN", "Infinity", "-Infinity", "1e999", "-1e400"] {
+        // The id comes last: it is known all the same.
+        let text = format!(
+            r#"{{"agents": [{{"radius": 1, "v_max": 1, "a_max": 1, "start": {{"x": 0, "y": 0, "heading": 0}},
+                "path": [{{"kind": "line", "length": 1}},
+                         {{"kind": "arc", "radius": 1, "sweep": {word}}}], "id": 12}}]}}"#
+        );
+        let message = format!("agent 12, segment 2, sweep: {word} is out of range; allowed is -1e10 to 1e10");
+        refused_text(&text, 3, &message);
+    }
+}
+
+#[test]
+fn values_of_the_wrong_type_are_quoted() {
+    refused(&with("/radius", &json!("0.5")), "agent 7, radius: \"0.5\" where a number is expected");
+    refused(&with("/radius", &json!([0.5])), "agent 7, radius: an array where a number is expected");
+    refused(&with("/v_max", &json!(true)), "agent 7, v_max: true where a number is expected");
+    refused(&with("/start", &json!([0, 0, 0])), "agent 7, start: an array where an object is expected");
+    refused(&with("/path", &json!({})), "agent 7, path: an object where an array is expected");
+    refused(&with("/path/0", &json!(2.0)), "agent 7, segment 1: 2.0 where an object is expected");
+    refused(
+        &with("/path/0/kind", &json!("spline")),
+        "agent 7, segment 1, kind: \"spline\"; allowed is \"line\" or \"arc\"",
+    );
+    refused(&json!({ "agents": [agent(1), 5] }), "agent at place 2: 5 where an object is expected");
+    refused(&json!({ "agents": 5 }), "agents: 5 where an array is expected");
+    refused(&json!({ "agents": [], "name": 5 }), "name: 5 where a string is expected");
+    refused(&json!([]), "an array where an object is expected");
+}
+
+#[test]
+fn long_values_are_quoted_in_part() {
+    let message = Scenario::from_value(&with("/radius", &json!("x".repeat(1_000_000)))).unwrap_err().to_string();
+    assert!(message.starts_with("agent 7, radius: \"xxx") && message.len() < 120, "{message}");
+    let digits = format!("{{\"agents\": [{{\"id\": {}}}]}}", "9".repeat(1_000_000));
+    let message = Scenario::from_json(&digits).unwrap_err().to_string();
+    assert!(message.starts_with("agent at place 1, id: 999") && message.len() < 120, "{message}");
+}
+
+#[test]
+fn ids_are_whole_numbers_and_unique() {
+    for id in [json!(-1), json!(1.5), json!(1.0), json!("7"), json!([7])] {
+        let message = Scenario::from_value(&with("/id", &id)).unwrap_err().to_string();
+        assert!(message.starts_with("agent at place 2, id: "), "{message}");
+        assert!(message.ends_with(" where a whole number from 0 is expected"), "{message}");
+    }
+    refused(&with("/id", &json!(3)), "agent 3, id: 3 is given to two agents");
+    assert_eq!(Scenario::from_value(&with("/id", &json!(u64::MAX))).unwrap().agents[1].id, u64::MAX);
+}
+
+#[test]
+fn repeated_keys_are_refused() {
+    refused_text(r#"{"agents": [], "agents": []}"#, 1, "agents: given twice");
+    let text = "{\"agents\": [{\"id\": 4,\n\"radius\": 1,\n\"radius\": 2}]}";
+    refused_text(text, 3, "agent 4, radius: given twice");
+}
+
+#[test]
+fn profiles_have_to_fit_the_path() {
+    // The path is 3.5 m long.
+    let fits = |v0: f64, pieces: Value| {
+        let scenario = with("/profile", &json!({ "v0": v0, "pieces": pieces }));
+        Scenario::from_value(&scenario).map(|scenario| scenario.agents[1].duration()).map_err(|error| error.to_string())
+    };
+    assert_eq!(fits(0.5, json!([{ "duration": 7.0, "accel": 0.0 }])), Ok(7.0));
+    assert_eq!(fits(0.5, json!([{ "duration": 7.000001, "accel": 0.0 }])), Ok(7.000001));
+    assert_eq!(
+        fits(0.5, json!([{ "duration": 7.1, "accel": 0.0 }])).unwrap_err(),
+        "agent 7, profile: travels 3.55 m on a path of 3.5 m; allowed is a relative difference of 1e-6"
+    );
+    assert_eq!(
+        fits(0.5, json!([{ "duration": 1.0, "accel": 0.0 }, { "duration": 2.0, "accel": -0.5 }])).unwrap_err(),
+        "agent 7, profile piece 2, accel: -0.5 brings the speed to -0.5 m/s; allowed is 0 and above"
+    );
+    assert_eq!(
+        fits(0.5, json!([{ "duration": -1.0, "accel": 0.0 }])).unwrap_err(),
+        "agent 7, profile piece 1, duration: -1.0 is out of range; allowed is 0 to 1e10"
+    );
+    assert_eq!(fits(-0.5, json!([])).unwrap_err(), "agent 7, profile.v0: -0.5 is out of range; allowed is 0 to 1e10");
+    assert_eq!(fits(0.5, json!([{ "duration": 1.0 }])).unwrap_err(), "agent 7, profile piece 1, accel: missing");
+    refused(&with("/profile", &json!({ "v0": 1 })), "agent 7, profile.pieces: missing");
+    refused(&with("/profile", &json!([])), "agent 7, profile: an array where an object is expected");
+    refused(
+        &with("/profile", &json!({ "v0": 1, "pieces": [], "dt": 1 })),
+        "agent 7, profile.dt: unknown key; known are v0, pieces",
+    );
+}
+
+#[test]
+fn what_follows_from_several_fields_is_checked_too() {
+    let slow = "agent 7, v_max, a_max: the motion takes 3.5e12 s from 0 s; allowed is up to 1e10 s";
+    refused(&with("/v_max", &json!(1e-12)), slow);
+    let message = Scenario::from_value(&with("/t_start", &json!(1e10))).unwrap_err().to_string();
+    assert!(message.starts_with("agent 7, t_start: the motion takes ") && message.contains("allowed is up to 1e10"));
+    let long = "agent 7, path: 1.000000002e10 m long; allowed is up to 1e10";
+    refused(&with("/path/1", &json!({ "kind": "line", "length": 1e10 })), long);
+    let turns = "agent 7, path: 159156 segments, each turn of an arc counted; allowed are up to 65535";
+    refused(&with("/path/1/sweep", &json!(1e6)), turns);
+}
+
+#[test]
+fn faults_of_the_text_come_with_line_and_column() {
+    refused_text("", 1, "empty; a scenario is an object with a list of agents");
+    refused_text("\u{feff} \r\n", 1, "empty; a scenario is an object with a list of agents");
+    refused_text("{\"agents\": [}", 1, "column 13: } where a value is expected");
+    refused_text("{\"agents\":\n []", 2, "column 4: the text ends where `,` or `}` is expected");
+    refused_text(
+        "{\"agents\": []}\n{}",
+        2,
+        "column 1: more text after the end of the scenario (JSON Lines: on standard input, with -)",
+    );
+    refused_text(&"[".repeat(100_000), 1, "column 65: arrays and objects nested more than 64 deep");
+}
+
+#[test]
+fn the_name_is_known_of_a_refused_scenario() {
+    let scenario = json!({ "agents": [agent(1), agent(1)], "name": "twins" });
+    assert_eq!(Scenario::from_value(&scenario).unwrap_err().scenario(), "twins");
+}
+
+#[test]
+fn what_is_allowed_is_accepted() {
+    assert_eq!(
+        Scenario::from_json("\u{feff}{\"agents\": []}\r\n").unwrap(),
+        Scenario { name: String::new(), agents: vec![] }
+    );
+    for (pointer, value) in [
+        ("/path", json!([])),
+        ("/path/0/length", json!(0)),
+        ("/path/0/length", json!(1e-17)),
+        ("/path/1/sweep", json!(0)),
+        ("/path/1/sweep", json!(-40.0)),
+        ("/path/1/radius", json!(1e-9)),
+        ("/start/x", json!(-5.3e6)),
+        ("/t_start", json!(1.8e9)),
+        ("/t_start", json!(-100)),
+        ("/radius", json!(1e-6)),
+    ] {
+        let scenario = Scenario::from_value(&with(pointer, &value));
+        assert!(scenario.is_ok(), "{pointer} {value}: {}", scenario.unwrap_err());
+    }
+    let standing = with("/profile", &json!({ "v0": 0, "pieces": [{ "duration": 5, "accel": 0 }] }));
+    let mut standing = standing;
+    standing["agents"][1]["path"] = json!([]);
+    assert_eq!(Scenario::from_value(&standing).unwrap().agents[1].duration(), 5.0);
+}
