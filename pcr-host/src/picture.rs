@@ -29,7 +29,9 @@ use crate::scenario::Scenario;
 use raster::Raster;
 use scene::Scene;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::{fs, io, thread};
 
 /// Writes all pictures of a scenario into a directory, which is created where it does not exist:
 ///
@@ -40,7 +42,7 @@ use std::{fs, io};
 /// each as `.svg` and `.png`.
 ///
 /// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
-/// in the order in which they were written. The same scenario gives the same bytes on every machine.
+/// in a fixed order. The same scenario gives the same bytes on every machine.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidInput`] for a scenario without motion (see [`Fleet::new`]) or of more than 65535 agents, and
@@ -55,26 +57,77 @@ pub fn write(
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
     let scene = Scene { scenario, motions: &motions, ecm: &ecm };
-    let raster = Raster::new();
     fs::create_dir_all(directory)?;
-    let total = motions.len() + 2;
-    let mut files = Vec::new();
-    progress(0, total);
+    let mut pictures = vec![Picture::Overview, Picture::Workspace];
+    pictures.extend((0..motions.len()).map(Picture::Map));
+    let mut files = vec![Vec::new(); pictures.len()];
     let mut done = 0;
-    let mut put = |name: String, svg: String| -> io::Result<()> {
-        for (extension, content) in [("png", raster.png(&svg)?), ("svg", svg.into_bytes())] {
-            let file = directory.join(format!("{name}.{extension}"));
+    progress(done, pictures.len());
+    draw_all(&scene, &pictures, &mut |place, drawn| {
+        for (name, content) in drawn? {
+            let file = directory.join(name);
             fs::write(&file, content)?;
-            files.push(file);
+            files[place].push(file);
         }
         done += 1;
-        progress(done, total);
+        progress(done, pictures.len());
         Ok(())
-    };
-    put("overview".into(), overview::picture(&scene))?;
-    put("workspace".into(), workspace::picture(&scene))?;
-    for (place, agent) in scenario.agents.iter().enumerate() {
-        put(format!("ecm-{}", agent.id), map::picture(&scene, place))?;
+    })?;
+    Ok(files.concat())
+}
+
+/// One picture of a scenario.
+#[derive(Clone, Copy, Debug)]
+enum Picture {
+    Overview,
+    Workspace,
+    /// Of the agent at this place of the scenario.
+    Map(usize),
+}
+
+/// Files with their names.
+type Files = Vec<(String, Vec<u8>)>;
+
+impl Picture {
+    fn draw(self, scene: &Scene<'_>, raster: &Raster) -> io::Result<Files> {
+        let (name, svg) = match self {
+            Self::Overview => ("overview".to_owned(), overview::picture(scene)),
+            Self::Workspace => ("workspace".to_owned(), workspace::picture(scene)),
+            Self::Map(ego) => (format!("ecm-{}", scene.id(ego)), map::picture(scene, ego)),
+        };
+        let png = raster.png(&svg)?;
+        Ok(vec![(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)])
     }
-    Ok(files)
+}
+
+/// Draws on all cores; hands over each picture with its place in the list, in the order in which they are done.
+fn draw_all(
+    scene: &Scene<'_>,
+    pictures: &[Picture],
+    take: &mut dyn FnMut(usize, io::Result<Files>) -> io::Result<()>,
+) -> io::Result<()> {
+    let workers = thread::available_parallelism().map_or(1, usize::from).min(pictures.len());
+    let next = AtomicUsize::new(0);
+    let raster = Raster::new();
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..workers {
+            let sender = sender.clone();
+            let (next, raster) = (&next, &raster);
+            scope.spawn(move || {
+                loop {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(picture) = pictures.get(place) else {
+                        break;
+                    };
+                    // Nobody listens any more after an error.
+                    if sender.send((place, picture.draw(scene, raster))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        receiver.into_iter().try_for_each(|(place, drawn)| take(place, drawn))
+    })
 }

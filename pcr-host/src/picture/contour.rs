@@ -106,6 +106,10 @@ impl Tracer<'_, '_> {
         }
         let middle = (angle, self.column(time));
         if self.is_straight(&a.1, &middle.1, &b.1) {
+            // Steep bands correspond over the middle only.
+            if !correspond(&a.1, &b.1, self.pixel[1]) {
+                self.columns.push(middle.1);
+            }
             return;
         }
         self.refine(time_at, a, &middle, halvings - 1);

@@ -3,11 +3,11 @@
 /// A box: left, top, right, bottom \[px\].
 type Area = [f64; 4];
 
-/// What an overlap with a label, in square pixels, weighs against a line that runs through a label.
+/// Weight of an overlap with another label, a square pixel.
 const OVERLAP: f64 = 4.0;
 
-/// Weight of a line that runs through a label, a point of the line.
-const CROSSED: f64 = 3.0;
+/// Distance of the points by which lines are to be given \[px\].
+pub(super) const SPACING: f64 = 3.0;
 
 /// Weight of each step down the list of candidates.
 const RANK: f64 = 0.6;
@@ -16,7 +16,7 @@ const RANK: f64 = 0.6;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Labels {
     taken: Vec<Area>,
-    lines: Vec<[f64; 2]>,
+    lines: Vec<(f64, [f64; 2])>,
 }
 
 impl Labels {
@@ -25,9 +25,9 @@ impl Labels {
         self.taken.push(area);
     }
 
-    /// Keeps labels off a line through these points.
-    pub(super) fn avoid(&mut self, points: impl IntoIterator<Item = [f64; 2]>) {
-        self.lines.extend(points);
+    /// Keeps labels off a line through these points, [`SPACING`] apart; each that a label covers weighs `weight`.
+    pub(super) fn avoid(&mut self, weight: f64, points: impl IntoIterator<Item = [f64; 2]>) {
+        self.lines.extend(points.into_iter().map(|point| (weight, point)));
     }
 
     /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. The
@@ -48,8 +48,8 @@ impl Labels {
             if best.is_some_and(|(least, _)| least <= cost) {
                 continue;
             }
-            let crossed = self.lines.iter().filter(|point| holds(area, **point)).count();
-            let cost = cost + CROSSED * crossed as f64;
+            let crossed = self.lines.iter().filter(|(_, point)| holds(area, *point));
+            let cost = cost + crossed.map(|(weight, _)| weight).sum::<f64>();
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, candidate));
             }
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn labels_avoid_lines() {
         let mut labels = Labels::default();
-        labels.avoid((0..10).map(|k| [45.0 + f64::from(k), 50.0]));
+        labels.avoid(1.0, (0..10).map(|k| [45.0 + f64::from(k), 50.0]));
         assert_eq!(labels.place([20.0, 10.0], [[50.0, 50.0], [50.0, 60.0]], ALL), Some([50.0, 60.0]));
     }
 

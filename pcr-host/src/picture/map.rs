@@ -42,7 +42,7 @@ pub(super) fn picture(scene: &Scene<'_>, ego: usize) -> String {
     let edges = [left, ROOM_ABOVE, left + side, ROOM_ABOVE + 0.8 * side];
     let frame = Frame::new(time, length, edges);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let legend = Legend::new(scene, ego, &shapes, [0.0, edges[2]]);
+    let legend = Legend::new(scene, ego, &shapes, [8.0, edges[2]]);
     let (width, height) = (edges[2] + 12.0, edges[3] + ROOM_BELOW + legend.height() + 6.0);
     let mut svg = Svg::new(width, height, &title(scene, ego, &shapes));
     draw(&mut svg, scene, ego, &shapes, &frame);

@@ -5,7 +5,7 @@ use std::io;
 use std::sync::Arc;
 
 /// Pixels of the PNG for each of the SVG: 300 dots an inch at the width of a column (85 mm).
-const SCALE: f32 = 2.5;
+const SCALE: f32 = 2.0;
 
 /// Largest width and height of a PNG \[px\].
 const LARGEST: f32 = 8192.0;
@@ -37,6 +37,21 @@ impl Raster {
         let mut pixmap = tiny_skia::Pixmap::new(side(size.width()), side(size.height()))
             .ok_or_else(|| io::Error::other("picture without extent"))?;
         resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
-        pixmap.encode_png().map_err(io::Error::other)
+        encode(&pixmap)
     }
+}
+
+/// The PNG without its alpha channel, which is 1 everywhere. Line art packs best without any filter.
+fn encode(pixmap: &tiny_skia::Pixmap) -> io::Result<Vec<u8>> {
+    let opaque: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|rgba| rgba.iter().take(3)).copied().collect();
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_filter(png::Filter::NoFilter);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&opaque)?;
+    writer.finish()?;
+    Ok(file)
 }

@@ -1,7 +1,7 @@
 //! The workspace (paper Fig. 10): all paths with the discs at their starts and ends, in metres.
 
 use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, at_least_visible, room_at_left};
-use super::labels::Labels;
+use super::labels::{Labels, SPACING};
 use super::map::ROOM_ABOVE;
 use super::scene::Scene;
 use super::svg::{PathData, Pixels, Svg, text_width};
@@ -17,11 +17,11 @@ const ARROWS: f64 = 110.0;
 /// Smallest width and height of the plot \[px\].
 const LEAST: [f64; 2] = [240.0, 110.0];
 
-/// Distance of the points of a path that labels keep off \[px\].
-const OBSTACLES: f64 = 5.0;
-
 /// Points of a path at most that labels keep off.
 const MOST_OBSTACLES: f64 = 2000.0;
+
+/// Weight of covering a path.
+const CROSSED: f64 = 2.0;
 
 /// The frame of a workspace that is at most `side` pixels wide and high, at this left top corner; equal scales.
 pub(super) fn frame(scene: &Scene<'_>, side: f64, [left, top]: [f64; 2]) -> Frame {
@@ -168,11 +168,14 @@ fn draw_numbers(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
             labels.block([x - r, y - r, x + r, y + r]);
         }
         let length = motion.path().length();
-        let count = (length / frame.x.units_per_pixel() / OBSTACLES).clamp(1.0, MOST_OBSTACLES) as usize;
-        labels.avoid((0..=count).map(|k| {
-            let point = motion.path().point_at(length * k as f64 / count as f64);
-            frame.at([point.x, point.y])
-        }));
+        let count = (length / frame.x.units_per_pixel() / SPACING).clamp(1.0, MOST_OBSTACLES) as usize;
+        labels.avoid(
+            CROSSED,
+            (0..=count).map(|k| {
+                let point = motion.path().point_at(length * k as f64 / count as f64);
+                frame.at([point.x, point.y])
+            }),
+        );
     }
     svg.start(
         "g",

@@ -1,7 +1,7 @@
 //! The labels of regions: the number of the other agent, in the region or beside it.
 
 use super::super::axis::Frame;
-use super::super::labels::Labels;
+use super::super::labels::{Labels, SPACING};
 use super::super::scene::{Scene, Shape};
 use super::super::svg::{Pixels, Svg, text_width};
 use pcr_core::Interval;
@@ -9,20 +9,29 @@ use pcr_core::Interval;
 /// Size of the labels of regions \[px\].
 const LABEL_SIZE: f64 = 9.5;
 
+/// Weights of covering the trajectory, and the outline of a region.
+const WEIGHTS: [f64; 2] = [8.0, 1.0];
+
 /// Writes the labels, off the ego's trajectory, off one another and, where possible, off outlines.
 pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
     let mut labels = Labels::default();
     if let Some(motion) = scene.motions.get(ego) {
         let [left, _, right, _] = frame.edges;
-        let steps = ((right - left) / 3.0).max(1.0) as usize;
+        let steps = ((right - left) / SPACING).max(1.0) as usize;
         let (from, step) = (frame.x.values().lo, frame.x.values().length() / steps as f64);
-        labels.avoid((0..=steps).map(|k| {
-            let time = from + step * k as f64;
-            frame.at([time, motion.length_at(time)])
-        }));
+        labels.avoid(
+            WEIGHTS[0],
+            (0..=steps).map(|k| {
+                let time = from + step * k as f64;
+                frame.at([time, motion.length_at(time)])
+            }),
+        );
     }
     for shape in shapes {
-        labels.avoid(shape.outline.iter().flatten().map(|point| frame.at(*point)));
+        for contour in &shape.outline {
+            let points: Vec<[f64; 2]> = contour.iter().map(|point| frame.at(*point)).collect();
+            labels.avoid(WEIGHTS[1], spaced(&points));
+        }
     }
     svg.start(
         "g",
@@ -83,4 +92,20 @@ fn candidates(shape: &Shape, [width, height]: [f64; 2], frame: &Frame) -> Vec<[f
     ];
     places.extend(cramped.into_iter().take(1));
     places.into_iter().map(|(_, place)| place).chain(around).collect()
+}
+
+/// Points on the sides of a polygon, [`SPACING`] apart.
+fn spaced(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    let mut due = 0.0;
+    for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let side = (b[0] - a[0]).hypot(b[1] - a[1]);
+        while due < side {
+            let part = due / side;
+            points.push([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
+            due += SPACING;
+        }
+        due -= side;
+    }
+    points
 }
