@@ -1,6 +1,8 @@
 //! From scenarios to motions and maps, in any number format of the tool.
 
 mod speed;
+#[cfg(test)]
+mod tests;
 
 use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
 use pcr_core::{
@@ -179,15 +181,18 @@ fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Faul
     for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
         let at = |problem| (Some(("segment", source)), problem);
         let turns = segment.turns();
+        let curve = match *segment {
+            PathSegment::Line { .. } => None,
+            PathSegment::Arc { radius, sweep } => {
+                Some((number("radius", radius).map_err(at)?, if sweep > 0.0 { Turn::Left } else { Turn::Right }))
+            }
+        };
         let length = number("length", segment.length() / turns).map_err(at)?;
         for _ in 0..turns as usize {
             let last = segments.last().unwrap_or(&origin);
-            let next = match *segment {
-                PathSegment::Line { .. } => last.then_line(length),
-                PathSegment::Arc { radius, sweep } => {
-                    let turn = if sweep > 0.0 { Turn::Left } else { Turn::Right };
-                    last.then_arc(number("radius", radius).map_err(at)?, turn, length)
-                }
+            let next = match curve {
+                None => last.then_line(length),
+                Some((radius, turn)) => last.then_arc(radius, turn, length),
             };
             segments.push(next.map_err(|reason| at(derived::<S>(reason)))?);
             sources.push(source);

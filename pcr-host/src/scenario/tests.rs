@@ -179,7 +179,7 @@ fn what_follows_from_several_fields_is_checked_too() {
     refused(&with("/v_max", &json!(1e-12)), slow);
     let message = Scenario::from_value(&with("/t_start", &json!(1e10))).unwrap_err().to_string();
     assert!(message.starts_with("agent 7, t_start: the motion takes ") && message.contains("allowed is up to 1e10"));
-    let long = "agent 7, path: 1.000000002e10 m long; allowed is up to 1e10";
+    let long = "agent 7, path: 1.0000000002e10 m long; allowed is up to 1e10";
     refused(&with("/path/1", &json!({ "kind": "line", "length": 1e10 })), long);
     let turns = "agent 7, path: 159156 segments, each turn of an arc counted; allowed are up to 65535";
     refused(&with("/path/1/sweep", &json!(1e6)), turns);

@@ -1,0 +1,149 @@
+//! What a number format refuses, and that nothing else is lost on the way into it.
+
+use super::*;
+use serde_json::{Value, json};
+
+/// A line of 2 m and a quarter turn.
+fn agent() -> Value {
+    json!({
+        "id": 7, "radius": 0.5, "v_max": 1.0, "a_max": 0.5,
+        "start": { "x": 0.0, "y": 0.0, "heading": 0.0 },
+        "path": [{ "kind": "line", "length": 2.0 }, { "kind": "arc", "radius": 1.0, "sweep": -1.5 }],
+    })
+}
+
+fn scenario(agent: Value) -> Scenario {
+    Scenario::from_value(&json!({ "agents": [agent] })).unwrap()
+}
+
+/// What `f32` says about a value that `f64` takes.
+#[track_caller]
+fn refused(pointer: &str, value: f64, message: &str) {
+    let mut agent = agent();
+    *agent.pointer_mut(pointer).unwrap() = json!(value);
+    let scenario = scenario(agent);
+    assert!(Fleet::<f64>::new(&scenario).is_ok());
+    assert_eq!(Fleet::<f32>::new(&scenario).unwrap_err().to_string(), message);
+}
+
+#[test]
+fn what_overflows_f32_is_refused() {
+    let limit = "is out of range; allowed is up to 1e6 in magnitude (f32)";
+    refused("/start/x", 2e6, &format!("agent 7, start.x: 2e6 {limit}"));
+    refused("/radius", 2e6, &format!("agent 7, radius: 2e6 {limit}"));
+    refused("/v_max", 2e6, &format!("agent 7, v_max: 2e6 {limit}"));
+    refused("/path/0/length", 2e6, &format!("agent 7, segment 1, length: 2e6 {limit}"));
+    refused("/path/1/radius", 2e6, &format!("agent 7, segment 2, radius: 2e6 {limit}"));
+    // The end of the path, and the end of the motion.
+    refused("/start/x", 999_999.0, &format!("agent 7, segment 1, x {limit}"));
+    refused("/v_max", 1e-6, "agent 7, the motion takes 3.500000000002e6 s; allowed is below 1e6 s (f32)");
+}
+
+#[test]
+fn what_becomes_0_in_f32_is_refused() {
+    let small = "is out of range; it is so small that it becomes 0 (f32)";
+    refused("/radius", 1e-50, &format!("agent 7, radius: 1e-50 {small}"));
+    refused("/path/0/length", 1e-50, &format!("agent 7, segment 1, length: 1e-50 {small}"));
+    refused("/path/1/radius", 1e-50, &format!("agent 7, segment 2, radius: 1e-50 {small}"));
+    refused("/start/x", -1e-50, &format!("agent 7, start.x: -1e-50 {small}"));
+}
+
+#[test]
+fn a_heading_of_many_turns_keeps_its_digits_in_f32() {
+    let mut turned = agent();
+    turned["start"]["heading"] = json!(100.0 * TAU + 0.5);
+    let fleet = Fleet::<f32>::new(&scenario(turned)).unwrap();
+    let end = fleet.motions()[0].path().point_at(2.0);
+    assert!((end.x - 2.0 * 0.5_f32.cos()).abs() < 1e-6 && (end.y - 2.0 * 0.5_f32.sin()).abs() < 1e-6);
+}
+
+#[test]
+fn sources_count_segments_of_the_scenario() {
+    let mut agent = agent();
+    agent["path"] = json!([
+        { "kind": "line", "length": 0 },
+        { "kind": "arc", "radius": 1, "sweep": 13.0 },
+        { "kind": "arc", "radius": 1, "sweep": 0 },
+        { "kind": "line", "length": 1 },
+    ]);
+    let fleet = Fleet::<f64>::new(&scenario(agent.clone())).unwrap();
+    let sources = (0..5).map(|segment| fleet.source(0, segment)).collect::<Vec<_>>();
+    assert_eq!(sources, [Some(1), Some(1), Some(1), Some(3), None]);
+    agent["path"] = json!([]);
+    let fleet = Fleet::<f64>::new(&scenario(agent)).unwrap();
+    assert_eq!(fleet.motions()[0].path().segments().len(), 1);
+    assert_eq!(fleet.source(0, 0), None);
+}
+
+/// A stop-and-go schedule of many pieces, with decimal numbers as a file gives them, and its length.
+fn stop_and_go(cycles: usize) -> (Vec<Value>, f64) {
+    let (mut pieces, mut length) = (Vec::new(), 0.0);
+    for cycle in 0..cycles {
+        let (up, cruise) = (0.3 + 0.1 * (cycle % 7) as f64, 0.7 + 0.01 * (cycle % 13) as f64);
+        let phases = [(up, 0.3), (cruise, 0.0), (2.0 * up, -0.15), (0.9, 0.0)];
+        pieces.extend(phases.map(|(duration, accel)| json!({ "duration": duration, "accel": accel })));
+        length += 0.3 * up * (0.5 * up + cruise + up);
+    }
+    (pieces, length)
+}
+
+fn schedule<S: Format>(cycles: usize) -> (Vec<Phase<S>>, f64, f64) {
+    let (pieces, length) = stop_and_go(cycles);
+    let mut agent = agent();
+    agent["path"] = json!([{ "kind": "line", "length": length }]);
+    agent["profile"] = json!({ "v0": 0.0, "pieces": pieces });
+    let scenario = scenario(agent);
+    let fleet = Fleet::<S>::new(&scenario).unwrap();
+    (fleet.motions()[0].profile().phases().to_vec(), length, scenario.agents[0].duration())
+}
+
+#[track_caller]
+fn stops_are_stops<S: Format>(phases: &[Phase<S>]) {
+    for stop in phases.iter().skip(3).step_by(4) {
+        assert!(stop.length().lo == stop.length().hi, "moves while it waits: {stop:?}");
+    }
+}
+
+#[test]
+fn long_profiles_end_at_the_end_of_the_path_and_stand_at_their_stops() {
+    let (phases, length, duration) = schedule::<f64>(2500);
+    stops_are_stops(&phases);
+    let last = phases.last().unwrap();
+    assert!((last.length().hi - length).abs() <= f64::slack(length));
+    /// Sum of 10 000 roundings of times of some 10⁴ s, and of the length that is made up for in one piece.
+    const TIME: f64 = 1e-8;
+    assert!((last.time().hi - duration).abs() < TIME);
+
+    let (phases, length, duration) = schedule::<f32>(25);
+    stops_are_stops(&phases);
+    let last = phases.last().unwrap();
+    assert!((last.length().hi.to_f64() - length).abs() <= f32::slack(length as f32).to_f64());
+    /// The same for 100 roundings in `f32` of some 100 s.
+    const TIME_F32: f64 = 1e-3;
+    assert!((last.time().hi.to_f64() - duration).abs() < TIME_F32);
+}
+
+#[test]
+fn every_piece_reaches_the_speed_it_aims_at() {
+    let (phases, ..) = schedule::<f64>(50);
+    for (k, phase) in phases.iter().enumerate() {
+        let reached = phase.speed_at(phase.time().hi);
+        let aim = if k % 4 < 2 { 0.3 * (0.3 + 0.1 * (k / 4 % 7) as f64) } else { 0.0 };
+        // The path is scaled by 10⁻¹⁵ or so, and the durations of late phases are differences of times.
+        assert!((reached - aim).abs() < 1e-12, "phase {k}: {reached}, aim {aim}");
+    }
+}
+
+#[test]
+fn a_pair_of_too_many_pieces_is_an_error_and_does_not_grow_for_ever() {
+    // Two agents that turn on the spot, 257 times: each turn of one meets each of the other, 66049 pieces.
+    let spin = |id: u64| {
+        let mut agent = agent();
+        agent["id"] = json!(id);
+        agent["path"] = json!([{ "kind": "arc", "radius": 0.1, "sweep": 257.0 * TAU }]);
+        agent
+    };
+    let scenario = Scenario::from_value(&json!({ "agents": [spin(1), spin(2)] })).unwrap();
+    let fleet = Fleet::<f64>::new(&scenario).unwrap();
+    assert_eq!(build_ecm(&fleet.motions()).unwrap_err(), Full::Pieces);
+}
