@@ -5,7 +5,7 @@
 
 use crate::disc::{Course, Disc};
 use crate::oracle::{Pair, line, plane};
-use pcr_core::{Motion, RegionRef};
+use pcr_core::{Interval, Motion, RegionRef};
 use pcr_host::fleet::{Format, HostEcm, build_ecm};
 
 /// Bound on the residual `| |ρ_i(l) - ρ_j(s)| - R |` at the ends of slices, in slacks of the pair.
@@ -13,7 +13,7 @@ pub const RESIDUAL: f64 = 3.0;
 
 /// What the oracle's own positions may be off, in units in the last place of the extent in `f64`: a dozen rounded
 /// operations a segment. Contacts that are less deep prove nothing.
-const ORACLE_ULPS: f64 = 16.0;
+pub const ORACLE_ULPS: f64 = 16.0;
 
 /// A pair of discs, in the library and in the oracle.
 pub struct Audit<S: Format> {
@@ -78,27 +78,23 @@ impl<S: Format> Audit<S> {
     /// # Errors
     /// The first violation.
     pub fn all(&self, effort: plane::Effort, samples: usize, seen: &mut Seen) -> Result<(), Violation> {
-        let (motions, ecm) = self.table();
-        let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
-        let transposed: Vec<_> = ecm.pair(&motions, 1, 0).collect();
-        seen.regions += regions.len();
-        self.transpose(&regions, &transposed)?;
-        for region in &regions {
-            self.contour(region, &self.oracle, samples, seen)?;
-        }
-        let mirrored = Pair { ego: self.oracle.other.clone(), other: self.oracle.ego.clone(), ..self.oracle };
-        for region in &transposed {
-            self.contour(region, &mirrored, samples, seen)?;
-        }
-        self.outward(&regions, &transposed, samples)?;
-        self.ranges(&regions)?;
-        self.components(&regions, effort, seen)
+        self.transpose()?;
+        self.contours(samples, seen)?;
+        self.coverage(samples)?;
+        self.ranges()?;
+        self.components(effort, seen)
     }
 
     /// Swapping ego and other exchanges the lengths, and nothing else.
-    fn transpose(&self, regions: &[RegionRef<'_, S>], transposed: &[RegionRef<'_, S>]) -> Result<(), Violation> {
-        ensure!(regions.len() == transposed.len(), "{} regions, {} from the other side", regions.len(), transposed.len());
-        for (region, mirror) in regions.iter().zip(transposed) {
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn transpose(&self) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        let (regions, transposed) = (ecm.pair(&motions, 0, 1), ecm.pair(&motions, 1, 0));
+        let (count, mirrored) = (regions.clone().count(), transposed.clone().count());
+        ensure!(count == mirrored, "{count} regions, {mirrored} from the other side");
+        for (region, mirror) in regions.zip(transposed) {
             let exchanged = (mirror.other_length(), mirror.length());
             ensure!((region.length(), region.other_length()) == exchanged, "the transposed ranges differ");
             ensure!((region.ego(), region.other()) == (mirror.other(), mirror.ego()), "the agents are not exchanged");
@@ -107,6 +103,21 @@ impl<S: Format> Audit<S> {
     }
 
     /// Slices are disjoint, in order, within the ranges; their ends are contacts, or ends of the path.
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn contours(&self, samples: usize, seen: &mut Seen) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        let mirrored = Pair { ego: self.oracle.other.clone(), other: self.oracle.ego.clone(), ..self.oracle };
+        for (ego, pair) in [(0, &self.oracle), (1, &mirrored)] {
+            for region in ecm.pair(&motions, ego, 1 - ego) {
+                seen.regions += 1 - ego;
+                self.contour(&region, pair, samples, seen)?;
+            }
+        }
+        Ok(())
+    }
+
     fn contour(&self, region: &RegionRef<'_, S>, pair: &Pair, samples: usize, seen: &mut Seen) -> Result<(), Violation> {
         let (s, l) = (region.other_length(), region.length());
         let (s_lo, s_hi) = (s.lo.to_f64(), s.hi.to_f64());
@@ -121,12 +132,12 @@ impl<S: Format> Audit<S> {
             for interval in region.slice_at(time) {
                 let (lo, hi) = (interval.lo.to_f64(), interval.hi.to_f64());
                 ensure!(after < lo && lo <= hi, "slice at {time:?} not in order");
-                if std::env::var("CLIP").is_err() { ensure!(l.lo <= interval.lo && interval.hi <= l.hi, "slice {interval:?} at {time:?} outside {l:?}"); }
+                ensure!(l.lo <= interval.lo && interval.hi <= l.hi, "slice {interval:?} at {time:?} outside {l:?}");
                 after = hi;
                 for end in [lo, hi] {
                     let clearance = pair.clearance(at, end);
-                    let at_end_of_path = end <= 0.0 || end >= path;
-                    let residual = if at_end_of_path { clearance } else { clearance.abs() };
+                    let clipped = end <= 0.0 || end >= path;
+                    let residual = if clipped { clearance } else { clearance.abs() };
                     seen.residual = seen.residual.max((residual - self.doubt) / self.slack);
                     ensure!(residual <= self.bound(), "residual {residual:e} at ({at}, {end}), slack {:e}", self.slack);
                 }
@@ -141,97 +152,112 @@ impl<S: Format> Audit<S> {
     }
 
     /// No sampled collision is outside all regions, none is in two of them, and nothing clear of contact is in one;
-    /// both views agree.
-    fn outward(
-        &self,
-        regions: &[RegionRef<'_, S>],
-        transposed: &[RegionRef<'_, S>],
-        samples: usize,
-    ) -> Result<(), Violation> {
-        let (length, width) = (self.oracle.ego.length(), self.oracle.other.length());
-        for k in 0..samples * samples {
-            // Additive recurrence with the plastic number: even in any rectangle.
-            let (u, v) = (((k as f64 + 0.5) * 0.754_877_666).fract(), ((k as f64 + 0.5) * 0.569_840_296).fract());
-            let (s, l) = (S::from_f64(u * width), S::from_f64(v * length));
-            self.point(regions, transposed, s, l)?;
-        }
-        // Corners and edges of the rectangle.
-        for k in 0..=samples {
-            let part = k as f64 / samples as f64;
-            for (u, v) in [(0.0, part), (1.0, part), (part, 0.0), (part, 1.0)] {
-                self.point(regions, transposed, S::from_f64(u * width), S::from_f64(v * length))?;
+    /// both views and both queries agree.
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn coverage(&self, samples: usize) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
+        let transposed: Vec<_> = ecm.pair(&motions, 1, 0).collect();
+        for (s, l) in self.sampled(samples) {
+            let clearance = self.oracle.clearance(s.to_f64(), l.to_f64());
+            let holding = regions.iter().filter(|region| region.contains(s, l)).count();
+            let mirrored = transposed.iter().filter(|region| region.contains(l, s)).count();
+            for count in [holding, mirrored] {
+                ensure!(
+                    count > 0 || clearance > -self.doubt,
+                    "missed ({s:?}, {l:?}): {clearance:e}, held by {holding} and {mirrored}"
+                );
+                ensure!(count == 0 || clearance <= self.bound(), "invented ({s:?}, {l:?}): {clearance:e}");
+                ensure!(count <= 1 || clearance >= -self.bound(), "({s:?}, {l:?}) is in {count} regions: {clearance:e}");
+            }
+            for region in &regions {
+                let sliced = region.slice_at(s).any(|interval| interval.contains(l));
+                ensure!(region.contains(s, l) == sliced, "contains and slice_at disagree at ({s:?}, {l:?})");
             }
         }
         Ok(())
     }
 
-    fn point(
-        &self,
-        regions: &[RegionRef<'_, S>],
-        transposed: &[RegionRef<'_, S>],
-        s: S,
-        l: S,
-    ) -> Result<(), Violation> {
-        let (s, l) = (self.within(s, 1), self.within(l, 0));
-        let clearance = self.oracle.clearance(s.to_f64(), l.to_f64());
-        let holding = regions.iter().filter(|region| region.contains(s, l)).count();
-        let mirrored = transposed.iter().filter(|region| region.contains(l, s)).count();
-        for count in [holding, mirrored] {
-            ensure!(count > 0 || clearance > -self.doubt, "missed ({s:?}, {l:?}): {clearance:e}, mirror {mirrored}");
-            ensure!(count == 0 || clearance <= self.bound(), "invented ({s:?}, {l:?}): {clearance:e}");
-            ensure!(count <= 1 || clearance >= -self.bound(), "({s:?}, {l:?}) is in {count} regions: {clearance:e}");
-        }
-        for region in regions.iter() {
-            let sliced = region.slice_at(s).any(|interval| interval.contains(l));
-            ensure!(region.contains(s, l) == sliced, "contains and slice_at disagree at ({s:?}, {l:?})");
-        }
-        Ok(())
+    /// Points `(s, l)`: evenly over the rectangle, and along its edges.
+    pub fn sampled(&self, samples: usize) -> impl Iterator<Item = (S, S)> {
+        let (length, width) = (self.oracle.ego.length(), self.oracle.other.length());
+        // Additive recurrence with the plastic number: even in any rectangle.
+        let even = |k: usize| (((k as f64 + 0.5) * 0.754_877_666).fract(), ((k as f64 + 0.5) * 0.569_840_296).fract());
+        let inside = (0..samples * samples).map(even);
+        let edges = (0..=samples).flat_map(move |k| {
+            let part = k as f64 / samples as f64;
+            [(0.0, part), (1.0, part), (part, 0.0), (part, 1.0)]
+        });
+        let ends = [0, 1].map(|agent| self.end(agent));
+        inside.chain(edges).map(move |(u, v)| (S::from_f64(u * width).min(ends[1]), S::from_f64(v * length).min(ends[0])))
     }
 
-    /// A length of the ego's (0) or the other's (1) path that is not beyond its end.
-    fn within(&self, length: S, agent: usize) -> S {
-        length.min(self.courses[agent].motion().path().length())
+    /// Signed distance from contact \[m\].
+    pub fn clearance(&self, s: S, l: S) -> f64 {
+        self.oracle.clearance(s.to_f64(), l.to_f64())
+    }
+
+    /// Length of a path as the library sums it up: of the ego's (0) or the other's (1).
+    fn end(&self, agent: usize) -> S {
+        self.courses[agent].motion().path().length()
     }
 
     /// The ranges are reached: at their ends there is contact.
-    fn ranges(&self, regions: &[RegionRef<'_, S>]) -> Result<(), Violation> {
-        for region in regions {
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn ranges(&self) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        for region in ecm.pair(&motions, 0, 1) {
             let (s, l) = (region.other_length(), region.length());
             let (s, l) = ((s.lo.to_f64(), s.hi.to_f64()), (l.lo.to_f64(), l.hi.to_f64()));
             // What is widened by a slack along the path is further from contact by as much at most.
             let (bound, step) = (self.bound() + self.slack, self.slack + 1e-12);
             for end in [l.0, l.1] {
                 let clearance = |s| self.oracle.clearance(s, end);
-                ensure!(line::reaches(clearance, s.0, s.1, bound, step), "no contact at the end {end} of {l:?}");
+                let reached = line::reaches(clearance, s.0, s.1, bound, step);
+                let nearest = || line::nearest(clearance, s.0, s.1) / self.slack;
+                ensure!(reached, "no contact at the end {end} of {l:?}: {} slacks clear", nearest());
             }
             for end in [s.0, s.1] {
                 let clearance = |l| self.oracle.clearance(end, l);
-                ensure!(line::reaches(clearance, l.0, l.1, bound, step), "no contact at the end {end} of {s:?}");
+                let reached = line::reaches(clearance, l.0, l.1, bound, step);
+                let nearest = || line::nearest(clearance, l.0, l.1) / self.slack;
+                ensure!(reached, "no contact at the end {end} of {s:?}: {} slacks clear", nearest());
             }
         }
         Ok(())
     }
 
+    /// What the oracle knows of the components, positions right within `margin` \[m\].
+    pub fn known(&self, effort: plane::Effort, margin: f64) -> plane::Components {
+        plane::components(&self.oracle, margin, effort)
+    }
+
     /// The regions are the components that the oracle finds, where it is certain of their number; where it is not, what
     /// is surely connected is in one region.
-    fn components(&self, regions: &[RegionRef<'_, S>], effort: plane::Effort, seen: &mut Seen) -> Result<(), Violation> {
-        let found = plane::components(&self.oracle, self.bound(), effort);
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn components(&self, effort: plane::Effort, seen: &mut Seen) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
+        let found = self.known(effort, self.bound());
         let mut owners = vec![0_usize; regions.len()];
         for inner in found.outer.iter().flat_map(|outer| &outer.inner) {
-            let (s, l) = inner.point;
-            let (s, l) = (self.within(S::from_f64(s), 1), self.within(S::from_f64(l), 0));
-            let holding = |region: &&RegionRef<'_, S>| region.contains(s, l);
-            let Some(owner) = regions.iter().position(|region| holding(&region)) else {
+            let (s, l) = (S::from_f64(inner.point.0).min(self.end(1)), S::from_f64(inner.point.1).min(self.end(0)));
+            let Some(owner) = regions.iter().position(|region| region.contains(s, l)) else {
                 // The rounded point may have left a box of the size of the rounding.
-                let clearance = self.oracle.clearance(s.to_f64(), l.to_f64());
-                ensure!(clearance > -self.doubt, "the component at {:?} is missed", inner.point);
+                ensure!(self.clearance(s, l) > -self.doubt, "the component at {:?} is missed", inner.point);
                 continue;
             };
             owners[owner] += 1;
             let region = &regions[owner];
-            let reach = |range: pcr_core::Interval<S>, (lo, hi): (f64, f64), agent: usize| {
+            let reach = |range: Interval<S>, (lo, hi): (f64, f64), agent: usize| {
                 // The sum of the lengths may have been rounded down.
-                let hi = hi.min(self.courses[agent].motion().path().length().to_f64());
+                let hi = hi.min(self.end(agent).to_f64());
                 range.lo.to_f64() <= lo + self.doubt && hi - self.doubt <= range.hi.to_f64()
             };
             let plane::Bounds { s, l } = inner.bounds;
@@ -247,9 +273,6 @@ impl<S: Format> Audit<S> {
                 found.outer.len(),
                 found.outer.iter().map(|outer| outer.bounds).collect::<Vec<_>>()
             );
-        } else {
-            // Every region is about something, and no two are about the same when they touch one box inside.
-            ensure!(regions.len() >= usize::from(found.outer.iter().any(|outer| !outer.inner.is_empty())), "missed");
         }
         Ok(())
     }

@@ -42,6 +42,14 @@ impl Leg {
         }
     }
 
+    /// Radius of an arc \[m\].
+    pub fn radius(self) -> Option<f64> {
+        match self {
+            Self::Line(_) => None,
+            Self::Left { radius, .. } | Self::Right { radius, .. } => Some(radius),
+        }
+    }
+
     /// Change of heading over the whole leg \[rad\], left positive.
     pub fn sweep(self) -> f64 {
         match self {
@@ -146,6 +154,19 @@ impl Drive {
         match &agent.motion {
             MotionSpec::RestToRest { v_max, a_max } => Self::Limits(*v_max, *a_max),
             MotionSpec::Profile { v0, pieces } => Self::Pieces(*v0, pieces.clone()),
+        }
+    }
+
+    /// The numbers that are left of it in the format `S`.
+    pub fn rounded<S: Format>(&self) -> Self {
+        let round = |value: f64| S::from_f64(value).to_f64();
+        match self {
+            Self::Unit => Self::Unit,
+            Self::Limits(speed, acceleration) => Self::Limits(round(*speed), round(*acceleration)),
+            Self::Pieces(speed, pieces) => {
+                let pieces = pieces.iter().map(|&(duration, acceleration)| (round(duration), round(acceleration)));
+                Self::Pieces(round(*speed), pieces.collect())
+            }
         }
     }
 }

@@ -165,7 +165,7 @@ fn both_views_agree_with_the_definition() {
                     let time = start + (end - start) * f64::from(k) / f64::from(STEPS);
                     let s = travels[other].length_at(time);
                     for m in 0..=STEPS {
-                        let length = pair.ego.length() * f64::from(m) / f64::from(STEPS);
+                        let length = (pair.ego.length() * f64::from(m) / f64::from(STEPS)).min(pair.ego.length());
                         let clearance = pair.clearance(s, length);
                         let holding = regions.iter().filter(|region| region.contains(time, length)).count();
                         let right = clearance.abs() < UNCERTAIN || holding == usize::from(clearance < 0.0);

@@ -49,6 +49,12 @@ pub fn reaches(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance:
     !below(f, lo, hi, margin, tolerance).outer.is_empty()
 }
 
+/// About the least value in `[lo, hi]`: for messages, nothing is decided with it.
+pub fn nearest(f: impl Fn(f64) -> f64, lo: f64, hi: f64) -> f64 {
+    const STEPS: u32 = 100_000;
+    (0..=STEPS).map(|k| f(lo + (hi - lo) * f64::from(k) / f64::from(STEPS))).fold(f64::INFINITY, f64::min)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
