@@ -14,6 +14,7 @@
 //! cases               random crossings
 //! definition          contact by its definition, searched by walking: what decides who is right
 //! kernels             the same crossing through pcr-core
+//! truth               the right value, on which all agree, for the tests of what is wrong
 //! ```
 //!
 //! All of it is `f64` and holds for infinite lines and full circles, one crossing at a time. Where a region runs on
@@ -28,6 +29,7 @@ pub mod global;
 pub mod kernels;
 pub mod straight_arc;
 pub mod straight_straight;
+pub mod truth;
 
 use pcr_core::PieceType;
 

@@ -1,7 +1,7 @@
 //! The paper's equations (7)-(39), as corrected, against pcr-core and against the definition of contact.
 //!
 //! Random crossings of each type on long paths at constant speed: every quadrant of θ, both turns, combined radii
-//! smaller and larger than the radii of the arcs. Errors of the paper, one by one: `paper_errata.rs`.
+//! smaller and larger than the radii of the arcs. Errors of the paper, one by one: `paper_errata_*.rs`.
 
 use pcr_core::{PieceType, Radians};
 use pcr_tests::paper::arc_arc::{eq_35, eq_36};
