@@ -9,6 +9,7 @@
 //! workspace   paper Fig. 10: paths and discs
 //! map         paper Fig. 11: the extended collision map of an agent
 //! overview    both side by side
+//! page        the same in a browser, with a time slider
 //! svg         the writer of SVG files
 //! raster      SVG to PNG
 //! ```
@@ -18,6 +19,7 @@ mod contour;
 mod labels;
 mod map;
 mod overview;
+mod page;
 mod palette;
 mod raster;
 mod scene;
@@ -35,11 +37,12 @@ use std::{fs, io, thread};
 
 /// Writes all pictures of a scenario into a directory, which is created where it does not exist:
 ///
+/// - `index.html`: the workspace and the map of a selected agent in a browser, in motion, without any other file;
 /// - `overview`: the workspace beside the map of the agent with the most regions,
 /// - `workspace`: the paths, with the discs at their starts and ends,
 /// - `ecm-<id>` for every agent: its extended collision map with its trajectory,
 ///
-/// each as `.svg` and `.png`.
+/// all but the first as `.svg` and `.png`.
 ///
 /// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
 /// in a fixed order. The same scenario gives the same bytes on every machine.
@@ -58,7 +61,7 @@ pub fn write(
     let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
     let scene = Scene { scenario, motions: &motions, ecm: &ecm };
     fs::create_dir_all(directory)?;
-    let mut pictures = vec![Picture::Overview, Picture::Workspace];
+    let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
     pictures.extend((0..motions.len()).map(Picture::Map));
     let mut files = vec![Vec::new(); pictures.len()];
     let mut done = 0;
@@ -79,6 +82,7 @@ pub fn write(
 /// One picture of a scenario.
 #[derive(Clone, Copy, Debug)]
 enum Picture {
+    Page,
     Overview,
     Workspace,
     /// Of the agent at this place of the scenario.
@@ -91,6 +95,7 @@ type Files = Vec<(String, Vec<u8>)>;
 impl Picture {
     fn draw(self, scene: &Scene<'_>, raster: &Raster) -> io::Result<Files> {
         let (name, svg) = match self {
+            Self::Page => return Ok(vec![("index.html".to_owned(), page::page(scene).into_bytes())]),
             Self::Overview => ("overview".to_owned(), overview::picture(scene)),
             Self::Workspace => ("workspace".to_owned(), workspace::picture(scene)),
             Self::Map(ego) => (format!("ecm-{}", scene.id(ego)), map::picture(scene, ego)),

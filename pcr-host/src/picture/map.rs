@@ -154,7 +154,7 @@ fn draw_region(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
         svg.empty("path", &[("d", &areas), ("fill-opacity", &"0.3"), ("stroke-width", &"0.9")]);
     }
     if !lines.is_empty() {
-        svg.empty("path", &[("d", &lines), ("stroke-width", &"2.6"), ("stroke-linecap", &"round")]);
+        svg.empty("path", &[("d", &lines), ("stroke-width", &"3.6"), ("stroke-linecap", &"round")]);
     }
     svg.end();
 }

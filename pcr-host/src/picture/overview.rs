@@ -18,8 +18,11 @@ pub(super) fn busiest(scene: &Scene<'_>) -> usize {
     places.rev().max_by_key(|place| scene.count(*place)).unwrap_or(0)
 }
 
-/// The picture.
+/// The picture; of an empty fleet the workspace alone.
 pub(super) fn picture(scene: &Scene<'_>) -> String {
+    if scene.motions.is_empty() {
+        return workspace::picture(scene);
+    }
     let space = workspace::frame(scene, SIDE, [0.0, 0.0]);
     let ego = busiest(scene);
     let [time, length] = map::spans(scene, ego);

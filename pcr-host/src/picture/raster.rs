@@ -43,7 +43,10 @@ impl Raster {
 
 /// The PNG without its alpha channel, which is 1 everywhere. Line art packs best without any filter.
 fn encode(pixmap: &tiny_skia::Pixmap) -> io::Result<Vec<u8>> {
-    let opaque: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|rgba| rgba.iter().take(3)).copied().collect();
+    let mut opaque = Vec::with_capacity(pixmap.data().len() / 4 * 3);
+    for rgba in pixmap.pixels() {
+        opaque.extend([rgba.red(), rgba.green(), rgba.blue()]);
+    }
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());
     encoder.set_color(png::ColorType::Rgb);

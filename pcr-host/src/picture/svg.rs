@@ -53,8 +53,9 @@ pub(super) struct Svg {
 }
 
 impl Svg {
-    /// An empty picture of this size \[px\] on white.
+    /// An empty picture of this size \[px\], rounded up to whole pixels, on white.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
+        let (width, height) = (width.ceil(), height.ceil());
         let mut svg = Self { text: String::new(), open: Vec::new() };
         svg.start(
             "svg",

@@ -159,9 +159,7 @@ fn draw_numbers(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
         let point = motion.path().point_at(0.0);
         frame.at([point.x, point.y])
     };
-    let fits = |text: &str, motion: &Motion<'_, f64>| {
-        text_width(text, LABEL_SIZE).hypot(LABEL_SIZE) / 2.0 <= radius(motion, frame) + 1.0
-    };
+    let fits = |text: &str, motion: &Motion<'_, f64>| text_width(text, LABEL_SIZE) / 2.0 <= radius(motion, frame);
     for (place, motion) in scene.motions.iter().enumerate() {
         let ([x, y], r) = (start(motion), radius(motion, frame));
         if !fits(&scene.id(place).to_string(), motion) {
@@ -185,7 +183,10 @@ fn draw_numbers(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
         let text = scene.id(place).to_string();
         let size = [text_width(&text, LABEL_SIZE) + 1.0, LABEL_SIZE - 1.0];
         let [x, y] = start(motion);
-        let inside = fits(&text, motion).then_some([x, y]);
+        // Behind the start, where the path does not pass.
+        let behind = (radius(motion, frame) - text_width(&text, LABEL_SIZE).hypot(LABEL_SIZE) / 2.0).max(0.0);
+        let (sin, cos) = motion.path().pose_at(0.0).heading.0.sin_cos();
+        let inside = fits(&text, motion).then_some([x - behind * cos, y + behind * sin]);
         let around = (0..3).flat_map(|ring| {
             (0..16).map(move |k| {
                 let (sin, cos) = (f64::from(k) * PI / 8.0).sin_cos();

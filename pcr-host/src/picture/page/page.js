@@ -1,0 +1,370 @@
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const $ = (id) => document.getElementById(id);
+const agents = data.agents;
+const [first, last] = data.horizon;
+const state = { time: first, ego: busiest(), shown: agents.map(() => true), pinned: null };
+
+function busiest() {
+  let best = 0;
+  data.maps.forEach((map, k) => { if (map.regions.length > data.maps[best].regions.length) best = k; });
+  return best;
+}
+
+// ---- Motion: the closed forms of the library ----
+
+// Length travelled at a time, from the slow end of each phase, where nothing cancels.
+function lengthAt(agent, time) {
+  const t = time - agent.time[0];
+  if (t <= 0 || agent.phases.length === 0) return 0;
+  if (time >= agent.time[1]) return agent.length;
+  const [from, duration, length, before, after, acceleration] =
+    agent.phases.find(([from, duration]) => t <= from + duration) ?? agent.phases[agent.phases.length - 1];
+  const slows = acceleration < 0;
+  const elapsed = slows ? from + duration - t : t - from;
+  const way = ((slows ? after : before) + Math.abs(acceleration) * elapsed / 2) * elapsed;
+  const all = (before + after) / 2 * duration;
+  return length + Math.min(Math.max(slows ? all - way : way, 0), all);
+}
+
+// Point at a length of the path: on an arc over its half chord.
+function pointAt(agent, length) {
+  let low = 0;
+  for (let high = agent.segments.length; high - low > 1;) {
+    const middle = (low + high) >> 1;
+    if (agent.segments[middle][0] <= length) low = middle; else high = middle;
+  }
+  const [from, whole, x, y, heading, bend] = agent.segments[low];
+  const u = Math.min(Math.max(length - from, 0), whole);
+  if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading)];
+  const half = u / bend / 2;
+  const chord = 2 * bend * Math.sin(half);
+  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half)];
+}
+
+const positionAt = (agent, time) => pointAt(agent, lengthAt(agent, time));
+
+// ---- Drawing ----
+
+function element(parent, name, attributes = {}, text) {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  if (text !== undefined) node.textContent = text;
+  parent.append(node);
+  return node;
+}
+
+function widened([lo, hi], part = 0) {
+  const least = Math.max(1e-6, 1e-9 * Math.max(Math.abs(lo), Math.abs(hi)));
+  const by = Math.max(part * (hi - lo), (least - (hi - lo)) / 2, 0);
+  return [lo - by, hi + by];
+}
+
+function axis([lo, hi], from, to) {
+  const at = (value) => from + (value - lo) / (hi - lo) * (to - from);
+  const ticks = (gap) => {
+    const coarsest = (hi - lo) / Math.abs(to - from) * gap;
+    const power = 10 ** Math.floor(Math.log10(coarsest));
+    const step = [1, 2, 5, 10].map((factor) => factor * power).find((step) => step >= coarsest) ?? 10 * power;
+    const decimals = Math.min(20, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
+    const count = Math.floor(hi / step + 1e-6) - Math.ceil(lo / step - 1e-6);
+    const start = Math.ceil(lo / step - 1e-6);
+    return Array.from({ length: Math.max(0, count + 1) }, (_, k) => {
+      const value = (start + k) * step;
+      return [value, value.toFixed(decimals).replace(/^-(?=[0.]*$)/, "").replace("-", "\u2212")];
+    });
+  };
+  return { at, ticks };
+}
+
+const room = { left: 78, top: 14, right: 14, bottom: 58 };
+
+function frame(svg, xs, ys, width, height, titles) {
+  svg.replaceChildren();
+  const right = room.left + width, bottom = room.top + height;
+  svg.setAttribute("viewBox", `0 0 ${right + room.right} ${bottom + room.bottom}`);
+  const x = axis(xs, room.left, right), y = axis(ys, bottom, room.top);
+  for (const [value, label] of x.ticks(90)) {
+    element(svg, "path", { class: "grid", d: `M${x.at(value)} ${room.top}V${bottom}` });
+    element(svg, "text", { x: x.at(value), y: bottom + 20, "text-anchor": "middle" }, label);
+  }
+  for (const [value, label] of y.ticks(56)) {
+    element(svg, "path", { class: "grid", d: `M${room.left} ${y.at(value)}H${right}` });
+    element(svg, "text", { x: room.left - 7, y: y.at(value) + 5, "text-anchor": "end" }, label);
+  }
+  element(svg, "text", { class: "title", x: (room.left + right) / 2, y: bottom + 46, "text-anchor": "middle" }, titles[0]);
+  const middle = (room.top + bottom) / 2;
+  element(svg, "text",
+    { class: "title", x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, titles[1]);
+  const content = element(svg, "g");
+  element(svg, "rect", { class: "frame", x: room.left, y: room.top, width, height, "pointer-events": "none" });
+  return { content, x, y, left: room.left, top: room.top, right, bottom };
+}
+
+const discs = [], paths = [];
+let cursor = null;
+
+function drawWorkspace() {
+  const [x0, x1, y0, y1] = data.bounds;
+  const side = Math.max(x1 - x0, y1 - y0, 1e-6, 1e-9 * Math.max(...data.bounds.map(Math.abs)));
+  const most = 700, least = 220, margin = 0.03 * side;
+  const metre = most / (side + 2 * margin);
+  const fit = (lo, hi) => {
+    const pixels = Math.max((hi - lo + 2 * margin) * metre, least);
+    return [pixels, [(lo + hi - pixels / metre) / 2, (lo + hi + pixels / metre) / 2]];
+  };
+  const [width, xs] = fit(x0, x1), [height, ys] = fit(y0, y1);
+  const view = frame($("workspace"), xs, ys, width, height, ["x [m]", "y [m]"]);
+  const screen = ([x, y]) => [view.x.at(x), view.y.at(y)];
+  const radius = (agent) => Math.max(agent.radius * metre, 2);
+  agents.forEach((agent, k) => {
+    const group = element(view.content, "g", { class: "agent", style: `--colour:${agent.colour}` });
+    let d = "M" + screen(pointAt(agent, 0)).join(" ");
+    for (const [from, length, , , , bend] of agent.segments) {
+      // Below half a turn two points and a radius leave no doubt which arc is meant.
+      const parts = bend === 0 ? 1 : Math.max(1, Math.ceil(length / Math.abs(bend) / (0.75 * Math.PI)));
+      for (let part = 1; part <= parts; part += 1) {
+        const end = screen(pointAt(agent, from + length * part / parts)).join(" ");
+        const size = Math.abs(bend) * metre;
+        d += bend === 0 ? `L${end}` : `A${size} ${size} 0 0 ${bend < 0 ? 1 : 0} ${end}`;
+      }
+    }
+    element(group, "path", { class: "path", d });
+    const [cx, cy] = screen(pointAt(agent, agent.length));
+    element(group, "circle", { class: "end", cx, cy, r: radius(agent) });
+    paths.push(group);
+  });
+  agents.forEach((agent, k) => {
+    const disc = element(view.content, "g", {
+      class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.id}`,
+    });
+    element(disc, "circle", { r: radius(agent) });
+    element(disc, "text", {}, agent.id);
+    disc.addEventListener("click", () => selectEgo(k));
+    disc.addEventListener("keydown", (event) => { if (onKey(event)) selectEgo(k); });
+    discs.push(disc);
+  });
+  drawWorkspace.screen = screen;
+}
+
+function onKey(event) {
+  if (event.key !== "Enter" && event.key !== " ") return false;
+  event.preventDefault();
+  return true;
+}
+
+function drawMap() {
+  const map = data.maps[state.ego], ego = agents[state.ego];
+  const width = 760, height = 640;
+  const view = frame($("map"), map ? widened(map.time) : [0, 1], map ? widened(map.length) : [0, 1], width, height,
+    ["time t [s]", "travelled length l [m]"]);
+  cursor = null;
+  if (!map) return;
+  const { x, y, content } = view;
+  const grid = `translate(${view.left} ${view.bottom}) scale(${width / data.grid} ${-height / data.grid})`;
+  const order = map.regions.map((_, k) => k).sort((a, b) => size(map.regions[b]) - size(map.regions[a]));
+  for (const k of order) {
+    const region = map.regions[k], other = agents[region.other];
+    if (!state.shown[region.other]) continue;
+    const extent = [x.at(region.time[1]) - x.at(region.time[0]), y.at(region.length[0]) - y.at(region.length[1])];
+    const node = element(content, "g", {
+      class: `agent region${Math.min(...extent) < 2 ? " thin" : ""}${state.pinned === k ? " pinned" : ""}`,
+      style: `--colour:${other.colour}`, tabindex: 0, role: "button", "aria-label": summary(region),
+    });
+    const strip = (from, to) => ([lo, hi]) => element(node, "rect",
+      { x: from, width: Math.max(0, to - from), y: y.at(hi), height: Math.max(y.at(lo) - y.at(hi), 2) });
+    region.before.forEach(strip(view.left, x.at(other.time[0])));
+    region.after.forEach(strip(x.at(other.time[1]), view.right));
+    element(node, "path", { d: region.outline, transform: grid });
+    if (region.label) element(node, "text", { x: x.at(region.label[0]), y: y.at(region.label[1]) }, other.id);
+    node.addEventListener("pointerenter", () => describe(region));
+    node.addEventListener("focus", () => describe(region));
+    node.addEventListener("pointerleave", () => describe(map.regions[state.pinned]));
+    const pin = () => {
+      state.pinned = state.pinned === k ? null : k;
+      content.querySelectorAll(".pinned").forEach((pinned) => pinned.classList.remove("pinned"));
+      if (state.pinned === k) node.classList.add("pinned");
+      describe(region);
+    };
+    node.addEventListener("click", pin);
+    node.addEventListener("keydown", (event) => { if (onKey(event)) pin(); });
+  }
+  const at = (time, length) => `${x.at(time)} ${y.at(length)}`;
+  let d = "M" + at(ego.time[0], 0);
+  for (const [from, duration, length, before, after] of ego.phases) {
+    // Constant acceleration is a parabola; its tangents meet at half time.
+    const start = ego.time[0] + from;
+    d += `Q${at(start + duration / 2, length + before * duration / 2)} `
+      + at(start + duration, length + (before + after) / 2 * duration);
+  }
+  element(content, "path", { class: "own", d, "pointer-events": "none" });
+  element(content, "path", { class: "own stands", "pointer-events": "none",
+    d: `M${view.left} ${y.at(0)}H${x.at(ego.time[0])}M${at(ego.time[1], ego.length)}H${view.right}` });
+  cursor = {
+    x, y,
+    line: element(content, "path", { class: "cursor", "pointer-events": "none" }),
+    dot: element(content, "circle", { class: "dot", r: 6, "pointer-events": "none" }),
+    span: `${view.top}V${view.bottom}`,
+  };
+  const count = map.regions.length;
+  $("caption").textContent = `Extended collision map of agent ${ego.id}: ${count} region${count === 1 ? "" : "s"}, labelled by the`
+    + " other agent; dashed strips are agents that stand at their start or end. Point at a region, or press Tab, to read about it.";
+}
+
+const size = (region) => (region.time[1] - region.time[0]) * (region.length[1] - region.length[0]);
+
+function summary(region) {
+  return `Region of agents ${agents[state.ego].id} and ${agents[region.other].id}, ${number(region.time[0])} to `
+    + `${number(region.time[1])} seconds, ${number(region.length[0])} to ${number(region.length[1])} metres`;
+}
+
+const number = (value) => Number(value.toPrecision(6)).toLocaleString("en", { maximumFractionDigits: 6, useGrouping: false });
+
+function describe(region) {
+  const about = $("about");
+  about.replaceChildren();
+  const add = (parent, name, text) => {
+    const node = document.createElement(name);
+    if (text !== undefined) node.textContent = text;
+    parent.append(node);
+    return node;
+  };
+  if (!region) {
+    add(about, "p", "Point at a region of the map to read its descriptor; click to keep it.");
+    return;
+  }
+  const open = [region.before.length > 0 && "from before the other's start", region.after.length > 0 && "on after its arrival"];
+  const line = add(about, "p");
+  add(line, "strong", `Agent ${agents[state.ego].id} against agent ${agents[region.other].id}`);
+  line.append(`, type ${region.types.join(", ")} (${region.pieces} piece${region.pieces === 1 ? "" : "s"})`);
+  const extent = add(about, "p", `time ${number(region.time[0])} to ${number(region.time[1])} s, length `
+    + `${number(region.length[0])} to ${number(region.length[1])} m`);
+  const goes = open.filter(Boolean).join(" and ");
+  if (goes) extent.append(`; goes ${goes}`);
+  if (region.crossings.length === 0) {
+    add(about, "p", "The paths come near each other here without a crossing: the paper has no descriptor for it.");
+    return;
+  }
+  const table = add(about, "table");
+  const head = add(table, "tr");
+  for (const title of ["crossing", "T [s]", "L [m]", "r\u0302 [m]", "v [m/s]", "\u03b8 [rad]", "\u03c2 own [m]", "\u03c2 other [m]"]) {
+    add(head, "th", title).scope = "col";
+  }
+  const bend = (radius) => radius === null ? "\u2013" : `${number(Math.abs(radius))} ${radius > 0 ? "left" : "right"}`;
+  for (const crossing of region.crossings) {
+    const row = add(table, "tr");
+    add(row, "td", crossing.type);
+    for (const value of [crossing.T, crossing.L, crossing.r, crossing.v, crossing.theta]) add(row, "td", number(value));
+    add(row, "td", bend(crossing.own));
+    add(row, "td", bend(crossing.other));
+  }
+}
+
+// ---- Time ----
+
+function showTime() {
+  const points = agents.map((agent) => positionAt(agent, state.time));
+  const hit = agents.map(() => false);
+  for (let i = 0; i < agents.length; i += 1) {
+    if (!state.shown[i]) continue;
+    for (let j = 0; j < i; j += 1) {
+      const apart = Math.hypot(points[i][0] - points[j][0], points[i][1] - points[j][1]);
+      if (state.shown[j] && apart <= agents[i].radius + agents[j].radius) hit[i] = hit[j] = true;
+    }
+  }
+  discs.forEach((disc, k) => {
+    const [x, y] = drawWorkspace.screen(points[k]);
+    disc.setAttribute("transform", `translate(${x} ${y})`);
+    disc.classList.toggle("hit", hit[k]);
+  });
+  if (cursor) {
+    const x = cursor.x.at(state.time);
+    cursor.line.setAttribute("d", `M${x} ${cursor.span}`);
+    cursor.dot.setAttribute("cx", x);
+    cursor.dot.setAttribute("cy", cursor.y.at(lengthAt(agents[state.ego], state.time)));
+    cursor.dot.classList.toggle("hit", hit[state.ego]);
+  }
+  const count = hit.filter(Boolean).length;
+  $("clock").textContent = `${state.time.toFixed(2)} s` + (count ? `, ${count} in contact` : "");
+  $("time").value = state.time;
+}
+
+let frameBefore = null;
+
+function play(on) {
+  if (on && state.time >= last) state.time = first;
+  frameBefore = null;
+  $("play").setAttribute("aria-pressed", on);
+  $("play-text").textContent = on ? "Pause" : "Play";
+  $("play").firstElementChild.textContent = on ? "\u23f8" : "\u25b6";
+  if (on) requestAnimationFrame(step);
+}
+
+function step(now) {
+  if ($("play").getAttribute("aria-pressed") !== "true") return;
+  const pace = Number($("pace").value);
+  const speed = pace > 0 ? (last - first) / pace : 1;
+  if (frameBefore !== null) state.time = Math.min(last, state.time + (now - frameBefore) / 1000 * speed);
+  frameBefore = now;
+  showTime();
+  if (state.time < last) requestAnimationFrame(step); else play(false);
+}
+
+// ---- Choices ----
+
+function selectEgo(k) {
+  state.ego = k;
+  state.pinned = null;
+  state.shown[k] = true;
+  $("ego").value = k;
+  show();
+  describe();
+}
+
+function show() {
+  drawMap();
+  agents.forEach((_, k) => {
+    for (const node of [paths[k], discs[k]]) node.classList.toggle("hidden", !state.shown[k]);
+    paths[k].firstElementChild.classList.toggle("ego", k === state.ego);
+    discs[k].classList.toggle("ego", k === state.ego);
+    $("chips").children[k].setAttribute("aria-pressed", state.shown[k]);
+  });
+  showTime();
+}
+
+function start() {
+  const regions = data.maps.reduce((sum, map) => sum + map.regions.length, 0);
+  $("summary").textContent = `${agents.length} agents, ${regions} collision regions (both sides of each pair), `
+    + `${number(first)} to ${number(last)} s`;
+  agents.forEach((agent, k) => {
+    const option = document.createElement("option");
+    option.value = k;
+    option.textContent = `${agent.id} (${data.maps[k].regions.length})`;
+    $("ego").append(option);
+    const chip = document.createElement("button");
+    chip.type = "button";
+    chip.className = "agent chip";
+    chip.style.setProperty("--colour", agent.colour);
+    chip.textContent = agent.id;
+    chip.title = `Show or hide agent ${agent.id}`;
+    chip.addEventListener("click", () => { state.shown[k] = !state.shown[k]; show(); });
+    $("chips").append(chip);
+  });
+  const slider = $("time");
+  slider.min = first;
+  slider.max = last;
+  slider.step = Math.max((last - first) / 2000, Number.MIN_VALUE);
+  slider.addEventListener("input", () => { state.time = Number(slider.value); showTime(); });
+  $("play").addEventListener("click", () => play($("play").getAttribute("aria-pressed") !== "true"));
+  $("ego").addEventListener("change", () => selectEgo(Number($("ego").value)));
+  $("all").addEventListener("click", () => { state.shown.fill(true); show(); });
+  $("partners").addEventListener("click", () => {
+    const partners = new Set(data.maps[state.ego]?.regions.map((region) => region.other));
+    agents.forEach((_, k) => { state.shown[k] = k === state.ego || partners.has(k); });
+    show();
+  });
+  drawWorkspace();
+  if (agents.length > 0) selectEgo(state.ego); else { drawMap(); describe(); }
+}
+
+start();
