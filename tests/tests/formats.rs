@@ -1,0 +1,94 @@
+//! `f32` against `f64`, on the reference pairs: what the smaller format may add, and that it never loses anything.
+//!
+//! The inputs are rounded to `f32` first: what that does to a scenario is no error of the algorithm. Lengths are
+//! compared at 1 m/s; the motions have tests of their own (`motions.rs`).
+
+use pcr_core::{Interval, RegionRef, Scalar};
+use pcr_host::fleet::Format;
+use pcr_tests::audit::{Audit, RESIDUAL, Seen};
+use pcr_tests::disc::Disc;
+use pcr_tests::oracle::plane::Effort;
+use pcr_tests::reference::cases;
+
+/// A region in `f32` lies within the exact region of a radius that is larger by this, as a fraction of the extents of the
+/// two motions: the residual bound of 3 slacks of 16 roundoffs.
+const F32_EXCESS: f64 = 3e-6;
+
+/// Samples of each region.
+const SAMPLES: u32 = if cfg!(debug_assertions) { 8 } else { 32 };
+
+fn pairs() -> impl Iterator<Item = (String, Disc, Disc)> {
+    cases().into_iter().map(|case| {
+        let [ego, other] = [0, 1].map(|k| Disc::of_agent(&case.scenario.agents[k]).rounded::<f32>());
+        (case.name, ego, other)
+    })
+}
+
+fn extent(ego: &Disc, other: &Disc) -> f64 {
+    let audit = Audit::<f64>::new(ego, other).expect("a valid pair");
+    let (motions, _) = audit.table();
+    motions[0].extent() + motions[1].extent()
+}
+
+/// The slices of all regions at a length of the other's path.
+fn slices<S: Format>(regions: &[RegionRef<'_, S>], s: f64) -> Vec<[f64; 2]> {
+    let interval = |interval: Interval<S>| [interval.lo.to_f64(), interval.hi.to_f64()];
+    regions.iter().flat_map(|region| region.slice_at(S::from_f64(s)).map(interval)).collect()
+}
+
+/// Whether every interval of `inner` lies in one of `outer`, lengths right within `tolerance`.
+fn within(inner: &[[f64; 2]], outer: &[[f64; 2]], tolerance: f64) -> bool {
+    let inside = |a: &[f64; 2], b: &[f64; 2]| b[0] - tolerance <= a[0] && a[1] <= b[1] + tolerance;
+    inner.iter().all(|a| outer.iter().any(|b| inside(a, b)))
+}
+
+#[test]
+fn the_stated_excess_is_the_residual_bound() {
+    let slack = f64::from(f32::slack(1.0));
+    assert!((RESIDUAL * slack / F32_EXCESS - 1.0).abs() < 0.1, "{} for {F32_EXCESS}", RESIDUAL * slack);
+}
+
+#[test]
+fn f32_contains_the_f64_regions_and_is_within_those_of_a_larger_radius() {
+    for (name, ego, other) in pairs() {
+        let extent = extent(&ego, &other);
+        let small = Audit::<f32>::new(&ego, &other).expect("a valid pair");
+        let exact = Audit::<f64>::new(&ego, &other).expect("a valid pair");
+        let grown = Audit::<f64>::new(&ego.grown(F32_EXCESS * extent), &other).expect("a valid pair");
+        let (tables, exact_tables, grown_tables) = (small.table(), exact.table(), grown.table());
+        let regions: Vec<_> = tables.1.pair(&tables.0, 0, 1).collect();
+        let exact_regions: Vec<_> = exact_tables.1.pair(&exact_tables.0, 0, 1).collect();
+        let grown_regions: Vec<_> = grown_tables.1.pair(&grown_tables.0, 0, 1).collect();
+        // Joints lie where the format sums them up to, which may be a roundoff of the length away.
+        let tolerance = f64::from(f32::EPSILON) * extent;
+        for region in &exact_regions {
+            let range = region.other_length();
+            for k in 0..=SAMPLES {
+                // A number of both formats, inside the range.
+                let s = (range.lo + range.length() * f64::from(k) / f64::from(SAMPLES)) as f32;
+                let s = f64::from(s.min(tables.0[1].path().length()));
+                let (inner, middle, outer) =
+                    (slices(&exact_regions, s), slices(&regions, s), slices(&grown_regions, s));
+                assert!(within(&inner, &middle, tolerance), "{name} at {s}: {inner:?} not in {middle:?}");
+                assert!(within(&middle, &outer, tolerance), "{name} at {s}: {middle:?} not in {outer:?}");
+            }
+        }
+        // Between two radii with as many regions there is no change of structure.
+        if exact_regions.len() == grown_regions.len() {
+            assert_eq!(regions.len(), exact_regions.len(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn f32_regions_are_audited_on_the_reference_pairs() {
+    const EFFORT: Effort = Effort { resolution: 2e-2, boxes: 3_000, range: 1e-4 };
+    let mut seen = Seen::default();
+    for (name, ego, other) in pairs() {
+        let audit = Audit::<f32>::new(&ego, &other).expect("a valid pair");
+        if let Err(violation) = audit.all(EFFORT, 12, &mut seen) {
+            panic!("{name}: {violation}");
+        }
+    }
+    assert!(seen.regions > 300 && seen.certain > 150, "{seen:?}");
+}

@@ -1,0 +1,235 @@
+//! The table of a fleet: order, exchange of agents, and what happens when it is full.
+
+use pcr_core::{Ecm, Full, Interval, Motion, Piece, Region, RegionRef};
+use pcr_host::fleet::{Fleet, HostEcm, build_ecm};
+use pcr_host::scenario::Scenario;
+use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::generators::Dice;
+
+/// What a region is, for comparison.
+type Entry = ([usize; 2], [Interval<f64>; 3], usize);
+
+fn entry(region: &RegionRef<'_, f64>) -> Entry {
+    let ranges = [region.time(), region.length(), region.other_length()];
+    ([region.ego(), region.other()], ranges, region.pieces().count())
+}
+
+fn entries<R, P>(ecm: &Ecm<f64, R, P>, motions: &[Motion<'_, f64>]) -> Vec<Entry>
+where
+    R: AsRef<[Region]>,
+    P: AsRef<[Piece<f64>]>,
+{
+    ecm.regions(motions).map(|region| entry(&region)).collect()
+}
+
+fn twelve() -> Fleet<f64> {
+    let scenario = Scenario::from_json(include_str!("../data/paper12.json")).expect("a valid scenario");
+    Fleet::new(&scenario).expect("a valid fleet")
+}
+
+/// Another motion for one of the twelve: a detour through the middle of the square.
+fn detour(k: usize) -> Course<f64> {
+    let legs = vec![Leg::Line(1.0 + 0.2 * k as f64), Leg::arc(0.8, 2.5), Leg::Line(2.0), Leg::arc(0.5, -3.0)];
+    let disc = Disc { radius: 0.12, start: [2.0 + 0.3 * k as f64, 1.0, 0.3 * k as f64], legs };
+    Course::driven(&disc, &Drive::Limits(0.5, 0.3), k as f64).expect("a valid disc")
+}
+
+fn exact(motions: &[Motion<'_, f64>]) -> (HostEcm<f64>, usize, usize) {
+    let roomy = build_ecm(motions).expect("a small fleet");
+    let (regions, pieces) = (roomy.len(), roomy.pieces());
+    let tight = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions);
+    (tight.expect("as much room as is used"), regions, pieces)
+}
+
+#[test]
+fn rows_are_in_the_order_of_the_agents_and_complete() {
+    let fleet = twelve();
+    let motions = fleet.motions();
+    let ecm = build_ecm(&motions).expect("a small fleet");
+    let all = entries(&ecm, &motions);
+    assert_eq!(all.len(), 2 * ecm.len());
+    assert!(all.iter().map(|entry| entry.0).is_sorted(), "by ego, then by the other");
+    for ego in 0..motions.len() {
+        let row: Vec<_> = ecm.row(&motions, ego).map(|region| entry(&region)).collect();
+        let expected: Vec<_> = all.iter().filter(|entry| entry.0[0] == ego).copied().collect();
+        assert_eq!(row, expected);
+        for other in 0..motions.len() {
+            let pair: Vec<_> = ecm.pair(&motions, ego, other).map(|region| entry(&region)).collect();
+            let expected: Vec<_> = row.iter().filter(|entry| entry.0[1] == other).copied().collect();
+            assert_eq!(pair, expected);
+        }
+    }
+}
+
+#[test]
+fn agents_that_are_not_there_have_no_regions() {
+    let fleet = twelve();
+    let mut motions = fleet.motions();
+    let mut ecm = build_ecm(&motions).expect("a small fleet");
+    let before = entries(&ecm, &motions);
+    assert_eq!(ecm.row(&motions, 12).count() + ecm.pair(&motions, 0, 12).count() + ecm.pair(&motions, 3, 3).count(), 0);
+    ecm.remove(12);
+    ecm.remove(usize::MAX);
+    assert_eq!(ecm.insert(&motions, 99), Ok(()));
+    let motion = motions[0];
+    assert_eq!(ecm.replace(&mut motions, 12, motion), Ok(()));
+    assert_eq!(entries(&ecm, &motions), before);
+    let nobody: [Motion<'_, f64>; 0] = [];
+    assert!(Ecm::<f64, _, _>::build([], [], &nobody).expect("nothing to store").is_empty());
+}
+
+#[test]
+fn removing_an_agent_leaves_the_rows_of_the_others() {
+    let fleet = twelve();
+    let motions = fleet.motions();
+    let full = entries(&build_ecm(&motions).expect("a small fleet"), &motions);
+    for agent in 0..motions.len() {
+        let mut ecm = build_ecm(&motions).expect("a small fleet");
+        ecm.remove(agent);
+        let kept: Vec<_> = full.iter().filter(|entry| !entry.0.contains(&agent)).copied().collect();
+        assert_eq!(entries(&ecm, &motions), kept);
+        // Nothing is left to remove, and all of it comes back.
+        ecm.remove(agent);
+        assert_eq!(entries(&ecm, &motions), kept);
+        ecm.insert(&motions, agent).expect("there was room before");
+        assert_eq!(entries(&ecm, &motions), full);
+    }
+}
+
+#[test]
+fn replacing_agents_equals_building_anew_without_losing_room() {
+    const ROUNDS: u64 = 200;
+    let fleet = twelve();
+    let originals = fleet.motions();
+    let detours: Vec<_> = (0..12).map(detour).collect();
+    let mut motions = originals.clone();
+    let (mut regions, mut pieces) = (0, 0);
+    let choose = |round| {
+        let mut dice = Dice::seeded(round);
+        let agent = dice.below(12);
+        (agent, if dice.chance(0.5) { detours[agent].motion() } else { originals[agent] })
+    };
+    // Room for the largest of the fleets on the way, and no more: a leaked slot would be missed.
+    for round in 0..ROUNDS {
+        let (agent, motion) = choose(round);
+        motions[agent] = motion;
+        let ecm = build_ecm(&motions).expect("a small fleet");
+        (regions, pieces) = (regions.max(ecm.len()), pieces.max(ecm.pieces()));
+    }
+    let first = build_ecm(&originals).expect("a small fleet");
+    (regions, pieces) = (regions.max(first.len()), pieces.max(first.pieces()));
+    let mut motions = originals.clone();
+    let mut ecm = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], &motions).expect("enough room");
+    for round in 0..ROUNDS {
+        let (agent, motion) = choose(round);
+        ecm.replace(&mut motions, agent, motion).expect("enough room");
+        if cfg!(debug_assertions) && round % 10 != 0 {
+            continue;
+        }
+        let fresh = build_ecm(&motions).expect("a small fleet");
+        assert_eq!(entries(&ecm, &motions), entries(&fresh, &motions), "after round {round}");
+        assert_eq!((ecm.len(), ecm.pieces()), (fresh.len(), fresh.pieces()));
+    }
+}
+
+#[test]
+fn a_table_that_is_exactly_full_is_built_and_a_smaller_one_is_refused() {
+    let fleet = twelve();
+    let motions = &fleet.motions()[..6];
+    let (tight, regions, pieces) = exact(motions);
+    let roomy = build_ecm(motions).expect("a small fleet");
+    assert_eq!(entries(&tight, motions), entries(&roomy, motions));
+    for room in 0..regions {
+        let outcome = Ecm::build(vec![Region::EMPTY; room], vec![Piece::EMPTY; pieces], motions);
+        assert_eq!(outcome.err(), Some(Full::Regions), "{room} of {regions} regions");
+    }
+    for room in 0..pieces {
+        let outcome = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; room], motions);
+        assert_eq!(outcome.err(), Some(Full::Pieces), "{room} of {pieces} pieces");
+    }
+}
+
+#[test]
+fn an_agent_that_does_not_fit_leaves_the_table_as_it_was() {
+    let fleet = twelve();
+    let motions = &fleet.motions()[..6];
+    let (_, regions, pieces) = exact(motions);
+    let others = &motions[..5];
+    let (_, least_regions, least_pieces) = exact(others);
+    for (room, space) in (least_regions..=regions)
+        .map(|room| (room, pieces))
+        .chain((least_pieces..=pieces).map(|space| (regions, space)))
+    {
+        let storage = (vec![Region::EMPTY; room], vec![Piece::EMPTY; space]);
+        let mut ecm = Ecm::build(storage.0, storage.1, others).expect("room for the others");
+        let before = entries(&ecm, motions);
+        let outcome = ecm.insert(motions, 5);
+        if room == regions && space == pieces {
+            assert_eq!(outcome, Ok(()));
+            continue;
+        }
+        assert_eq!(outcome, Err(if room < regions { Full::Regions } else { Full::Pieces }));
+        assert_eq!(entries(&ecm, motions), before, "{room} regions, {space} pieces");
+        // And it still works: what was given back is free again.
+        ecm.remove(4);
+        ecm.insert(others, 4).expect("it fitted before");
+        assert_eq!(entries(&ecm, motions), before);
+    }
+}
+
+#[test]
+fn a_replacement_that_does_not_fit_leaves_table_and_fleet_as_they_were() {
+    let fleet = twelve();
+    let detours: Vec<_> = (0..12).map(detour).collect();
+    let mut refused = 0;
+    for (agent, course) in detours.iter().enumerate() {
+        let mut motions = fleet.motions();
+        let (mut ecm, regions, pieces) = exact(&motions);
+        let before = entries(&ecm, &motions);
+        let start = motions[agent].path().point_at(0.0);
+        match ecm.replace(&mut motions, agent, course.motion()) {
+            Ok(()) => {
+                let fresh = build_ecm(&motions).expect("a small fleet");
+                assert_eq!(entries(&ecm, &motions), entries(&fresh, &motions));
+                assert!(ecm.len() <= regions && ecm.pieces() <= pieces);
+            }
+            Err(_) => {
+                refused += 1;
+                assert_eq!(motions[agent].path().point_at(0.0), start);
+                assert_eq!(entries(&ecm, &motions), before);
+            }
+        }
+    }
+    assert!(refused > 0, "no detour is too much for a full table");
+}
+
+#[test]
+fn a_delay_needs_no_change_of_the_table() {
+    let fleet = twelve();
+    let mut motions = fleet.motions();
+    let ecm = build_ecm(&motions).expect("a small fleet");
+    let before = entries(&ecm, &motions);
+    motions[3] = motions[3].delayed(4.0).expect("a small delay");
+    let fresh = build_ecm(&motions).expect("a small fleet");
+    let after = entries(&ecm, &motions);
+    assert_eq!(after, entries(&fresh, &motions));
+    for (early, late) in before.iter().zip(&after) {
+        // Only who looks at the delayed agent sees it later.
+        let shift = if early.0[1] == 3 { 4.0 } else { 0.0 };
+        assert!((late.1[0].lo - early.1[0].lo - shift).abs() < 1e-12);
+        assert!((late.1[0].hi - early.1[0].hi - shift).abs() < 1e-12);
+        assert_eq!((early.0, early.1[1], early.1[2]), (late.0, late.1[1], late.1[2]));
+    }
+}
+
+#[test]
+fn storage_may_be_arrays_slices_or_vectors() {
+    let fleet = twelve();
+    let motions = &fleet.motions()[..2];
+    let on_heap = build_ecm(motions).expect("a small fleet");
+    let in_arrays = Ecm::build([Region::EMPTY; 16], [Piece::EMPTY; 32], motions).expect("enough room");
+    let (mut regions, mut pieces) = ([Region::EMPTY; 16], [Piece::EMPTY; 32]);
+    let borrowed = Ecm::build(&mut regions[..], &mut pieces[..], motions).expect("enough room");
+    assert_eq!(entries(&on_heap, motions), entries(&in_arrays, motions));
+    assert_eq!(entries(&on_heap, motions), entries(&borrowed, motions));
+}
