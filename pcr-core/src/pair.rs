@@ -149,7 +149,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         };
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
-        let placed = covered.map(|slice| slice.map(|slice| self.outward(slice, own.from, self.first)));
+        let all = Interval::new(S::ZERO, self.first.path().length());
+        let placed = covered.map(|slice| slice.map(|slice| self.outward(slice, own.from, all)));
         piece.share.of(placed, piece.first)
     }
 
@@ -162,21 +163,23 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         };
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
-        // One interval of the second segment is connected, hence part of one region: that of its middle.
+        // One interval of the second segment is connected, hence part of one region: that of its middle. It may go
+        // on beyond the piece.
+        let all = Interval::new(S::ZERO, self.second.path().length());
         let belongs = |slice: &Interval<S>| {
             let slices = self.slices_of_first(piece, slice.middle() + other.from);
             slices.into_iter().flatten().any(|slice| slice.contains(l))
         };
-        covered.map(|slice| slice.filter(belongs).map(|slice| self.outward(slice, other.from, self.second)))
+        covered.map(|slice| slice.filter(belongs).map(|slice| self.outward(slice, other.from, all)))
     }
 
     fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {
         (segment(self.first, piece.first_segment), segment(self.second, piece.second_segment))
     }
 
-    fn outward(&self, slice: Interval<S>, from: S, motion: &Motion<'_, S>) -> Interval<S> {
-        let all = Interval::new(S::ZERO, motion.path().length());
-        Interval::new(slice.lo + from, slice.hi + from).widen(self.slack, all)
+    /// A slice of a segment as lengths of the path, rounded outward within `range`.
+    fn outward(&self, slice: Interval<S>, from: S, range: Interval<S>) -> Interval<S> {
+        Interval::new(slice.lo + from, slice.hi + from).widen(self.slack, range)
     }
 }
 

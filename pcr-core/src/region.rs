@@ -181,11 +181,17 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 
     /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
     fn intervals(&self, at: S) -> impl Iterator<Item = Interval<S>> {
-        let (pair, transposed) = (self.pair, self.transposed);
+        let (pair, transposed, range) = (self.pair, self.transposed, self.length());
         let slices = move |piece| {
             if transposed { pair.slices_of_second(piece, at) } else { pair.slices_of_first(piece, at) }
         };
-        self.pieces.clone().flat_map(slices).flatten()
+        // Both are rounded outward; what they share is the better bound.
+        self.pieces
+            .clone()
+            .flat_map(slices)
+            .flatten()
+            .filter(move |slice| slice.meets(range))
+            .map(move |slice| slice.widen(S::ZERO, range))
     }
 }
 

@@ -6,7 +6,8 @@
 //!
 //! The lengths of a piece are the hull of its slices at the turning points, at the ends of the second segment, and
 //! in the middle of each slab: where a length is extreme, the contact is normal to the second segment, or
-//! the second segment ends, or the first one does, and then its end is covered throughout the slab.
+//! the second segment ends, or the first one does, and then its end is covered throughout the slab. Where two
+//! laps can be covered at once a region may go on from piece to piece, so that the slab ends count as well.
 
 use super::events::{Events, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share, shift};
@@ -91,8 +92,8 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
     ) -> Result<Open, Full> {
         let mut now = Open::default();
         let ends = [
-            (slab.lo <= S::ZERO).then(|| self.section(slab.lo)),
-            (slab.hi >= self.second.length).then(|| self.section(slab.hi)),
+            (self.wraps || slab.lo <= S::ZERO).then(|| self.section(slab.lo)),
+            (self.wraps || slab.hi >= self.second.length).then(|| self.section(slab.hi)),
         ];
         let several = middle.reach.intervals(self.first)[1].is_some();
         let mut share = if several { Share::Lower } else { Share::Only };
@@ -150,7 +151,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         }
     }
 
-    /// The slice of a cell at an end of the second segment. There it may have shrunk to a point, or grown to the whole
+    /// The slice of a cell at an end of its slab. There it may have shrunk to a point, or grown to the whole
     /// circle, and rounding may have taken it a little beyond.
     fn limit(&self, end: &Section<S>, middle: &Section<S>, lap: Lap) -> Interval<S> {
         let all = Interval::new(S::ZERO, self.first.length);
