@@ -54,7 +54,7 @@ const DIRECTORY: &str = "pcr-out";
 /// not be where on its path because of each other one: in closed form, without sampling. Without a command it shows
 /// the paper's simulation of 12 agents and draws it to pcr-out/.
 #[derive(Parser)]
-#[command(version, about, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(name = "pcr", version, about, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,

@@ -66,14 +66,15 @@ fn table_vii(crossings: &[Numbered<'_>], out: &mut impl Write) -> io::Result<()>
         rows += 1;
         let mark = if agrees(ours, paper) {
             agree += 1;
-            ""
+            " "
         } else if number == MISPRINT {
-            " *"
+            "*"
         } else {
-            " !"
+            "!"
         };
         let crossing = ours.crossing;
-        let mut row = vec![number.to_string(), ours.piece_type.to_owned(), ours.j.to_string(), ours.k.to_string()];
+        let mut row =
+            vec![format!("{number}{mark}"), ours.piece_type.to_owned(), ours.j.to_string(), ours.k.to_string()];
         for (ours, paper) in [
             (crossing.time, paper.time),
             (crossing.length, paper.length),
@@ -86,7 +87,7 @@ fn table_vii(crossings: &[Numbered<'_>], out: &mut impl Write) -> io::Result<()>
         let printed = |sigma: Option<f64>| sigma.map_or(String::new(), |sigma| format!("{sigma:.1}"));
         let turn = paper.dir_j.map_or("", |dir| if dir > 0 { " ccw" } else { " cw " });
         row.extend([arc(crossing.sigma_i, crossing.dir_i), printed(paper.sigma_i)]);
-        row.extend([arc(crossing.sigma_j, crossing.dir_j), format!("{}{turn}{mark}", printed(paper.sigma_j))]);
+        row.extend([arc(crossing.sigma_j, crossing.dir_j), format!("{}{turn}", printed(paper.sigma_j))]);
         columns.row(row);
     }
     columns.write(out)?;

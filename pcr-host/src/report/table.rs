@@ -87,7 +87,7 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
         columns.write(out)?;
     }
     if !answer.regions.is_empty() {
-        writeln!(out, "\nRegions: i must not be in l_a..l_b while j makes it so, some time in t_a..t_b")?;
+        writeln!(out, "\nRegions: their extents; what is covered at a given time: --format json --slices N")?;
         let mut columns =
             Columns::new(&["i", "j", "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
         let mut held: HashMap<usize, Vec<String>> = HashMap::new();

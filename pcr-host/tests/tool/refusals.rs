@@ -1,0 +1,186 @@
+//! Bad arguments and bad files: one message that says where and what, the exit status, and nothing else.
+
+use crate::fixture::{crossing, directory, file, run};
+use serde_json::{Value, json};
+
+/// The message about a file, without its name.
+#[track_caller]
+fn message(content: impl AsRef<[u8]>, arguments: &[&str]) -> String {
+    let name = file("refused", &format!("{}.json", std::thread::current().name().unwrap().replace("::", "-")), content);
+    let failed = run(&[&["regions", &name], arguments].concat()).failed(2);
+    let rest = failed.strip_prefix(&format!("pcr: {name}:")).unwrap_or_else(|| panic!("{failed} does not name {name}"));
+    rest.trim().to_owned()
+}
+
+#[track_caller]
+fn refused(pointer: &str, value: Value, expected: &str) {
+    let mut scenario = crossing();
+    *scenario.pointer_mut(pointer).unwrap() = value;
+    assert_eq!(message(scenario.to_string(), &["--format", "json"]), format!("1: {expected}"));
+}
+
+#[test]
+fn values_out_of_range() {
+    let positive = "is out of range; allowed is above 0, up to 1e10";
+    refused("/agents/1/radius", json!(0), &format!("agent 2, radius: 0 {positive}"));
+    refused("/agents/1/radius", json!(-0.25), &format!("agent 2, radius: -0.25 {positive}"));
+    refused("/agents/0/v_max", json!(0), &format!("agent 1, v_max: 0 {positive}"));
+    refused("/agents/0/a_max", json!(1e300), &format!("agent 1, a_max: 1e+300 {positive}"));
+    refused(
+        "/agents/0/path/0/length",
+        json!(-1e-9),
+        "agent 1, segment 1, length: -1e-9 is out of range; allowed is 0 to 1e10",
+    );
+}
+
+#[test]
+fn values_of_the_wrong_kind() {
+    refused("/agents/1/id", json!(1), "agent 1, id: 1 is given to two agents");
+    refused("/agents/1/id", json!(2.5), "agent at place 2, id: 2.5 where a whole number from 0 is expected");
+    refused("/agents/1/start/x", json!("0"), "agent 2, start.x: \"0\" where a number is expected");
+    refused(
+        "/agents/1/path/0/kind",
+        json!("spiral"),
+        "agent 2, segment 1, kind: \"spiral\"; allowed is \"line\" or \"arc\"",
+    );
+    refused("/agents/1/path", json!(null), "agent 2, path: null where an array is expected");
+    refused("/agents", json!("all"), "agents: \"all\" where an array is expected");
+}
+
+#[test]
+fn numbers_that_are_not_numbers() {
+    for word in ["NaN", "Infinity", "-inf", "1e999"] {
+        let text = crossing().to_string().replacen("0.25", word, 1);
+        assert!(text.contains(word));
+        let expected = format!("1: agent 1, radius: {word} is out of range; allowed is above 0, up to 1e10");
+        assert_eq!(message(text, &[]), expected);
+    }
+}
+
+#[test]
+fn lines_of_the_file_are_named() {
+    let text = serde_json::to_string_pretty(&crossing()).unwrap().replacen("\"heading\": 0.0", "\"heading\": true", 1);
+    let line = 1 + text.lines().position(|line| line.contains("true")).unwrap();
+    assert!(line > 5);
+    let expected = format!("{line}: agent 1, start.heading: true where a number is expected");
+    assert_eq!(message(&text, &[]), expected);
+    assert_eq!(message(text.replace('\n', "\r\n"), &[]), expected);
+    let broken = text.replacen("true", "true false", 1);
+    let column = 2 + broken.lines().nth(line - 1).unwrap().find(" false").unwrap();
+    assert_eq!(message(broken, &[]), format!("{line}: column {column}: false where `,` or `}}` is expected"));
+}
+
+#[test]
+fn texts_that_are_no_scenario() {
+    assert_eq!(message("", &[]), "1: empty; a scenario is an object with a list of agents");
+    assert_eq!(message("\u{feff}", &[]), "1: empty; a scenario is an object with a list of agents");
+    assert_eq!(message("[]", &[]), "1: an array where an object is expected");
+    assert_eq!(message("{}", &[]), "1: agents: missing");
+    assert_eq!(message("{\"agents\": [", &[]), "1: column 13: the text ends where a value is expected");
+    assert_eq!(message("{\"agents\": [], \"agents\": []}", &[]), "1: agents: given twice");
+    assert_eq!(message("[".repeat(1_000_000), &[]), "1: column 65: arrays and objects nested more than 64 deep");
+    assert_eq!(message(b"{\"agents\": \xff}", &[]), "not text in UTF-8");
+    assert_eq!(message("\0\u{1}\u{2}", &[]), "1: column 1: \\0\\u{1}\\u{2} where a value is expected");
+    let lines = format!("{}\n{}\n", crossing(), crossing());
+    let expected = "2: column 1: more text after the end of the scenario (JSON Lines: on standard input, with -)";
+    assert_eq!(message(lines, &[]), expected);
+}
+
+#[test]
+fn profiles_that_do_not_fit() {
+    let profile = |pieces: Value| {
+        let mut scenario = crossing();
+        scenario["agents"][1]["profile"] = json!({ "v0": 1.0, "pieces": pieces });
+        message(scenario.to_string(), &[])
+    };
+    assert_eq!(
+        profile(json!([{ "duration": 3.0, "accel": 0.0 }])),
+        "1: agent 2, profile: travels 3 m on a path of 4 m; allowed is a relative difference of 1e-6"
+    );
+    assert_eq!(
+        profile(json!([{ "duration": 3.0, "accel": -1.0 }])),
+        "1: agent 2, profile piece 1, accel: -1 brings the speed to -2 m/s; allowed is 0 and above"
+    );
+}
+
+#[test]
+fn values_that_f32_cannot_hold() {
+    let in_f32 = |pointer: &str, value: f64| {
+        let mut scenario = crossing();
+        *scenario.pointer_mut(pointer).unwrap() = json!(value);
+        message(scenario.to_string(), &["--scalar", "f32"])
+    };
+    let message = in_f32("/agents/0/start/y", 1e9);
+    assert_eq!(message, "agent 1, start.y: 1e9 is out of range; allowed is up to 1e6 in magnitude (f32)");
+    let message = in_f32("/agents/1/radius", 1e-60);
+    assert_eq!(message, "agent 2, radius: 1e-60 is out of range; it is so small that it becomes 0 (f32)");
+    let message = in_f32("/agents/1/v_max", 1e-7);
+    assert!(message.starts_with("agent 2, the motion takes 4"), "{message}");
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let directory = directory("unreadable").to_str().unwrap().to_owned();
+    let missing = format!("{directory}/missing.json");
+    let failed = run(&["regions", &missing]).failed(2);
+    assert!(failed.starts_with(&format!("pcr: {missing}: cannot be read: ")), "{failed}");
+    let failed = run(&["regions", &directory]).failed(2);
+    assert!(failed.starts_with(&format!("pcr: {directory}: cannot be read: ")), "{failed}");
+    let failed = run(&["map", &missing, "-o", &directory]).failed(2);
+    assert!(failed.starts_with(&format!("pcr: {missing}: cannot be read: ")), "{failed}");
+}
+
+#[test]
+fn agents_that_are_not_there() {
+    let message = run(&["regions", "--agent", "13"]).failed(2);
+    assert_eq!(message, "pcr: no agent 13; there are 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12\n");
+    let file = file("refused", "nobody.json", "{\"agents\": []}");
+    assert_eq!(
+        run(&["regions", &file, "--agent", "1"]).failed(2),
+        format!("pcr: {file}: no agent 1; there are none\n")
+    );
+}
+
+#[test]
+fn wrong_arguments() {
+    for arguments in [
+        &["areas"][..],
+        &["regions", "--format", "xml"],
+        &["regions", "--agent", "-1"],
+        &["regions", "--agent", "x"],
+        &["regions", "--slices", "-1", "--format", "json"],
+        &["regions", "--slices", "10001", "--format", "json"],
+        &["regions", "--scalar", "f16"],
+        &["regions", "a.json", "b.json"],
+        &["map"],
+        &["--scalar", "f32"],
+    ] {
+        let run = run(arguments);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.err.starts_with("error: ") && run.err.contains("--help"), "{arguments:?}: {}", run.err);
+    }
+    let message = run(&["regions", "--slices", "3"]).failed(2);
+    assert_eq!(message, "pcr: --slices is for --format json\n");
+}
+
+#[test]
+fn directories_that_cannot_be_written() {
+    let blocked = format!("{}/pictures", file("unwritable", "file", ""));
+    let scenario = file("unwritable", "none.json", "{\"agents\": []}");
+    let failed = run(&["map", &scenario, "-o", &blocked]).failed(3);
+    assert!(failed.starts_with(&format!("pcr: {blocked}: cannot be written: ")), "{failed}");
+}
+
+#[test]
+fn help_has_examples_and_exit_statuses() {
+    for (arguments, example) in [
+        (&["--help"][..], "pcr regions fleet.json --format json"),
+        (&["regions", "--help"], "pcr regions - --format json < fleets.jsonl"),
+        (&["map", "--help"], "pcr map fleet.json -o pictures"),
+    ] {
+        let help = run(arguments).ok();
+        assert!(help.contains("Examples:\n") && help.contains(example), "{help}");
+        assert!(help.contains("Exit status:\n  0  done\n  2  ") && help.contains("\n  3  "), "{help}");
+    }
+    assert_eq!(run(&["--version"]).ok(), format!("pcr {}\n", env!("CARGO_PKG_VERSION")));
+}
