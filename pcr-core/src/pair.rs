@@ -87,7 +87,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return false;
         }
         let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
-        let shares = |piece: &Piece<S>| piece.share.of(slices, piece.first);
+        let shares = |piece: &Piece<S>| piece.share.of(slices, own, piece.first);
         let after = shares(after);
         shares(before).into_iter().flatten().any(|slice| after.contains(&Some(slice)))
     }
@@ -112,7 +112,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
             let slices = Footprint::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
             let near = |slice: Interval<S>| slice.lo - self.slack <= l && l <= slice.hi + self.slack;
-            piece.second.contains(s) && piece.share.of(slices, piece.first).into_iter().flatten().any(near)
+            piece.second.contains(s) && piece.share.of(slices, segment, piece.first).into_iter().flatten().any(near)
         };
         let shared = Footprint::of(own.end, other).reach(other, self.radius).intervals(other);
         shared.into_iter().flatten().any(|shared| {
@@ -150,8 +150,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         };
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
         let all = Interval::new(S::ZERO, self.first.path().length());
-        let placed = covered.map(|slice| slice.map(|slice| self.outward(slice, own.from, all)));
-        piece.share.of(placed, piece.first)
+        let hull = Interval::new(piece.first.lo - own.from, piece.first.hi - own.from);
+        piece.share.of(covered, own, hull).map(|slice| slice.map(|slice| self.outward(slice, own.from, all)))
     }
 
     /// The parts of the second path that a piece covers at the length `l` of the first one.

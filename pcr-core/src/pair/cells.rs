@@ -96,7 +96,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             (self.wraps || slab.hi >= self.second.length).then(|| self.section(slab.hi)),
         ];
         let several = middle.reach.intervals(self.first)[1].is_some();
-        let mut share = if several { Share::Lower } else { Share::Only };
+        let mut share = if several { Share::Start } else { Share::Only };
         for &lap in self.laps() {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
@@ -118,7 +118,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
                 pieces.join(ongoing, index);
             }
             if several {
-                share = Share::Upper;
+                share = Share::End;
             }
         }
         if !self.wraps {
@@ -144,7 +144,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
             if piece.second.contains(s) {
-                let covered = intervals.map_or(point, |intervals| piece.share.of(intervals, piece.first));
+                let covered = intervals.map_or(point, |intervals| piece.share.of(intervals, self.first, piece.first));
                 piece.first = covered.into_iter().flatten().fold(piece.first, Interval::hull);
             }
             index = piece.next;

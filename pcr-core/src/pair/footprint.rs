@@ -175,26 +175,29 @@ impl<S: Scalar> Reach<S> {
 pub(crate) enum Share {
     /// The only one.
     Only,
-    /// The lower one of two.
-    Lower,
-    /// The upper one of two.
-    Upper,
+    /// Of two, the one at the start of the segment. There are two where the gap between them lies inside the segment.
+    Start,
+    /// Of two, the one at the end of the segment.
+    End,
 }
 
 impl Share {
-    /// The intervals it stands for, of those that are covered. Next to an end of the piece rounding may show one
-    /// too many or one too few; then those that reach into `hull`, where the piece lies.
+    /// The intervals it stands for, of those that are covered. Next to an end of the piece rounding may show a
+    /// second one where there is one; then those that reach into `hull`, where the piece lies.
     pub(crate) fn of<S: Scalar>(
         self,
         intervals: [Option<Interval<S>>; 2],
+        segment: &Segment<S>,
         hull: Interval<S>,
     ) -> [Option<Interval<S>>; 2] {
-        match (self, intervals) {
-            (Self::Only, [only, None]) => [only, None],
-            (Self::Lower, [lower @ Some(_), Some(_)]) => [lower, None],
-            (Self::Upper, [Some(_), upper @ Some(_)]) => [upper, None],
-            _ => intervals.map(|interval| interval.filter(|interval| interval.meets(hull))),
-        }
+        let single = intervals[1].is_none();
+        intervals.map(|interval| {
+            interval.filter(|interval| match self {
+                Self::Only => single || interval.meets(hull),
+                Self::Start => interval.lo <= S::ZERO,
+                Self::End => interval.hi >= segment.length,
+            })
+        })
     }
 }
 
