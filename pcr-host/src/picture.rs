@@ -136,3 +136,128 @@ fn draw_all(
         receiver.into_iter().try_for_each(|(place, drawn)| take(place, drawn))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// Writes the pictures into a directory of its own, checks that all files are well formed, and returns them.
+    fn pictures(test: &str, scenario: &Value) -> Vec<(String, Vec<u8>)> {
+        let scenario = Scenario::from_json(&scenario.to_string()).unwrap();
+        let directory = std::env::temp_dir().join(format!("pcr-pictures-{test}-{}", std::process::id()));
+        let mut calls = Vec::new();
+        let files = write(&scenario, &directory, &mut |done, total| calls.push((done, total))).unwrap();
+        let total = scenario.agents.len() + 3;
+        assert_eq!(calls, (0..=total).map(|done| (done, total)).collect::<Vec<_>>());
+        assert_eq!(files.len(), 2 * total - 1);
+        let read = files.iter().map(|file| {
+            let content = fs::read(file).unwrap();
+            match file.extension().and_then(|extension| extension.to_str()) {
+                Some("svg") => {
+                    let text = std::str::from_utf8(&content).unwrap();
+                    let document = roxmltree::Document::parse(text).unwrap();
+                    assert!(document.root_element().has_tag_name("svg"));
+                    assert!(!text.contains("NaN") && !text.contains("inf"), "{file:?}");
+                }
+                Some("png") => {
+                    let reader = png::Decoder::new(io::Cursor::new(&content)).read_info().unwrap();
+                    assert!(reader.info().width > 400 && reader.info().height > 200);
+                }
+                _ => assert!(content.starts_with(b"<!DOCTYPE html>")),
+            }
+            (file.file_name().unwrap().to_str().unwrap().to_owned(), content)
+        });
+        let read = read.collect();
+        fs::remove_dir_all(directory).unwrap();
+        read
+    }
+
+    fn agent(id: u64, start: [f64; 3], path: Value) -> Value {
+        json!({ "id": id, "radius": 0.3, "v_max": 1.0, "a_max": 0.5,
+            "start": { "x": start[0], "y": start[1], "heading": start[2] }, "path": path })
+    }
+
+    fn line(length: f64) -> Value {
+        json!({ "kind": "line", "length": length })
+    }
+
+    fn arc(radius: f64, sweep: f64) -> Value {
+        json!({ "kind": "arc", "radius": radius, "sweep": sweep })
+    }
+
+    #[test]
+    fn two_runs_give_the_same_bytes() {
+        let agents = [
+            agent(1, [0.0, 0.0, 0.0], json!([line(4.0), arc(1.0, 2.0)])),
+            agent(9, [4.0, 0.0, 3.0], json!([line(4.0)])),
+        ];
+        let scenario = json!({ "name": "a <b> & \"c\"", "agents": agents });
+        let once = pictures("once", &scenario);
+        let names: Vec<&str> = once.iter().map(|(name, _)| name.as_str()).collect();
+        let expected = ["index.html", "overview.svg", "overview.png", "workspace.svg", "workspace.png"];
+        assert_eq!(names[..5], expected);
+        assert_eq!(names[5..], ["ecm-1.svg", "ecm-1.png", "ecm-9.svg", "ecm-9.png"]);
+        assert_eq!(once, pictures("twice", &scenario));
+    }
+
+    #[test]
+    fn an_empty_fleet_has_pictures() {
+        pictures("empty", &json!({ "agents": [] }));
+    }
+
+    #[test]
+    fn an_agent_alone_has_pictures() {
+        pictures("alone", &json!({ "agents": [agent(u64::MAX, [0.0, 0.0, 0.3], json!([arc(2.0, 1.0)]))] }));
+    }
+
+    #[test]
+    fn agents_that_stand_on_one_point_have_pictures() {
+        let agents = [agent(1, [1.0, 1.0, 0.0], json!([])), agent(2, [1.0, 1.0, 0.0], json!([]))];
+        pictures("point", &json!({ "agents": agents }));
+    }
+
+    #[test]
+    fn lanes_and_full_turns_have_pictures() {
+        let agents = [
+            agent(1, [0.0, 0.0, 0.0], json!([line(6.0)])),
+            agent(2, [6.0, 0.0, std::f64::consts::PI], json!([line(6.0)])),
+            agent(3, [3.0, 0.0, 0.0], json!([arc(0.2, 13.0)])),
+        ];
+        pictures("lanes", &json!({ "agents": agents }));
+    }
+
+    #[test]
+    fn extents_may_be_huge_or_tiny() {
+        let mut far = agent(2, [0.0, -1e5, std::f64::consts::FRAC_PI_2], json!([line(9e5)]));
+        far["v_max"] = json!(1e3);
+        far["t_start"] = json!(-9e5);
+        let agents = [
+            agent(1, [-9e5, 0.0, 0.0], json!([line(9e5), arc(1e6, 0.01)])),
+            far,
+            agent(3, [1e6, 1e6, 0.0], json!([line(1e-6)])),
+        ];
+        pictures("huge", &json!({ "agents": agents }));
+    }
+
+    #[test]
+    fn paths_are_drawn_with_true_arcs() {
+        let scenario = json!({ "agents": [agent(1, [0.0, 0.0, 0.0], json!([line(4.0), arc(1.0, 6.0)]))] });
+        let files = pictures("arcs", &scenario);
+        let (_, svg) = files.iter().find(|(name, _)| name == "workspace.svg").unwrap();
+        let svg = std::str::from_utf8(svg).unwrap();
+        let document = roxmltree::Document::parse(svg).unwrap();
+        let arcs = document.descendants().filter_map(|node| node.attribute("d")).map(|d| d.matches('A').count());
+        // 6 rad in parts of at most 3/4 π.
+        assert_eq!(arcs.sum::<usize>(), 3);
+    }
+
+    #[test]
+    fn a_directory_that_cannot_be_is_an_error() {
+        let scenario = Scenario::from_json(r#"{ "agents": [] }"#).unwrap();
+        let file = std::env::temp_dir().join(format!("pcr-pictures-file-{}", std::process::id()));
+        fs::write(&file, "").unwrap();
+        assert!(write(&scenario, &file.join("below"), &mut |_, _| {}).is_err());
+        fs::remove_file(file).unwrap();
+    }
+}

@@ -50,6 +50,12 @@ impl Axis {
         from + (value - self.values.lo) / self.values.length() * (to - from)
     }
 
+    /// The value at a pixel.
+    pub(super) fn value_at(&self, pixel: f64) -> f64 {
+        let [from, to] = self.pixels;
+        self.values.lo + (pixel - from) / (to - from) * self.values.length()
+    }
+
     /// Units of a pixel.
     pub(super) fn units_per_pixel(&self) -> f64 {
         self.values.length() / (self.pixels[1] - self.pixels[0]).abs()

@@ -8,6 +8,7 @@ use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, room_at_left};
 use super::scene::{Scene, Shape};
 use super::svg::{PathData, Pixels, Svg};
 pub(super) use legend::Legend;
+pub(super) use names::places;
 use pcr_core::Interval;
 
 /// Room above a plot for its title \[px\].

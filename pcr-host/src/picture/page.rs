@@ -3,8 +3,9 @@
 //! It holds the paths and profiles as numbers, and evaluates the closed forms of the library itself, so that the discs
 //! are exactly where they are at every time of the slider. Outlines of regions are traced here and drawn there.
 
+use super::axis::Frame;
 use super::contour::Outline;
-use super::map::spans;
+use super::map::{places, spans};
 use super::scene::{Scene, Shape};
 use super::svg::Escaped;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
@@ -18,8 +19,11 @@ const SCRIPT: &str = include_str!("page/page.js");
 /// Steps of the coordinates of outlines along each axis of a map: a twentieth of a pixel on a large screen.
 const GRID: f64 = 20_000.0;
 
-/// Pixels along each axis of a map for which outlines are traced.
-const PIXELS: f64 = 800.0;
+/// Size of a map as the script draws it \[px\].
+const PIXELS: f64 = 700.0;
+
+/// Size of the labels of regions there \[px\].
+const LABEL_SIZE: f64 = 14.0;
 
 /// The page.
 pub(super) fn page(scene: &Scene<'_>) -> String {
@@ -90,26 +94,28 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
 }
 
 fn map(scene: &Scene<'_>, ego: usize) -> Value {
-    let spans = spans(scene, ego);
-    let shapes = scene.shapes(ego, spans.map(|span| span.length() / PIXELS));
+    let [time, length] = spans(scene, ego);
+    let frame = Frame::new(time, length, [0.0, 0.0, PIXELS, PIXELS]);
+    let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
+    let places = places(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let regions = shapes.iter().zip(places).map(|(shape, place)| region(shape, place, &frame));
     json!({
-        "time": interval(spans[0]),
-        "length": interval(spans[1]),
-        "regions": shapes.iter().map(|shape| region(shape, spans)).collect::<Vec<_>>(),
+        "time": interval(frame.x.values()),
+        "length": interval(frame.y.values()),
+        "regions": regions.collect::<Vec<_>>(),
     })
 }
 
-fn region(shape: &Shape, spans: [Interval<f64>; 2]) -> Value {
+fn region(shape: &Shape, place: Option<[f64; 2]>, frame: &Frame) -> Value {
     let strips = |strips: &[Interval<f64>]| strips.iter().copied().map(interval).collect::<Vec<_>>();
-    let largest = shape.slices.iter().max_by(|a, b| a.1.length().total_cmp(&b.1.length()));
     json!({
         "other": shape.other,
         "time": interval(shape.time),
         "length": interval(shape.length),
-        "outline": path(&shape.outline, spans),
+        "outline": path(&shape.outline, frame),
         "before": strips(&shape.before),
         "after": strips(&shape.after),
-        "label": largest.map(|(time, slice)| [*time, slice.middle()]),
+        "label": place.map(|[x, y]| [frame.x.value_at(x), frame.y.value_at(y)]),
         "types": shape.types.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "pieces": shape.pieces,
         "crossings": shape.crossings.iter().map(crossing).collect::<Vec<_>>(),
@@ -136,13 +142,14 @@ fn crossing(crossing: &Crossing<f64>) -> Value {
 }
 
 /// SVG path data of an outline on the grid: steps from point to point, which are short numbers.
-fn path(outline: &Outline, spans: [Interval<f64>; 2]) -> String {
-    let on_grid = |value: f64, span: Interval<f64>| ((value - span.lo) / span.length() * GRID).round() as i64;
+fn path(outline: &Outline, frame: &Frame) -> String {
+    let on_grid = |pixel: f64| (pixel / PIXELS * GRID).round() as i64;
     let mut data = String::new();
     for contour in outline {
         let mut before: Option<[i64; 2]> = None;
         for point in contour {
-            let at = [on_grid(point[0], spans[0]), on_grid(point[1], spans[1])];
+            let [x, y] = frame.at(*point);
+            let at = [on_grid(x), on_grid(y)];
             // Writing to a string does not fail.
             let _ = match before {
                 None => write!(data, "M{} {}l", at[0], at[1]),
@@ -154,4 +161,69 @@ fn path(outline: &Outline, spans: [Interval<f64>; 2]) -> String {
         data.push_str("0 0z");
     }
     data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fleet::{Fleet, build_ecm};
+    use crate::scenario::Scenario;
+
+    fn page_of(text: &str) -> String {
+        let scenario = Scenario::from_json(text).unwrap();
+        let fleet = Fleet::<f64>::new(&scenario).unwrap();
+        let motions = fleet.motions();
+        let ecm = build_ecm(&motions).unwrap();
+        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm })
+    }
+
+    fn data_of(page: &str) -> Value {
+        let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).unwrap();
+        serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+    }
+
+    #[test]
+    fn names_cannot_break_out_of_the_page() {
+        let name = r#"</script><script>alert("1")</script> {{data}} & more"#;
+        let page = page_of(&json!({ "name": name, "agents": [] }).to_string());
+        assert_eq!(page.matches("alert").count(), 3, "title, heading, data");
+        assert!(!page.contains("<script>alert") && !page.contains("</script><script>"));
+        assert_eq!(page.matches("</script>").count(), 2);
+        assert_eq!(data_of(&page)["name"], json!(name));
+    }
+
+    #[test]
+    fn the_page_asks_for_nothing() {
+        let page = page_of(include_str!("../../../tests/data/paper12.json"));
+        let namespace = "http://www.w3.org/2000/svg";
+        assert_eq!(page.matches("http").count(), page.matches(namespace).count() + page.matches("http-equiv").count());
+        for request in ["src=", "href=", "@import", "url(", "fetch(", "import("] {
+            assert!(!page.contains(request), "{request}");
+        }
+        assert!(page.contains("default-src 'none'"));
+    }
+
+    #[test]
+    fn the_page_holds_all_regions_with_descriptors() {
+        let data = data_of(&page_of(include_str!("../../../tests/data/paper12.json")));
+        let maps = data["maps"].as_array().unwrap();
+        let regions = |map: &Value| map["regions"].as_array().unwrap().len();
+        assert_eq!(maps.iter().map(regions).sum::<usize>(), 136);
+        // Row 1 of the paper's Table VII: CR 3 10 (19.3, 0.9, 0.3, 0.4, -0.9).
+        let of_ten = maps[2]["regions"].as_array().unwrap().iter().filter(|region| region["other"] == json!(9));
+        let crossing = of_ten.map(|region| &region["crossings"][0]).find(|crossing| crossing["L"].as_f64() < Some(2.0));
+        let crossing = crossing.unwrap();
+        for (key, printed) in [("T", 19.3), ("L", 0.9), ("r", 0.3), ("v", 0.4), ("theta", -0.9)] {
+            // Half of the last printed digit.
+            assert!((crossing[key].as_f64().unwrap() - printed).abs() < 0.05 + 1e-9, "{key} {crossing}");
+        }
+    }
+
+    #[test]
+    fn outlines_are_steps_on_the_grid() {
+        let unit = Interval::new(0.0, 1.0);
+        let frame = Frame::new(unit, unit, [0.0, 0.0, PIXELS, PIXELS]);
+        let outline = vec![vec![[0.0, 1.0], [0.5, 1.0], [0.5, 0.5]], vec![[1.0, 0.0]]];
+        assert_eq!(path(&outline, &frame), "M0 0l10000 0 0 10000 0 0zM20000 20000l0 0z");
+    }
 }

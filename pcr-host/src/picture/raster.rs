@@ -58,3 +58,36 @@ fn encode(pixmap: &tiny_skia::Pixmap) -> io::Result<Vec<u8>> {
     writer.finish()?;
     Ok(file)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::svg::Svg;
+
+    fn pixels(text: &str) -> (u32, Vec<u8>) {
+        let mut svg = Svg::new(40.0, 20.0, "");
+        svg.label([4.0, 14.0], "start", &[("font-size", &"12")], text);
+        let file = Raster::new().png(&svg.finish()).unwrap();
+        let mut reader = png::Decoder::new(io::Cursor::new(file)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut pixels).unwrap();
+        (frame.width, pixels)
+    }
+
+    #[test]
+    fn texts_are_drawn_with_the_font_of_the_program() {
+        let (width, empty) = pixels("");
+        assert_eq!(width, 80);
+        assert!(empty.iter().all(|value| *value == 255));
+        let dark = |text| pixels(text).1.iter().filter(|value| **value < 128).count();
+        assert!(dark("8") > dark("1") && dark("1") > 0);
+        for symbol in ["\u{3b8}", "\u{2212}", "\u{e9}"] {
+            assert!(dark(symbol) > 0, "{symbol}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_svg_is_refused() {
+        assert!(Raster::new().png("<svg").is_err());
+    }
+}

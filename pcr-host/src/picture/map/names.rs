@@ -12,27 +12,8 @@ const LABEL_SIZE: f64 = 9.5;
 /// Weights of covering the trajectory, and the outline of a region.
 const WEIGHTS: [f64; 2] = [8.0, 1.0];
 
-/// Writes the labels, off the ego's trajectory, off one another and, where possible, off outlines.
+/// Writes the labels.
 pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
-    let mut labels = Labels::default();
-    if let Some(motion) = scene.motions.get(ego) {
-        let [left, _, right, _] = frame.edges;
-        let steps = ((right - left) / SPACING).max(1.0) as usize;
-        let (from, step) = (frame.x.values().lo, frame.x.values().length() / steps as f64);
-        labels.avoid(
-            WEIGHTS[0],
-            (0..=steps).map(|k| {
-                let time = from + step * k as f64;
-                frame.at([time, motion.length_at(time)])
-            }),
-        );
-    }
-    for shape in shapes {
-        for contour in &shape.outline {
-            let points: Vec<[f64; 2]> = contour.iter().map(|point| frame.at(*point)).collect();
-            labels.avoid(WEIGHTS[1], spaced(&points));
-        }
-    }
     svg.start(
         "g",
         &[
@@ -42,20 +23,48 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape
             ("paint-order", &"stroke"),
         ],
     );
-    // Small regions have the smallest choice.
-    let mut order: Vec<&Shape> = shapes.iter().collect();
-    let area = |shape: &Shape| shape.time.length() * shape.length.length();
-    order.sort_by(|a, b| area(a).total_cmp(&area(b)));
-    for shape in order {
-        let text = scene.id(shape.other).to_string();
-        let size = [text_width(&text, LABEL_SIZE) + 2.0, LABEL_SIZE];
-        let Some([x, y]) = labels.place(size, candidates(shape, size, frame), frame.edges) else {
+    for (shape, place) in shapes.iter().zip(places(scene, ego, shapes, frame, LABEL_SIZE)) {
+        let Some([x, y]) = place else {
             continue;
         };
-        let ink = scene.colour(shape.other).ink();
+        let (text, ink) = (scene.id(shape.other).to_string(), scene.colour(shape.other).ink());
         svg.label([x, y + 0.36 * LABEL_SIZE], "middle", &[("fill", &ink), ("stroke-linejoin", &"round")], &text);
     }
     svg.end();
+}
+
+/// Where the middle of each label of this size belongs \[px\]: off the ego's trajectory, off one another and, where
+/// possible, off outlines.
+pub(in super::super) fn places(
+    scene: &Scene<'_>,
+    ego: usize,
+    shapes: &[Shape],
+    frame: &Frame,
+    label_size: f64,
+) -> Vec<Option<[f64; 2]>> {
+    let mut labels = Labels::default();
+    if let Some(motion) = scene.motions.get(ego) {
+        let [left, _, right, _] = frame.edges;
+        let steps = ((right - left) / SPACING).max(1.0) as usize;
+        let (from, step) = (frame.x.values().lo, frame.x.values().length() / steps as f64);
+        let at = |time| frame.at([time, motion.length_at(time)]);
+        labels.avoid(WEIGHTS[0], (0..=steps).map(|k| at(from + step * k as f64)));
+    }
+    for contour in shapes.iter().flat_map(|shape| &shape.outline) {
+        let points: Vec<[f64; 2]> = contour.iter().map(|point| frame.at(*point)).collect();
+        labels.avoid(WEIGHTS[1], spaced(&points));
+    }
+    // Small regions have the smallest choice.
+    let mut order: Vec<(usize, &Shape)> = shapes.iter().enumerate().collect();
+    let area = |shape: &Shape| shape.time.length() * shape.length.length();
+    order.sort_by(|a, b| area(a.1).total_cmp(&area(b.1)));
+    let mut places = vec![None; shapes.len()];
+    for (k, shape) in order {
+        let text = scene.id(shape.other).to_string();
+        let size = [text_width(&text, label_size) + 2.0, label_size];
+        places[k] = labels.place(size, candidates(shape, size, frame), frame.edges);
+    }
+    places
 }
 
 /// Where the label of a region may go: into its roomiest slices, into its strips, or about it.
@@ -108,4 +117,36 @@ fn spaced(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
         due -= side;
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fleet::{Fleet, build_ecm};
+    use crate::picture::map::spans;
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn labels_of_the_paper_do_not_overlap() {
+        let scenario = Scenario::from_json(include_str!("../../../../tests/data/paper12.json")).unwrap();
+        let fleet = Fleet::<f64>::new(&scenario).unwrap();
+        let motions = fleet.motions();
+        let ecm = build_ecm(&motions).unwrap();
+        let scene = Scene { scenario: &scenario, motions: &motions, ecm: &ecm };
+        for ego in 0..motions.len() {
+            let [time, length] = spans(&scene, ego);
+            let frame = Frame::new(time, length, [0.0, 0.0, 400.0, 320.0]);
+            let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
+            let places: Vec<[f64; 2]> =
+                places(&scene, ego, &shapes, &frame, LABEL_SIZE).into_iter().map(Option::unwrap).collect();
+            let width = |k: usize| text_width(&scene.id(shapes[k].other).to_string(), LABEL_SIZE);
+            for i in 0..places.len() {
+                for j in 0..i {
+                    let apart = [(places[i][0] - places[j][0]).abs(), (places[i][1] - places[j][1]).abs()];
+                    let free = apart[0] >= (width(i) + width(j)) / 2.0 || apart[1] >= LABEL_SIZE;
+                    assert!(free, "agent {}: regions {i} and {j}", scene.id(ego));
+                }
+            }
+        }
+    }
 }

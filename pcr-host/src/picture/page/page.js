@@ -54,12 +54,6 @@ function element(parent, name, attributes = {}, text) {
   return node;
 }
 
-function widened([lo, hi], part = 0) {
-  const least = Math.max(1e-6, 1e-9 * Math.max(Math.abs(lo), Math.abs(hi)));
-  const by = Math.max(part * (hi - lo), (least - (hi - lo)) / 2, 0);
-  return [lo - by, hi + by];
-}
-
 function axis([lo, hi], from, to) {
   const at = (value) => from + (value - lo) / (hi - lo) * (to - from);
   const ticks = (gap) => {
@@ -77,6 +71,8 @@ function axis([lo, hi], from, to) {
   return { at, ticks };
 }
 
+// Plots are at most this wide and high.
+const side = 700;
 const room = { left: 78, top: 14, right: 14, bottom: 58 };
 
 function frame(svg, xs, ys, width, height, titles) {
@@ -106,9 +102,10 @@ let cursor = null;
 
 function drawWorkspace() {
   const [x0, x1, y0, y1] = data.bounds;
-  const side = Math.max(x1 - x0, y1 - y0, 1e-6, 1e-9 * Math.max(...data.bounds.map(Math.abs)));
-  const most = 700, least = 220, margin = 0.03 * side;
-  const metre = most / (side + 2 * margin);
+  // Below this extent ticks could not be told apart.
+  const extent = Math.max(x1 - x0, y1 - y0, 1e-6, 1e-9 * Math.max(...data.bounds.map(Math.abs)));
+  const least = 220, margin = 0.03 * extent;
+  const metre = side / (extent + 2 * margin);
   const fit = (lo, hi) => {
     const pixels = Math.max((hi - lo + 2 * margin) * metre, least);
     return [pixels, [(lo + hi - pixels / metre) / 2, (lo + hi + pixels / metre) / 2]];
@@ -145,6 +142,7 @@ function drawWorkspace() {
     discs.push(disc);
   });
   drawWorkspace.screen = screen;
+  drawWorkspace.height = height;
 }
 
 function onKey(event) {
@@ -155,13 +153,12 @@ function onKey(event) {
 
 function drawMap() {
   const map = data.maps[state.ego], ego = agents[state.ego];
-  const width = 760, height = 640;
-  const view = frame($("map"), map ? widened(map.time) : [0, 1], map ? widened(map.length) : [0, 1], width, height,
-    ["time t [s]", "travelled length l [m]"]);
+  const width = side, height = Math.max(drawWorkspace.height, 480);
+  const view = frame($("map"), map?.time ?? [0, 1], map?.length ?? [0, 1], width, height, ["time t [s]", "travelled length l [m]"]);
   cursor = null;
   if (!map) return;
   const { x, y, content } = view;
-  const grid = `translate(${view.left} ${view.bottom}) scale(${width / data.grid} ${-height / data.grid})`;
+  const grid = `translate(${view.left} ${view.top}) scale(${width / data.grid} ${height / data.grid})`;
   const order = map.regions.map((_, k) => k).sort((a, b) => size(map.regions[b]) - size(map.regions[a]));
   for (const k of order) {
     const region = map.regions[k], other = agents[region.other];
