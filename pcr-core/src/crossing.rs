@@ -23,7 +23,6 @@ use crate::segment::{Curve, Segment};
         deserialize = "S: serde::Deserialize<'de>, S::Angle: serde::Deserialize<'de>"
     ))
 )]
-#[cfg_attr(feature = "defmt", defmt(bound = "S: defmt::Format, S::Angle: defmt::Format"))]
 pub struct Crossing<S: Scalar> {
     /// Shapes of the segments that cross.
     pub piece_type: PieceType,
@@ -57,15 +56,15 @@ pub fn crossings<'a, S: Scalar>(
     ego: &'a Motion<'a, S>,
     other: &'a Motion<'a, S>,
 ) -> impl Iterator<Item = Crossing<S>> + 'a {
-    let slack = S::slack(ego.extent().max(other.extent()));
+    let margin = margin(ego, other);
     let theirs = other.path().segments().iter().enumerate();
     theirs.flat_map(move |(j, their)| {
         let own = ego.path().segments().iter().enumerate();
-        let near = own.filter(move |(_, own)| own.bounds.within(their.bounds, slack));
+        let near = own.filter(move |(_, own)| own.bounds.within(their.bounds, margin));
         near.flat_map(move |(i, own)| {
             let start = Footprint::of(own.start, their);
             let (mut roots, mut count) = ([None; 2], 0);
-            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], |s| {
+            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, |s| {
                 // Two equal roots are one crossing.
                 if count < roots.len() && !roots.contains(&Some(s)) {
                     roots[count] = Some(s);
@@ -78,6 +77,11 @@ pub fn crossings<'a, S: Scalar>(
     })
 }
 
+/// How far rounding may move a crossing along a segment.
+fn margin<S: Scalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> S {
+    S::slack(ego.extent().max(other.extent())).double().double()
+}
+
 impl<S: Scalar> Crossing<S> {
     fn at(
         ego: &Motion<'_, S>,
@@ -87,11 +91,11 @@ impl<S: Scalar> Crossing<S> {
         their: &Segment<S>,
         s: S,
     ) -> Option<Self> {
-        let slack = S::slack(ego.extent().max(other.extent()));
+        let margin = margin(ego, other);
         let combined_radius = ego.radius() + other.radius();
         let last = |motion: &Motion<'_, S>, index: usize| index + 1 == motion.path().segments().len();
         let on = |segment: &Segment<S>, u: S, last: bool| {
-            u >= S::ZERO && (u < segment.length || last && u <= segment.length)
+            u >= -margin && u <= segment.length + margin && (last || u < segment.length - margin)
         };
         let l = Footprint::of(their.point_at(s), own).foot(own);
         if !on(their, s, last(other, j)) || !on(own, l, last(ego, i)) {
@@ -99,14 +103,14 @@ impl<S: Scalar> Crossing<S> {
         }
         let theta = their.heading_at(s) - own.heading_at(l);
         let apart = combined_radius.scale(Direction::<S>::at(theta).sin).abs();
-        (apart > slack).then(|| {
+        (apart > margin).then(|| {
             let time = other.time().lo + other.profile().first_time_at(their.from + s);
             Self {
                 piece_type: PieceType::of(own.curve, their.curve),
                 segments: [i, j],
                 time,
-                length: own.from + l,
-                other_length: their.from + s,
+                length: (own.from + l).clamp(S::ZERO, ego.path().length()),
+                other_length: (their.from + s).clamp(S::ZERO, other.path().length()),
                 combined_radius,
                 speed: other.speed_at(time),
                 theta,
@@ -114,5 +118,49 @@ impl<S: Scalar> Crossing<S> {
                 other_curve: their.curve,
             }
         })
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::crossings;
+    use crate::{Limits, Motion, Path, Point, Pose, Profile, Radians, Turn};
+
+    fn count(ego: &Path<f64, 2>, other: &Path<f64, 2>) -> usize {
+        let limits = Limits { speed: 1.0, acceleration: 1.0 };
+        let profiles = [ego, other].map(|path| Profile::rest_to_rest(path.as_path().length(), limits).unwrap());
+        let ego = Motion::new(ego.as_path(), profiles[0].as_profile(), 0.2, 0.0).unwrap();
+        let other = Motion::new(other.as_path(), profiles[1].as_profile(), 0.2, 0.0).unwrap();
+        crossings(&ego, &other).count()
+    }
+
+    fn from(x: f64, y: f64, heading: f64) -> Path<f64, 2> {
+        Path::starting_at(Pose { position: Point::new(x, y), heading: Radians(heading) }).unwrap()
+    }
+
+    #[test]
+    fn a_crossing_at_joints_of_both_paths_counts_once() {
+        for k in 0..1000 {
+            let k = f64::from(k);
+            let (own, their) = (0.1 + 0.001 * k, 0.4 + 0.003 * k);
+            let ego = from(-1.3 * own.cos(), -1.3 * own.sin(), own).line(1.3).unwrap().line(1.0).unwrap();
+            let other = from(-1.7 * their.cos(), -1.7 * their.sin(), their).line(1.7).unwrap().line(1.0).unwrap();
+            assert_eq!(count(&ego, &other), 1, "headings {own} and {their}");
+        }
+    }
+
+    #[test]
+    fn a_line_crosses_a_circle_twice_and_touches_it_not_at_all() {
+        let circle = from(0.0, -1.0, 0.0).arc(1.0, Turn::Left, core::f64::consts::TAU).unwrap();
+        assert_eq!(count(&from(-2.0, 0.5, 0.0).line(4.0).unwrap(), &circle), 2);
+        assert_eq!(count(&from(-2.0, 1.0, 0.0).line(4.0).unwrap(), &circle), 0);
+        assert_eq!(count(&from(-2.0, 1.5, 0.0).line(4.0).unwrap(), &circle), 0);
+    }
+
+    #[test]
+    fn paths_on_one_line_do_not_cross() {
+        assert_eq!(count(&from(0.0, 0.0, 0.7).line(3.0).unwrap(), &from(0.0, 0.0, 0.7).line(3.0).unwrap()), 0);
+        let head_on = from(3.0 * 0.7_f64.cos(), 3.0 * 0.7_f64.sin(), 0.7 - core::f64::consts::PI);
+        assert_eq!(count(&from(0.0, 0.0, 0.7).line(3.0).unwrap(), &head_on.line(3.0).unwrap()), 0);
     }
 }

@@ -74,7 +74,6 @@ impl<S: Scalar> Vector<S> {
     feature = "serde",
     serde(bound(serialize = "S::Unit: serde::Serialize", deserialize = "S::Unit: serde::Deserialize<'de>"))
 )]
-#[cfg_attr(feature = "defmt", defmt(bound = "S::Unit: defmt::Format"))]
 pub struct Direction<S: Scalar> {
     /// Cosine of the angle from the x-axis.
     pub cos: S::Unit,
@@ -119,7 +118,6 @@ impl<S: Scalar> Direction<S> {
         deserialize = "S: serde::Deserialize<'de>, S::Angle: serde::Deserialize<'de>"
     ))
 )]
-#[cfg_attr(feature = "defmt", defmt(bound = "S: defmt::Format, S::Angle: defmt::Format"))]
 pub struct Pose<S: Scalar> {
     /// Position \[m\].
     pub position: Point<S>,

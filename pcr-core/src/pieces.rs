@@ -237,3 +237,49 @@ impl<'a, S> Iterator for List<'a, S> {
         Some(piece)
     }
 }
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+
+    fn piece(k: u16) -> Piece<f32> {
+        Piece { first_segment: k, ..Piece::EMPTY }
+    }
+
+    fn members<const N: usize>(pieces: &Pieces<f32, [Piece<f32>; N]>, head: u32) -> heapless::Vec<u16, N> {
+        List::new(pieces.slots(), head).map(|piece| piece.first_segment).collect()
+    }
+
+    #[test]
+    fn joined_pieces_become_one_region_in_their_order() {
+        let mut pieces = Pieces::new([Piece::EMPTY; 6]);
+        let index: heapless::Vec<u32, 6> = (0..6).map(|k| pieces.push(piece(k)).unwrap()).collect();
+        pieces.join(index[4], index[1]);
+        pieces.join(index[3], index[5]);
+        pieces.join(index[5], index[4]);
+        let regions = [(); 3].map(|()| pieces.take_region().unwrap());
+        assert_eq!(pieces.take_region(), None);
+        assert_eq!(members(&pieces, regions[0])[..], [0]);
+        assert_eq!(members(&pieces, regions[1])[..], [1, 3, 4, 5]);
+        assert_eq!(members(&pieces, regions[2])[..], [2]);
+    }
+
+    #[test]
+    fn a_full_store_refuses_and_what_is_released_is_used_again() {
+        let mut pieces = Pieces::new([Piece::EMPTY; 3]);
+        for k in 0..2 {
+            pieces.push(piece(k)).unwrap();
+        }
+        let (first, second) = (pieces.take_region().unwrap(), pieces.take_region().unwrap());
+        pieces.push(piece(7)).unwrap();
+        assert_eq!(pieces.push(piece(8)), Err(Full::Pieces));
+        pieces.take_back();
+        assert_eq!((&members(&pieces, first)[..], pieces.len()), (&[0][..], 2));
+        pieces.release(second);
+        for k in 10..12 {
+            pieces.push(piece(k)).unwrap();
+        }
+        assert_eq!(pieces.push(piece(12)), Err(Full::Pieces));
+        assert_eq!(members(&pieces, first)[..], [0]);
+    }
+}

@@ -43,7 +43,6 @@ pub enum Curve<S> {
 /// A line or an arc placed in the plane, part of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "S: defmt::Format, S::Unit: defmt::Format, S::Angle: defmt::Format"))]
 pub struct Segment<S: Scalar> {
     pub(crate) start: Point<S>,
     pub(crate) end: Point<S>,
@@ -268,5 +267,67 @@ impl<S: Scalar> Segment<S> {
             _ => {}
         }
         bounds
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+    use crate::Radians;
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    fn origin(heading: f64) -> Segment<f64> {
+        Segment::standing(Pose { position: Point::new(0.0, 0.0), heading: Radians(heading) }).unwrap()
+    }
+
+    #[test]
+    fn quarter_circles_end_where_they_should() {
+        for (turn, y, heading) in [(Turn::Left, 2.0, FRAC_PI_2), (Turn::Right, -2.0, -FRAC_PI_2)] {
+            let arc = origin(0.0).then_arc(2.0, turn, PI).unwrap();
+            assert!((arc.end.x - 2.0).abs() < 1e-15 && (arc.end.y - y).abs() < 1e-15);
+            assert_eq!(arc.heading_at(PI), Radians(heading));
+            assert_eq!(arc.heading_at(FRAC_PI_2), Radians(0.5 * heading));
+        }
+    }
+
+    #[test]
+    fn boxes_hold_the_arc_and_touch_it() {
+        for k in 0..64 {
+            for turn in [Turn::Left, Turn::Right] {
+                let arc = origin(0.1 * f64::from(k)).then_arc(1.5, turn, 0.14 * f64::from(k)).unwrap();
+                let points = (0..=1000).map(|n| arc.point_at(arc.length * f64::from(n) / 1000.0));
+                let seen = points.map(|p| Bounds::around(p, p)).reduce(Bounds::hull).unwrap();
+                let bounds = arc.bounds;
+                assert_eq!(bounds.hull(seen), bounds, "holds");
+                if arc.length.double() < arc.circumference {
+                    assert!(bounds.within(seen, 0.0) && (bounds.x.length() - seen.x.length()) < 1e-5, "touches");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn near_is_never_wrong_about_segments_that_touch() {
+        for k in 0..200 {
+            let k = f64::from(k);
+            let own = origin(0.3).then_arc(0.7, Turn::Right, 0.02 * k).unwrap();
+            let other = own.then_arc(0.4, Turn::Left, 1.0 + 0.001 * k).unwrap();
+            assert!(own.near(&other, 1e-12) && other.near(&own, 1e-12));
+            let away = origin(0.3).then_line(5.0).unwrap().then_line(1.0).unwrap();
+            assert!(!own.near(&away, 0.5));
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_by_name() {
+        let start = origin(0.0);
+        assert_eq!(start.then_line(-1.0), Err(Invalid::Negative("length")));
+        assert_eq!(start.then_line(f64::NAN), Err(Invalid::NonFinite("length")));
+        assert_eq!(start.then_line(2e12), Err(Invalid::OutOfRange("length")));
+        assert_eq!(start.then_arc(0.0, Turn::Left, 1.0), Err(Invalid::NonPositive("radius")));
+        assert_eq!(start.then_arc(1.0, Turn::Left, TAU + 1e-9), Err(Invalid::SweepOverOneTurn));
+        assert_eq!(start.then_arc(1.0, Turn::Left, TAU).map(|arc| arc.length), Ok(TAU));
+        let far = start.then_line(9e11).unwrap();
+        assert_eq!(far.then_line(9e11), Err(Invalid::OutOfRange("x")));
     }
 }

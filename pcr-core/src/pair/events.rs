@@ -40,13 +40,13 @@ impl<S: Scalar> Events<S> {
             events.add_ends(&Footprint::of(first.end, second), second, radius);
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
-        normal.lengths_at(&[radius, -radius], |s| events.add(s));
+        normal.lengths_at(&[radius, -radius], S::ZERO, |s| events.add(s));
         if let Curve::Arc { radius: own, .. } = first.curve
             && wraps(first, radius)
         {
             let diameter = middle_diameter(first, own);
             let centre = Footprint::of(diameter.start, second);
-            Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], |s| events.add(s));
+            Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, |s| events.add(s));
             events.add_ends(&centre, second, radius - own);
         }
         events
@@ -71,7 +71,7 @@ impl<S: Scalar> Events<S> {
 
     fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S) {
         if let Reach::Around { foot, half } = footprint.reach(second, radius) {
-            for s in [foot - half, foot + half].map(|s| on_first_lap(s, second)) {
+            for s in [foot - half, foot + half].map(|s| on_first_lap(s, second, S::ZERO)) {
                 if S::ZERO <= s && s <= second.length {
                     self.add(s);
                 }
@@ -89,9 +89,9 @@ pub(crate) fn turning_points<S: Scalar>(
     mut found: impl FnMut(S, S),
 ) {
     let start = Footprint::of(second.start, first);
-    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], |l| {
+    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, |l| {
         let foot = Footprint::of(first.point_at(l), second).foot(second);
-        let s = on_first_lap(foot, second);
+        let s = on_first_lap(foot, second, S::ZERO);
         if S::ZERO <= s && s <= second.length {
             found(l, s);
         }

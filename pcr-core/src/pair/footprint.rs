@@ -208,3 +208,73 @@ pub(crate) fn shift<S: Scalar>(foot: S, segment: &Segment<S>, lap: Lap) -> S {
         Lap::Same | Lap::Whole => foot,
     }
 }
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+    use crate::{Pose, Radians, Turn};
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    fn origin() -> Segment<f64> {
+        Segment::standing(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) }).unwrap()
+    }
+
+    fn close(interval: Option<Interval<f64>>, lo: f64, hi: f64) -> bool {
+        interval.is_some_and(|interval| (interval.lo - lo).abs() < 1e-15 && (interval.hi - hi).abs() < 1e-15)
+    }
+
+    #[test]
+    fn a_disc_beside_a_line_covers_the_chord_of_a_3_4_5_triangle() {
+        let line = origin().then_line(10.0).unwrap();
+        let covered = |x: f64, y: f64| Footprint::of(Point::new(x, y), &line).reach(&line, 5.0).intervals(&line);
+        assert!(close(covered(5.0, 3.0)[0], 1.0, 9.0));
+        assert!(close(covered(1.0, -3.0)[0], 0.0, 5.0));
+        assert!(close(covered(5.0, 5.0)[0], 5.0, 5.0));
+        assert_eq!(covered(5.0, 5.000_000_000_000_001), [None, None]);
+        assert_eq!(covered(-4.1, 3.0), [None, None]);
+    }
+
+    #[test]
+    fn a_disc_on_a_circle_covers_an_angle_either_way_round() {
+        // A chord of length R = √2 of the unit circle spans a quarter turn.
+        for turn in [Turn::Left, Turn::Right] {
+            let arc = origin().then_arc(1.0, turn, PI).unwrap();
+            let covered = |u: f64| Footprint::of(arc.point_at(u), &arc).reach(&arc, 2.0_f64.sqrt()).intervals(&arc);
+            assert!(close(covered(FRAC_PI_2)[0], 0.0, PI));
+            assert!(close(covered(0.0)[0], 0.0, FRAC_PI_2));
+        }
+    }
+
+    #[test]
+    fn a_disc_at_the_seam_of_a_full_turn_covers_both_ends() {
+        let circle = origin().then_arc(1.0, Turn::Left, TAU).unwrap();
+        let [start, end] = Footprint::of(Point::new(0.0, 0.0), &circle).reach(&circle, 1.0).intervals(&circle);
+        let third = PI / 3.0;
+        assert!(
+            close(start, 0.0, third) && end.is_some_and(|end| (end.lo - (TAU - third)).abs() < 1e-15 && end.hi == TAU)
+        );
+    }
+
+    #[test]
+    fn a_disc_larger_than_the_circle_covers_all_nothing_or_the_near_side() {
+        let circle = origin().then_arc(1.0, Turn::Left, TAU).unwrap();
+        let reach = |y: f64| Footprint::of(Point::new(0.0, y), &circle).reach(&circle, 2.0);
+        assert_eq!(reach(1.0), Reach::Whole);
+        assert_eq!(reach(-2.5), Reach::Nothing);
+        assert_eq!(reach(5.0), Reach::Nothing);
+        // Centre of the disc on the circle at its lowest point: the far point is exactly 2 away.
+        assert_eq!(reach(0.0), Reach::Whole);
+        assert!(
+            matches!(reach(-1.0), Reach::Around { foot: 0.0, half } if (half - 1.318_116_071_652_818).abs() < 1e-14)
+        );
+    }
+
+    #[test]
+    fn the_offset_of_a_nearly_straight_arc_does_not_cancel() {
+        // y = 0 and x = 3 on a circle of radius 1e9: offset -x²/2ϱ.
+        let arc = origin().then_arc(1e9, Turn::Left, 10.0).unwrap();
+        let footprint = Footprint::of(Point::new(3.0, 0.0), &arc);
+        assert!((footprint.offset + 4.5e-9).abs() < 1e-23);
+        assert!((footprint.foot(&arc) - 3.0).abs() < 1e-15);
+    }
+}

@@ -67,8 +67,9 @@ impl<'a, S: Scalar> Relative<'a, S> {
         Self { segment, start, cos: towards.dot(base), sin: towards.cross(base), bend }
     }
 
-    /// The lengths of the segment, ends included, at which it has one of the offsets `c` from the carrier.
-    pub(crate) fn lengths_at(&self, offsets: &[S], mut found: impl FnMut(S)) {
+    /// The lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
+    /// the carrier.
+    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, mut found: impl FnMut(S)) {
         let mut foot = None;
         for &c in offsets {
             let Some(roots) = self.roots(c) else {
@@ -78,10 +79,10 @@ impl<'a, S: Scalar> Relative<'a, S> {
             let lengths = match roots {
                 Roots::Lengths(lengths) => lengths.map(|u| foot + u),
                 Roots::Angles(angles, radius) => {
-                    angles.map(|angle| on_first_lap(foot + angle.arc_length(radius), self.segment))
+                    angles.map(|angle| on_first_lap(foot + angle.arc_length(radius), self.segment, margin))
                 }
             };
-            let on_segment = |&u: &S| S::ZERO <= u && u <= self.segment.length;
+            let on_segment = |&u: &S| -margin <= u && u <= self.segment.length + margin;
             lengths.into_iter().filter(on_segment).for_each(&mut found);
         }
     }
@@ -106,7 +107,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
                 let far = lateral - r.scale(cos).double();
                 S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral))?
             }
-            // Both are arcs, equation times r² ϱ (κ_I = 1/ϱ).
+            // Both are arcs, equation times ϱ (κ_I = 1/ϱ).
             Some(bend) => {
                 let g = Self::constant(bend, lateral, n, c);
                 let centre = n + bend.scale(cos) - r;
@@ -123,11 +124,12 @@ impl<'a, S: Scalar> Relative<'a, S> {
     }
 }
 
-/// A length along a circle, less than one lap away, moved onto its first lap. Lines have one lap only.
-pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>) -> S {
-    if length < S::ZERO {
+/// A length along a circle, less than one lap away, moved onto its first lap unless it is within the margin of it.
+/// Lines have one lap only.
+pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>, margin: S) -> S {
+    if length < -margin {
         length + segment.circumference
-    } else if length > segment.circumference && segment.circumference > S::ZERO {
+    } else if length > segment.circumference + margin && segment.circumference > S::ZERO {
         length - segment.circumference
     } else {
         length
