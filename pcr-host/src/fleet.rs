@@ -247,8 +247,8 @@ pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
             Err(Full::Regions) => regions *= 2,
             Err(Full::Pieces) => {
                 // Beyond this a pair may be at fault that no storage helps.
-                if pieces > PIECES_OF_A_PAIR {
-                    every_pair_fits(motions)?;
+                if pieces > PIECES_OF_A_PAIR && overfull_pair(motions).is_some() {
+                    return Err(Full::Pieces);
                 }
                 pieces *= 2;
             }
@@ -257,13 +257,16 @@ pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
     }
 }
 
-fn every_pair_fits<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<(), Full> {
+/// The first pair of agents (places in the fleet) with more than 65535 pieces of regions, if there is one.
+pub fn overfull_pair<S: Scalar>(motions: &[Motion<'_, S>]) -> Option<[usize; 2]> {
     let mut table = Ecm::new(vec![Region::EMPTY; PIECES_OF_A_PAIR], vec![Piece::EMPTY; PIECES_OF_A_PAIR]);
-    for (index, first) in motions.iter().enumerate() {
-        for second in motions.iter().skip(index + 1) {
-            table.insert(&[*first, *second], 1)?;
+    for (first, ego) in motions.iter().enumerate() {
+        for (second, other) in motions.iter().enumerate().skip(first + 1) {
+            if table.insert(&[*ego, *other], 1).is_err() {
+                return Some([first, second]);
+            }
             table.remove(1);
         }
     }
-    Ok(())
+    None
 }

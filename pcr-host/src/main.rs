@@ -1,12 +1,12 @@
 //! The command `pcr`: its arguments, its exit statuses, and nothing else.
 
 use clap::{Parser, Subcommand, ValueEnum};
-use pcr_host::fleet::{Fleet, build_ecm};
+use pcr_host::fleet::Fleet;
 use pcr_host::input::{self, InputError, Lines};
 use pcr_host::paper;
 use pcr_host::picture;
 use pcr_host::progress::Progress;
-use pcr_host::regions::{Answer, Failure, Request};
+use pcr_host::regions::{self, Answer, Failure, Request};
 use pcr_host::report;
 use pcr_host::scenario::Scenario;
 use std::io::{self, BufReader, BufWriter, IsTerminal, Write};
@@ -177,7 +177,7 @@ fn overview() -> Result<(), Stop> {
     let fleet = Fleet::<f64>::new(&scenario).map_err(Failure::from)?;
     let motions = fleet.motions();
     let begin = Instant::now();
-    build_ecm(&motions).map_err(Failure::from)?;
+    regions::table(&scenario, &motions)?;
     let took = begin.elapsed();
     let answer = Answer::of::<f64>(&scenario, Request::default())?;
     let mut out = io::stdout().lock();
@@ -193,7 +193,7 @@ fn map(file: Option<&Path>, directory: &Path) -> Result<(), Stop> {
         None => failure.into(),
     };
     let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
-    build_ecm(&fleet.motions()).map_err(|full| named(full.into()))?;
+    regions::table(&scenario, &fleet.motions()).map_err(named)?;
     draw(&scenario, directory, &mut io::stdout().lock())
 }
 

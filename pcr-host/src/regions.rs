@@ -3,7 +3,7 @@
 //! The types are the JSON output (`docs/formats.md`): field for field, in this order. All numbers are `f64` and hold
 //! the results of the chosen number format exactly, hence rounded outward.
 
-use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm};
+use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm, overfull_pair};
 use crate::scenario::Scenario;
 use pcr_core::{Crossing, Curve, Full, Motion, RegionRef, Turn, crossings};
 use serde::Serialize;
@@ -117,6 +117,8 @@ pub enum Failure {
     Refused(Refused),
     /// The fleet is beyond a limit of the table.
     Full(Full),
+    /// These two agents have more pieces of regions than the table can number.
+    Overfull([u64; 2]),
     /// There is no agent of the number asked for; these are there.
     NoSuchAgent(u64, Vec<u64>),
 }
@@ -127,8 +129,11 @@ impl fmt::Display for Failure {
         const LISTED: usize = 16;
         match self {
             Self::Refused(refused) => refused.fmt(f),
-            Self::Full(Full::Pieces) => f.write_str("a pair of agents has more than 65535 pieces of regions"),
             Self::Full(full) => full.fmt(f),
+            Self::Overfull([i, j]) => write!(
+                f,
+                "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
+            ),
             Self::NoSuchAgent(asked, there) => {
                 write!(f, "no agent {asked}; ")?;
                 let listed: Vec<String> = there.iter().take(LISTED).map(u64::to_string).collect();
@@ -150,10 +155,19 @@ impl From<Refused> for Failure {
     }
 }
 
-impl From<Full> for Failure {
-    fn from(full: Full) -> Self {
-        Self::Full(full)
-    }
+/// The extended collision map of a scenario.
+///
+/// # Errors
+/// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
+pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Failure> {
+    let id = |agent: usize| scenario.agents.get(agent).map(|agent| agent.id);
+    build_ecm(motions).map_err(|full| {
+        let pair = if full == Full::Pieces { overfull_pair(motions) } else { None };
+        match pair.map(|pair| pair.map(id)) {
+            Some([Some(i), Some(j)]) => Failure::Overfull([i, j]),
+            _ => Failure::Full(full),
+        }
+    })
 }
 
 impl Answer {
@@ -168,7 +182,7 @@ impl Answer {
         }
         let fleet = Fleet::<S>::new(scenario)?;
         let motions = fleet.motions();
-        let ecm = build_ecm(&motions)?;
+        let ecm = table(scenario, &motions)?;
         let work = Work { ids: &ids, fleet: &fleet, motions: &motions, ecm: &ecm, slices: request.slices };
         let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
         let mut regions: Vec<Region> = egos.flat_map(|ego| work.row(ego)).collect();

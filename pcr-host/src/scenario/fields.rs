@@ -14,9 +14,7 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
-    place: Place,
-    field: String,
-    problem: String,
+    message: String,
 }
 
 impl ScenarioError {
@@ -33,13 +31,7 @@ impl ScenarioError {
 
 impl fmt::Display for ScenarioError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let part = self.place.part.map(|(part, number)| format!("{part} {number}"));
-        let field = Some(self.field.clone()).filter(|field| !field.is_empty());
-        let place: Vec<String> = [self.place.agent.clone(), part, field].into_iter().flatten().collect();
-        if !place.is_empty() {
-            write!(f, "{}: ", place.join(", "))?;
-        }
-        f.write_str(&self.problem)
+        f.write_str(&self.message)
     }
 }
 
@@ -55,9 +47,13 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn error(&self, line: usize, field: impl Into<String>, problem: impl Into<String>) -> ScenarioError {
-        let (place, field, problem) = (self.clone(), field.into(), problem.into());
-        ScenarioError { scenario: String::new(), line, place, field, problem }
+    /// The error at this place; `field` is empty where the place as a whole is meant.
+    pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
+        let part = self.part.map(|(part, number)| format!("{part} {number}"));
+        let field = Some(field.to_owned()).filter(|field| !field.is_empty());
+        let place: Vec<String> = [self.agent.clone(), part, field].into_iter().flatten().collect();
+        let colon = if place.is_empty() { "" } else { ": " };
+        ScenarioError { scenario: String::new(), line, message: format!("{}{colon}{problem}", place.join(", ")) }
     }
 
     pub(super) fn part(&self, name: &'static str, index: usize) -> Self {
@@ -66,20 +62,31 @@ impl Place {
 
     /// The fields of an object that has no others than these.
     pub(super) fn fields<'j>(&self, json: &'j Json, known: &[&str]) -> Result<Fields<'j>, ScenarioError> {
+        self.fields_inside(json, "", known)
+    }
+
+    /// The same for an object within the one that the place names; `inside` precedes its fields in messages.
+    fn fields_inside<'j>(
+        &self,
+        json: &'j Json,
+        inside: &'static str,
+        known: &[&str],
+    ) -> Result<Fields<'j>, ScenarioError> {
         let Data::Object(members) = &json.data else {
             return Err(self.error(json.line, "", format!("{} where an object is expected", brief(json))));
         };
+        let fields = Fields { place: self.clone(), inside, line: json.line, members };
         for (index, (key, value)) in members.iter().enumerate() {
             if !known.contains(&key.as_str()) {
                 let problem = format!("unknown key; known are {}", known.join(", "));
-                return Err(self.error(value.line, shortened(key), problem));
+                return Err(fields.error(value.line, &shortened(key), problem));
             }
             // At most as many steps as there are known keys before one of them is given twice.
             if members.iter().take(index).any(|(before, _)| before == key) {
-                return Err(self.error(value.line, key, "given twice"));
+                return Err(fields.error(value.line, key, "given twice"));
             }
         }
-        Ok(Fields { place: self.clone(), inside: "", line: json.line, members })
+        Ok(fields)
     }
 }
 
@@ -93,8 +100,8 @@ pub(super) struct Fields<'j> {
 }
 
 impl<'j> Fields<'j> {
-    pub(super) fn error(&self, line: usize, field: &str, problem: impl Into<String>) -> ScenarioError {
-        self.place.error(line, format!("{}{field}", self.inside), problem)
+    pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
+        self.place.error(line, &format!("{}{field}", self.inside), problem)
     }
 
     pub(super) fn get(&self, field: &str) -> Option<&'j Json> {
@@ -125,10 +132,7 @@ impl<'j> Fields<'j> {
     ) -> Result<Fields<'j>, ScenarioError> {
         let found = self.required(field)?;
         match &found.data {
-            Data::Object(_) => {
-                let named = |error: ScenarioError| ScenarioError { field: format!("{inside}{}", error.field), ..error };
-                Ok(Fields { inside, ..self.place.fields(found, known).map_err(named)? })
-            }
+            Data::Object(_) => self.place.fields_inside(found, inside, known),
             _ => Err(self.unexpected(field, found, "an object")),
         }
     }

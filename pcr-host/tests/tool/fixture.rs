@@ -7,21 +7,21 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// What a run left behind.
-pub struct Run {
-    pub status: i32,
-    pub out: String,
-    pub err: String,
+pub(crate) struct Run {
+    pub(crate) status: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
 }
 
-pub fn pcr() -> Command {
+pub(crate) fn pcr() -> Command {
     Command::new(env!("CARGO_BIN_EXE_pcr"))
 }
 
-pub fn run(arguments: &[&str]) -> Run {
+pub(crate) fn run(arguments: &[&str]) -> Run {
     run_with(arguments, b"")
 }
 
-pub fn run_with(arguments: &[&str], input: &[u8]) -> Run {
+pub(crate) fn run_with(arguments: &[&str], input: &[u8]) -> Run {
     let mut command = pcr();
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
@@ -38,20 +38,20 @@ pub fn run_with(arguments: &[&str], input: &[u8]) -> Run {
 impl Run {
     /// The output of a run that went well.
     #[track_caller]
-    pub fn ok(self) -> String {
+    pub(crate) fn ok(self) -> String {
         assert_eq!((self.status, self.err.as_str()), (0, ""));
         self.out
     }
 
     /// The JSON output of a run that went well.
     #[track_caller]
-    pub fn json(self) -> Value {
+    pub(crate) fn json(self) -> Value {
         serde_json::from_str(&self.ok()).unwrap()
     }
 
     /// The message of a run that failed with this status and printed nothing else.
     #[track_caller]
-    pub fn failed(self, status: i32) -> String {
+    pub(crate) fn failed(self, status: i32) -> String {
         assert_eq!((self.status, self.out.as_str()), (status, ""), "{}", self.err);
         assert!(self.err.starts_with("pcr: ") && self.err.ends_with('\n'), "{}", self.err);
         assert_eq!(self.err.lines().count(), 1, "{}", self.err);
@@ -60,21 +60,21 @@ impl Run {
 }
 
 /// A place for files of a test.
-pub fn directory(test: &str) -> PathBuf {
+pub(crate) fn directory(test: &str) -> PathBuf {
     let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
     fs::create_dir_all(&directory).unwrap();
     directory
 }
 
 /// The path of a file with this content.
-pub fn file(test: &str, name: &str, content: impl AsRef<[u8]>) -> String {
+pub(crate) fn file(test: &str, name: &str, content: impl AsRef<[u8]>) -> String {
     let path = directory(test).join(name);
     fs::write(&path, content).unwrap();
     path.to_str().unwrap().to_owned()
 }
 
 /// An agent that goes straight ahead, from rest to rest.
-pub fn straight(id: u64, [x, y, heading]: [f64; 3], length: f64) -> Value {
+pub(crate) fn straight(id: u64, [x, y, heading]: [f64; 3], length: f64) -> Value {
     json!({
         "id": id, "radius": 0.25, "v_max": 1.0, "a_max": 1.0,
         "start": { "x": x, "y": y, "heading": heading },
@@ -83,7 +83,7 @@ pub fn straight(id: u64, [x, y, heading]: [f64; 3], length: f64) -> Value {
 }
 
 /// Two agents that cross at right angles in the middle of their paths of 4 m.
-pub fn crossing() -> Value {
+pub(crate) fn crossing() -> Value {
     let north = std::f64::consts::FRAC_PI_2;
     json!({ "name": "crossing", "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), straight(2, [0.0, -2.0, north], 4.0)] })
 }

@@ -299,8 +299,40 @@ fn paths_of_ten_thousand_segments_are_no_matter() {
 }
 
 #[test]
+fn a_pair_that_the_table_cannot_hold_is_named() {
+    // Two convoys in steps of 1 cm: each of 700 segments is within reach of 100 of the other agent.
+    let segments: Vec<Value> = (0..700).map(|_| json!({ "kind": "line", "length": 0.01 })).collect();
+    let agent = |id, y: f64| {
+        let mut agent = straight(id, [0.0, y, 0.0], 7.0);
+        agent["path"] = json!(segments);
+        agent
+    };
+    let scenario = json!({ "agents": [agent(8, 50.0), agent(5, 0.0), agent(6, 0.1)] });
+    let scenario = file("overfull", "convoy.json", scenario.to_string());
+    let message = run(&["regions", &scenario]).failed(2);
+    let problem = "agents 5 and 6: more than 65535 pairs of segments within reach of one another; join short segments";
+    assert_eq!(message, format!("pcr: {scenario}: {problem}\n"));
+}
+
+#[test]
 fn the_embedded_scenario_is_that_of_the_tests() {
     assert_eq!(paper::SCENARIO, include_str!("../../../tests/data/paper12.json"));
+}
+
+#[test]
+fn pictures_are_listed_and_there() {
+    let scenario = file("map", "crossing.json", crossing().to_string());
+    let pictures = directory("map").join("pictures");
+    let _ = std::fs::remove_dir_all(&pictures);
+    let printed = run(&["map", &scenario, "-o", pictures.to_str().unwrap()]).ok();
+    let files: Vec<_> = std::fs::read_dir(&pictures).unwrap().map(|entry| entry.unwrap()).collect();
+    assert!(files.iter().all(|file| file.metadata().unwrap().len() > 0));
+    let expected = format!("Pictures: {} files in {}; begin with ", files.len(), pictures.display());
+    let first = printed.strip_prefix(&expected).unwrap_or_else(|| panic!("{printed}")).trim_end();
+    assert!(std::path::Path::new(first).is_file(), "{first}");
+    for name in ["ecm-1.svg", "ecm-2.png", "workspace.svg"] {
+        assert!(pictures.join(name).is_file(), "{name}");
+    }
 }
 
 #[test]
