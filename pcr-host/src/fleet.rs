@@ -194,7 +194,7 @@ fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Faul
                 None => last.then_line(length),
                 Some((radius, turn)) => last.then_arc(radius, turn, length),
             };
-            segments.push(next.map_err(|reason| at(derived::<S>(reason)))?);
+            segments.push(next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?);
             sources.push(source);
         }
     }

@@ -1,6 +1,6 @@
 //! The collision regions of a scenario as plain numbers: what `pcr regions` prints in every format.
 //!
-//! The types are the JSON output (`docs/formats.md`): field for field, in this order. All numbers are `f64` and hold
+//! The types are the JSON output, field for field in this order. All numbers are `f64` and hold
 //! the results of the chosen number format exactly, hence rounded outward.
 
 use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm, overfull_pair};
@@ -75,7 +75,8 @@ pub struct Descriptor {
     pub r_hat: f64,
     /// Speed of `j` as it passes \[m/s\].
     pub v: f64,
-    /// Heading of `j` less heading of `i` \[rad\], both accumulated along their paths.
+    /// Heading of `j` less heading of `i` \[rad\], both accumulated along their paths (in `f32` from start headings
+    /// without whole turns).
     pub theta: f64,
     /// Radius of the arc of `i` \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -35,7 +35,7 @@ fn what_overflows_f32_is_refused() {
     refused("/path/0/length", 2e6, &format!("agent 7, segment 1, length: 2e6 {limit}"));
     refused("/path/1/radius", 2e6, &format!("agent 7, segment 2, radius: 2e6 {limit}"));
     // The end of the path, and the end of the motion.
-    refused("/start/x", 999_999.0, &format!("agent 7, segment 1, x {limit}"));
+    refused("/start/x", 999_999.0, &format!("agent 7, segment 1, at its end: x {limit}"));
     refused("/v_max", 1e-6, "agent 7, the motion takes 3.500000000002e6 s; allowed is below 1e6 s (f32)");
 }
 
