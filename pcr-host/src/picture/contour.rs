@@ -10,8 +10,8 @@
 mod events;
 mod outline;
 
-pub(super) use outline::Outline;
 use outline::{Column, correspond, outline, scaled};
+pub(super) use outline::{Outline, is_thin};
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use std::f64::consts::PI;
 

@@ -30,21 +30,21 @@ impl Labels {
         self.lines.extend(points.into_iter().map(|point| (weight, point)));
     }
 
-    /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. The
-    /// first candidate weighs nothing by itself, and each further one a little more. `None` without candidates.
+    /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. A
+    /// candidate comes with what speaks against it by itself; earlier ones are preferred. `None` without candidates.
     pub(super) fn place(
         &mut self,
         size: [f64; 2],
-        candidates: impl IntoIterator<Item = [f64; 2]>,
+        candidates: impl IntoIterator<Item = (f64, [f64; 2])>,
         within: Area,
     ) -> Option<[f64; 2]> {
         let around = |[x, y]: [f64; 2]| [x - size[0] / 2.0, y - size[1] / 2.0, x + size[0] / 2.0, y + size[1] / 2.0];
         let mut best: Option<(f64, [f64; 2])> = None;
-        for (rank, candidate) in candidates.into_iter().enumerate() {
+        for (rank, (weight, candidate)) in candidates.into_iter().enumerate() {
             let area = around(candidate);
             let outside = size[0] * size[1] - overlap(area, within);
             let covered: f64 = self.taken.iter().map(|taken| overlap(*taken, area)).sum();
-            let cost = RANK * rank as f64 + OVERLAP * (outside + covered);
+            let cost = weight + RANK * rank as f64 + OVERLAP * (outside + covered);
             if best.is_some_and(|(least, _)| least <= cost) {
                 continue;
             }
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn labels_avoid_one_another_and_the_edge() {
         let mut labels = Labels::default();
-        let places = [[50.0, 50.0], [98.0, 50.0], [50.0, 70.0]];
+        let places = [(0.0, [50.0, 50.0]), (0.0, [98.0, 50.0]), (0.0, [50.0, 70.0])];
         assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
         assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 70.0]));
     }
@@ -88,7 +88,7 @@ mod tests {
     fn labels_avoid_lines() {
         let mut labels = Labels::default();
         labels.avoid(1.0, (0..10).map(|k| [45.0 + f64::from(k), 50.0]));
-        assert_eq!(labels.place([20.0, 10.0], [[50.0, 50.0], [50.0, 60.0]], ALL), Some([50.0, 60.0]));
+        assert_eq!(labels.place([20.0, 10.0], [(0.0, [50.0, 50.0]), (0.0, [50.0, 60.0])], ALL), Some([50.0, 60.0]));
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod legend;
 mod names;
 
 use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, room_at_left};
+use super::contour::is_thin;
 use super::scene::{Scene, Shape};
 use super::svg::{PathData, Pixels, Svg};
 pub(super) use legend::Legend;
@@ -18,7 +19,7 @@ pub(super) const ROOM_ABOVE: f64 = 26.0;
 const MARGIN: f64 = 0.045;
 
 /// Outlines thinner than this would be lost \[px\].
-const THIN: f64 = 1.0;
+pub(super) const THIN: f64 = 1.0;
 
 /// Distance of the lines of a hatching \[px\].
 const HATCHING: f64 = 5.0;
@@ -143,11 +144,7 @@ fn draw_region(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
     let (mut areas, mut lines) = (PathData::default(), PathData::default());
     for contour in &shape.outline {
         let points: Vec<[f64; 2]> = contour.iter().map(|point| frame.at(*point)).collect();
-        let extent = |k: usize| {
-            let values = points.iter().map(|point| point[k]);
-            values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
-        };
-        let thin = extent(0) < THIN || extent(1) < THIN;
+        let thin = is_thin(&points, THIN);
         if thin { &mut lines } else { &mut areas }.polygon(points);
     }
     svg.start("g", &[("fill", &colour), ("stroke", &colour), ("stroke-linejoin", &"round")]);

@@ -4,8 +4,8 @@
 //! are exactly where they are at every time of the slider. Outlines of regions are traced here and drawn there.
 
 use super::axis::Frame;
-use super::contour::Outline;
-use super::map::{places, spans};
+use super::contour::{Outline, is_thin};
+use super::map::{THIN, places, spans};
 use super::scene::{Scene, Shape};
 use super::svg::Escaped;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
@@ -108,8 +108,11 @@ fn map(scene: &Scene<'_>, ego: usize) -> Value {
 
 fn region(shape: &Shape, place: Option<[f64; 2]>, frame: &Frame) -> Value {
     let strips = |strips: &[Interval<f64>]| strips.iter().copied().map(interval).collect::<Vec<_>>();
+    let thin =
+        |contour: &Vec<[f64; 2]>| is_thin(&contour.iter().map(|point| frame.at(*point)).collect::<Vec<_>>(), THIN);
     json!({
         "other": shape.other,
+        "thin": shape.outline.iter().all(thin),
         "time": interval(shape.time),
         "length": interval(shape.length),
         "outline": path(&shape.outline, frame),

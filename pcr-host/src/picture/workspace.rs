@@ -194,7 +194,8 @@ fn draw_numbers(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
                 [x + (gap + size[0] / 2.0) * cos, y - (gap + size[1] / 2.0) * sin]
             })
         });
-        let Some([x, y]) = labels.place(size, inside.into_iter().chain(around), frame.edges) else {
+        let Some([x, y]) = labels.place(size, inside.into_iter().chain(around).map(|place| (0.0, place)), frame.edges)
+        else {
             continue;
         };
         let ink = scene.colour(place).ink();

@@ -99,3 +99,18 @@ fn cycles(points: &[[f64; 2]], next: &[usize], pixel: [f64; 2]) -> Outline {
     }
     outline
 }
+
+/// Whether a contour, in pixels, encloses next to nothing: on the average over its length less than `width`.
+pub(in super::super) fn is_thin(contour: &[[f64; 2]], width: f64) -> bool {
+    let [mut area, mut perimeter] = [0.0; 2];
+    let Some(origin) = contour.first() else {
+        return true;
+    };
+    for (a, b) in contour.iter().zip(contour.iter().cycle().skip(1)) {
+        let step = [b[0] - a[0], b[1] - a[1]];
+        area += (a[0] - origin[0]) * step[1] - (a[1] - origin[1]) * step[0];
+        perimeter += step[0].hypot(step[1]);
+    }
+    // A band of this width has half its perimeter as its length.
+    area.abs() <= width * perimeter
+}

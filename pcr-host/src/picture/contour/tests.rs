@@ -152,3 +152,12 @@ fn columns_are_limited_by_the_size_of_the_picture() {
         assert!((4..10 * PIXELS as usize).contains(&points), "{points}");
     });
 }
+
+#[test]
+fn a_steep_band_is_as_thin_as_a_flat_one() {
+    let square = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
+    let flat = [[0.0, 0.0], [90.0, 0.0], [90.0, 0.5], [0.0, 0.5]];
+    let steep = flat.map(|[x, y]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y]);
+    assert!(!is_thin(&square, 1.0) && is_thin(&flat, 1.0) && is_thin(&steep, 1.0));
+    assert!(is_thin(&[[1.0, 1.0]], 1.0) && is_thin(&[], 1.0));
+}

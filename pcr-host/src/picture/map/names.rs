@@ -12,6 +12,9 @@ const LABEL_SIZE: f64 = 9.5;
 /// Weights of covering the trajectory, and the outline of a region.
 const WEIGHTS: [f64; 2] = [8.0, 1.0];
 
+/// Weight of a label that lies in the region of another agent.
+const MISLEADING: f64 = 12.0;
+
 /// Writes the labels.
 pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
     svg.start(
@@ -50,9 +53,11 @@ pub(in super::super) fn places(
         let at = |time| frame.at([time, motion.length_at(time)]);
         labels.avoid(WEIGHTS[0], (0..=steps).map(|k| at(from + step * k as f64)));
     }
-    for contour in shapes.iter().flat_map(|shape| &shape.outline) {
-        let points: Vec<[f64; 2]> = contour.iter().map(|point| frame.at(*point)).collect();
-        labels.avoid(WEIGHTS[1], spaced(&points));
+    let on_frame = |contour: &Vec<[f64; 2]>| contour.iter().map(|point| frame.at(*point)).collect::<Vec<_>>();
+    let outlines: Vec<Vec<Vec<[f64; 2]>>> =
+        shapes.iter().map(|shape| shape.outline.iter().map(on_frame).collect()).collect();
+    for contour in outlines.iter().flatten() {
+        labels.avoid(WEIGHTS[1], spaced(contour));
     }
     // Small regions have the smallest choice.
     let mut order: Vec<(usize, &Shape)> = shapes.iter().enumerate().collect();
@@ -62,7 +67,12 @@ pub(in super::super) fn places(
     for (k, shape) in order {
         let text = scene.id(shape.other).to_string();
         let size = [text_width(&text, label_size) + 2.0, label_size];
-        places[k] = labels.place(size, candidates(shape, size, frame), frame.edges);
+        let misleading = |place: [f64; 2]| {
+            let others = outlines.iter().enumerate().filter(|(other, _)| *other != k);
+            MISLEADING * others.filter(|(_, outline)| encloses(outline, place)).count() as f64
+        };
+        let candidates = candidates(shape, size, frame).into_iter().map(|place| (misleading(place), place));
+        places[k] = labels.place(size, candidates, frame.edges);
     }
     places
 }
@@ -99,8 +109,20 @@ fn candidates(shape: &Shape, [width, height]: [f64; 2], frame: &Frame) -> Vec<[f
         [after, bottom],
         [before, bottom],
     ];
+    let beside_slices = shape.slices.iter().flat_map(|(time, slice)| {
+        let x = frame.x.at(*time);
+        [[x, frame.y.at(slice.hi) - height / 2.0 - 2.0], [x, frame.y.at(slice.lo) + height / 2.0 + 2.0]]
+    });
     places.extend(cramped.into_iter().take(1));
-    places.into_iter().map(|(_, place)| place).chain(around).collect()
+    places.into_iter().map(|(_, place)| place).chain(beside_slices).chain(around).collect()
+}
+
+/// Whether a point lies inside of an outline: a ray from it to the right crosses the outline an odd number of times.
+fn encloses(outline: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
+    let sides = outline.iter().flat_map(|contour| contour.iter().zip(contour.iter().cycle().skip(1)));
+    let crossed =
+        sides.filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+    !crossed.count().is_multiple_of(2)
 }
 
 /// Points on the sides of a polygon, [`SPACING`] apart.
@@ -125,6 +147,13 @@ mod tests {
     use crate::fleet::{Fleet, build_ecm};
     use crate::picture::map::spans;
     use crate::scenario::Scenario;
+
+    #[test]
+    fn a_hole_is_not_inside() {
+        let square = |side: f64| vec![[-side, -side], [side, -side], [side, side], [-side, side]];
+        let ring = [square(2.0), square(1.0)];
+        assert!(encloses(&ring, [1.5, 0.0]) && !encloses(&ring, [0.0, 0.0]) && !encloses(&ring, [3.0, 0.0]));
+    }
 
     #[test]
     fn labels_of_the_paper_do_not_overlap() {

@@ -73,28 +73,30 @@ function axis([lo, hi], from, to) {
 
 // Plots are at most this wide and high.
 const side = 700;
-const room = { left: 78, top: 14, right: 14, bottom: 58 };
+const room = { left: 34, top: 14, right: 14, bottom: 58 };
 
 function frame(svg, xs, ys, width, height, titles) {
   svg.replaceChildren();
-  const right = room.left + width, bottom = room.top + height;
+  const bottom = room.top + height;
+  const y = axis(ys, bottom, room.top);
+  const left = room.left + 9 * Math.max(0, ...y.ticks(56).map(([, label]) => label.length));
+  const right = left + width, x = axis(xs, left, right);
   svg.setAttribute("viewBox", `0 0 ${right + room.right} ${bottom + room.bottom}`);
-  const x = axis(xs, room.left, right), y = axis(ys, bottom, room.top);
   for (const [value, label] of x.ticks(90)) {
     element(svg, "path", { class: "grid", d: `M${x.at(value)} ${room.top}V${bottom}` });
     element(svg, "text", { x: x.at(value), y: bottom + 20, "text-anchor": "middle" }, label);
   }
   for (const [value, label] of y.ticks(56)) {
-    element(svg, "path", { class: "grid", d: `M${room.left} ${y.at(value)}H${right}` });
-    element(svg, "text", { x: room.left - 7, y: y.at(value) + 5, "text-anchor": "end" }, label);
+    element(svg, "path", { class: "grid", d: `M${left} ${y.at(value)}H${right}` });
+    element(svg, "text", { x: left - 7, y: y.at(value) + 5, "text-anchor": "end" }, label);
   }
-  element(svg, "text", { class: "title", x: (room.left + right) / 2, y: bottom + 46, "text-anchor": "middle" }, titles[0]);
+  element(svg, "text", { class: "title", x: (left + right) / 2, y: bottom + 46, "text-anchor": "middle" }, titles[0]);
   const middle = (room.top + bottom) / 2;
   element(svg, "text",
     { class: "title", x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, titles[1]);
   const content = element(svg, "g");
-  element(svg, "rect", { class: "frame", x: room.left, y: room.top, width, height, "pointer-events": "none" });
-  return { content, x, y, left: room.left, top: room.top, right, bottom };
+  element(svg, "rect", { class: "frame", x: left, y: room.top, width, height, "pointer-events": "none" });
+  return { content, x, y, left, top: room.top, right, bottom };
 }
 
 const discs = [], paths = [];
@@ -163,9 +165,8 @@ function drawMap() {
   for (const k of order) {
     const region = map.regions[k], other = agents[region.other];
     if (!state.shown[region.other]) continue;
-    const extent = [x.at(region.time[1]) - x.at(region.time[0]), y.at(region.length[0]) - y.at(region.length[1])];
     const node = element(content, "g", {
-      class: `agent region${Math.min(...extent) < 2 ? " thin" : ""}${state.pinned === k ? " pinned" : ""}`,
+      class: `agent region${region.thin ? " thin" : ""}${state.pinned === k ? " pinned" : ""}`,
       style: `--colour:${other.colour}`, tabindex: 0, role: "button", "aria-label": summary(region),
     });
     const strip = (from, to) => ([lo, hi]) => element(node, "rect",
