@@ -45,7 +45,7 @@ use std::{fs, io, thread};
 /// all but the first as `.svg` and `.png`.
 ///
 /// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
-/// in a fixed order. The same scenario gives the same bytes on every machine.
+/// in a fixed order. The same scenario gives the same bytes in every run.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidInput`] for a scenario without motion (see [`Fleet::new`]) or of more than 65535 agents, and
