@@ -215,8 +215,9 @@ where
             return Ok(());
         };
         if let Err(full) = Pair::new(first, second).find(&mut self.pieces) {
+            let no_storage_helps = self.pieces.pair_is_full();
             self.pieces.take_back();
-            return Err(full);
+            return Err(if no_storage_helps { Full::Pair(agents) } else { full });
         }
         if self.pieces.first_pending() == NONE {
             return Ok(());

@@ -47,11 +47,14 @@ impl core::error::Error for Invalid {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Full {
     /// More pieces are needed.
     Pieces,
     /// More regions are needed.
     Regions,
+    /// These two agents have more than 65535 pieces with each other; no storage is large enough.
+    Pair([usize; 2]),
     /// The fleet has more than 65535 agents.
     Agents,
 }
@@ -61,6 +64,7 @@ impl fmt::Display for Full {
         match self {
             Self::Pieces => f.write_str("there is no room for another piece"),
             Self::Regions => f.write_str("there is no room for another region"),
+            Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 65535 pieces"),
             Self::Agents => f.write_str("the fleet has more than 65535 agents"),
         }
     }

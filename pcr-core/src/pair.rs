@@ -61,8 +61,12 @@ impl<'a, S: Scalar> Pair<'a, S> {
     fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
         let mut a = pieces.first_pending();
         while let Some(&before) = pieces.slots().get(a as usize) {
-            let mut b = pieces.first_pending();
+            // They are in the order of the second segments, then of the first ones: joints lie ahead, one row at most.
+            let mut b = before.next;
             while let Some(&after) = pieces.slots().get(b as usize) {
+                if after.second_segment.saturating_sub(before.second_segment) > 1 {
+                    break;
+                }
                 if self.meet_at_joint_of_second(&before, &after) || self.meet_at_joint_of_first(&before, &after) {
                     pieces.join(a, b);
                 }

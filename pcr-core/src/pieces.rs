@@ -102,6 +102,11 @@ impl<S, P> Pieces<S, P> {
         self.pending.first
     }
 
+    /// Whether no more pieces of this pair can be told apart.
+    pub(crate) const fn pair_is_full(&self) -> bool {
+        self.pending.groups == u16::MAX
+    }
+
     /// The last pending piece, or [`NONE`].
     pub(crate) const fn last_pending(&self) -> u32 {
         self.pending.last

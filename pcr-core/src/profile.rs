@@ -68,6 +68,11 @@ impl<S: Scalar> Phase<S> {
         self.length
     }
 
+    /// Speed at the beginning and at the end \[m/s\].
+    pub fn speed(&self) -> [S; 2] {
+        self.speed
+    }
+
     /// Speed at a time since the start of the motion \[m/s\].
     pub fn speed_at(&self, time: S) -> S {
         let [before, after] = self.speed;

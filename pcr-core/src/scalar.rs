@@ -86,8 +86,8 @@ pub trait Scalar:
     fn clamp(self, lo: Self, hi: Self) -> Self {
         self.max(lo).min(hi)
     }
-    /// `self / divisor` for dimensions that divide (a length by a speed). Saturates at [`Scalar::LIMIT`];
-    /// `0 / 0` is 0.
+    /// `self / divisor` for dimensions that divide (a length by a speed). Saturates at a magnitude above
+    /// [`Scalar::LIMIT`]; `0 / 0` is 0.
     fn quotient(self, divisor: Self) -> Self;
     /// `self / divisor` for a sine or cosine, `None` where it is not below [`Scalar::LIMIT`].
     fn quotient_unit(self, divisor: Self::Unit) -> Option<Self>;

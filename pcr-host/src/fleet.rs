@@ -231,42 +231,17 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
 /// A table on the heap.
 pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 
-/// Pieces that the core joins at once: those of one pair of agents.
-const PIECES_OF_A_PAIR: usize = u16::MAX as usize;
-
 /// The extended collision map of a fleet of any size: the storage grows until it is large enough.
 ///
 /// # Errors
-/// [`Full::Agents`] for more than 65535 agents, [`Full::Pieces`] where one pair of agents has more than 65535 pieces
-/// of regions.
+/// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 65535 pieces.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
     let (mut regions, mut pieces) = (8 * motions.len() + 16, 16 * motions.len() + 16);
     loop {
-        let table = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions);
-        match table {
+        match Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions) {
             Err(Full::Regions) => regions *= 2,
-            Err(Full::Pieces) => {
-                // Beyond this a pair may be at fault that no storage helps.
-                if pieces > PIECES_OF_A_PAIR && overfull_pair(motions).is_some() {
-                    return Err(Full::Pieces);
-                }
-                pieces *= 2;
-            }
+            Err(Full::Pieces) => pieces *= 2,
             done => return done,
         }
     }
-}
-
-/// The first pair of agents (places in the fleet) with more than 65535 pieces of regions, if there is one.
-pub fn overfull_pair<S: Scalar>(motions: &[Motion<'_, S>]) -> Option<[usize; 2]> {
-    let mut table = Ecm::new(vec![Region::EMPTY; PIECES_OF_A_PAIR], vec![Piece::EMPTY; PIECES_OF_A_PAIR]);
-    for (first, ego) in motions.iter().enumerate() {
-        for (second, other) in motions.iter().enumerate().skip(first + 1) {
-            if table.insert(&[*ego, *other], 1).is_err() {
-                return Some([first, second]);
-            }
-            table.remove(1);
-        }
-    }
-    None
 }

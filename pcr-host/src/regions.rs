@@ -3,7 +3,7 @@
 //! The types are the JSON output, field for field in this order. All numbers are `f64` and hold
 //! the results of the chosen number format exactly, hence rounded outward.
 
-use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm, overfull_pair};
+use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm};
 use crate::scenario::Scenario;
 use pcr_core::{Crossing, Curve, Full, Motion, RegionRef, Turn, crossings};
 use serde::Serialize;
@@ -162,12 +162,12 @@ impl From<Refused> for Failure {
 /// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
 pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Failure> {
     let id = |agent: usize| scenario.agents.get(agent).map(|agent| agent.id);
-    build_ecm(motions).map_err(|full| {
-        let pair = if full == Full::Pieces { overfull_pair(motions) } else { None };
-        match pair.map(|pair| pair.map(id)) {
-            Some([Some(i), Some(j)]) => Failure::Overfull([i, j]),
+    build_ecm(motions).map_err(|full| match full {
+        Full::Pair(agents) => match agents.map(id) {
+            [Some(i), Some(j)] => Failure::Overfull([i, j]),
             _ => Failure::Full(full),
-        }
+        },
+        _ => Failure::Full(full),
     })
 }
 

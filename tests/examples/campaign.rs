@@ -80,7 +80,12 @@ fn shortened<S: Format>(ego: &Disc, other: &Disc, effort: Effort) {
     if let Ok(audit) = Audit::<S>::new(&ego, &other) {
         let (motions, ecm) = audit.table();
         for region in ecm.pair(&motions, 0, 1) {
-            println!("  region s {:?} l {:?}, {} pieces", region.other_length(), region.length(), region.pieces().count());
+            println!(
+                "  region s {:?} l {:?}, {} pieces",
+                region.other_length(),
+                region.length(),
+                region.pieces().count()
+            );
         }
     }
 }

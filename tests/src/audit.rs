@@ -41,7 +41,8 @@ pub type Violation = String;
 
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {
-        if !$condition {
+        let holds: bool = $condition;
+        if !holds {
             return Err(format!($($message)+));
         }
     };
@@ -118,7 +119,13 @@ impl<S: Format> Audit<S> {
         Ok(())
     }
 
-    fn contour(&self, region: &RegionRef<'_, S>, pair: &Pair, samples: usize, seen: &mut Seen) -> Result<(), Violation> {
+    fn contour(
+        &self,
+        region: &RegionRef<'_, S>,
+        pair: &Pair,
+        samples: usize,
+        seen: &mut Seen,
+    ) -> Result<(), Violation> {
         let (s, l) = (region.other_length(), region.length());
         let (s_lo, s_hi) = (s.lo.to_f64(), s.hi.to_f64());
         // As the library sums it up.
@@ -170,7 +177,10 @@ impl<S: Format> Audit<S> {
                     "missed ({s:?}, {l:?}): {clearance:e}, held by {holding} and {mirrored}"
                 );
                 ensure!(count == 0 || clearance <= self.bound(), "invented ({s:?}, {l:?}): {clearance:e}");
-                ensure!(count <= 1 || clearance >= -self.bound(), "({s:?}, {l:?}) is in {count} regions: {clearance:e}");
+                ensure!(
+                    count <= 1 || clearance >= -self.bound(),
+                    "({s:?}, {l:?}) is in {count} regions: {clearance:e}"
+                );
             }
             for region in &regions {
                 let sliced = region.slice_at(s).any(|interval| interval.contains(l));
@@ -191,7 +201,9 @@ impl<S: Format> Audit<S> {
             [(0.0, part), (1.0, part), (part, 0.0), (part, 1.0)]
         });
         let ends = [0, 1].map(|agent| self.end(agent));
-        inside.chain(edges).map(move |(u, v)| (S::from_f64(u * width).min(ends[1]), S::from_f64(v * length).min(ends[0])))
+        inside
+            .chain(edges)
+            .map(move |(u, v)| (S::from_f64(u * width).min(ends[1]), S::from_f64(v * length).min(ends[0])))
     }
 
     /// Signed distance from contact \[m\].
@@ -204,13 +216,14 @@ impl<S: Format> Audit<S> {
         self.courses[agent].motion().path().length()
     }
 
-    /// The ranges are reached: at their ends there is contact.
+    /// The ranges are reached: at their ends there is contact. Regions that are nowhere deeper than the bound are left
+    /// out: whether they exist at all is a matter of rounding.
     ///
     /// # Errors
     /// The first violation.
     pub fn ranges(&self) -> Result<(), Violation> {
         let (motions, ecm) = self.table();
-        for region in ecm.pair(&motions, 0, 1) {
+        for region in ecm.pair(&motions, 0, 1).filter(|region| self.depth(region) > self.bound()) {
             let (s, l) = (region.other_length(), region.length());
             let (s, l) = ((s.lo.to_f64(), s.hi.to_f64()), (l.lo.to_f64(), l.hi.to_f64()));
             // What is widened by a slack along the path is further from contact by as much at most.
@@ -231,13 +244,26 @@ impl<S: Format> Audit<S> {
         Ok(())
     }
 
+    /// About the largest overlap in a region \[m\], in the middle of slices.
+    fn depth(&self, region: &RegionRef<'_, S>) -> f64 {
+        const SLICES: u32 = 32;
+        let range = region.other_length();
+        let depth = |k: u32| {
+            let s = S::from_f64(range.lo.to_f64() + range.length().to_f64() * f64::from(k) / f64::from(SLICES));
+            let s = s.clamp(range.lo, range.hi);
+            let deepest = |depth: f64, slice: Interval<S>| depth.max(-self.clearance(s, slice.middle()));
+            region.slice_at(s).fold(f64::NEG_INFINITY, deepest)
+        };
+        (0..=SLICES).map(depth).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// What the oracle knows of the components, positions right within `margin` \[m\].
     pub fn known(&self, effort: plane::Effort, margin: f64) -> plane::Components {
         plane::components(&self.oracle, margin, effort)
     }
 
-    /// The regions are the components that the oracle finds, where it is certain of their number; where it is not, what
-    /// is surely connected is in one region.
+    /// What is surely connected is in one region, what is surely apart is in different ones, and a region reaches as far as
+    /// what is surely in it.
     ///
     /// # Errors
     /// The first violation.
@@ -245,35 +271,50 @@ impl<S: Format> Audit<S> {
         let (motions, ecm) = self.table();
         let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
         let found = self.known(effort, self.bound());
-        let mut owners = vec![0_usize; regions.len()];
-        for inner in found.outer.iter().flat_map(|outer| &outer.inner) {
-            let (s, l) = (S::from_f64(inner.point.0).min(self.end(1)), S::from_f64(inner.point.1).min(self.end(0)));
-            let Some(owner) = regions.iter().position(|region| region.contains(s, l)) else {
-                // The rounded point may have left a box of the size of the rounding.
-                ensure!(self.clearance(s, l) > -self.doubt, "the component at {:?} is missed", inner.point);
+        seen.certain += usize::from(found.certain());
+        // Region that was found to be about an outer component.
+        let mut about = vec![None; regions.len()];
+        for (place, outer) in found.outer.iter().enumerate() {
+            for inner in &outer.inner {
+                if let Some(owner) = self.owner(&regions, inner)? {
+                    let other = about[owner].replace(place).filter(|other| *other != place);
+                    ensure!(other.is_none(), "one region about {:?} and {:?}", outer.bounds, other);
+                    self.reaches(&regions[owner], inner.bounds)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The one region that holds all points of an inner component.
+    fn owner(&self, regions: &[RegionRef<'_, S>], inner: &plane::Inner) -> Result<Option<usize>, Violation> {
+        /// Points tried of each component.
+        const POINTS: usize = 200;
+        let mut owner = None;
+        for &(s, l) in inner.points.iter().step_by(1 + inner.points.len() / POINTS) {
+            let (s, l) = (S::from_f64(s).min(self.end(1)), S::from_f64(l).min(self.end(0)));
+            let clearance = self.clearance(s, l);
+            // Two regions may overlap by their rounding, and a point that was rounded may have left its box.
+            if clearance > -self.bound() {
                 continue;
+            }
+            let Some(index) = regions.iter().position(|region| region.contains(s, l)) else {
+                return Err(format!("missed ({s:?}, {l:?}), {clearance:e}, in the component {:?}", inner.bounds));
             };
-            owners[owner] += 1;
-            let region = &regions[owner];
-            let reach = |range: Interval<S>, (lo, hi): (f64, f64), agent: usize| {
-                // The sum of the lengths may have been rounded down.
-                let hi = hi.min(self.end(agent).to_f64());
-                range.lo.to_f64() <= lo + self.doubt && hi - self.doubt <= range.hi.to_f64()
-            };
-            let plane::Bounds { s, l } = inner.bounds;
-            let ranges = (region.other_length(), region.length());
-            ensure!(reach(ranges.0, s, 1) && reach(ranges.1, l, 0), "{ranges:?} does not reach {:?}", inner.bounds);
+            let before = owner.replace(index).filter(|before| *before != index);
+            ensure!(before.is_none(), "the component {:?} is in regions {index} and {before:?}", inner.bounds);
         }
-        if found.certain() {
-            seen.certain += 1;
-            ensure!(
-                found.outer.len() == regions.len() && owners.iter().all(|&count| count == 1),
-                "{} regions where there are {}: {:?}, they hold {owners:?}",
-                regions.len(),
-                found.outer.len(),
-                found.outer.iter().map(|outer| outer.bounds).collect::<Vec<_>>()
-            );
-        }
+        Ok(owner)
+    }
+
+    fn reaches(&self, region: &RegionRef<'_, S>, bounds: plane::Bounds) -> Result<(), Violation> {
+        let reach = |range: Interval<S>, (lo, hi): (f64, f64), agent: usize| {
+            // The sum of the lengths may have been rounded down.
+            let hi = hi.min(self.end(agent).to_f64());
+            range.lo.to_f64() <= lo + self.doubt && hi - self.doubt <= range.hi.to_f64()
+        };
+        let ranges = (region.other_length(), region.length());
+        ensure!(reach(ranges.0, bounds.s, 1) && reach(ranges.1, bounds.l, 0), "{ranges:?} does not reach {bounds:?}");
         Ok(())
     }
 }

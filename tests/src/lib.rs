@@ -5,5 +5,5 @@ pub mod audit;
 pub mod disc;
 pub mod generators;
 pub mod oracle;
-pub mod reference;
 pub mod paper;
+pub mod reference;

@@ -81,8 +81,12 @@ fn each<S: Format, T>(
 }
 
 fn poses<S: Format>() {
-    each::<S, _>(refused_anywhere::<S>(), "x", |x| Segment::standing(Pose { position: Point::new(x, S::ZERO), ..at(0.0, 0.0, 0.0) }));
-    each::<S, _>(refused_anywhere::<S>(), "y", |y| Segment::standing(Pose { position: Point::new(S::ZERO, y), ..at(0.0, 0.0, 0.0) }));
+    each::<S, _>(refused_anywhere::<S>(), "x", |x| {
+        Segment::standing(Pose { position: Point::new(x, S::ZERO), ..at(0.0, 0.0, 0.0) })
+    });
+    each::<S, _>(refused_anywhere::<S>(), "y", |y| {
+        Segment::standing(Pose { position: Point::new(S::ZERO, y), ..at(0.0, 0.0, 0.0) })
+    });
     for heading in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert_eq!(Path::<S, 1>::starting_at(at(0.0, 0.0, heading)).err(), Some(Invalid::NonFinite("heading")));
     }
@@ -221,7 +225,8 @@ fn survives<S: Format>(numbers: &[f64]) {
         .collect();
     let Ok(ecm) = build_ecm(&motions) else { return };
     for region in ecm.regions(&motions) {
-        let finite = |interval: Interval<S>| interval.lo.is_finite() && interval.hi.is_finite() && interval.lo <= interval.hi;
+        let finite =
+            |interval: Interval<S>| interval.lo.is_finite() && interval.hi.is_finite() && interval.lo <= interval.hi;
         assert!(finite(region.time()) && finite(region.length()) && finite(region.other_length()));
         for &time in numbers {
             for interval in region.slice_at(S::from_f64(time)) {

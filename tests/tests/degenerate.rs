@@ -266,7 +266,9 @@ fn standing_agents_overlap_or_do_not() {
     for (distance, count) in [(0.0, 1), (0.9, 1), (1.0, 1), (1.0 + 1e-9, 0), (2.0, 0)] {
         let found = regions(&at(0.0), &at(distance));
         assert_eq!(found.len(), count, "at {distance}");
-        assert!(found.iter().all(|region| (region.s.lo, region.s.hi, region.l.lo, region.l.hi) == (0.0, 0.0, 0.0, 0.0)));
+        assert!(
+            found.iter().all(|region| (region.s.lo, region.s.hi, region.l.lo, region.l.hi) == (0.0, 0.0, 0.0, 0.0))
+        );
     }
 }
 

@@ -154,8 +154,7 @@ fn both_views_agree_with_the_definition() {
     for case in cases() {
         let agents = &case.scenario.agents;
         let discs = [0, 1].map(|k| Disc::of_agent(&agents[k]));
-        let travels =
-            [0, 1].map(|k| Travel::new(&Drive::of_agent(&agents[k]), discs[k].length(), agents[k].t_start));
+        let travels = [0, 1].map(|k| Travel::new(&Drive::of_agent(&agents[k]), discs[k].length(), agents[k].t_start));
         with_table(&case.scenario, |motions, ecm| {
             for (ego, other) in [(0, 1), (1, 0)] {
                 let pair = Pair::new(&discs[ego], &discs[other]);

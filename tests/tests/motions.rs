@@ -16,7 +16,13 @@ fn config(release: u32) -> ProptestConfig {
     let cases = if cfg!(debug_assertions) { release / 10 } else { release };
     let rng_seed = RngSeed::Fixed(39);
     // More rejections than cases would mean that hardly anything is tested.
-    ProptestConfig { cases, failure_persistence: None, rng_seed, max_global_rejects: cases, ..ProptestConfig::default() }
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed,
+        max_global_rejects: cases,
+        ..ProptestConfig::default()
+    }
 }
 
 /// A pair with its drives and start times.
@@ -60,7 +66,14 @@ fn travels<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
             let at = S::from_f64(time.lo.to_f64() + part * (time.hi - time.lo).to_f64()).clamp(time.lo, time.hi);
             let way = motion.length_at(at);
             let exact = travel.length_at(at.to_f64());
-            prop_assert!((way.to_f64() - exact).abs() <= bound, "{:?} at {:?}: {} is exact, bound {}", way, at, exact, bound);
+            prop_assert!(
+                (way.to_f64() - exact).abs() <= bound,
+                "{:?} at {:?}: {} is exact, bound {}",
+                way,
+                at,
+                exact,
+                bound
+            );
             prop_assert!(before <= way && way <= length, "not monotone at {:?}", at);
             before = way;
         }
@@ -113,7 +126,13 @@ fn regions_follow_the_other<S: Format>(driven: &Driven) -> Result<(), TestCaseEr
             let length = S::from_f64(oracle.ego.length() * f64::from(m) / 16.0).min(motions[0].path().length());
             let clearance = oracle.clearance(s.to_f64(), length.to_f64());
             let holding: Vec<_> = regions.iter().filter(|region| region.contains(time, length)).collect();
-            prop_assert!(!holding.is_empty() || clearance > -doubt, "({:?}, {:?}) is missed by {}", time, length, clearance);
+            prop_assert!(
+                !holding.is_empty() || clearance > -doubt,
+                "({:?}, {:?}) is missed by {}",
+                time,
+                length,
+                clearance
+            );
             prop_assert!(holding.is_empty() || clearance <= bound + doubt, "({:?}, {:?}) is invented", time, length);
             for region in holding {
                 let range = region.time();

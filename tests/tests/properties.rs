@@ -3,7 +3,7 @@
 //! The audit is against the definition (`pcr_tests::oracle`); all pairs are the same in every run. Far more are tried
 //! by `cargo run --release -p pcr-tests --example campaign`.
 
-use pcr_core::RegionRef;
+use pcr_core::{Motion, RegionRef};
 use pcr_host::fleet::Format;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
@@ -18,6 +18,9 @@ const SAMPLES: usize = if cfg!(debug_assertions) { 12 } else { 24 };
 /// What the oracle may spend on the components of a pair.
 const EFFORT: Effort =
     Effort { resolution: 2e-2, boxes: if cfg!(debug_assertions) { 4_000 } else { 20_000 }, range: 1e-5 };
+
+/// What it may spend on finding out whether the number of components is critical.
+const GLANCE: Effort = Effort { resolution: 3e-2, boxes: 3_000, range: f64::INFINITY };
 
 /// How many pairs a property is tried on.
 fn config(release: u32) -> ProptestConfig {
@@ -43,7 +46,7 @@ macro_rules! audited {
             use super::*;
 
             proptest! {
-                #![proptest_config(config(3000))]
+                #![proptest_config(config(2000))]
 
                 #[test]
                 fn p1_ends_of_slices_are_contacts_and_slices_lie_in_the_ranges(pair in pairs()) {
@@ -60,14 +63,15 @@ macro_rules! audited {
                     hold(audit::<$format>(&pair).map_or(Ok(()), |audit| audit.transpose()))?;
                 }
 
+            }
+
+            proptest! {
+                #![proptest_config(config(800))]
+
                 #[test]
                 fn p4_ranges_are_reached(pair in pairs()) {
                     hold(audit::<$format>(&pair).map_or(Ok(()), |audit| audit.ranges()))?;
                 }
-            }
-
-            proptest! {
-                #![proptest_config(config(1000))]
 
                 #[test]
                 fn p5_larger_radius_larger_regions(pair in pairs(), by in 0.0..0.3_f64) {
@@ -103,7 +107,7 @@ audited!(in_f64, f64);
 audited!(in_f32, f32);
 
 proptest! {
-    #![proptest_config(config(1000))]
+    #![proptest_config(config(800))]
 
     #[test]
     fn p9_regions_are_the_connected_components_f64(pair in pairs()) {
@@ -117,8 +121,10 @@ proptest! {
 }
 
 /// The number of the region at a point, from 1; 0 outside all of them.
-fn label<S: Format>(regions: &[RegionRef<'_, S>], s: f64, l: f64) -> usize {
-    let (s, l) = (S::from_f64(s), S::from_f64(l));
+fn label<S: Format>(motions: &[Motion<'_, S>; 2], regions: &[RegionRef<'_, S>], s: f64, l: f64) -> usize {
+    // Mapped lengths may be a rounding beyond the end.
+    let on_path = |length: f64, agent: usize| S::from_f64(length).clamp(S::ZERO, motions[agent].path().length());
+    let (s, l) = (on_path(s, 1), on_path(l, 0));
     regions.iter().position(|region| region.contains(s, l)).map_or(0, |index| index + 1)
 }
 
@@ -137,7 +143,7 @@ fn grows<S: Format>(pair: &(Disc, Disc), by: f64) -> Result<(), TestCaseError> {
     let mut holder = vec![0; regions.len()];
     for (s, l) in small.sampled(SAMPLES) {
         let (s, l) = (s.to_f64(), l.to_f64());
-        let (inside, around) = (label(&regions, s, l), label(&large_regions, s, l));
+        let (inside, around) = (label(&motions, &regions, s, l), label(&large_motions, &large_regions, s, l));
         if inside > 0 {
             prop_assert!(around > 0, "({}, {}) is lost", s, l);
             let holder = &mut holder[inside - 1];
@@ -162,7 +168,7 @@ fn same_regions<S: Format>(
     let ((motions, ecm), (image_motions, image_ecm)) = (a.table(), b.table());
     let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
     let image_regions: Vec<_> = image_ecm.pair(&image_motions, 0, 1).collect();
-    let certain = a.known(EFFORT, margin).certain() && b.known(EFFORT, margin).certain();
+    let certain = a.known(GLANCE, margin).certain() && b.known(GLANCE, margin).certain();
     let mut partners: Vec<(usize, usize)> = Vec::new();
     for (s, l) in a.sampled(SAMPLES) {
         if a.clearance(s, l).abs() <= margin {
@@ -170,15 +176,17 @@ fn same_regions<S: Format>(
         }
         let (s, l) = (s.to_f64(), l.to_f64());
         let (t, m) = map(s, l);
-        let partner = (label(&regions, s, l), label(&image_regions, t, m));
+        let partner = (label(&motions, &regions, s, l), label(&image_motions, &image_regions, t, m));
         prop_assert_eq!(partner.0 == 0, partner.1 == 0, "({}, {}) is covered once only", s, l);
         if certain && !partners.contains(&partner) {
-            prop_assert!(partners.iter().all(|p| p.0 != partner.0 && p.1 != partner.1), "({}, {}) changes its region", s, l);
+            prop_assert!(
+                partners.iter().all(|p| p.0 != partner.0 && p.1 != partner.1),
+                "({}, {}) changes its region",
+                s,
+                l
+            );
             partners.push(partner);
         }
-    }
-    if certain {
-        prop_assert_eq!(regions.len(), image_regions.len());
     }
     Ok(())
 }

@@ -7,7 +7,8 @@
 //! - the ends of the second segment;
 //! - contacts with an end of the first segment: P1 about it;
 //! - contacts normal to the first segment, `c = ±R` from its carrier: intervals begin and end (P3);
-//! - where the disc begins or ceases to cover the whole circle of the first segment: P1 about its centre;
+//! - where the disc begins or ceases to cover the whole circle of the first segment, or touches it all around from
+//!   inside: P1 about its centre, because P3 compares squares and these distances are small;
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
@@ -41,13 +42,19 @@ impl<S: Scalar> Events<S> {
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
         normal.lengths_at(&[radius, -radius], S::ZERO, |s| events.add(s));
-        if let Curve::Arc { radius: own, .. } = first.curve
-            && wraps(first, radius)
-        {
-            let diameter = middle_diameter(first, own);
-            let centre = Footprint::of(diameter.start, second);
-            Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, |s| events.add(s));
-            events.add_ends(&centre, second, radius - own);
+        if let Curve::Arc { radius: own, .. } = first.curve {
+            let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
+            if wraps || ring.is_some() {
+                let diameter = middle_diameter(first, own);
+                let centre = Footprint::of(diameter.start, second);
+                if let Some(ring) = ring {
+                    events.add_ends(&centre, second, ring);
+                }
+                if wraps {
+                    let diameter = Relative::new(second, diameter, &centre);
+                    diameter.lengths_at(&[S::ZERO], S::ZERO, |s| events.add(s));
+                }
+            }
         }
         events
     }
@@ -70,13 +77,7 @@ impl<S: Scalar> Events<S> {
     }
 
     fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S) {
-        if let Reach::Around { foot, half } = footprint.reach(second, radius) {
-            for s in [foot - half, foot + half].map(|s| on_first_lap(s, second, S::ZERO)) {
-                if S::ZERO <= s && s <= second.length {
-                    self.add(s);
-                }
-            }
-        }
+        ends(footprint, second, radius).into_iter().flatten().for_each(|s| self.add(s));
     }
 }
 
@@ -88,14 +89,40 @@ pub(crate) fn turning_points<S: Scalar>(
     radius: S,
     mut found: impl FnMut(S, S),
 ) {
-    let start = Footprint::of(second.start, first);
-    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, |l| {
+    let mut add = |l: S| {
         let foot = Footprint::of(first.point_at(l), second).foot(second);
         let s = on_first_lap(foot, second, S::ZERO);
         if S::ZERO <= s && s <= second.length {
             found(l, s);
         }
-    });
+    };
+    let start = Footprint::of(second.start, first);
+    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, &mut add);
+    if let Curve::Arc { radius: own, .. } = second.curve
+        && let Some(ring) = inner_ring(own, radius)
+        && own >= radius
+    {
+        let centre = Footprint::of(middle_diameter(second, own).start, first);
+        ends(&centre, first, ring).into_iter().flatten().for_each(add);
+    }
+}
+
+/// Distance from the centre of an arc at which the disc touches its circle from inside, or begins to cover all of it:
+/// always for a disc that can, and where that is so near the centre that P3 would lose it.
+fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
+    let ring = (own - radius).abs();
+    (own <= radius || ring.double().double() < own).then_some(ring)
+}
+
+/// The lengths of a segment that are as far from a point as `radius`.
+fn ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S) -> [Option<S>; 2] {
+    let Reach::Around { foot, half } = footprint.reach(segment, radius) else {
+        return [None; 2];
+    };
+    [foot - half, foot + half].map(|u| {
+        let u = on_first_lap(u, segment, S::ZERO);
+        (S::ZERO <= u && u <= segment.length).then_some(u)
+    })
 }
 
 /// Whether both ends of an arc can be covered while its middle is not: two laps at once.

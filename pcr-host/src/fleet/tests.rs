@@ -147,6 +147,5 @@ fn a_pair_of_too_many_pieces_is_an_error_and_does_not_grow_for_ever() {
     still["path"] = json!([]);
     let scenario = Scenario::from_value(&json!({ "agents": [still, spin(1), spin(2)] })).unwrap();
     let fleet = Fleet::<f64>::new(&scenario).unwrap();
-    assert_eq!(build_ecm(&fleet.motions()).unwrap_err(), Full::Pieces);
-    assert_eq!(overfull_pair(&fleet.motions()), Some([1, 2]));
+    assert_eq!(build_ecm(&fleet.motions()).unwrap_err(), Full::Pair([1, 2]));
 }

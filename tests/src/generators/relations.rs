@@ -156,7 +156,8 @@ pub(super) fn related(relation: Relation, dice: &mut Dice) -> Pair {
             let ego = circling(own, radius, dice);
             let heading = dice.range(-PI, PI);
             let back = dice.range(0.0, 3.0);
-            let first = if dice.chance(0.5) { Leg::Line(back) } else { Leg::arc(dice.range(0.3, 3.0), dice.sign() * 1.0) };
+            let first =
+                if dice.chance(0.5) { Leg::Line(back) } else { Leg::arc(dice.range(0.3, 3.0), dice.sign() * 1.0) };
             // Reversed, so that the path leads from the centre outwards and, as often, back through it.
             let out = disc(their, 0.0, 0.0, heading, vec![first]);
             let mut other = if dice.chance(0.7) { reversed(&out) } else { out };

@@ -2,8 +2,9 @@
 //!
 //! The rectangle is halved until boxes are wholly inside, wholly outside, or small. Boxes that touch are joined: those
 //! inside make the *inner* components, which are connected for sure; those that are not outside make the *outer* ones,
-//! which are apart for sure. Where every outer component holds exactly one inner one, these are the components. Where
-//! not, the boxes in doubt are halved further, up to a budget; a contact that is critical stays in doubt for ever.
+//! which are apart for sure. Where an outer component does not hold exactly one inner one, its boxes in doubt are halved
+//! further, up to a budget; a contact that is critical stays in doubt for ever. What remains unknown are components
+//! shallower than the boxes in doubt.
 
 use super::Pair;
 
@@ -42,9 +43,8 @@ impl Bounds {
 pub struct Inner {
     /// Their range: the component reaches at least this far.
     pub bounds: Bounds,
-    /// A point `(s, l)` in the largest box.
-    pub point: (f64, f64),
-    size: f64,
+    /// The middles `(s, l)` of its boxes.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// A part of the plane that is apart from all others for sure.
@@ -52,7 +52,7 @@ pub struct Inner {
 pub struct Outer {
     /// Its range: the components in it reach no further.
     pub bounds: Bounds,
-    /// What is known to be in it. Exactly one: it holds one component, at least these points. None: it may be empty.
+    /// What is known to be in it: nothing, then it may be empty; one component; or several, which may be connected.
     pub inner: Vec<Inner>,
 }
 
@@ -64,7 +64,7 @@ pub struct Components {
 }
 
 impl Components {
-    /// Whether the number of components is known.
+    /// Whether the number of components is known, but for some that are shallower than the smallest boxes.
     pub fn certain(&self) -> bool {
         self.outer.iter().all(|outer| outer.inner.len() == 1)
     }
@@ -120,10 +120,9 @@ pub fn components(pair: &Pair, margin: f64, effort: Effort) -> Components {
             return components;
         }
         // One level only: what is known then decides what is halved next.
-        for index in 0..before {
+        for (index, &outer) in owner.iter().enumerate() {
             let Cell { bounds, state } = tree.boxes[index];
             if state == State::Doubtful && tree.boxes.len() < effort.boxes {
-                let outer = owner[index];
                 if narrow(&components.outer[outer], bounds) || wanting[outer] && bounds.size() > 0.0 {
                     tree.split(index);
                 }
@@ -201,17 +200,14 @@ impl Tree<'_> {
             if b.state == State::Inside {
                 let Bounds { s, l } = b.bounds;
                 let point = (0.5 * (s.0 + s.1), 0.5 * (l.0 + l.1));
-                let size = (s.1 - s.0).min(l.1 - l.0);
                 let place = &mut place_of_inner[inner.root(index)];
                 if *place == usize::MAX {
                     *place = component.inner.len();
-                    component.inner.push(Inner { bounds: b.bounds, point, size });
+                    component.inner.push(Inner { bounds: b.bounds, points: Vec::new() });
                 }
                 let inner = &mut component.inner[*place];
                 inner.bounds = inner.bounds.hull(b.bounds);
-                if size > inner.size {
-                    (inner.point, inner.size) = (point, size);
-                }
+                inner.points.push(point);
             }
         }
         (found, owner)

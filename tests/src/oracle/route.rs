@@ -75,8 +75,7 @@ impl Route {
                 Leg::Left { radius, .. } => 1.0 / radius,
                 Leg::Right { radius, .. } => -1.0 / radius,
             };
-            let piece =
-                Piece { from, length: leg.length(), start: at, heading: Complex::turned(heading), curvature };
+            let piece = Piece { from, length: leg.length(), start: at, heading: Complex::turned(heading), curvature };
             at = piece.at(leg.length());
             heading += leg.sweep();
             from += leg.length();
