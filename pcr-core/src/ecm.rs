@@ -222,7 +222,10 @@ where
         if self.pieces.first_pending() == NONE {
             return Ok(());
         }
-        let mut index = self.entries().partition_point(|region| region.agents() < agents);
+        // A table that is built from scratch grows at its end.
+        let entries = self.entries();
+        let at_end = entries.last().is_none_or(|last| last.agents() < agents);
+        let mut index = if at_end { entries.len() } else { entries.partition_point(|region| region.agents() < agents) };
         let begin = index;
         while let Some(head) = self.pieces.take_region() {
             if let Err(full) = self.insert_entry(index, agents, head) {

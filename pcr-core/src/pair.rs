@@ -82,12 +82,13 @@ impl<'a, S: Scalar> Pair<'a, S> {
             && after.second_segment.checked_sub(1) == Some(before.second_segment)
             && after.second.lo == S::ZERO
             && before.first.meets(after.first);
-        let (Some(own), Some(other)) =
-            (segment(self.first, before.first_segment), segment(self.second, before.second_segment))
-        else {
+        if !neighbours {
+            return false;
+        }
+        let (Some(own), Some(other)) = self.segments(before) else {
             return false;
         };
-        if !neighbours || before.second.hi != other.length {
+        if before.second.hi != other.length {
             return false;
         }
         let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
@@ -103,6 +104,9 @@ impl<'a, S: Scalar> Pair<'a, S> {
             && after.first_segment.checked_sub(1) == Some(before.first_segment)
             && after.first.lo == S::ZERO
             && before.second.meets(after.second);
+        if !neighbours {
+            return false;
+        }
         let (Some(own), Some(next), Some(other)) = (
             segment(self.first, before.first_segment),
             segment(self.first, after.first_segment),
@@ -110,7 +114,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         ) else {
             return false;
         };
-        if !neighbours || before.first.hi != own.length {
+        if before.first.hi != own.length {
             return false;
         }
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {

@@ -95,7 +95,7 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             (self.wraps || slab.lo <= S::ZERO).then(|| self.section(slab.lo)),
             (self.wraps || slab.hi >= self.second.length).then(|| self.section(slab.hi)),
         ];
-        let several = middle.reach.intervals(self.first)[1].is_some();
+        let several = self.wraps && middle.reach.intervals(self.first)[1].is_some();
         let mut share = if several { Share::Start } else { Share::Only };
         for &lap in self.laps() {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {

@@ -122,10 +122,11 @@ pub fn components(pair: &Pair, margin: f64, effort: Effort) -> Components {
         // One level only: what is known then decides what is halved next.
         for (index, &outer) in owner.iter().enumerate() {
             let Cell { bounds, state } = tree.boxes[index];
-            if state == State::Doubtful && tree.boxes.len() < effort.boxes {
-                if narrow(&components.outer[outer], bounds) || wanting[outer] && bounds.size() > 0.0 {
-                    tree.split(index);
-                }
+            if state == State::Doubtful
+                && tree.boxes.len() < effort.boxes
+                && (narrow(&components.outer[outer], bounds) || wanting[outer] && bounds.size() > 0.0)
+            {
+                tree.split(index);
             }
         }
         if tree.boxes.len() == before {
