@@ -60,7 +60,7 @@ pub fn crossings<'a, S: Scalar>(
     let theirs = other.path().segments().iter().enumerate();
     theirs.flat_map(move |(j, their)| {
         let own = ego.path().segments().iter().enumerate();
-        let near = own.filter(move |(_, own)| own.bounds.within(their.bounds, margin));
+        let near = own.filter(move |(_, own)| own.bounds.expanded(margin).meets(their.bounds));
         near.flat_map(move |(i, own)| {
             let start = Footprint::of(own.start, their);
             let (mut roots, mut count) = ([None; 2], 0);

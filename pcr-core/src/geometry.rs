@@ -195,12 +195,15 @@ impl<S: Scalar> Bounds<S> {
         Self { x: self.x.hull(other.x), y: self.y.hull(other.y) }
     }
 
-    /// Whether the two come nearer than `reach` to one another in both coordinates.
-    pub fn within(self, other: Self, reach: S) -> bool {
-        self.x.lo - other.x.hi <= reach
-            && other.x.lo - self.x.hi <= reach
-            && self.y.lo - other.y.hi <= reach
-            && other.y.lo - self.y.hi <= reach
+    /// The box with all sides moved outward by `by`.
+    pub fn expanded(self, by: S) -> Self {
+        Self { x: Interval::new(self.x.lo - by, self.x.hi + by), y: Interval::new(self.y.lo - by, self.y.hi + by) }
+    }
+
+    /// Whether the two have a point in common.
+    pub fn meets(self, other: Self) -> bool {
+        // Without branches: in a fleet none of the comparisons can be predicted.
+        (self.x.lo <= other.x.hi) & (other.x.lo <= self.x.hi) & (self.y.lo <= other.y.hi) & (other.y.lo <= self.y.hi)
     }
 
     /// Largest magnitude of a coordinate \[m\].

@@ -38,16 +38,18 @@ impl<'a, S: Scalar> Pair<'a, S> {
     ///
     /// Cost: a box test a pair of segments, and a few hundred operations a pair of segments that meet.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
-        let (first, second, reach) = (self.first.bounds(), self.second.bounds(), self.radius + self.slack);
-        if !first.within(second, reach) {
+        let reach = self.radius + self.slack;
+        let first = self.first.bounds().expanded(reach);
+        if !first.meets(self.second.bounds()) {
             return Ok(());
         }
         for (j, other) in (0_u16..).zip(self.second.path().segments()) {
-            if !other.bounds.within(first, reach) {
+            if !first.meets(other.bounds) {
                 continue;
             }
+            let around = other.bounds.expanded(reach);
             for (i, own) in (0_u16..).zip(self.first.path().segments()) {
-                if own.bounds.within(other.bounds, reach) && own.near(other, reach) {
+                if around.meets(own.bounds) && own.near(other, reach) {
                     SegmentPair::new(own, other, [i, j], self.radius).find(pieces)?;
                 }
             }
