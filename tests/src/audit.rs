@@ -82,6 +82,7 @@ impl<S: Format> Audit<S> {
         self.transpose()?;
         self.contours(samples, seen)?;
         self.coverage(samples)?;
+        self.sections(samples)?;
         self.ranges()?;
         self.components(effort, seen)
     }
@@ -185,6 +186,26 @@ impl<S: Format> Audit<S> {
             for region in &regions {
                 let sliced = region.slice_at(s).any(|interval| interval.contains(l));
                 ensure!(region.contains(s, l) == sliced, "contains and slice_at disagree at ({s:?}, {l:?})");
+            }
+        }
+        Ok(())
+    }
+
+    /// What the oracle is sure that the other covers of the ego's path, however little, is in one slice.
+    ///
+    /// # Errors
+    /// The first violation.
+    pub fn sections(&self, samples: usize) -> Result<(), Violation> {
+        let (motions, ecm) = self.table();
+        let end = self.end(0).to_f64();
+        let tolerance = self.slack.max(1e-9);
+        for k in 0..=samples {
+            let s = S::from_f64(self.oracle.other.length() * k as f64 / samples as f64).min(self.end(1));
+            let overlap = |l| self.oracle.clearance(s.to_f64(), l) + self.doubt;
+            let slices: Vec<_> = ecm.pair(&motions, 0, 1).flat_map(|region| region.slice_at(s)).collect();
+            for (lo, hi) in line::below(overlap, 0.0, self.oracle.ego.length(), 0.0, tolerance).inner {
+                let holds = |slice: &Interval<S>| slice.lo.to_f64() <= lo && hi.min(end) <= slice.hi.to_f64();
+                ensure!(slices.iter().any(holds), "at {s:?} [{lo}, {hi}] is covered, the slices are {slices:?}");
             }
         }
         Ok(())

@@ -41,8 +41,11 @@ fn origin<S: Format>() -> Segment<S> {
     Segment::standing(at(0.0, 0.0, 0.0)).expect("a finite pose")
 }
 
+/// A value, and how a constructor refuses it.
+type Refusal = (f64, fn(&'static str) -> Invalid);
+
 /// Values that are refused wherever a number of any sign is taken, and how.
-fn refused_anywhere<S: Format>() -> Vec<(f64, fn(&'static str) -> Invalid)> {
+fn refused_anywhere<S: Format>() -> Vec<Refusal> {
     let beyond = S::LIMIT.to_f64() * 1.01;
     vec![
         (f64::NAN, Invalid::NonFinite as fn(_) -> _),
@@ -53,7 +56,7 @@ fn refused_anywhere<S: Format>() -> Vec<(f64, fn(&'static str) -> Invalid)> {
     ]
 }
 
-fn refused_unless_positive<S: Format>() -> Vec<(f64, fn(&'static str) -> Invalid)> {
+fn refused_unless_positive<S: Format>() -> Vec<Refusal> {
     let mut values = refused_anywhere::<S>();
     values.extend([
         (0.0, Invalid::NonPositive as fn(_) -> _),
@@ -64,17 +67,13 @@ fn refused_unless_positive<S: Format>() -> Vec<(f64, fn(&'static str) -> Invalid
     values
 }
 
-fn refused_if_negative<S: Format>() -> Vec<(f64, fn(&'static str) -> Invalid)> {
+fn refused_if_negative<S: Format>() -> Vec<Refusal> {
     let mut values = refused_anywhere::<S>();
     values.extend([(-1.0, Invalid::Negative as fn(_) -> _), (-1e-30, Invalid::Negative)]);
     values
 }
 
-fn each<S: Format, T>(
-    values: Vec<(f64, fn(&'static str) -> Invalid)>,
-    what: &'static str,
-    make: impl Fn(S) -> Result<T, Invalid>,
-) {
+fn each<S: Format, T>(values: Vec<Refusal>, what: &'static str, make: impl Fn(S) -> Result<T, Invalid>) {
     for (value, error) in values {
         assert_eq!(make(S::from_f64(value)).err(), Some(error(what)), "{value} as {what}");
     }
@@ -97,7 +96,7 @@ fn segments<S: Format>() {
     each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_line(length));
     each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_arc(one, Turn::Left, length));
     each::<S, _>(refused_unless_positive::<S>(), "radius", |radius| origin().then_arc(radius, Turn::Right, one));
-    for sweep in [6.2832, 7.0, 100.0] {
+    for sweep in [6.284, 7.0, 100.0] {
         let long = origin().then_arc(one, Turn::Left, S::from_f64(sweep));
         assert_eq!(long.err(), Some(Invalid::SweepOverOneTurn), "{sweep} rad");
     }

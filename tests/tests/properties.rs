@@ -69,6 +69,11 @@ macro_rules! audited {
                 #![proptest_config(config(800))]
 
                 #[test]
+                fn p2_what_is_covered_at_a_time_is_in_one_slice(pair in pairs()) {
+                    hold(audit::<$format>(&pair).map_or(Ok(()), |audit| audit.sections(SAMPLES)))?;
+                }
+
+                #[test]
                 fn p4_ranges_are_reached(pair in pairs()) {
                     hold(audit::<$format>(&pair).map_or(Ok(()), |audit| audit.ranges()))?;
                 }
@@ -107,7 +112,7 @@ audited!(in_f64, f64);
 audited!(in_f32, f32);
 
 proptest! {
-    #![proptest_config(config(800))]
+    #![proptest_config(config(300))]
 
     #[test]
     fn p9_regions_are_the_connected_components_f64(pair in pairs()) {

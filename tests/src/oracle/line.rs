@@ -10,7 +10,7 @@ pub struct Intervals {
 }
 
 /// Most evaluations that [`below`] spends: a function that is 0 throughout would take any number.
-const BUDGET: usize = 20_000;
+const BUDGET: usize = 4_000;
 
 /// Where in `[lo, hi]` a function of slope at most 1 is `<= 0`, ends known within `tolerance`. Points where it is at
 /// most `margin` count as possible: that much its evaluation, or the claim that is to be checked, may be off.
