@@ -202,8 +202,7 @@ impl<S: Scalar> Bounds<S> {
 
     /// Whether the two have a point in common.
     pub fn meets(self, other: Self) -> bool {
-        // Without branches: in a fleet none of the comparisons can be predicted.
-        (self.x.lo <= other.x.hi) & (other.x.lo <= self.x.hi) & (self.y.lo <= other.y.hi) & (other.y.lo <= self.y.hi)
+        self.x.meets(other.x) && self.y.meets(other.y)
     }
 
     /// Largest magnitude of a coordinate \[m\].
