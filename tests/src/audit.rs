@@ -1,4 +1,4 @@
-//! What has to hold for every pair, in every number format: the numbered properties of `docs/errors.md`, checked
+//! What has to hold for every pair, in every number format, numbered in `tests/properties.rs`, checked
 //! against the oracle.
 //!
 //! Geometry is checked at 1 m/s ([`Drive::Unit`](crate::disc::Drive)), where time is the length along the other's path.
