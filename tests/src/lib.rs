@@ -7,3 +7,8 @@ pub mod generators;
 pub mod oracle;
 pub mod paper;
 pub mod reference;
+
+/// The example of the README runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;
