@@ -100,7 +100,7 @@ pub trait Scalar:
     /// Both angles `2 atan τ` in `[-π, π]` with `a τ² + 2 b τ + g = 0`, `None` if they are not real.
     fn half_tangent_roots(a: Self::Wide, b: Self::Wide, g: Self::Wide) -> Option<[Self::Angle; 2]>;
     /// The residual that rounding may cause in a configuration of the given extent: every distance that the
-    /// kernels compare with a radius is right within this. `docs/errors.md` derives it for each format.
+    /// kernels compare with a radius is right within this. `docs/errors.md` states it for each format.
     fn slack(extent: Self) -> Self;
 }
 
