@@ -4,10 +4,9 @@
 //! covers is a cell; cells of neighbouring slabs with the same lap are parts of one piece. Cells of different
 //! laps can only meet where the disc covers the whole circle.
 //!
-//! The lengths of a piece are the hull of its slices at the turning points, at the ends of the second segment, and
-//! in the middle of each slab: where a length is extreme, the contact is normal to the second segment, or
-//! the second segment ends, or the first one does, and then its end is covered throughout the slab. Where two
-//! laps can be covered at once a region may go on from piece to piece, so that the slab ends count as well.
+//! The lengths of a piece are the hull of its slices at the turning points, at the slab ends and in the middle of each
+//! slab: nothing between them can be extreme. (Where contact is transversal the slab ends inside the second segment
+//! would not be needed; between almost parallel lines a turning point may be anywhere between them, and be lost.)
 
 use super::events::{Events, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share, shift};
@@ -51,6 +50,8 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         let begin = pieces.last_pending();
         let mut open = Open::default();
         let mut before: Option<Section<S>> = None;
+        // The section at the end of the slab before, if that is covered.
+        let mut edge: Option<Section<S>> = None;
         for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
             // Events may coincide; a second segment of length 0 has this one slab only.
             if lo >= hi && self.second.length > S::ZERO {
@@ -60,8 +61,11 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             let middle = self.section(slab.middle());
             let laps_lost = before.map_or(0, |before| self.laps_lost(&before, &middle, lo));
             open = match middle.reach {
-                Reach::Nothing => Open::default(),
-                _ => self.extend(pieces, slab, &middle, open, laps_lost)?,
+                Reach::Nothing => {
+                    edge = None;
+                    Open::default()
+                }
+                _ => self.extend(pieces, slab, &middle, &mut edge, open, laps_lost)?,
             };
             before = Some(middle);
         }
@@ -87,21 +91,20 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         pieces: &mut Pieces<S, P>,
         slab: Interval<S>,
         middle: &Section<S>,
+        edge: &mut Option<Section<S>>,
         open: Open,
         laps_lost: i8,
     ) -> Result<Open, Full> {
         let mut now = Open::default();
-        let ends = [
-            (self.wraps || slab.lo <= S::ZERO).then(|| self.section(slab.lo)),
-            (self.wraps || slab.hi >= self.second.length).then(|| self.section(slab.hi)),
-        ];
+        let ends = [edge.unwrap_or_else(|| self.section(slab.lo)), self.section(slab.hi)];
+        *edge = Some(ends[1]);
         let several = self.wraps && middle.reach.intervals(self.first)[1].is_some();
         let mut share = if several { Share::Start } else { Share::Only };
         for &lap in self.laps() {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
             };
-            for end in ends.iter().flatten() {
+            for end in &ends {
                 covered = covered.hull(self.limit(end, middle, lap));
             }
             let ongoing = lap.less(laps_lost).and_then(|lap| open[lap as usize]);
