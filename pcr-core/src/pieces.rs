@@ -25,7 +25,7 @@ pub struct Piece<S> {
     pub(crate) second: Interval<S>,
     pub(crate) first_segment: u16,
     pub(crate) second_segment: u16,
-    /// Lap of the first segment, for joining.
+    /// Lap of the first segment, from slab to slab.
     pub(crate) lap: Lap,
     pub(crate) share: Share,
     group: u16,

@@ -10,8 +10,8 @@ use crate::segment::{Curve, Segment};
 /// One collision region of an ordered pair of agents: the connected set of (time, length along the path of
 /// the *ego*) in which the ego's disc overlaps that of the *other* agent.
 ///
-/// It contains the exact region of the combined radius and lies within the exact region of that radius plus
-/// the slack of its number format ([`Scalar::slack`]).
+/// It contains the exact region of the combined radius and lies within the exact region of a radius that is larger by
+/// three slacks of its number format ([`Scalar::slack`]); `docs/errors.md` names the tests.
 #[derive(Clone, Debug)]
 pub struct RegionRef<'a, S: Scalar> {
     pair: Pair<'a, S>,
