@@ -2,7 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs tests release features no_std
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests release fuzz
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,6 +12,10 @@ style() {
   step "format and lints"
   cargo fmt --all --check
   cargo clippy --workspace --all-targets --locked -- -D warnings
+  if git grep -lE 'allow\(.*unsafe_code' -- '*.rs' | grep -vx pcr-core/src/scalar/vsqrt.rs; then
+    echo "unsafe code outside pcr-core/src/scalar/vsqrt.rs" >&2
+    return 1
+  fi
 }
 
 docs() {
@@ -31,12 +35,25 @@ release() {
   cargo bench --workspace --locked -- --test
 }
 
+# The features of a crate, and all sets of them, a line each.
+features_of() { sed -n '/^\[features\]/,/^\[/s/^\([a-z]*\) = .*/\1/p' "$1/Cargo.toml" | grep -vx default; }
+sets_of() {
+  local sets=("") feature set
+  for feature in $(features_of "$1"); do
+    for set in "${sets[@]}"; do sets+=("$set${set:+,}$feature"); done
+  done
+  printf '%s\n' "${sets[@]}"
+}
+
 features() {
-  step "pcr-core with each set of features, and without any"
-  local set
-  for set in "" libm std serde defmt libm,serde libm,defmt std,serde,defmt; do
-    echo "features: ${set:-none}"
-    cargo clippy -q -p pcr-core --locked --no-default-features --features "$set" -- -D warnings
+  local crate set
+  for crate in pcr-core pcr-fixed; do
+    step "$crate with each set of features, and without any"
+    for set in $(sets_of $crate | sed 's/^$/-/'); do
+      echo "features: $set"
+      cargo check -q -p $crate --locked --no-default-features --features "${set#-}"
+    done
+    cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
   done
   step "what pcr-core depends on"
   local tree
@@ -54,12 +71,29 @@ no_std() {
   for target in thumbv7em-none-eabihf thumbv6m-none-eabi; do
     step "no_std: $target"
     firmware/cross.sh "$target" build --release --locked -p pcr-core -p pcr-fixed
-    firmware/cross.sh "$target" build --release --locked -p pcr-core --no-default-features --features libm,serde,defmt
+    firmware/cross.sh "$target" build --release --locked -p pcr-core --no-default-features --features libm,micromath,serde,defmt
+    firmware/cross.sh "$target" build --release --locked -p pcr-fixed --features serde,defmt
   done
 }
 
+c() {
+  step "the C interface, on the host and in QEMU"
+  pcr-ffi/c/run.sh
+}
+
+firmware() {
+  step "firmware: cross-built, run in QEMU, measured"
+  (cd firmware && cargo fmt --all --check)
+  firmware/check.sh
+}
+
+fuzz() {
+  step "fuzzing: scenario files and pairs"
+  fuzz/run.sh
+}
+
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std tests release}; do
+for part in ${*:-style docs features no_std c tests release fuzz}; do
   "$part"
 done
 step "all passed"

@@ -57,14 +57,13 @@ pub fn crossings<'a, S: Scalar>(
     other: &'a Motion<'a, S>,
 ) -> impl Iterator<Item = Crossing<S>> + 'a {
     let margin = margin(ego, other);
-    let theirs = other.path().segments().iter().enumerate();
-    theirs.flat_map(move |(j, their)| {
-        let own = ego.path().segments().iter().enumerate();
+    numbered(other).flat_map(move |(j, their)| {
+        let own = numbered(ego);
         let near = own.filter(move |(_, own)| own.bounds.expanded(margin).meets(their.bounds));
         near.flat_map(move |(i, own)| {
             let start = Footprint::of(own.start, their);
             let (mut roots, mut count) = ([None; 2], 0);
-            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, |s| {
+            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, |s| {
                 // Two equal roots are one crossing.
                 if count < roots.len() && !roots.contains(&Some(s)) {
                     roots[count] = Some(s);
@@ -75,6 +74,12 @@ pub fn crossings<'a, S: Scalar>(
             roots.filter_map(move |s| Crossing::at(ego, other, [i, j], own, their, s))
         })
     })
+}
+
+/// The segments of a path with their places. `enumerate` would check its counter for overflow.
+fn numbered<'a, S: Scalar>(motion: &'a Motion<'_, S>) -> impl Iterator<Item = (usize, &'a Segment<S>)> {
+    let segments = motion.path().segments();
+    (0..segments.len()).zip(segments)
 }
 
 /// How far rounding may move a crossing along a segment.
@@ -93,7 +98,7 @@ impl<S: Scalar> Crossing<S> {
     ) -> Option<Self> {
         let margin = margin(ego, other);
         let combined_radius = ego.radius() + other.radius();
-        let last = |motion: &Motion<'_, S>, index: usize| index + 1 == motion.path().segments().len();
+        let last = |motion: &Motion<'_, S>, index: usize| motion.path().segments().len().checked_sub(1) == Some(index);
         let on = |segment: &Segment<S>, u: S, last: bool| {
             u >= -margin && u <= segment.length + margin && (last || u < segment.length - margin)
         };

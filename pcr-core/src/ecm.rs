@@ -70,6 +70,13 @@ pub struct Ecm<S, R, P> {
     pieces: Pieces<S, P>,
 }
 
+#[cfg(feature = "defmt")]
+impl<S: Scalar, R, P> defmt::Format for Ecm<S, R, P> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "table of {} regions in {} pieces", self.len(), self.pieces());
+    }
+}
+
 impl<S: Scalar, R, P> Ecm<S, R, P> {
     /// An empty table.
     pub const fn new(regions: R, pieces: P) -> Self {
@@ -168,20 +175,7 @@ where
 
     /// Removes the regions of one agent with all others. O(regions).
     pub fn remove(&mut self, agent: usize) {
-        let mut kept = 0;
-        for index in 0..self.len {
-            let regions = self.regions.as_mut();
-            let Some(&region) = regions.get(index) else {
-                break;
-            };
-            if region.agents().contains(&agent) {
-                self.pieces.release(region.head);
-            } else {
-                regions.swap(kept, index);
-                kept += 1;
-            }
-        }
-        self.len = kept;
+        self.retain(|_, region| !region.agents().contains(&agent));
     }
 
     /// Exchanges the motion of one agent and computes its regions anew; those of the others are not touched.
@@ -231,10 +225,11 @@ where
             if let Err(full) = self.insert_entry(index, agents, head) {
                 self.pieces.release(head);
                 self.pieces.take_back();
-                self.remove_entries(begin, index);
+                self.retain(|place, _| place < begin || place >= index);
                 return Err(full);
             }
-            index += 1;
+            // There is an entry at this index: no saturation.
+            index = index.saturating_add(1);
         }
         Ok(())
     }
@@ -243,23 +238,33 @@ where
         let [Ok(first), Ok(second)] = agents.map(u16::try_from) else {
             return Err(Full::Agents);
         };
-        let regions = self.regions.as_mut().get_mut(index..=self.len).ok_or(Full::Regions)?;
-        regions.rotate_right(1);
-        if let Some(place) = regions.first_mut() {
-            *place = Region { agents: [first, second], head };
-        }
-        self.len += 1;
+        let len = self.len.saturating_add(1);
+        let behind = self.regions.as_mut().get_mut(index..len).ok_or(Full::Regions)?;
+        // Every entry from here on moves up by one place.
+        let mut entry = Region { agents: [first, second], head };
+        behind.iter_mut().for_each(|place| core::mem::swap(place, &mut entry));
+        self.len = len;
         Ok(())
     }
 
-    fn remove_entries(&mut self, begin: usize, end: usize) {
-        if let Some(tail) = self.regions.as_mut().get_mut(begin..self.len) {
-            let gone = end - begin;
-            for region in tail.iter().take(gone) {
+    /// Removes the entries that do not pass, and gives their pieces back.
+    fn retain(&mut self, keep: impl Fn(usize, Region) -> bool) {
+        let mut kept = 0_usize;
+        for index in 0..self.len {
+            let regions = self.regions.as_mut();
+            let Some(&region) = regions.get(index) else {
+                break;
+            };
+            if keep(index, region) {
+                if let Some(place) = regions.get_mut(kept) {
+                    *place = region;
+                }
+                // Never above `index`: it cannot saturate, but the compiler does not see it.
+                kept = kept.saturating_add(1);
+            } else {
                 self.pieces.release(region.head);
             }
-            tail.rotate_left(gone.min(tail.len()));
-            self.len -= gone;
         }
+        self.len = kept;
     }
 }

@@ -77,7 +77,8 @@ pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result
     if !value.is_finite() {
         return Err(Invalid::NonFinite(what));
     }
-    if value.abs() > S::LIMIT {
+    // Not by its magnitude, which the least number of a fixed-point format does not have.
+    if value > S::LIMIT || value < -S::LIMIT {
         return Err(Invalid::OutOfRange(what));
     }
     Ok(value)

@@ -52,12 +52,12 @@ pub struct Vector<S> {
 impl<S: Scalar> Vector<S> {
     /// Component along a direction \[m\].
     pub fn along(self, direction: Direction<S>) -> S {
-        self.x.scale(direction.cos) + self.y.scale(direction.sin)
+        S::combine(self.x, direction.cos, self.y, direction.sin)
     }
 
     /// Component across a direction, left positive \[m\].
     pub fn across(self, direction: Direction<S>) -> S {
-        self.y.scale(direction.cos) - self.x.scale(direction.sin)
+        S::combine(self.y, direction.cos, self.x, -direction.sin)
     }
 
     /// Square of the Euclidean norm \[m²\].
@@ -91,19 +91,31 @@ impl<S: Scalar> Direction<S> {
         Self { cos, sin }
     }
 
+    /// The direction at the sum of both angles.
+    pub(crate) fn plus(self, by: Self) -> Self {
+        let cos = S::Unit::combine(self.cos, by.cos, -self.sin, by.sin);
+        Self { cos, sin: S::Unit::combine(self.sin, by.cos, self.cos, by.sin) }
+    }
+
+    /// The direction after a turn that is so small that its square does not count.
+    pub(crate) fn turned_by(self, angle: S::Angle) -> Self {
+        let (sin, _) = angle.sin_cos();
+        Self { cos: self.cos - self.sin.times(sin), sin: self.sin + self.cos.times(sin) }
+    }
+
     /// Cosine of the angle to another direction.
     pub fn dot(self, other: Self) -> S::Unit {
-        self.cos.times(other.cos) + self.sin.times(other.sin)
+        Unit::combine(self.cos, other.cos, self.sin, other.sin)
     }
 
     /// Sine of the angle to another direction, positive if it lies to the left.
     pub fn cross(self, other: Self) -> S::Unit {
-        self.cos.times(other.sin) - self.sin.times(other.cos)
+        Unit::combine(self.cos, other.sin, -self.sin, other.cos)
     }
 
     /// The vector with these components along and across the direction.
     pub fn vector(self, along: S, across: S) -> Vector<S> {
-        Vector { x: along.scale(self.cos) - across.scale(self.sin), y: along.scale(self.sin) + across.scale(self.cos) }
+        Vector { x: S::combine(along, self.cos, across, -self.sin), y: S::combine(along, self.sin, across, self.cos) }
     }
 }
 

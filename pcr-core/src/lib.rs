@@ -9,6 +9,7 @@
 //! ```text
 //! scalar     numbers: f32, f64, or your own format          Scalar, Wide, Unit, Angle
 //! geometry   points, directions, intervals, boxes           Point, Pose, Interval
+//! intervals  unions and gaps without storage                   union, gaps
 //! segment    lines and arcs, placed in the plane            Segment, Curve, Turn
 //! path       G1 chains of them (ρ of Eq. 1)                 Path, PathRef
 //! profile    speed over time (λ of Eq. 1-3), and inverse    Profile, ProfileRef, Limits
@@ -17,6 +18,8 @@
 //! pieces     their fixed-capacity store                     Piece
 //! region     connected regions in path-time space (t, l)    RegionRef
 //! ecm        all regions of a fleet                         Ecm
+//! query      conflicts, safe intervals, start delays            Encounter, safe_intervals, earliest_start
+//! plan       start delays of a fleet by priorities             plan_delays
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
 //!
@@ -26,6 +29,7 @@
 //! # Features
 //! - `libm` (default): `f32` and `f64`;
 //! - `std`: square roots by the standard library, the same bits in less time;
+//! - `micromath`: `scalar::Micro`, `f32` on the refined approximations of that crate;
 //! - `defmt`, `serde`: their traits on the public data types.
 #![no_std]
 
@@ -35,11 +39,14 @@ mod crossing;
 mod ecm;
 mod error;
 mod geometry;
+mod intervals;
 mod motion;
 mod pair;
 mod path;
 mod pieces;
+mod plan;
 mod profile;
+mod query;
 mod region;
 mod segment;
 
@@ -47,11 +54,14 @@ pub use crossing::{Crossing, crossings};
 pub use ecm::{Ecm, Region};
 pub use error::{Full, Invalid};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
+pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
+pub use plan::{Unsolved, plan_delays};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
-pub use region::{PieceRef, PieceType, RegionRef, Slice};
+pub use query::{Approach, Conflict, Conflicts, Contacts, Encounter, earliest_start, safe_intervals, safe_lengths};
+pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]
 pub use scalar::Radians;
 pub use scalar::Scalar;

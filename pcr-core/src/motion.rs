@@ -1,21 +1,26 @@
 //! An agent in motion: a disc, its path, and when it is where on it (Eq. 2, ρ ∘ λ).
 
-use crate::error::{Invalid, in_range, positive};
+use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
 use crate::scalar::Scalar;
+use crate::segment::Curve;
 
 /// A disc on a path with a speed profile. It stands at the start of the path before it sets off, and at the
 /// end of it after its arrival.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion<'a, S: Scalar> {
     path: PathRef<'a, S>,
     profile: ProfileRef<'a, S>,
     radius: S,
+    margin: S,
     start: S,
     bounds: Bounds<S>,
     extent: S,
+    drift: S,
+    lag: S,
 }
 
 impl<'a, S: Scalar> Motion<'a, S> {
@@ -33,7 +38,48 @@ impl<'a, S: Scalar> Motion<'a, S> {
         if (profile.length() - path.length()).abs() > S::slack(extent) {
             return Err(Invalid::LengthMismatch);
         }
-        Ok(Self { path, profile, radius, start, bounds, extent })
+        let arcs = path.segments().iter().filter(|segment| segment.curve() != Curve::Line);
+        // `count` would check for overflow.
+        let arcs = arcs.fold(0_usize, |count, _| count.saturating_add(1));
+        let drift = S::drift(arcs, extent);
+        let speeds = profile.phases().iter().flat_map(|phase| phase.speed());
+        let lag = S::lag(speeds.fold(S::ZERO, S::max), profile.duration());
+        Ok(Self { path, profile, radius, margin: S::ZERO, start, bounds, extent, drift, lag })
+    }
+
+    /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
+    /// It changes no region; those of [`Motion::inflated`] motions tell where margins overlap.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for radius and margin together), [`Invalid::Negative`].
+    pub fn with_margin(self, margin: S) -> Result<Self, Invalid> {
+        not_negative(margin, "margin")?;
+        in_range(self.radius + margin, "radius with its margin")?;
+        Ok(Self { margin, ..self })
+    }
+
+    /// The same motion of a disc that is larger by the margin, without a margin of its own: a table of such motions
+    /// holds the regions in which margins overlap, apart from those of contact.
+    ///
+    /// ```
+    /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
+    /// # let pose = |y, heading| Pose { position: Point::new(-2.0, y), heading: Radians(heading) };
+    /// let lanes = [Path::<f64, 1>::starting_at(pose(0.0, 0.0))?.line(4.0)?, Path::starting_at(pose(0.6, 0.0))?.line(4.0)?];
+    /// # let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
+    /// # let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0)?.with_margin(0.1);
+    /// let fleet = [motion(lanes[0].as_path())?, motion(lanes[1].as_path())?]; // radius 0.25 m, margin 0.1 m
+    /// let contact = Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 1], &fleet)?;
+    /// assert!(contact.is_empty()); // they pass, 0.1 m apart
+    ///
+    /// let inflated = fleet.map(|motion| motion.inflated());
+    /// let margin = Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 1], &inflated)?;
+    /// assert_eq!(margin.len(), 1); // but not 0.2 m
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn inflated(self) -> Self {
+        let (radius, extent) = (self.radius + self.margin, self.extent + self.margin);
+        Self { radius, extent, margin: S::ZERO, ..self }
     }
 
     /// The same motion, later by `delay` \[s\].
@@ -62,9 +108,14 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.radius
     }
 
-    /// From setting off to arrival \[s\].
+    /// Margin to be kept around the disc \[m\].
+    pub fn margin(&self) -> S {
+        self.margin
+    }
+
+    /// From setting off to arrival, that rounded up \[s\].
     pub fn time(&self) -> Interval<S> {
-        Interval::new(self.start, self.start + self.profile.duration())
+        Interval::new(self.start, self.start.sum_up(self.profile.duration()))
     }
 
     /// Box around the path \[m\], radius not included.
@@ -77,15 +128,26 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.extent
     }
 
+    /// How far rounding, arc by arc, may have taken the path from where it should be \[m\].
+    pub(crate) fn drift(&self) -> S {
+        self.drift
+    }
+
+    /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
+    pub(crate) fn lag(&self) -> S {
+        self.lag
+    }
+
     /// λ: length travelled at a time \[m\], limited to the length of the path.
     pub fn length_at(&self, time: S) -> S {
-        let end = self.path.length();
-        if time >= self.time().hi { end } else { self.profile.length_at(time - self.start).min(end) }
+        let (end, travel) = (self.path.length(), self.time());
+        let elapsed = time.clamp(travel.lo, travel.hi) - self.start;
+        if elapsed >= self.profile.duration() { end } else { self.profile.length_at(elapsed).min(end) }
     }
 
     /// Speed at a time \[m/s\].
     pub fn speed_at(&self, time: S) -> S {
-        self.profile.speed_at(time - self.start)
+        if self.time().contains(time) { self.profile.speed_at(time - self.start) } else { S::ZERO }
     }
 
     /// Position of the centre at a time.
@@ -93,13 +155,24 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.path.point_at(self.length_at(time))
     }
 
-    /// When the travelled length lies in `length` \[s\]: the times are rounded outward, but not beyond
-    /// [`Motion::time`].
+    /// When the travelled length lies in `length` \[s\]: rounded outward by [`Motion::time_excess`] at most, but not
+    /// beyond [`Motion::time`].
     pub fn time_in(&self, length: Interval<S>) -> Interval<S> {
         let travel = self.time();
         let lo = if length.lo > S::ZERO { self.start + self.profile.first_time_at(length.lo) } else { travel.lo };
         let hi =
             if length.hi < self.path.length() { self.start + self.profile.last_time_at(length.hi) } else { travel.hi };
-        Interval::new(lo, hi).widen(S::slack(travel.lo.abs().max(travel.hi.abs())), travel)
+        Interval::new(lo, hi).widen(self.time_slack(), travel)
+    }
+
+    /// By how much a time of [`Motion::time_in`] is further out than the exact one, at most \[s\].
+    pub fn time_excess(&self) -> S {
+        self.time_slack().double()
+    }
+
+    /// What the sum of the start time and a time since then may be off.
+    fn time_slack(&self) -> S {
+        let travel = self.time();
+        S::slack(travel.lo.abs().max(travel.hi.abs()))
     }
 }

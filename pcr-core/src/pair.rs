@@ -1,7 +1,8 @@
 //! A pair of agents in coordination space: all pieces of their collision regions, joined.
 //!
 //! Coordination space (l₁, l₂) holds the lengths along both paths. The set of colliding lengths there depends
-//! on the paths and the combined radius alone, so it serves both directions of the pair and every motion on the paths.
+//! on the paths and the combined radius alone, so it serves both directions of the pair and every motion on the paths
+//! (but for what the rounding of times adds to the radius).
 
 pub(crate) mod cells;
 pub(crate) mod events;
@@ -15,6 +16,7 @@ use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 use cells::SegmentPair;
+use events::wraps;
 use footprint::Footprint;
 
 /// Two agents, seen as a pair.
@@ -30,8 +32,15 @@ pub(crate) struct Pair<'a, S: Scalar> {
 
 impl<'a, S: Scalar> Pair<'a, S> {
     pub(crate) fn new(first: &'a Motion<'a, S>, second: &'a Motion<'a, S>) -> Self {
-        let slack = S::slack(first.extent().max(second.extent()));
+        let slack = S::slack(first.extent().max(second.extent())) + first.drift() + second.drift();
+        let slack = slack + first.lag().max(second.lag());
         Self { first, second, slack, radius: first.radius() + second.radius() + slack }
+    }
+
+    /// What is computed with is larger than the combined radius by one slack, and distances are off by another one at
+    /// most \[m\].
+    pub(crate) fn excess(&self) -> S {
+        self.slack.double()
     }
 
     /// Adds the pieces of the pair to the pending ones, joined where they are connected, as lengths along the paths.
@@ -43,14 +52,14 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if !first.meets(self.second.bounds()) {
             return Ok(());
         }
-        for (j, other) in (0_u16..).zip(self.second.path().segments()) {
+        for (j, other) in (0..u16::MAX).zip(self.second.path().segments()) {
             if !first.meets(other.bounds) {
                 continue;
             }
             let around = other.bounds.expanded(reach);
-            for (i, own) in (0_u16..).zip(self.first.path().segments()) {
+            for (i, own) in (0..u16::MAX).zip(self.first.path().segments()) {
                 if around.meets(own.bounds) && own.near(other, reach) {
-                    SegmentPair::new(own, other, [i, j], self.radius).find(pieces)?;
+                    SegmentPair::new(own, other, [i, j], self.radius, self.slack).find(pieces)?;
                 }
             }
         }
@@ -93,6 +102,10 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if before.second.hi != other.length {
             return false;
         }
+        // Where one interval at most is covered both pieces hold it.
+        if !wraps(own, self.radius) {
+            return true;
+        }
         let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
         let shares = |piece: &Piece<S>| piece.share.of(slices, own, piece.first);
         let after = shares(after);
@@ -119,6 +132,10 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if before.first.hi != own.length {
             return false;
         }
+        // One interval at most of the second segment is within reach of the joint: both pieces hold it.
+        if !wraps(other, self.radius) {
+            return true;
+        }
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
             let slices = Footprint::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
             let near = |slice: Interval<S>| slice.lo - self.slack <= l && l <= slice.hi + self.slack;
@@ -131,20 +148,15 @@ impl<'a, S: Scalar> Pair<'a, S> {
         })
     }
 
-    /// Turns lengths along segments into lengths along paths, rounded outward.
+    /// Turns lengths along segments into lengths along paths.
     fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
-        let (first, second) = (self.first.path().length(), self.second.path().length());
-        let place = |local: Interval<S>, from: S, length: S| {
-            let all = Interval::new(S::ZERO, length);
-            Interval::new(local.lo + from, local.hi + from).widen(self.slack, all)
-        };
         let mut index = pieces.first_pending();
         while let Some(piece) = pieces.get_mut(index) {
             if let Some(own) = segment(self.first, piece.first_segment) {
-                piece.first = place(piece.first, own.from, first);
+                piece.first = along_path(piece.first, own);
             }
             if let Some(other) = segment(self.second, piece.second_segment) {
-                piece.second = place(piece.second, other.from, second);
+                piece.second = along_path(piece.second, other);
             }
             index = piece.next;
         }
@@ -159,9 +171,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         };
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
-        let all = Interval::new(S::ZERO, self.first.path().length());
-        let hull = Interval::new(piece.first.lo - own.from, piece.first.hi - own.from);
-        piece.share.of(covered, own, hull).map(|slice| slice.map(|slice| self.outward(slice, own.from, all)))
+        let hull = Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack);
+        piece.share.of(covered, own, hull).map(|slice| slice.map(|slice| along_path(slice, own)))
     }
 
     /// The parts of the second path that a piece covers at the length `l` of the first one.
@@ -175,22 +186,22 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
         // One interval of the second segment is connected, hence part of one region: that of its middle. It may go
         // on beyond the piece.
-        let all = Interval::new(S::ZERO, self.second.path().length());
         let belongs = |slice: &Interval<S>| {
             let slices = self.slices_of_first(piece, slice.middle() + other.from);
             slices.into_iter().flatten().any(|slice| slice.contains(l))
         };
-        covered.map(|slice| slice.filter(belongs).map(|slice| self.outward(slice, other.from, all)))
+        covered.map(|slice| slice.filter(belongs).map(|slice| along_path(slice, other)))
     }
 
     fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {
         (segment(self.first, piece.first_segment), segment(self.second, piece.second_segment))
     }
+}
 
-    /// A slice of a segment as lengths of the path, rounded outward within `range`.
-    fn outward(&self, slice: Interval<S>, from: S, range: Interval<S>) -> Interval<S> {
-        Interval::new(slice.lo + from, slice.hi + from).widen(self.slack, range)
-    }
+/// A part of a segment as lengths of the path. Its ends stay ends: neighbours meet in the same number.
+fn along_path<S: Scalar>(part: Interval<S>, segment: &Segment<S>) -> Interval<S> {
+    let at = |u: S| if u < segment.length { (u + segment.from).min(segment.to) } else { segment.to };
+    Interval::new(at(part.lo), at(part.hi))
 }
 
 fn segment<'a, S: Scalar>(motion: &'a Motion<'_, S>, index: u16) -> Option<&'a Segment<S>> {

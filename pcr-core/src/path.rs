@@ -2,7 +2,7 @@
 
 use crate::error::Invalid;
 use crate::geometry::{Bounds, Point, Pose};
-use crate::scalar::Scalar;
+use crate::scalar::{Angle, Scalar};
 use crate::segment::{Curve, Segment, Turn};
 use heapless::Vec;
 
@@ -18,6 +18,7 @@ use heapless::Vec;
 /// # Ok::<(), pcr_core::Invalid>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Path<S: Scalar, const N: usize> {
     origin: Segment<S>,
     segments: Vec<Segment<S>, N>,
@@ -70,6 +71,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
 
 /// A path of any capacity, borrowed: at least one segment, each beginning where the one before it ends.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PathRef<'a, S: Scalar> {
     segments: &'a [Segment<S>],
 }
@@ -89,7 +91,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         }
         for (before, after) in segments.iter().zip(segments.iter().skip(1)) {
             let joined = after.start == before.end
-                && after.from == before.from + before.length
+                && after.from == before.to
                 && after.heading_at(S::ZERO) == before.heading_at(before.length);
             if !joined {
                 return Err(Invalid::Disconnected("segment"));
@@ -105,24 +107,30 @@ impl<'a, S: Scalar> PathRef<'a, S> {
 
     /// Total length \[m\].
     pub fn length(self) -> S {
-        self.segments.last().map_or(S::ZERO, |last| last.from + last.length)
+        self.segments.last().map_or(S::ZERO, |last| last.to)
     }
 
     /// Position and heading at a travelled length \[m\], limited to `[0, length]`. O(log segments).
     pub fn pose_at(self, length: S) -> Pose<S> {
-        let (segment, u) = self.locate(length);
+        let Some((segment, u)) = self.locate(length) else {
+            return Pose { position: Point::default(), heading: S::Angle::ZERO };
+        };
         Pose { position: segment.point_at(u), heading: segment.heading_at(u) }
     }
 
     /// Position at a travelled length \[m\], limited to `[0, length]`. O(log segments).
     pub fn point_at(self, length: S) -> Point<S> {
-        let (segment, u) = self.locate(length);
-        segment.point_at(u)
+        self.locate(length).map_or_else(Point::default, |(segment, u)| segment.point_at(u))
     }
 
     /// Shape of the segment at a travelled length \[m\]: its curvature is `± 1 / radius`, or 0 on a line.
     pub fn curve_at(self, length: S) -> Curve<S> {
-        self.locate(length).0.curve
+        self.locate(length).map_or(Curve::Line, |(segment, _)| segment.curve)
+    }
+
+    /// The segment at a travelled length \[m\]; at a joint the later one.
+    pub(crate) fn segment_at(self, length: S) -> Option<&'a Segment<S>> {
+        self.locate(length).map(|(segment, _)| segment)
     }
 
     /// Box around the path \[m\].
@@ -132,10 +140,11 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         rest.fold(first, Bounds::hull)
     }
 
-    fn locate(self, length: S) -> (&'a Segment<S>, S) {
+    /// The segment at a travelled length, and the length along it. There is one: no path is without segments.
+    fn locate(self, length: S) -> Option<(&'a Segment<S>, S)> {
         let after = self.segments.partition_point(|segment| segment.from <= length);
-        let index = after.saturating_sub(1);
-        let segment = &self.segments[index.min(self.segments.len() - 1)];
-        (segment, length - segment.from)
+        let segment = self.segments.get(after.saturating_sub(1))?;
+        let u = if length >= self.length() { segment.length } else { length.max(S::ZERO) - segment.from };
+        Some((segment, u))
     }
 }

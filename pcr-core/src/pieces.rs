@@ -134,7 +134,8 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         let slots = self.slots.as_mut();
         let slot = slots.get_mut(index as usize).ok_or(Full::Pieces)?;
         if self.free == NONE {
-            self.fresh += 1;
+            // There is a slot at this index, so it cannot saturate; nor can the number of used ones.
+            self.fresh = self.fresh.saturating_add(1);
         } else {
             self.free = slot.next;
         }
@@ -142,7 +143,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         if let Some(last) = slots.get_mut(last as usize) {
             last.next = index;
         }
-        self.used += 1;
+        self.used = self.used.saturating_add(1);
         self.pending = Pending { first: if first == NONE { index } else { first }, last: index, groups };
         Ok(index)
     }
@@ -152,18 +153,21 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         self.slots.as_mut().get_mut(index as usize)
     }
 
-    /// Makes two pending pieces, and all that were joined with them, parts of one region. O(pending pieces).
+    /// Makes two pending pieces, and all that were joined with them, parts of one region; [`NONE`] is
+    /// joined with nothing. O(pending pieces).
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let slots = self.slots.as_mut();
         let group = |index: u32| slots.get(index as usize).map(|piece| piece.group);
-        let (kept, gone) = (group(a), group(b));
+        let (Some(kept), Some(gone)) = (group(a), group(b)) else {
+            return;
+        };
         if kept == gone {
             return;
         }
         let mut index = self.pending.first;
         while let Some(piece) = slots.get_mut(index as usize) {
-            if Some(piece.group) == gone {
-                piece.group = kept.unwrap_or(piece.group);
+            if piece.group == gone {
+                piece.group = kept;
             }
             index = piece.next;
         }
@@ -202,7 +206,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         while let Some(piece) = self.slots.as_mut().get_mut(index as usize) {
             let next = core::mem::replace(&mut piece.next, self.free);
             self.free = index;
-            self.used -= 1;
+            self.used = self.used.saturating_sub(1);
             index = next;
         }
     }

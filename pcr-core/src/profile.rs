@@ -6,7 +6,7 @@
 
 use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::Interval;
-use crate::scalar::{Scalar, Wide};
+use crate::scalar::{Ramp, Scalar, Wide};
 use heapless::Vec;
 
 /// Motion at constant acceleration.
@@ -47,12 +47,13 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            if after < -S::slack(before) {
+            // The last digit of the acceleration counts for the whole duration.
+            if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;
         }
-        let travelled = (before + after).half().times(duration).narrow();
+        let travelled = (before + after).times(duration).half().narrow();
         let time = Interval::new(self.time.hi, in_range(self.time.hi + duration, "duration of the profile")?);
         let length = Interval::new(self.length.hi, in_range(self.length.hi + travelled, "length of the profile")?);
         Ok(Self { time, length, speed: [before, after], acceleration })
@@ -73,10 +74,16 @@ impl<S: Scalar> Phase<S> {
         self.speed
     }
 
+    /// Acceleration \[m/s²\].
+    pub fn acceleration(&self) -> S {
+        self.acceleration
+    }
+
     /// Speed at a time since the start of the motion \[m/s\].
     pub fn speed_at(&self, time: S) -> S {
         let [before, after] = self.speed;
-        let gain = self.acceleration.times(time - self.time.lo).narrow();
+        let elapsed = time.clamp(self.time.lo, self.time.hi) - self.time.lo;
+        let gain = self.acceleration.times(elapsed).narrow();
         (before + gain).clamp(before.min(after), before.max(after))
     }
 
@@ -84,23 +91,24 @@ impl<S: Scalar> Phase<S> {
         self.acceleration < S::ZERO
     }
 
-    fn length_at(&self, time: S) -> S {
-        // Slow end: v Δt + a Δt² / 2 from the start of a phase that speeds up, from the end of one that slows.
+    /// From the start of a phase that speeds up, from the end of one that slows.
+    fn ramp(&self) -> Ramp<S> {
         let [before, after] = self.speed;
-        let (slow, elapsed) = if self.slows() { (after, self.time.hi - time) } else { (before, time - self.time.lo) };
-        let mean = slow + self.acceleration.abs().half().times(elapsed).narrow();
-        let way = mean.times(elapsed).narrow();
+        let (slow, fast) = if self.slows() { (after, before) } else { (before, after) };
+        let acceleration = self.acceleration.abs();
+        Ramp { slow, fast, acceleration, duration: self.time.length(), length: self.length.length() }
+    }
+
+    pub(crate) fn length_at(&self, time: S) -> S {
+        let elapsed = if self.slows() { self.time.hi - time } else { time - self.time.lo };
+        let way = S::ramp_length(self.ramp(), elapsed);
         let length = if self.slows() { self.length.hi - way } else { self.length.lo + way };
         length.clamp(self.length.lo, self.length.hi)
     }
 
-    fn time_at(&self, length: S) -> S {
-        // Slow end: Δt = 2 Δl / (v + √(v² + 2 a Δl)). The division is that of a length by a speed.
-        let [before, after] = self.speed;
-        let (slow, way) =
-            if self.slows() { (after, self.length.hi - length) } else { (before, length - self.length.lo) };
-        let fast = (slow.times(slow) + self.acceleration.abs().times(way).double()).sqrt();
-        let elapsed = way.double().quotient(slow + fast);
+    pub(crate) fn time_at(&self, length: S) -> S {
+        let way = if self.slows() { self.length.hi - length } else { length - self.length.lo };
+        let elapsed = S::ramp_time(self.ramp(), way);
         let time = if self.slows() { self.time.hi - elapsed } else { self.time.lo + elapsed };
         time.clamp(self.time.lo, self.time.hi)
     }
@@ -130,6 +138,7 @@ pub struct Limits<S> {
 /// # Ok::<(), pcr_core::Invalid>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Profile<S: Scalar, const N: usize> {
     phases: Vec<Phase<S>, N>,
 }
@@ -198,6 +207,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
 
 /// A profile of any capacity, borrowed: phases that follow one another; none for an agent that stands.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ProfileRef<'a, S> {
     phases: &'a [Phase<S>],
 }
@@ -231,6 +241,11 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
     /// Travelled length from start to end \[m\].
     pub fn length(self) -> S {
         self.phases.last().map_or(S::ZERO, |last| last.length.hi)
+    }
+
+    /// Largest speed \[m/s\]. O(phases).
+    pub fn top_speed(self) -> S {
+        self.phases.iter().flat_map(|phase| phase.speed).fold(S::ZERO, S::max)
     }
 
     /// λ: length travelled at a time since the start \[m\]; standing before 0 and after the end. O(log phases).

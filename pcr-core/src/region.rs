@@ -1,6 +1,7 @@
 //! Collision regions in path-time space: what an agent must keep out of (Eq. 38).
 
 use crate::geometry::Interval;
+use crate::intervals::union;
 use crate::motion::Motion;
 use crate::pair::Pair;
 use crate::pieces::{List, Piece};
@@ -11,7 +12,8 @@ use crate::segment::{Curve, Segment};
 /// the *ego*) in which the ego's disc overlaps that of the *other* agent.
 ///
 /// It contains the exact region of the combined radius and lies within the exact region of a radius that is larger by
-/// three slacks of its number format ([`Scalar::slack`]); `docs/errors.md` names the tests.
+/// [`RegionRef::excess`]: no collision is lost, whatever the number format. `docs/errors.md` derives the bound and names
+/// the tests.
 #[derive(Clone, Debug)]
 pub struct RegionRef<'a, S: Scalar> {
     pair: Pair<'a, S>,
@@ -23,6 +25,7 @@ pub struct RegionRef<'a, S: Scalar> {
 
 /// One segment of the ego against one segment of the other: the part of a region that one closed form describes.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PieceRef<'a, S: Scalar> {
     /// Segment of the ego's path.
     pub ego: &'a Segment<S>,
@@ -81,6 +84,13 @@ impl<S: Scalar> PieceRef<'_, S> {
     }
 }
 
+#[cfg(feature = "defmt")]
+impl<S: Scalar + defmt::Format> defmt::Format for RegionRef<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "region of {} with {}: {} s, {} m", self.ego(), self.other(), self.time(), self.length());
+    }
+}
+
 impl<'a, S: Scalar> RegionRef<'a, S> {
     pub(crate) fn new(pair: Pair<'a, S>, pieces: List<'a, S>, agents: [usize; 2], transposed: bool) -> Self {
         Self { pair, pieces, agents, transposed }
@@ -111,6 +121,11 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         self.other_motion().time_in(self.other_length())
     }
 
+    /// The bound ε of this region, [`excess`] of its pair \[m\].
+    pub fn excess(&self) -> S {
+        self.pair.excess()
+    }
+
     /// Whether the region begins with the other agent standing at its start: it then reaches back as a strip
     /// of constant slice.
     pub fn is_open_at_start(&self) -> bool {
@@ -128,14 +143,29 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     /// agent standing there.
     ///
     /// Cost: two to three times the pieces of the region, for each interval.
-    pub fn slice_at(&self, time: S) -> Slice<'a, S> {
-        Slice { region: self.clone(), at: self.other_motion().length_at(time), after: None }
+    pub fn slice_at(&self, time: S) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        // Intervals of neighbouring segments meet at the joint.
+        union(self.intervals(self.other_motion().length_at(time)))
     }
 
     /// Whether the ego at this length of its path \[m\] overlaps the other agent at this time \[s\] in this region.
     pub fn contains(&self, time: S, length: S) -> bool {
-        let at = self.other_motion().length_at(time);
-        self.intervals(at).any(|interval| interval.contains(length))
+        self.covers(length, self.other_motion().length_at(time))
+    }
+
+    /// Whether a length of the ego's path and one of the other's belong to the region.
+    pub(crate) fn covers(&self, length: S, other_length: S) -> bool {
+        self.intervals(other_length).any(|interval| interval.contains(length))
+    }
+
+    /// Points inside the region, as lengths of the ego's path and the other's; none where it is all but empty.
+    pub(crate) fn inner_points(&self) -> impl Iterator<Item = [S; 2]> {
+        let places = self.pieces().flat_map(|piece| {
+            let Interval { lo, hi } = piece.other_length;
+            let middle = piece.other_length.middle();
+            [middle, Interval::new(lo, middle).middle(), Interval::new(middle, hi).middle()]
+        });
+        places.flat_map(|at| self.intervals(at).map(move |interval| [interval.middle(), at]))
     }
 
     /// The pieces, at least one.
@@ -160,6 +190,11 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         })
     }
 
+    /// The motion of the ego.
+    pub fn ego_motion(&self) -> &'a Motion<'a, S> {
+        if self.transposed { self.pair.second } else { self.pair.first }
+    }
+
     /// The motion of the other agent.
     pub fn other_motion(&self) -> &'a Motion<'a, S> {
         if self.transposed { self.pair.first } else { self.pair.second }
@@ -180,7 +215,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 
     /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
-    fn intervals(&self, at: S) -> impl Iterator<Item = Interval<S>> {
+    fn intervals(&self, at: S) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let (pair, transposed, range) = (self.pair, self.transposed, self.length());
         let slices = move |piece| {
             if transposed { pair.slices_of_second(piece, at) } else { pair.slices_of_first(piece, at) }
@@ -195,30 +230,12 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 }
 
-/// Disjoint intervals of a slice, in increasing order.
-#[derive(Clone, Debug)]
-pub struct Slice<'a, S: Scalar> {
-    region: RegionRef<'a, S>,
-    at: S,
-    after: Option<S>,
-}
-
-impl<S: Scalar> Iterator for Slice<'_, S> {
-    type Item = Interval<S>;
-
-    fn next(&mut self) -> Option<Interval<S>> {
-        let beyond = |interval: &Interval<S>| self.after.is_none_or(|after| interval.lo > after);
-        let lowest = |a: Interval<S>, b: Interval<S>| if b.lo < a.lo { b } else { a };
-        let mut next = self.region.intervals(self.at).filter(beyond).reduce(lowest)?;
-        // Intervals of neighbouring segments meet at the joint.
-        loop {
-            let grown = self.region.intervals(self.at).filter(|other| other.meets(next)).fold(next, Interval::hull);
-            if grown == next {
-                break;
-            }
-            next = grown;
-        }
-        self.after = Some(next.hi);
-        Some(next)
-    }
+/// By how much the combined radius of two agents may seem larger than it is \[m\]: the bound ε on what rounding adds to
+/// their regions, derived in `docs/errors.md`. Times have one of their own, [`Motion::time_excess`].
+///
+/// It depends on the number format and on the larger [`Motion::extent`]; in floating point also on the way that an agent
+/// would go at its top speed in the whole time of its motion, in fixed point on the number of arcs. Neither the number of
+/// lines or phases nor the start times count.
+pub fn excess<S: Scalar>(first: &Motion<'_, S>, second: &Motion<'_, S>) -> S {
+    Pair::new(first, second).excess()
 }

@@ -36,8 +36,16 @@ use core::ops::{Add, Neg, Sub};
 
 #[cfg(feature = "libm")]
 mod float;
+#[cfg(feature = "micromath")]
+mod micro;
+#[cfg(feature = "libm")]
+mod trig;
 #[cfg(feature = "libm")]
 pub use float::Radians;
+#[cfg(feature = "micromath")]
+pub use micro::Micro;
+#[cfg(all(feature = "libm", not(feature = "std"), target_arch = "arm", target_abi = "eabihf"))]
+mod vsqrt;
 
 /// Number format of the closed forms: lengths, times, speeds and accelerations in SI units.
 ///
@@ -55,7 +63,8 @@ pub trait Scalar:
 
     /// Zero.
     const ZERO: Self;
-    /// Largest magnitude of a coordinate, length, radius, time, speed or acceleration that constructors accept.
+    /// Largest magnitude of a coordinate, length, radius, time, speed or acceleration that constructors accept. The
+    /// diameter of an arc counts as a length, and its box as coordinates.
     const LIMIT: Self;
 
     /// Neither NaN nor infinite. Fixed-point formats are always finite.
@@ -64,6 +73,10 @@ pub trait Scalar:
     fn times(self, rhs: Self) -> Self::Wide;
     /// `self · by`, rounded to nearest.
     fn scale(self, by: Self::Unit) -> Self;
+    /// `a u + b v`, a component of a turned vector. Fixed point rounds once.
+    fn combine(a: Self, u: Self::Unit, b: Self, v: Self::Unit) -> Self {
+        a.scale(u) + b.scale(v)
+    }
     /// `self / 2`.
     fn half(self) -> Self;
     /// `2 self`.
@@ -82,6 +95,19 @@ pub trait Scalar:
     fn max(self, rhs: Self) -> Self {
         if rhs > self { rhs } else { self }
     }
+    /// `self + rhs`, and what it was rounded by: nothing in a format that adds exactly.
+    fn sum(self, rhs: Self) -> (Self, Self) {
+        (self + rhs, Self::ZERO)
+    }
+    /// `self + rest + length · by`, a coordinate at the end of a line, and what that was rounded by: the `rest` of the
+    /// next call, in a unit of the format's own.
+    fn advance(self, rest: Self, length: Self, by: Self::Unit) -> (Self, Self) {
+        self.sum(length.scale(by) + rest)
+    }
+    /// `self + rhs`, rounded up.
+    fn sum_up(self, rhs: Self) -> Self {
+        self + rhs
+    }
     /// `self` limited to `[lo, hi]`.
     fn clamp(self, lo: Self, hi: Self) -> Self {
         self.max(lo).min(hi)
@@ -89,19 +115,76 @@ pub trait Scalar:
     /// `self / divisor` for dimensions that divide (a length by a speed). Saturates at a magnitude above
     /// [`Scalar::LIMIT`]; `0 / 0` is 0.
     fn quotient(self, divisor: Self) -> Self;
+    /// `self · part / whole` with `0 <= part <= whole` and a whole above 0. A format of constant absolute precision
+    /// should round once, at the end: a quotient on the way does not have the digits.
+    fn portion(self, part: Self, whole: Self) -> Self {
+        part.quotient(whole.quotient(self))
+    }
     /// `self / divisor` for a sine or cosine, `None` where it is not below [`Scalar::LIMIT`].
     fn quotient_unit(self, divisor: Self::Unit) -> Option<Self>;
-    /// Component of a unit vector: `self / norm` with `|self| <= norm`; 0 for a zero norm.
-    fn over_norm(self, norm: Self) -> Self::Unit;
+    /// The vector `(x, y)` of this norm, not zero, as a unit vector. A format of constant absolute precision takes the
+    /// norm from the components: one of a few last digits would not make the vector one of length 1.
+    fn unit_vector(x: Self, y: Self, norm: Self) -> [Self::Unit; 2];
     /// `a - b` for two non-negative numbers, given `a² - b²` as well, without cancellation.
     fn difference(a: Self, b: Self, squares: Self::Wide) -> Self;
-    /// Both roots of `u² + 2 b u + g = 0`, `None` if they are not real.
-    fn quadratic_roots(b: Self, g: Self::Wide) -> Option<[Self; 2]>;
-    /// Both angles `2 atan τ` in `[-π, π]` with `a τ² + 2 b τ + g = 0`, `None` if they are not real.
-    fn half_tangent_roots(a: Self::Wide, b: Self::Wide, g: Self::Wide) -> Option<[Self::Angle; 2]>;
+    /// Both roots of `u² + 2 b u + g = 0`, `None` if they are not real. A double root where an error of `doubt` in `g`
+    /// would make one.
+    fn quadratic_roots(b: Self, g: Self::Wide, doubt: Self::Wide) -> Option<[Self; 2]>;
+    /// Both angles `2 atan τ` in `[-π, π]` with `a τ² + 2 b τ + g = 0`, `None` if they are not real. A double root where
+    /// an error of `doubt` in both `a` and `g` would make one.
+    fn half_tangent_roots(a: Self::Wide, b: Self::Wide, g: Self::Wide, doubt: Self::Wide) -> Option<[Self::Angle; 2]>;
+    /// The vector from the start of an arc to its point after twice the angle `half`, `2ϱ sin(h) e(ϑ ± h)`: `direction` is
+    /// `(cos ϑ, sin ϑ)` at the start. Fixed point rounds once.
+    fn chord(radius: Self, half: Self::Angle, right: bool, direction: [Self::Unit; 2]) -> [Self; 2] {
+        let (sin, cos) = half.sin_cos();
+        let chord = radius.double().scale(sin);
+        let across = chord.scale(sin);
+        let (along, across) = (chord.scale(cos), if right { -across } else { across });
+        let [cos, sin] = direction;
+        [Self::combine(along, cos, across, -sin), Self::combine(along, sin, across, cos)]
+    }
+    /// Length travelled in the time `elapsed` since the slow end of a ramp.
+    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self;
+    /// Time since the slow end of a ramp after which `length` is travelled: the inverse of [`Scalar::ramp_length`].
+    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self;
     /// The residual that rounding may cause in a configuration of the given extent: every distance that the
     /// kernels compare with a radius is right within this. `docs/errors.md` states it for each format.
     fn slack(extent: Self) -> Self;
+    /// How far the end of a path of so many arcs may be off for what cannot be carried on from one to the next.
+    fn drift(arcs: usize, extent: Self) -> Self {
+        let _ = (arcs, extent);
+        Self::ZERO
+    }
+    /// How far the rounding of a difference of two times up to `time` moves an agent of this speed: not at all in a
+    /// format that adds exactly.
+    fn lag(speed: Self, time: Self) -> Self {
+        let _ = (speed, time);
+        Self::ZERO
+    }
+    /// Where a search for a contact stops, in a configuration of the given extent: discs this near to one another may be
+    /// reported as touching. At least 16 slacks; a finer format has more, as it takes steps to come this near.
+    fn tolerance(extent: Self) -> Self {
+        Self::slack(extent).double().double().double().double()
+    }
+}
+
+/// Motion at constant acceleration, told from its slow end, where neither map between time and length cancels.
+///
+/// The acceleration follows from the rest. Floating point computes with it; in fixed point its last digit would weigh
+/// half the square of the elapsed time, so that the maps go through both ends of the ramp instead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Ramp<S> {
+    /// Speed at the slow end \[m/s\].
+    pub slow: S,
+    /// Speed at the fast end \[m/s\].
+    pub fast: S,
+    /// Magnitude of the acceleration \[m/s²\].
+    pub acceleration: S,
+    /// Time between the ends \[s\].
+    pub duration: S,
+    /// Length between the ends \[m\].
+    pub length: S,
 }
 
 /// Product of two [`Scalar`]s.
@@ -110,8 +193,11 @@ pub trait Wide<S>: Copy + PartialOrd + Debug + Add<Output = Self> + Sub<Output =
     const ZERO: Self;
     /// Square root, 0 for a negative argument.
     fn sqrt(self) -> S;
-    /// The product as a scalar, rounded to nearest: a speed times a time is a length.
+    /// The product as a scalar, rounded to nearest: a speed times a time is a length. Saturates, where the format
+    /// would overflow, at a magnitude above [`Scalar::LIMIT`].
     fn narrow(self) -> S;
+    /// `self / 2`.
+    fn half(self) -> Self;
     /// `2 self`.
     fn double(self) -> Self {
         self + self
@@ -126,6 +212,10 @@ pub trait Unit: Copy + PartialOrd + Debug + Add<Output = Self> + Sub<Output = Se
     const ONE: Self;
     /// `self · rhs`, rounded to nearest.
     fn times(self, rhs: Self) -> Self;
+    /// `a u + b v`, as [`Scalar::combine`].
+    fn combine(a: Self, u: Self, b: Self, v: Self) -> Self {
+        a.times(u) + b.times(v)
+    }
     /// Absolute value.
     fn abs(self) -> Self {
         if self < Self::ZERO { -self } else { self }
@@ -140,10 +230,21 @@ pub trait Angle<S: Scalar>:
     const ZERO: Self;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
-    /// `self / 2`.
-    fn half(self) -> Self;
-    /// The angle that an arc of this length and radius subtends. The radius is positive.
+    /// The angle that an arc of this length and radius subtends. The radius is positive, the length that of one turn
+    /// at most.
     fn subtended(length: S, radius: S) -> Self;
+    /// Half the angle that an arc of this length and radius subtends: where angles are modulo one turn it cannot be
+    /// had from the whole, which a full turn makes 0.
+    fn half_subtended(length: S, radius: S) -> Self;
+    /// What `subtended` was rounded by; 0 in a format whose angles are so fine that it does not matter.
+    fn subtended_rest(self, length: S, radius: S) -> Self {
+        let _ = (length, radius);
+        Self::ZERO
+    }
+    /// `self + rhs`, and what it was rounded by: nothing in a format that adds exactly.
+    fn sum(self, rhs: Self) -> (Self, Self) {
+        (self + rhs, Self::ZERO)
+    }
     /// Sine and cosine.
     fn sin_cos(self) -> (S::Unit, S::Unit);
     /// Angle of the vector `(x, y)` in `[-π, π]`; 0 for the zero vector.

@@ -53,12 +53,29 @@ pub struct Segment<S: Scalar> {
     /// Length of the whole circle of an arc \[m\].
     pub(crate) circumference: S,
     pub(crate) length: S,
-    /// Length of the path before this segment \[m\].
+    /// Length of the path before this segment and up to its end \[m\].
     pub(crate) from: S,
+    pub(crate) to: S,
+    rest: Rest<S>,
     pub(crate) bounds: Bounds<S>,
     /// Middle and half extents of the box along and across `direction` \[m\].
     middle: Point<S>,
     half: [S; 2],
+}
+
+/// What rounding left out at the end of a segment: the next one takes it into account, so that errors do not add up
+/// along a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Rest<S: Scalar> {
+    position: Vector<S>,
+    heading: S::Angle,
+    length: S,
+}
+
+impl<S: Scalar> Rest<S> {
+    const NOTHING: Self =
+        Self { position: Vector { x: S::ZERO, y: S::ZERO }, heading: S::Angle::ZERO, length: S::ZERO };
 }
 
 impl<S: Scalar> Segment<S> {
@@ -82,6 +99,8 @@ impl<S: Scalar> Segment<S> {
             circumference: S::ZERO,
             length: S::ZERO,
             from: S::ZERO,
+            to: S::ZERO,
+            rest: Rest::NOTHING,
             bounds: Bounds::around(pose.position, pose.position),
             middle: pose.position,
             half: [S::ZERO; 2],
@@ -95,31 +114,22 @@ impl<S: Scalar> Segment<S> {
     /// length of the path).
     pub fn then_line(&self, length: S) -> Result<Self, Invalid> {
         not_negative(length, "length")?;
-        let direction = Direction::at(self.heading_at_end);
-        let end = self.end + direction.vector(length, S::ZERO);
-        Self {
-            start: self.end,
-            end,
-            direction,
-            heading: self.heading_at_end,
-            heading_at_end: self.heading_at_end,
-            curve: Curve::Line,
-            circumference: S::ZERO,
-            length,
-            from: self.from + self.length,
-            bounds: Bounds::around(self.end, end),
-            middle: self.end + direction.vector(length.half(), S::ZERO),
-            half: [length.half(), S::ZERO],
-        }
-        .checked()
+        let mut line = self.then(Curve::Line, S::ZERO, length);
+        line.advance();
+        line.bounds = Bounds::around(line.start, line.end);
+        line.middle = line.start + line.direction.vector(length.half(), S::ZERO);
+        line.half = [length.half(), S::ZERO];
+        line.checked()
     }
 
     /// The arc of this radius \[m\] and length \[m\] that continues the path at the end of `self`.
     ///
     /// # Errors
-    /// As [`Segment::then_line`], [`Invalid::NonPositive`] for the radius and [`Invalid::SweepOverOneTurn`].
+    /// As [`Segment::then_line`], [`Invalid::OutOfRange`] also for the diameter and the box of the arc (from half a turn
+    /// on that of its circle), [`Invalid::NonPositive`] for the radius and [`Invalid::SweepOverOneTurn`].
     pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
         positive(radius, "radius")?;
+        in_range(radius.double(), "diameter of the arc")?;
         not_negative(length, "length")?;
         let circumference = S::Angle::circumference(radius);
         // A full turn may come in with the rounding of `sweep * radius`.
@@ -128,42 +138,69 @@ impl<S: Scalar> Segment<S> {
         }
         let length = length.min(circumference);
         let sweep = S::Angle::subtended(length, radius);
-        let mut arc = Self {
-            start: self.end,
-            end: self.end,
-            direction: Direction::at(self.heading_at_end),
-            heading: self.heading_at_end,
-            heading_at_end: match turn {
-                Turn::Left => self.heading_at_end + sweep,
-                Turn::Right => self.heading_at_end - sweep,
-            },
-            curve: Curve::Arc { radius, turn },
-            circumference,
-            length,
-            from: self.from + self.length,
-            bounds: Bounds::default(),
-            middle: self.end,
-            half: [S::ZERO; 2],
+        let mut arc = self.then(Curve::Arc { radius, turn }, circumference, length);
+        let rest = sweep.subtended_rest(length, radius);
+        let (sweep, rest) = match turn {
+            Turn::Left => (sweep, rest),
+            Turn::Right => (-sweep, -rest),
         };
-        arc.end = arc.start + arc.chord(length);
+        let (heading, rounding) = arc.heading.sum(sweep);
+        (arc.heading_at_end, arc.rest.heading) = heading.sum(rounding + (rest + arc.rest.heading));
+        arc.advance();
         arc.bounds = arc.arc_bounds(arc.start, arc.end, arc.direction, Direction::at(arc.heading_at_end));
         // The same box in the frame of the start.
         let chord = arc.end - arc.start;
         let end = Point::new(chord.along(arc.direction), chord.across(arc.direction));
-        let turned = match turn {
-            Turn::Left => sweep,
-            Turn::Right => -sweep,
-        };
-        let own = arc.arc_bounds(Point::new(S::ZERO, S::ZERO), end, Direction::X, Direction::at(turned));
+        let own = arc.arc_bounds(Point::new(S::ZERO, S::ZERO), end, Direction::X, Direction::at(sweep));
         arc.middle = arc.start + arc.direction.vector(own.x.middle(), own.y.middle());
         arc.half = [own.x.length().half(), own.y.length().half()];
         arc.checked()
     }
 
+    /// A segment of this shape at the end of `self`, as far as its end does not matter.
+    fn then(&self, curve: Curve<S>, circumference: S, length: S) -> Self {
+        let (to, rounding) = self.to.sum(length);
+        let (to, rest) = to.sum(rounding + self.rest.length);
+        Self {
+            start: self.end,
+            end: self.end,
+            direction: Direction::at(self.heading_at_end).turned_by(self.rest.heading),
+            heading: self.heading_at_end,
+            heading_at_end: self.heading_at_end,
+            curve,
+            circumference,
+            length,
+            from: self.to,
+            to,
+            rest: Rest { length: rest, ..self.rest },
+            bounds: Bounds::default(),
+            middle: self.end,
+            half: [S::ZERO; 2],
+        }
+    }
+
+    /// Puts the end where the length leads from the start, over the chord.
+    fn advance(&mut self) {
+        let (length, toward) = match self.curve {
+            Curve::Line => (self.length, self.direction),
+            Curve::Arc { radius, .. } => {
+                let (sin, cos) = S::Angle::half_subtended(self.length, radius).sin_cos();
+                (
+                    radius.double().scale(sin),
+                    self.direction.plus(Direction { cos, sin: if self.mirrored() { -sin } else { sin } }),
+                )
+            }
+        };
+        let rest = self.rest.position;
+        (self.end.x, self.rest.position.x) = self.start.x.advance(rest.x, length, toward.cos);
+        (self.end.y, self.rest.position.y) = self.start.y.advance(rest.y, length, toward.sin);
+    }
+
     fn checked(self) -> Result<Self, Invalid> {
-        in_range(self.end.x, "x")?;
-        in_range(self.end.y, "y")?;
-        in_range(self.from + self.length, "length of the path")?;
+        // All of it, not only its end: an arc may leave the arena and come back.
+        in_range(self.bounds.x.lo.min(-self.bounds.x.hi), "x")?;
+        in_range(self.bounds.y.lo.min(-self.bounds.y.hi), "y")?;
+        in_range(self.to, "length of the path")?;
         Ok(self)
     }
 
@@ -220,13 +257,13 @@ impl<S: Scalar> Segment<S> {
         let Curve::Arc { radius, .. } = self.curve else {
             return self.direction.vector(u, S::ZERO);
         };
-        let (sin, cos) = S::Angle::subtended(u, radius).half().sin_cos();
-        let chord = radius.double().scale(sin);
-        let across = chord.scale(sin);
-        self.direction.vector(chord.scale(cos), if self.mirrored() { -across } else { across })
+        let half = S::Angle::half_subtended(u, radius);
+        let [x, y] = S::chord(radius, half, self.mirrored(), [self.direction.cos, self.direction.sin]);
+        Vector { x, y }
     }
 
-    /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do.
+    /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do, and the
+    /// circles of arcs come as near to the box of the other.
     pub(crate) fn near(&self, other: &Self, reach: S) -> bool {
         let (cos, sin) = (self.direction.dot(other.direction).abs(), self.direction.cross(other.direction).abs());
         let apart = other.middle - self.middle;
@@ -234,7 +271,28 @@ impl<S: Scalar> Segment<S> {
             apart.along(a.direction).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach
                 || apart.across(a.direction).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach
         };
-        !separated(self, other) && !separated(other, self)
+        !separated(self, other)
+            && !separated(other, self)
+            && self.circle_near(other, reach)
+            && other.circle_near(self, reach)
+    }
+
+    /// Whether the circle of an arc may come nearer than `reach` to the box of another segment.
+    fn circle_near(&self, other: &Self, reach: S) -> bool {
+        let Curve::Arc { radius, .. } = self.curve else {
+            return true;
+        };
+        // A centre far away is not known any better.
+        let reach = reach + S::slack(radius.double());
+        let centre = self.start + self.direction.vector(S::ZERO, if self.mirrored() { -radius } else { radius });
+        let apart = other.middle - centre;
+        let (along, across) = (apart.along(other.direction).abs(), apart.across(other.direction).abs());
+        let [half_along, half_across] = other.half;
+        let squares = |x: S, y: S| x.times(x) + y.times(y);
+        let nearest = squares((along - half_along).max(S::ZERO), (across - half_across).max(S::ZERO));
+        let farthest = squares(along + half_along, across + half_across);
+        let (outside, inside) = (radius + reach, (radius - reach).max(S::ZERO));
+        nearest <= outside.times(outside) && farthest >= inside.times(inside)
     }
 
     /// Box of an arc with these ends and directions there. Below half a turn a coordinate is extreme at an end, or

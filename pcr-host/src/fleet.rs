@@ -1,5 +1,8 @@
 //! From scenarios to motions and maps, in any number format of the tool.
 
+mod fixed;
+#[cfg(feature = "micromath")]
+mod micro;
 mod speed;
 #[cfg(test)]
 mod tests;
@@ -116,6 +119,7 @@ struct Parts<S: Scalar> {
     sources: Vec<usize>,
     phases: Vec<Phase<S>>,
     radius: S,
+    margin: S,
     start: S,
 }
 
@@ -159,7 +163,8 @@ impl<S: Format> Parts<S> {
         let phases = phases(agent, path.length())?;
         let radius = number("radius", agent.radius).map_err(of_agent)?;
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
-        let parts = Self { segments, sources, phases, radius, start };
+        let margin = number("margin", agent.margin).map_err(of_agent)?;
+        let parts = Self { segments, sources, phases, radius, margin, start };
         match parts.motion() {
             Ok(_) => Ok(parts),
             Err(reason) => Err(of_agent(derived::<S>(reason))),
@@ -167,7 +172,8 @@ impl<S: Format> Parts<S> {
     }
 
     fn motion(&self) -> Result<Motion<'_, S>, Invalid> {
-        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, self.radius, self.start)
+        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, self.radius, self.start)?
+            .with_margin(self.margin)
     }
 }
 

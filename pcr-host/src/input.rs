@@ -1,5 +1,6 @@
 //! Where scenarios come from, and errors that say where the fault is.
 
+use crate::import::{self, Format, ImportError, Imported, Options, Warnings};
 use crate::scenario::{Scenario, ScenarioError};
 use std::fmt;
 use std::fs;
@@ -16,6 +17,12 @@ pub enum InputError {
     NotText(Option<PathBuf>),
     /// It is not a scenario.
     Refused(Option<PathBuf>, ScenarioError),
+    /// It is not of the format that it is read in.
+    Foreign(Option<PathBuf>, Format, ImportError),
+    /// It has to be a layout, and is a scenario.
+    NoLayout(Option<PathBuf>),
+    /// It is a scenario, which has routes and vehicles of its own.
+    HasAgents(Option<PathBuf>),
 }
 
 impl fmt::Display for InputError {
@@ -27,17 +34,23 @@ impl fmt::Display for InputError {
             Self::Unreadable(file, error) => write!(f, "{}: cannot be read: {error}", name(file)),
             Self::NotText(file) => write!(f, "{}: not text in UTF-8", name(file)),
             Self::Refused(file, error) => write!(f, "{}:{}: {error}", name(file), error.line()),
+            Self::Foreign(file, format, error) => write!(f, "{}: {error} (read as {format})", name(file)),
+            Self::NoLayout(file) => write!(f, "{}: not a layout; say what it is with --from", name(file)),
+            Self::HasAgents(file) => {
+                write!(
+                    f,
+                    "{}: a scenario has its own vehicles and paths; options for layouts are of no use",
+                    name(file)
+                )
+            }
         }
     }
 }
 
 impl std::error::Error for InputError {}
 
-/// The scenario in a file, or on standard input for `-`.
-///
-/// # Errors
-/// [`InputError`], naming the file and, for a refused scenario, the line.
-pub fn read(file: &Path) -> Result<Scenario, InputError> {
+/// The text of a file, or of standard input for `-`.
+fn text(file: &Path) -> Result<(Option<PathBuf>, String), InputError> {
     let name = (file != Path::new("-")).then(|| file.to_owned());
     let bytes = match &name {
         Some(file) => fs::read(file),
@@ -47,8 +60,47 @@ pub fn read(file: &Path) -> Result<Scenario, InputError> {
         }
     };
     let bytes = bytes.map_err(|error| InputError::Unreadable(name.clone(), error))?;
-    let text = String::from_utf8(bytes).map_err(|_| InputError::NotText(name.clone()))?;
-    Scenario::from_json(&text).map_err(|error| InputError::Refused(name, error))
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok((name, text)),
+        Err(_) => Err(InputError::NotText(name)),
+    }
+}
+
+/// The scenario in a file, or on standard input for `-`: a scenario file, or another format by its name or
+/// as the options say; with the warnings of the reader.
+///
+/// # Errors
+/// [`InputError`], naming the file and, for a refused scenario, the line.
+pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), InputError> {
+    let (name, text) = text(file)?;
+    let mut warnings = Warnings::default();
+    match options.from.or_else(|| Format::of(file, &text)) {
+        Some(format) => match import::scenario(format, &text, options, &mut warnings) {
+            Ok(scenario) => Ok((scenario, warnings)),
+            Err(error) => Err(InputError::Foreign(name, format, error)),
+        },
+        None => match Scenario::from_json(&text) {
+            Ok(_) if options.any() => Err(InputError::HasAgents(name)),
+            Ok(scenario) => Ok((scenario, warnings)),
+            Err(error) => Err(InputError::Refused(name, error)),
+        },
+    }
+}
+
+/// The layout in a file, or on standard input for `-`, with the warnings of the reader.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+pub fn read_layout(file: &Path, options: &Options) -> Result<(Imported, Warnings), InputError> {
+    let (name, text) = text(file)?;
+    let mut warnings = Warnings::default();
+    let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
+        return Err(InputError::NoLayout(name));
+    };
+    match import::layout(format, &text, options, &mut warnings) {
+        Ok(imported) => Ok((imported, warnings)),
+        Err(error) => Err(InputError::Foreign(name, format, error)),
+    }
 }
 
 /// A line of JSON Lines that is not blank.

@@ -10,6 +10,7 @@
 //! map         paper Fig. 11: the extended collision map of an agent
 //! overview    both side by side
 //! page        the same in a browser, with a time slider
+//! locks       a layout whose edges show what they block
 //! svg         the writer of SVG files
 //! raster      SVG to PNG
 //! ```
@@ -17,6 +18,7 @@
 mod axis;
 mod contour;
 mod labels;
+mod locks;
 mod map;
 mod overview;
 mod page;
@@ -27,6 +29,8 @@ mod svg;
 mod workspace;
 
 use crate::fleet::{Fleet, build_ecm};
+use crate::import::Imported;
+use crate::locks::Locks;
 use crate::scenario::Scenario;
 use raster::Raster;
 use scene::Scene;
@@ -77,6 +81,29 @@ pub fn write(
         Ok(())
     })?;
     Ok(files.concat())
+}
+
+/// Writes the pictures of a layout and its locks into a directory, which is created where it does not exist: `locks.html`,
+/// in which an edge shows its corridor and what it blocks, and for each level `layout.svg` and `layout.png`, from the second
+/// level on with its number. Returns the files.
+///
+/// # Errors
+/// Those of writing files.
+pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
+    let raster = Raster::new();
+    for level in 0..imported.layout.levels.len() {
+        let svg = locks::picture(imported, locks, level);
+        let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
+        let png = raster.png(&svg)?;
+        files.extend([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)]);
+    }
+    fs::create_dir_all(directory)?;
+    let write = |(name, content): (String, Vec<u8>)| {
+        let file = directory.join(name);
+        fs::write(&file, content).map(|()| file)
+    };
+    files.into_iter().map(write).collect()
 }
 
 /// One picture of a scenario.

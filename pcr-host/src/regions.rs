@@ -18,6 +18,9 @@ pub struct Answer {
     pub scalar: &'static str,
     /// Sorted by `i`, `j`, start time and start length.
     pub regions: Vec<Region>,
+    /// The same for the discs with their margins, if any agent has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin_regions: Option<Vec<Region>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
 }
@@ -183,20 +186,32 @@ impl Answer {
         }
         let fleet = Fleet::<S>::new(scenario)?;
         let motions = fleet.motions();
-        let ecm = table(scenario, &motions)?;
-        let work = Work { ids: &ids, fleet: &fleet, motions: &motions, ecm: &ecm, slices: request.slices };
-        let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
-        let mut regions: Vec<Region> = egos.flat_map(|ego| work.row(ego)).collect();
-        regions.sort_by(|a, b| {
-            let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
-            (a.i, a.j).cmp(&(b.i, b.j)).then(starts)
-        });
-        Ok(Self { name: scenario.name.clone(), scalar: S::NAME, regions, error: None })
+        let regions = |motions: &[Motion<'_, S>]| -> Result<Vec<Region>, Failure> {
+            let ecm = table(scenario, motions)?;
+            let work = Work { ids: &ids, fleet: &fleet, motions, ecm: &ecm, slices: request.slices };
+            let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
+            let mut regions: Vec<Region> = egos.flat_map(|ego| work.row(ego)).collect();
+            regions.sort_by(|a, b| {
+                let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
+                (a.i, a.j).cmp(&(b.i, b.j)).then(starts)
+            });
+            Ok(regions)
+        };
+        let inflated: Vec<_> = motions.iter().map(|motion| motion.inflated()).collect();
+        let margins = motions.iter().any(|motion| motion.margin() > S::ZERO);
+        let margin_regions = margins.then(|| regions(&inflated)).transpose()?;
+        Ok(Self {
+            name: scenario.name.clone(),
+            scalar: S::NAME,
+            regions: regions(&motions)?,
+            margin_regions,
+            error: None,
+        })
     }
 
     /// No regions, and why.
     pub fn refused<S: Format>(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), scalar: S::NAME, regions: Vec::new(), error: Some(error) }
+        Self { name: name.to_owned(), scalar: S::NAME, regions: Vec::new(), margin_regions: None, error: Some(error) }
     }
 }
 

@@ -1,13 +1,20 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
 mod columns;
+mod conflicts;
+mod locks;
 mod overview;
+mod plans;
 mod table;
 
+pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
+pub use locks::{LOCKS_HEADER, locks_csv, locks_json, locks_table};
 pub use overview::overview;
+pub use plans::{PLAN_CSV_HEADER, plan_csv, plan_table};
 pub use table::table;
 
 use crate::regions::{Answer, Region};
+use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -16,32 +23,40 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// Those of the writer.
-pub fn json(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+pub fn json(answer: &impl Serialize, out: &mut impl Write) -> io::Result<()> {
     serde_json::to_writer(&mut *out, answer)?;
     out.write_all(b"\n")
 }
 
 /// The header line of [`csv`].
-pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings\n";
+pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin\n";
 
-/// A line a region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`.
+/// A line a region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`. Those of the discs with their
+/// margins come last, with 1 in the last column.
 ///
 /// # Errors
 /// Those of the writer.
 pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
-    let name = if answer.name.contains(['"', ',', '\n', '\r']) {
-        Cow::Owned(format!("\"{}\"", answer.name.replace('"', "\"\"")))
-    } else {
-        Cow::Borrowed(&answer.name)
-    };
-    for region in &answer.regions {
+    let name = quoted(&answer.name);
+    let contact = answer.regions.iter().map(|region| (region, 0));
+    let margin = answer.margin_regions.iter().flatten().map(|region| (region, 1));
+    for (region, margin) in contact.chain(margin) {
         let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;
         let (open_start, open_end) = (u8::from(region.open_start), u8::from(region.open_end));
         let crossings = crossings(region);
         let types = types(region);
-        writeln!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings}")?;
+        writeln!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings},{margin}")?;
     }
     Ok(())
+}
+
+/// A name as a field of CSV.
+fn quoted(name: &str) -> Cow<'_, str> {
+    if name.contains(['"', ',', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", name.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(name)
+    }
 }
 
 /// Number of crossings in a region.
@@ -66,6 +81,11 @@ fn types(region: &Region) -> String {
         let _ = write!(text, "{plus}{count}{piece_type}");
     }
     text
+}
+
+/// The name of a scenario in a heading.
+fn heading(name: &str) -> String {
+    if name.is_empty() { "scenario".into() } else { printable(name) }
 }
 
 /// A name on a terminal: whatever would move the cursor or change colours is escaped.

@@ -21,11 +21,13 @@
 //!   accelerations, never below speed 0. It has to travel the length of the path within [`LENGTH_TOLERANCE`] and is
 //!   scaled onto it.
 //! - `name` and `t_start` may be left out, and with a profile `v_max` and `a_max`. An unknown key is refused.
+//! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
 //! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
 
 mod decode;
+mod encode;
 mod fields;
 
 pub use decode::LENGTH_TOLERANCE;
@@ -53,6 +55,8 @@ pub struct Agent {
     pub id: u64,
     /// Radius of the disc \[m\].
     pub radius: f64,
+    /// Margin to be kept around the disc \[m\].
+    pub margin: f64,
     /// When it sets off \[s\].
     pub t_start: f64,
     /// Abscissa \[m\], ordinate \[m\] and heading \[rad\] at the start of the path.
@@ -78,6 +82,15 @@ pub enum PathSegment {
         /// \[rad\], left positive.
         sweep: f64,
     },
+}
+
+impl Scenario {
+    /// Gives this margin \[m\] to every agent that has none.
+    pub fn give_margin(&mut self, margin: f64) {
+        for agent in self.agents.iter_mut().filter(|agent| agent.margin == 0.0) {
+            agent.margin = margin;
+        }
+    }
 }
 
 impl PathSegment {

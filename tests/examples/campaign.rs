@@ -1,41 +1,56 @@
-//! Audits far more pairs than the tests do: `campaign FIRST_SEED COUNT [BOXES]`, in `f64` and `f32`.
+//! Audits far more pairs than the tests do: `campaign FIRST_SEED COUNT [BOXES] [FORMAT...]`, in all number formats or in
+//! those that are named (`f64 f32 q16 q20 q12`).
 //!
 //! Prints every violation with its seed, which `pcr_tests::generators` turns into the pair again.
 
+use pcr_fixed::{Q12, Q16, Q20};
 use pcr_host::fleet::Format;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, RELATIONS, related};
 use pcr_tests::oracle::Route;
 use pcr_tests::oracle::plane::Effort;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 fn main() {
-    let arguments: Vec<usize> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
-    let (first, count) = (arguments.first().copied().unwrap_or(0), arguments.get(1).copied().unwrap_or(10_000));
-    let effort = Effort { resolution: 1e-2, boxes: arguments.get(2).copied().unwrap_or(20_000), range: 1e-4 };
-    let (mut seen64, mut seen32) = (Seen::default(), Seen::default());
-    let mut failures = 0;
-    for seed in first..first + count {
+    let numbers: Vec<usize> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
+    let names: Vec<String> = std::env::args().skip(1).filter(|argument| argument.parse::<usize>().is_err()).collect();
+    let (first, count) = (numbers.first().copied().unwrap_or(0), numbers.get(1).copied().unwrap_or(10_000));
+    let effort = Effort { resolution: 1e-2, boxes: numbers.get(2).copied().unwrap_or(20_000), range: 1e-4 };
+    let seeds = first..first + count;
+    run::<f64>(&names, seeds.clone(), effort);
+    run::<f32>(&names, seeds.clone(), effort);
+    run::<Q16>(&names, seeds.clone(), effort);
+    run::<Q20>(&names, seeds.clone(), effort);
+    run::<Q12>(&names, seeds, effort);
+}
+
+/// The campaign in one format, if it is asked for.
+fn run<S: Format>(names: &[String], seeds: Range<usize>, effort: Effort) {
+    if !names.is_empty() && !names.iter().any(|name| name == S::NAME) {
+        return;
+    }
+    let (count, mut seen, mut refused, mut failures) = (seeds.len(), Seen::default(), 0, 0);
+    for seed in seeds {
         let relation = RELATIONS[seed % RELATIONS.len()];
         let (ego, other) = related(relation, &mut Dice::seeded(seed as u64));
-        let mut report = |format: &str, outcome: Result<(), Violation>| {
-            // Radii above the limit of a format are refused, as they should be.
-            if let Err(violation) = outcome
-                && !violation.starts_with("refused: radius")
-            {
-                println!("seed {seed} {relation:?} {format}: {violation}");
+        if count == 1 {
+            shortened::<S>(&ego, &other, effort);
+        }
+        match audit::<S>(&ego, &other, effort, &mut seen) {
+            // What is above the limit of a format is refused, as it should be.
+            Err(violation) if violation.starts_with("refused: ") && violation.ends_with("is out of range") => {
+                refused += 1
+            }
+            Err(violation) => {
+                println!("seed {seed} {relation:?} {}: {violation}", S::NAME);
                 failures += 1;
             }
-        };
-        if count == 1 {
-            shortened::<f64>(&ego, &other, effort);
-            shortened::<f32>(&ego, &other, effort);
+            Ok(()) => {}
         }
-        report("f64", audit::<f64>(&ego, &other, effort, &mut seen64));
-        report("f32", audit::<f32>(&ego, &other, effort, &mut seen32));
     }
-    println!("{count} pairs, {failures} violations\nf64 {seen64:?}\nf32 {seen32:?}");
+    println!("{}: {count} pairs, {refused} out of range, {failures} violations, {seen:?}", S::NAME);
 }
 
 fn audit<S: Format>(ego: &Disc, other: &Disc, effort: Effort, seen: &mut Seen) -> Result<(), Violation> {

@@ -5,11 +5,8 @@
 
 use crate::disc::{Course, Disc};
 use crate::oracle::{Pair, line, plane};
-use pcr_core::{Interval, Motion, RegionRef};
+use pcr_core::{Interval, Motion, RegionRef, excess};
 use pcr_host::fleet::{Format, HostEcm, build_ecm};
-
-/// Bound on the residual `| |ρ_i(l) - ρ_j(s)| - R |` at the ends of slices, in slacks of the pair.
-pub const RESIDUAL: f64 = 3.0;
 
 /// What the oracle's own positions may be off, in units in the last place of the extent in `f64`: a dozen rounded
 /// operations a segment. Contacts that are less deep prove nothing.
@@ -19,16 +16,16 @@ pub const ORACLE_ULPS: f64 = 16.0;
 pub struct Audit<S: Format> {
     courses: [Course<S>; 2],
     oracle: Pair,
-    /// Slack of the pair \[m\].
-    slack: f64,
+    /// The stated bound of the pair \[m\].
+    excess: f64,
     /// What the oracle may be off \[m\].
     doubt: f64,
 }
 
-/// Largest values seen, in slacks.
+/// What has been seen.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Residual at slice ends.
+    /// Largest residual at slice ends, as a part of the bound.
     pub residual: f64,
     /// Regions.
     pub regions: usize,
@@ -56,15 +53,16 @@ impl<S: Format> Audit<S> {
     pub fn new(ego: &Disc, other: &Disc) -> Result<Self, Violation> {
         let course = |disc| Course::<S>::new(disc).map_err(|invalid| format!("refused: {invalid}"));
         let courses = [course(ego)?, course(other)?];
-        let extent = courses[0].motion().extent() + courses[1].motion().extent();
-        let slack = S::slack(extent).to_f64();
-        let doubt = ORACLE_ULPS * f64::EPSILON * extent.to_f64();
-        Ok(Self { courses, oracle: Pair::new(ego, other), slack, doubt })
+        let motions = [courses[0].motion(), courses[1].motion()];
+        let excess = excess(&motions[0], &motions[1]).to_f64();
+        let doubt = ORACLE_ULPS * f64::EPSILON * (motions[0].extent() + motions[1].extent()).to_f64();
+        Ok(Self { courses, oracle: Pair::new(ego, other), excess, doubt })
     }
 
-    /// Bound on the residual of slice ends \[m\].
+    /// Bound on the residual `| |ρ_i(l) - ρ_j(s)| - R |` of slice ends \[m\]: the stated one, and what the oracle may be
+    /// off.
     pub fn bound(&self) -> f64 {
-        RESIDUAL * self.slack + self.doubt
+        self.excess + self.doubt
     }
 
     /// The motions and their table.
@@ -146,8 +144,12 @@ impl<S: Format> Audit<S> {
                     let clearance = pair.clearance(at, end);
                     let clipped = end <= 0.0 || end >= path;
                     let residual = if clipped { clearance } else { clearance.abs() };
-                    seen.residual = seen.residual.max((residual - self.doubt) / self.slack);
-                    ensure!(residual <= self.bound(), "residual {residual:e} at ({at}, {end}), slack {:e}", self.slack);
+                    seen.residual = seen.residual.max((residual - self.doubt) / self.excess);
+                    ensure!(
+                        residual <= self.bound(),
+                        "residual {residual:e} at ({at}, {end}), {:e} stated",
+                        self.excess
+                    );
                 }
                 for part in [0.25, 0.5, 0.75] {
                     let inside = lo + part * (hi - lo);
@@ -198,7 +200,7 @@ impl<S: Format> Audit<S> {
     pub fn sections(&self, samples: usize) -> Result<(), Violation> {
         let (motions, ecm) = self.table();
         let end = self.end(0).to_f64();
-        let tolerance = self.slack.max(1e-9);
+        let tolerance = self.excess.max(1e-9);
         for k in 0..=samples {
             let s = S::from_f64(self.oracle.other.length() * k as f64 / samples as f64).min(self.end(1));
             let overlap = |l| self.oracle.clearance(s.to_f64(), l) + self.doubt;
@@ -247,19 +249,18 @@ impl<S: Format> Audit<S> {
         for region in ecm.pair(&motions, 0, 1).filter(|region| self.depth(region) > self.bound()) {
             let (s, l) = (region.other_length(), region.length());
             let (s, l) = ((s.lo.to_f64(), s.hi.to_f64()), (l.lo.to_f64(), l.hi.to_f64()));
-            // What is widened by a slack along the path is further from contact by as much at most.
-            let (bound, step) = (self.bound() + self.slack, self.slack + 1e-12);
+            let (bound, step) = (self.bound(), 0.5 * self.excess + 1e-12);
             for end in [l.0, l.1] {
                 let clearance = |s| self.oracle.clearance(s, end);
                 let reached = line::reaches(clearance, s.0, s.1, bound, step);
-                let nearest = || line::nearest(clearance, s.0, s.1) / self.slack;
-                ensure!(reached, "no contact at the end {end} of {l:?}: {} slacks clear", nearest());
+                let nearest = || line::nearest(clearance, s.0, s.1) / self.excess;
+                ensure!(reached, "no contact at the end {end} of {l:?}: {} bounds clear", nearest());
             }
             for end in [s.0, s.1] {
                 let clearance = |l| self.oracle.clearance(end, l);
                 let reached = line::reaches(clearance, l.0, l.1, bound, step);
-                let nearest = || line::nearest(clearance, l.0, l.1) / self.slack;
-                ensure!(reached, "no contact at the end {end} of {s:?}: {} slacks clear", nearest());
+                let nearest = || line::nearest(clearance, l.0, l.1) / self.excess;
+                ensure!(reached, "no contact at the end {end} of {s:?}: {} bounds clear", nearest());
             }
         }
         Ok(())

@@ -119,7 +119,9 @@ impl Disc {
             Leg::Left { radius, length } => Leg::Left { radius: round(radius), length: round(length) },
             Leg::Right { radius, length } => Leg::Right { radius: round(radius), length: round(length) },
         });
-        let mut rounded = Self { radius: round(self.radius), start: self.start.map(round), legs: legs.collect() };
+        let [x, y, heading] = self.start;
+        let start = [round(x), round(y), S::radians(S::angle(heading))];
+        let mut rounded = Self { radius: round(self.radius), start, legs: legs.collect() };
         rounded.legs.retain(|leg| leg.length() > 0.0);
         // The library takes a full turn that rounding made too long back to the circumference.
         if let Ok(course) = Course::<S>::new(&rounded) {
@@ -154,6 +156,21 @@ impl Drive {
         match &agent.motion {
             MotionSpec::RestToRest { v_max, a_max } => Self::Limits(*v_max, *a_max),
             MotionSpec::Profile { v0, pieces } => Self::Pieces(*v0, pieces.clone()),
+        }
+    }
+
+    /// No speed is above this \[m/s\].
+    pub fn top_speed(&self) -> f64 {
+        match self {
+            Self::Unit => 1.0,
+            Self::Limits(speed, _) => *speed,
+            Self::Pieces(speed, pieces) => {
+                let after = pieces.iter().scan(*speed, |speed, (duration, acceleration)| {
+                    *speed += duration * acceleration;
+                    Some(*speed)
+                });
+                after.fold(*speed, f64::max)
+            }
         }
     }
 

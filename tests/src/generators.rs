@@ -2,9 +2,11 @@
 //!
 //! A pair is built from a list of numbers in [0, 1), so that proptest can shrink it and a campaign can replay it.
 
+mod cases;
 mod dice;
 mod relations;
 
+pub use cases::{Case, case};
 pub use dice::{Dice, FACES};
 pub use relations::{RELATIONS, Relation};
 

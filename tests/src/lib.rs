@@ -2,9 +2,12 @@
 //! but the definition of a collision region.
 
 pub mod audit;
+pub mod constants;
 pub mod disc;
+pub mod exact;
 pub mod generators;
 pub mod oracle;
+pub mod outward;
 pub mod paper;
 pub mod reference;
 

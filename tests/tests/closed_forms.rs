@@ -187,10 +187,14 @@ fn coordination_space_does_not_know_the_motion() {
         // The time range is the image of the length range under the other's motion, whatever the phase it is in.
         let expected = fleet[1].time_in(region.other_length());
         assert_eq!(region.time(), expected);
-        (region.length(), region.other_length(), region.time())
+        ([region.length(), region.other_length()], region.time(), region.excess())
     };
     let slow = ranges(Limits { speed: 0.3, acceleration: 5.0 });
     let never_cruising = ranges(Limits { speed: 9.0, acceleration: 0.4 });
-    assert_eq!((slow.0, slow.1), (never_cruising.0, never_cruising.1));
-    assert_ne!(slow.2, never_cruising.2);
+    // But for the rounding of times, which is part of the bound.
+    for (a, b) in slow.0.into_iter().zip(never_cruising.0) {
+        let apart = (a.lo - b.lo).abs().max((a.hi - b.hi).abs());
+        assert!(apart <= slow.2.max(never_cruising.2), "{a:?} and {b:?}");
+    }
+    assert_ne!(slow.1, never_cruising.1);
 }

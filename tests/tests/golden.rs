@@ -164,7 +164,8 @@ fn both_views_agree_with_the_definition() {
                     let time = start + (end - start) * f64::from(k) / f64::from(STEPS);
                     let s = travels[other].length_at(time);
                     for m in 0..=STEPS {
-                        let length = (pair.ego.length() * f64::from(m) / f64::from(STEPS)).min(pair.ego.length());
+                        let whole = motions[ego].path().length();
+                        let length = (whole * f64::from(m) / f64::from(STEPS)).min(whole);
                         let clearance = pair.clearance(s, length);
                         let holding = regions.iter().filter(|region| region.contains(time, length)).count();
                         let right = clearance.abs() < UNCERTAIN || holding == usize::from(clearance < 0.0);

@@ -1,6 +1,6 @@
 //! Properties of what depends on time: profiles and their inverses, strips of standing agents, delays.
 
-use pcr_core::{Motion, RegionRef};
+use pcr_core::{Motion, RegionRef, excess};
 use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive};
 use pcr_tests::generators::driven_pairs;
@@ -114,7 +114,7 @@ fn regions_follow_the_other<S: Format>(driven: &Driven) -> Result<(), TestCaseEr
     let motions = [ego.motion(), other.motion()];
     let ecm = build_ecm(&motions).expect("two agents");
     let extent = (motions[0].extent() + motions[1].extent()).to_f64();
-    let bound = pcr_tests::audit::RESIDUAL * S::slack(S::from_f64(extent)).to_f64();
+    let bound = excess(&motions[0], &motions[1]).to_f64();
     let doubt = pcr_tests::audit::ORACLE_ULPS * f64::EPSILON * extent;
     let (start, end) = (motions[1].time().lo, motions[1].time().hi);
     let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();

@@ -30,8 +30,9 @@ fn config(release: u32) -> ProptestConfig {
 
 fn audit<S: Format>((ego, other): &(Disc, Disc)) -> Option<Audit<S>> {
     let (ego, other) = (ego.rounded::<S>(), other.rounded::<S>());
-    // Radii of 1e7 m are above the limit of `f32`.
-    let fits = |disc: &Disc| disc.legs.iter().all(|leg| leg.radius().is_none_or(|radius| radius <= S::LIMIT.to_f64()));
+    // Diameters of 2e7 m are above the limit of `f32`.
+    let limit = S::LIMIT.to_f64();
+    let fits = |disc: &Disc| disc.legs.iter().all(|leg| leg.radius().is_none_or(|radius| 2.0 * radius <= limit));
     (fits(&ego) && fits(&other)).then(|| Audit::new(&ego, &other).expect("a valid pair"))
 }
 

@@ -1,6 +1,7 @@
 //! Pairs that the library once got wrong, without what does not matter: found by the campaign
 //! (`cargo run --release -p pcr-tests --example campaign`), named by its seeds.
 
+use pcr_fixed::Q12;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Leg::{Left, Line, Right};
 use pcr_tests::disc::{Disc, Leg};
@@ -536,4 +537,22 @@ fn almost_parallel_6263() {
         ],
         [&[Line(1.92719753909946)], &[Line(3.362612719732615)]],
     );
+}
+
+/// In fixed point: a slice that rounding takes off the end of the segment that it is at.
+#[test]
+fn through_centre_34628() {
+    let ego = Disc {
+        radius: 0.058349609375,
+        start: [2.692138671875, -3.323974609375, -1.3929055088368631],
+        legs: vec![Left { radius: 0.149169921875, length: 0.937255859375 }],
+    };
+    let other = Disc {
+        radius: 0.091064453125,
+        start: [3.01025390625, -2.4921875, -1.7802315440523486],
+        legs: vec![Line(0.8232421875), Right { radius: 1.364990234375, length: 0.33349609375 }],
+    };
+    let (ego, other) = (ego.rounded::<Q12>(), other.rounded::<Q12>());
+    let audit = Audit::<Q12>::new(&ego, &other).and_then(|audit| audit.all(EFFORT, SAMPLES, &mut Seen::default()));
+    assert_eq!(audit, Ok::<(), Violation>(()), "in Q12");
 }

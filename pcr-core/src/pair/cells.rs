@@ -12,7 +12,7 @@ use super::events::{Events, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share, shift};
 use crate::error::Full;
 use crate::geometry::Interval;
-use crate::pieces::{Piece, Pieces};
+use crate::pieces::{NONE, Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
@@ -24,6 +24,8 @@ pub(crate) struct SegmentPair<'a, S: Scalar> {
     pub(crate) indices: [u16; 2],
     /// Combined radius, slack included \[m\].
     pub(crate) radius: S,
+    /// What distances may be off \[m\].
+    pub(crate) slack: S,
     /// Whether two laps of the first segment can be covered at once.
     pub(crate) wraps: bool,
 }
@@ -35,42 +37,61 @@ struct Section<S> {
     reach: Reach<S>,
 }
 
-/// The piece that is open in each lap, by [`Lap`].
-type Open = [Option<u32>; Lap::ALL.len()];
+/// A slab as its neighbours see it.
+#[derive(Clone, Copy)]
+struct Slab<S> {
+    /// Whether anything of the segment is covered.
+    covered: bool,
+    /// The foot in its middle, where laps matter.
+    foot: S,
+}
+
+/// The piece that is open in each lap, by [`Lap`], or [`NONE`].
+type Open = [u32; Lap::ALL.len()];
 
 impl<'a, S: Scalar> SegmentPair<'a, S> {
-    pub(crate) fn new(first: &'a Segment<S>, second: &'a Segment<S>, indices: [u16; 2], radius: S) -> Self {
-        Self { first, second, indices, radius, wraps: wraps(first, radius) }
+    pub(crate) fn new(first: &'a Segment<S>, second: &'a Segment<S>, indices: [u16; 2], radius: S, slack: S) -> Self {
+        Self { first, second, indices, radius, slack, wraps: wraps(first, radius) }
     }
 
     /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
-        let events = Events::of(self.first, self.second, self.radius);
+        let events = Events::of(self.first, self.second, self.radius, self.slack);
         let events = events.in_order();
         let begin = pieces.last_pending();
-        let mut open = Open::default();
-        let mut before: Option<Section<S>> = None;
-        // The section at the end of the slab before, if that is covered.
-        let mut edge: Option<Section<S>> = None;
+        let mut open = [NONE; Lap::ALL.len()];
+        let mut before = Slab { covered: false, foot: S::ZERO };
         for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
             // Events may coincide; a second segment of length 0 has this one slab only.
             if lo >= hi && self.second.length > S::ZERO {
                 continue;
             }
-            let slab = Interval::new(lo, hi);
-            let middle = self.section(slab.middle());
-            let laps_lost = before.map_or(0, |before| self.laps_lost(&before, &middle, lo));
-            open = match middle.reach {
-                Reach::Nothing => {
-                    edge = None;
-                    Open::default()
-                }
-                _ => self.extend(pieces, slab, &middle, &mut edge, open, laps_lost)?,
-            };
-            before = Some(middle);
+            let range = Interval::new(lo, hi);
+            let middle = self.section(range.middle());
+            let slab = self.slab(&middle);
+            let ends = before.covered != slab.covered || (self.wraps && slab.covered);
+            let mut laps_lost = 0;
+            let mut begin = None;
+            if ends {
+                let edge = self.edge(lo);
+                self.limit_open(pieces, &open, &edge, before);
+                laps_lost = self.laps_lost(before, slab, &edge);
+                begin = Some(edge);
+            }
+            if slab.covered {
+                self.extend(pieces, range, &middle, begin.as_ref(), &mut open, laps_lost)?;
+            } else {
+                open = [NONE; Lap::ALL.len()];
+            }
+            before = slab;
+        }
+        if before.covered {
+            self.limit_open(pieces, &open, &self.edge(self.second.length), before);
         }
         if pieces.last_pending() != begin {
-            turning_points(self.first, self.second, self.radius, |l, s| self.turn_back(pieces, begin, l, s));
+            turning_points(self.first, self.second, self.radius, self.slack, |l, s| {
+                self.turn_back(pieces, begin, l, s)
+            });
         }
         Ok(())
     }
@@ -80,60 +101,86 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         if self.wraps { &Lap::ALL } else { &[Lap::Same] }
     }
 
+    fn slab(&self, middle: &Section<S>) -> Slab<S> {
+        // With several laps every end of a slab is looked at anyway.
+        let covered = match middle.reach {
+            Reach::Around { .. } if !self.wraps => middle.reach.on(self.first, Lap::Same).is_some(),
+            reach => reach != Reach::Nothing,
+        };
+        Slab { covered, foot: if self.wraps { middle.foot(self.first) } else { S::ZERO } }
+    }
+
     fn section(&self, s: S) -> Section<S> {
         let footprint = Footprint::of(self.second.point_at(s), self.first);
         Section { footprint, reach: footprint.reach(self.first, self.radius) }
     }
 
-    /// Adds the cells of one slab to the pieces that are open at its beginning; returns those open at its end.
+    /// What bounds the cells next to the end `s` of a slab: the section there. Inside the second segment cells of one lap
+    /// begin and end in a point, the foot.
+    fn edge(&self, s: S) -> Section<S> {
+        if self.wraps || s <= S::ZERO || s >= self.second.length {
+            return self.section(s);
+        }
+        Section { footprint: Footprint::of(self.second.point_at(s), self.first), reach: Reach::Nothing }
+    }
+
+    /// Adds the slice at the end of their slab to the pieces that are open in it.
+    fn limit_open<P>(&self, pieces: &mut Pieces<S, P>, open: &Open, end: &Section<S>, slab: Slab<S>)
+    where
+        P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
+    {
+        for &lap in self.laps() {
+            if let Some(piece) = pieces.get_mut(open[lap as usize]) {
+                piece.first = piece.first.hull(self.limit(end, slab.foot, lap));
+            }
+        }
+    }
+
+    /// Adds the cells of one slab to the pieces that are open at its beginning; then those open at its end are.
     fn extend<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         pieces: &mut Pieces<S, P>,
-        slab: Interval<S>,
+        range: Interval<S>,
         middle: &Section<S>,
-        edge: &mut Option<Section<S>>,
-        open: Open,
+        begin: Option<&Section<S>>,
+        open: &mut Open,
         laps_lost: i8,
-    ) -> Result<Open, Full> {
-        let mut now = Open::default();
-        let ends = [edge.unwrap_or_else(|| self.section(slab.lo)), self.section(slab.hi)];
-        *edge = Some(ends[1]);
+    ) -> Result<(), Full> {
+        let before = core::mem::replace(open, [NONE; Lap::ALL.len()]);
         let several = self.wraps && middle.reach.intervals(self.first)[1].is_some();
         let mut share = if several { Share::Start } else { Share::Only };
         for &lap in self.laps() {
             let Some(mut covered) = middle.reach.on(self.first, lap) else {
                 continue;
             };
-            for end in &ends {
-                covered = covered.hull(self.limit(end, middle, lap));
+            if let Some(begin) = begin {
+                covered = covered.hull(self.limit(begin, self.slab(middle).foot, lap));
             }
-            let ongoing = lap.less(laps_lost).and_then(|lap| open[lap as usize]);
-            let index = match ongoing.and_then(|index| pieces.get_mut(index)) {
+            let ongoing = lap.less(laps_lost).map_or(NONE, |lap| before[lap as usize]);
+            let index = match pieces.get_mut(ongoing) {
                 Some(piece) if piece.lap == lap && piece.share == share => {
                     piece.first = piece.first.hull(covered);
-                    piece.second.hi = slab.hi;
+                    piece.second.hi = range.hi;
                     ongoing
                 }
-                _ => Some(pieces.push(Piece::new(self.indices, lap, share, covered, slab))?),
+                _ => {
+                    let index = pieces.push(Piece::new(self.indices, lap, share, covered, range))?;
+                    pieces.join(ongoing, index);
+                    index
+                }
             };
-            now[lap as usize] = index;
-            if let (Some(index), Some(ongoing)) = (index, ongoing) {
-                pieces.join(ongoing, index);
-            }
+            open[lap as usize] = index;
             if several {
                 share = Share::End;
             }
         }
-        if !self.wraps {
-            return Ok(now);
-        }
-        // Where the whole circle is covered every lap meets.
-        for (whole, laps) in [(now[Lap::Whole as usize], open), (open[Lap::Whole as usize], now)] {
-            if let Some(whole) = whole {
-                laps.into_iter().flatten().for_each(|lap| pieces.join(whole, lap));
+        if self.wraps {
+            // Where the whole circle is covered every lap meets.
+            for (whole, laps) in [(open[Lap::Whole as usize], before), (before[Lap::Whole as usize], *open)] {
+                laps.into_iter().for_each(|lap| pieces.join(whole, lap));
             }
         }
-        Ok(now)
+        Ok(())
     }
 
     /// Adds the slice at a turning point, which ends at `l`, to the pieces after `begin` that cover it.
@@ -154,9 +201,9 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
         }
     }
 
-    /// The slice of a cell at an end of its slab. There it may have shrunk to a point, or grown to the whole
-    /// circle, and rounding may have taken it a little beyond.
-    fn limit(&self, end: &Section<S>, middle: &Section<S>, lap: Lap) -> Interval<S> {
+    /// The slice of a cell at an end of its slab, whose middle has this foot. There it may have shrunk to a point, or
+    /// grown to the whole circle, and rounding may have taken it a little beyond.
+    fn limit(&self, end: &Section<S>, middle: S, lap: Lap) -> Interval<S> {
         let all = Interval::new(S::ZERO, self.first.length);
         let (mut foot, half) = match (end.reach, lap) {
             (_, Lap::Whole) => return all,
@@ -164,32 +211,33 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             (Reach::Nothing, _) => (end.foot(self.first), S::ZERO),
             (Reach::Whole, _) => (end.foot(self.first), self.first.circumference.half()),
         };
-        if self.wraps && self.changes_lap(middle, end, end) {
-            let lap = self.first.circumference;
-            foot = if middle.foot(self.first) > foot { foot + lap } else { foot - lap };
+        if self.wraps {
+            if self.changes_lap(middle, foot, foot) {
+                let lap = self.first.circumference;
+                foot = if middle > foot { foot + lap } else { foot - lap };
+            }
+            foot = shift(foot, self.first, lap);
         }
-        let foot = shift(foot, self.first, lap);
         Interval::new(foot - half, foot + half).widen(S::ZERO, all)
     }
 
     /// How many laps the foot has lost between two slabs: it passes from the end of the lap to its beginning.
-    fn laps_lost(&self, before: &Section<S>, after: &Section<S>, event: S) -> i8 {
-        if !self.wraps || !self.changes_lap(before, after, &self.section(event)) {
+    fn laps_lost(&self, before: Slab<S>, after: Slab<S>, between: &Section<S>) -> i8 {
+        if !self.wraps || !before.covered || !self.changes_lap(before.foot, after.foot, between.foot(self.first)) {
             0
-        } else if before.foot(self.first) > after.foot(self.first) {
+        } else if before.foot > after.foot {
             1
         } else {
             -1
         }
     }
 
-    /// Whether the feet of two sections lie on different sides of the middle of the segment because the foot
-    /// left its lap, at `between`, on the far half of the circle.
-    fn changes_lap(&self, a: &Section<S>, b: &Section<S>, between: &Section<S>) -> bool {
+    /// Whether two feet lie on different sides of the middle of the segment because the foot left its lap, at `between`,
+    /// on the far half of the circle.
+    fn changes_lap(&self, a: S, b: S, between: S) -> bool {
         let middle = self.first.length.half();
-        let beyond = |section: &Section<S>| section.foot(self.first) > middle;
         let quarter = self.first.circumference.half().half();
-        beyond(a) != beyond(b) && (between.foot(self.first) - middle).abs() > quarter
+        (a > middle) != (b > middle) && (between - middle).abs() > quarter
     }
 }
 

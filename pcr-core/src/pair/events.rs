@@ -12,7 +12,7 @@
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
-//! ([`turning_points`]), or at an event. Superfluous events and turning points cost time and change nothing.
+//! ([`turning_points`]), or at an event. Superfluous events cost time and change nothing.
 
 use super::footprint::{Footprint, Reach};
 use super::offset::{Carrier, Relative, on_first_lap};
@@ -29,30 +29,30 @@ const MAX_EVENTS: usize = 14;
 pub(crate) struct Events<S>(Vec<S, MAX_EVENTS>);
 
 impl<S: Scalar> Events<S> {
-    /// The events along `second`, for discs whose radii add up to `radius`.
-    pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S) -> Self {
+    /// The events along `second`, for discs whose radii add up to `radius`, distances right within `slack`.
+    pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> Self {
         let mut events = Self(Vec::new());
         events.add(S::ZERO);
         events.add(second.length);
 
         let start = Footprint::of(first.start, second);
-        events.add_ends(&start, second, radius);
+        events.add_ends(&start, second, radius, slack);
         if first.length > S::ZERO {
-            events.add_ends(&Footprint::of(first.end, second), second, radius);
+            events.add_ends(&Footprint::of(first.end, second), second, radius, slack);
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
-        normal.lengths_at(&[radius, -radius], S::ZERO, |s| events.add(s));
+        normal.lengths_at(&[radius, -radius], S::ZERO, slack, |s| events.add(s));
         if let Curve::Arc { radius: own, .. } = first.curve {
             let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
             if wraps || ring.is_some() {
                 let diameter = middle_diameter(first, own);
                 let centre = Footprint::of(diameter.start, second);
                 if let Some(ring) = ring {
-                    events.add_ends(&centre, second, ring);
+                    events.add_ends(&centre, second, ring, slack);
                 }
                 if wraps {
                     let diameter = Relative::new(second, diameter, &centre);
-                    diameter.lengths_at(&[S::ZERO], S::ZERO, |s| events.add(s));
+                    diameter.lengths_at(&[S::ZERO], S::ZERO, S::ZERO, |s| events.add(s));
                 }
             }
         }
@@ -68,16 +68,22 @@ impl<S: Scalar> Events<S> {
     fn add(&mut self, s: S) {
         // The capacity is the most that `of` can add.
         if self.0.push(s).is_ok() {
-            let mut at = self.0.len() - 1;
-            while at > 0 && self.0[at - 1] > self.0[at] {
-                self.0.swap(at - 1, at);
-                at -= 1;
+            let mut events = self.0.iter_mut().rev();
+            let Some(mut place) = events.next() else {
+                return;
+            };
+            for before in events {
+                if *before <= *place {
+                    break;
+                }
+                core::mem::swap(before, place);
+                place = before;
             }
         }
     }
 
-    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S) {
-        ends(footprint, second, radius).into_iter().flatten().for_each(|s| self.add(s));
+    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S, slack: S) {
+        ends(footprint, second, radius, slack).into_iter().flatten().for_each(|s| self.add(s));
     }
 }
 
@@ -87,23 +93,25 @@ pub(crate) fn turning_points<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
     radius: S,
+    slack: S,
     mut found: impl FnMut(S, S),
 ) {
     let mut add = |l: S| {
-        let foot = Footprint::of(first.point_at(l), second).foot(second);
-        let s = on_first_lap(foot, second, S::ZERO);
-        if S::ZERO <= s && s <= second.length {
+        let footprint = Footprint::of(first.point_at(l), second);
+        let s = on_first_lap(footprint.foot(second), second, S::ZERO);
+        // Rounding makes roots where there are none; what is no contact is no end of an interval either.
+        if S::ZERO <= s && s <= second.length && footprint.offset.abs() <= radius + slack {
             found(l, s);
         }
     };
     let start = Footprint::of(second.start, first);
-    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, &mut add);
+    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, S::ZERO, &mut add);
     if let Curve::Arc { radius: own, .. } = second.curve
         && let Some(ring) = inner_ring(own, radius)
         && own >= radius
     {
         let centre = Footprint::of(middle_diameter(second, own).start, first);
-        ends(&centre, first, ring).into_iter().flatten().for_each(add);
+        ends(&centre, first, ring, S::ZERO).into_iter().flatten().for_each(add);
     }
 }
 
@@ -114,10 +122,13 @@ fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
     (own <= radius || ring.double().double() < own).then_some(ring)
 }
 
-/// The lengths of a segment that are as far from a point as `radius`.
-fn ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S) -> [Option<S>; 2] {
-    let Reach::Around { foot, half } = footprint.reach(segment, radius) else {
-        return [None; 2];
+/// The lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from
+/// being that near it is the foot: a slab that only just is covered, by rounding too, ends there.
+fn ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
+    let (foot, half) = match footprint.reach(segment, radius) {
+        Reach::Around { foot, half } => (foot, half),
+        Reach::Nothing if footprint.offset.abs() <= radius + slack => (footprint.foot(segment), S::ZERO),
+        _ => return [None; 2],
     };
     [foot - half, foot + half].map(|u| {
         let u = on_first_lap(u, segment, S::ZERO);

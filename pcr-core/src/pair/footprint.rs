@@ -78,7 +78,8 @@ impl<S: Scalar> Footprint<S> {
     pub(crate) fn direction(&self, segment: &Segment<S>) -> Direction<S> {
         match segment.curve {
             Curve::Arc { radius, .. } if self.distance > S::ZERO => {
-                Direction { cos: (radius - self.y).over_norm(self.distance), sin: self.x.over_norm(self.distance) }
+                let [cos, sin] = S::unit_vector(radius - self.y, self.x, self.distance);
+                Direction { cos, sin }
             }
             _ => Direction { cos: S::Unit::ONE, sin: S::Unit::ZERO },
         }
@@ -182,20 +183,30 @@ pub(crate) enum Share {
 }
 
 impl Share {
-    /// The intervals it stands for, of those that are covered. Next to an end of the piece rounding may show a
-    /// second one where there is one; then those that reach into `hull`, where the piece lies.
+    /// The intervals it stands for, of those that are covered. Next to an end of the piece rounding may show two where there
+    /// is one, or one where there are two, a little off the end of the segment; then those that reach into `hull`, where
+    /// the piece lies.
     pub(crate) fn of<S: Scalar>(
         self,
         intervals: [Option<Interval<S>>; 2],
         segment: &Segment<S>,
         hull: Interval<S>,
     ) -> [Option<Interval<S>>; 2] {
-        let single = intervals[1].is_none();
+        match (self, intervals) {
+            (Self::Only, [Some(_), None]) => return intervals,
+            (Self::Start, [first, Some(_)]) => return [first, None],
+            (Self::End, [_, Some(last)]) => return [Some(last), None],
+            _ => {}
+        }
         intervals.map(|interval| {
-            interval.filter(|interval| match self {
-                Self::Only => single || interval.meets(hull),
-                Self::Start => interval.lo <= S::ZERO,
-                Self::End => interval.hi >= segment.length,
+            interval.filter(|interval| {
+                let (from_start, from_end) = (interval.lo, segment.length - interval.hi);
+                interval.meets(hull)
+                    && match self {
+                        Self::Only => true,
+                        Self::Start => from_start <= from_end,
+                        Self::End => from_end <= from_start,
+                    }
             })
         })
     }

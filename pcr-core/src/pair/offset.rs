@@ -69,10 +69,19 @@ impl<'a, S: Scalar> Relative<'a, S> {
 
     /// The lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
     /// the carrier.
-    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, mut found: impl FnMut(S)) {
+    ///
+    /// Where the segment only just misses an offset, by half of `slack`, this may be rounding. Then the lengths are found
+    /// at an offset that it reaches: nearer to 0 if it stays on this side, further out if it stays beyond. A slab that
+    /// would be judged by its middle alone, by rounding, is cut there.
+    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, slack: S, mut found: impl FnMut(S)) {
         let mut foot = None;
+        let graze = slack.half();
         for &c in offsets {
-            let Some(roots) = self.roots(c) else {
+            let near = if c < S::ZERO { -graze } else { graze };
+            let roots = self
+                .roots(c)
+                .or_else(|| if graze > S::ZERO { self.roots(c - near).or_else(|| self.roots(c + near)) } else { None });
+            let Some(roots) = roots else {
                 continue;
             };
             let foot = *foot.get_or_insert_with(|| self.start.foot(self.segment));
@@ -91,13 +100,19 @@ impl<'a, S: Scalar> Relative<'a, S> {
         let Self { cos, sin, bend, .. } = *self;
         let n = self.start.offset;
         let lateral = c + n.scale(cos);
+        // What rounding does to a distance whatever the extent: it may take a contact from P3 that P1 has not, and then
+        // nobody would tell of it. An event too many is harmless.
+        let doubt = S::slack(S::ZERO);
         let Curve::Arc { radius: r, .. } = self.segment.curve else {
             // J is a line: 2 T = u.
             return Some(Roots::Lengths(match bend {
                 // SS: (c + n cos α) / sin α, the one division by a sine.
                 None => [lateral.quotient_unit(sin)?; 2],
                 // I is an arc: u² - 2 ϱ sin α u + ϱ G = 0.
-                Some(bend) => S::quadratic_roots(-bend.scale(sin), Self::constant(bend, lateral, n, c))?,
+                Some(bend) => {
+                    let doubt = (bend.abs() + c.abs()).times(doubt).double();
+                    S::quadratic_roots(-bend.scale(sin), Self::constant(bend, lateral, n, c), doubt)?
+                }
             }));
         };
         // J is an arc: T = r τ.
@@ -105,14 +120,15 @@ impl<'a, S: Scalar> Relative<'a, S> {
             // I is a line, equation times r / 2: G = 2 lateral.
             None => {
                 let far = lateral - r.scale(cos).double();
-                S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral))?
+                S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral), r.times(doubt))?
             }
             // Both are arcs, equation times ϱ (κ_I = 1/ϱ).
             Some(bend) => {
                 let g = Self::constant(bend, lateral, n, c);
                 let centre = n + bend.scale(cos) - r;
                 let a = g - r.double().times(centre.double());
-                S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g)?
+                let doubt = (bend.abs() + c.abs()).times(doubt).double();
+                S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g, doubt)?
             }
         };
         Some(Roots::Angles(angles, r))

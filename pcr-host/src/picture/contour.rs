@@ -12,7 +12,7 @@ mod outline;
 
 use outline::{Column, correspond, outline, scaled};
 pub(super) use outline::{Outline, is_thin};
-use pcr_core::{Interval, Motion, RegionRef, Scalar};
+use pcr_core::{Interval, Motion, RegionRef, excess};
 use std::f64::consts::PI;
 
 /// Largest distance of an outline from its chord \[px\].
@@ -30,7 +30,7 @@ const MOST_COLUMNS: usize = 20_000;
 /// The outline of a region while the other agent is on its way; `pixel` is the size of a pixel \[s\], \[m\].
 pub(super) fn trace(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2]) -> Outline {
     let other = region.other_motion();
-    let radius = ego.radius() + other.radius() + f64::slack(ego.extent() + other.extent());
+    let radius = ego.radius() + other.radius() + 0.5 * excess(ego, other);
     let mut tracer = Tracer { region, pixel, columns: Vec::new() };
     let times = event_times(region, radius);
     for (k, pair) in times.windows(2).enumerate() {

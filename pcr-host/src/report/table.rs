@@ -1,7 +1,7 @@
 //! Regions and crossings for reading.
 
 use super::columns::Columns;
-use super::{crossings, printable, types};
+use super::{crossings, heading, types};
 use crate::regions::{Answer, Descriptor, Region};
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -53,13 +53,13 @@ pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
     }
 }
 
-/// The crossings in the form of the paper's Table VII, then the regions.
+/// The crossings in the form of the paper's Table VII, then the regions, then those of the discs with their margins.
 ///
 /// # Errors
 /// Those of the writer.
 pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     let all = numbered(&answer.regions);
-    let name = if answer.name.is_empty() { "scenario".into() } else { printable(&answer.name) };
+    let name = heading(&answer.name);
     let (regions, number) = (answer.regions.len(), all.len());
     writeln!(out, "{name}: {regions} collision regions, {number} crossings ({})", answer.scalar)?;
     if !all.is_empty() {
@@ -86,32 +86,39 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
         }
         columns.write(out)?;
     }
-    if !answer.regions.is_empty() {
-        writeln!(out, "\nRegions: their extents; what is covered at a given time: --format json --slices N")?;
-        let mut columns =
-            Columns::new(&["i", "j", "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
-        let mut held: HashMap<usize, Vec<String>> = HashMap::new();
-        for crossing in &all {
-            held.entry(crossing.region).or_default().push(crossing.k.to_string());
-        }
-        for (index, region) in answer.regions.iter().enumerate() {
-            let mut row = vec![region.i.to_string(), region.j.to_string()];
-            row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(|number| format!("{number:.3}")));
-            let open = match (region.open_start, region.open_end) {
-                (false, false) => "-",
-                (true, false) => "start",
-                (false, true) => "end",
-                (true, true) => "both",
-            };
-            let held = held.get(&index).map_or("-".into(), |held| held.join(","));
-            row.extend([open.to_owned(), held, types(region)]);
-            columns.row(row);
-        }
-        columns.write(out)?;
-        let near = answer.regions.iter().filter(|region| crossings(region) == 0).count();
-        if near > 0 {
-            writeln!(out, "k -: the paths come near but do not cross ({near} of {regions})")?;
-        }
+    extents(&answer.regions, &all, "Regions", out)?;
+    let margin = answer.margin_regions.as_deref().unwrap_or_default();
+    extents(margin, &numbered(margin), "Regions of the discs with their margins", out)
+}
+
+/// The extents of regions, with the numbers of their crossings.
+fn extents(regions: &[Region], all: &[Numbered<'_>], title: &str, out: &mut impl Write) -> io::Result<()> {
+    if regions.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n{title}: their extents; what is covered at a given time: --format json --slices N")?;
+    let mut columns = Columns::new(&["i", "j", "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
+    let mut held: HashMap<usize, Vec<String>> = HashMap::new();
+    for crossing in all {
+        held.entry(crossing.region).or_default().push(crossing.k.to_string());
+    }
+    for (index, region) in regions.iter().enumerate() {
+        let mut row = vec![region.i.to_string(), region.j.to_string()];
+        row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(|number| format!("{number:.3}")));
+        let open = match (region.open_start, region.open_end) {
+            (false, false) => "-",
+            (true, false) => "start",
+            (false, true) => "end",
+            (true, true) => "both",
+        };
+        let held = held.get(&index).map_or("-".into(), |held| held.join(","));
+        row.extend([open.to_owned(), held, types(region)]);
+        columns.row(row);
+    }
+    columns.write(out)?;
+    let near = regions.iter().filter(|region| crossings(region) == 0).count();
+    if near > 0 {
+        writeln!(out, "k -: the paths come near but do not cross ({near} of {})", regions.len())?;
     }
     Ok(())
 }

@@ -87,7 +87,7 @@ impl Scenario {
 
 impl Agent {
     fn decode(json: &Json, index: usize) -> Result<Self, ScenarioError> {
-        const KNOWN: [&str; 8] = ["id", "radius", "v_max", "a_max", "t_start", "start", "path", "profile"];
+        const KNOWN: [&str; 9] = ["id", "radius", "margin", "v_max", "a_max", "t_start", "start", "path", "profile"];
         let given = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "id").map(|(_, id)| id),
             _ => None,
@@ -105,6 +105,7 @@ impl Agent {
         let given = fields.required("id")?;
         let id = id.ok_or_else(|| fields.unexpected("id", given, "a whole number from 0"))?;
         let radius = fields.number("radius", Range::Positive)?;
+        let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
         let start = fields.object("start", "start.", &["x", "y", "heading"])?;
         let start =
@@ -134,7 +135,7 @@ impl Agent {
             (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
             _ => MotionSpec::decode(&fields, length)?,
         };
-        let agent = Self { id, radius, t_start, start, path, motion };
+        let agent = Self { id, radius, margin, t_start, start, path, motion };
         let duration = agent.duration();
         if duration > LIMIT || (t_start + duration).abs() > LIMIT {
             let field = if !moves {

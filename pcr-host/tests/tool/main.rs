@@ -1,7 +1,13 @@
 //! The binary `pcr`, end to end: arguments and standard input in; output, messages and exit status out.
 
+mod check;
 mod fixture;
+mod formats;
+mod import;
 mod lines;
+mod locks;
+mod margins;
 mod output;
+mod plan;
 mod refusals;
 mod streams;

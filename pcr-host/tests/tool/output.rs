@@ -180,7 +180,7 @@ fn every_crossing_is_in_one_piece() {
 fn csv_reads_back_as_the_same_numbers() {
     let csv = run(&["regions", "--format", "csv"]).ok();
     let mut lines = csv.lines();
-    assert_eq!(lines.next(), Some("name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings"));
+    assert_eq!(lines.next(), Some("name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin"));
     let answer = run(&["regions", "--format", "json"]).json();
     let regions = answer["regions"].as_array().unwrap();
     let lines: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();

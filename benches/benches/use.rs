@@ -1,0 +1,49 @@
+//! Using motions and regions: conflict checks of whole fleets, on one core.
+//!
+//! `time` is that of a fleet; the throughput line counts pairs of agents, so that its inverse is the time of one.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pcr_benches::{fleet, scattered};
+use pcr_core::{Encounter, Interval, Motion};
+use pcr_host::fleet::{Fleet, Format};
+use std::hint::black_box;
+
+/// From the first start to the last arrival.
+fn span<S: Format>(motions: &[Motion<'_, S>]) -> Interval<S> {
+    motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default()
+}
+
+fn pairs<'a, S: Format>(motions: &'a [Motion<'a, S>]) -> impl Iterator<Item = Encounter<'a, S>> {
+    let pairs = (0..motions.len()).flat_map(|i| (i + 1..motions.len()).map(move |j| [i, j]));
+    pairs.map(|[i, j]| Encounter::new(&motions[i], &motions[j]))
+}
+
+fn bench<S: Format>(c: &mut Criterion, name: &str, fleet: &Fleet<S>) {
+    let motions = fleet.motions();
+    let time = span(&motions);
+    let mut group = c.benchmark_group("conflicts");
+    group.throughput(Throughput::Elements((motions.len() * (motions.len() - 1) / 2) as u64));
+    group.bench_function(BenchmarkId::new(format!("{name}, when"), S::NAME), |b| {
+        b.iter(|| pairs(black_box(&motions)).map(|pair| pair.contacts(time).count()).sum::<usize>())
+    });
+    group.bench_function(BenchmarkId::new(format!("{name}, when and how deep"), S::NAME), |b| {
+        b.iter(|| pairs(black_box(&motions)).map(|pair| pair.conflicts(time).count()).sum::<usize>())
+    });
+    group.bench_function(BenchmarkId::new(format!("{name}, closest approach"), S::NAME), |b| {
+        b.iter(|| {
+            let nearest = pairs(black_box(&motions)).map(|pair| pair.closest(time).separation);
+            nearest.fold(S::LIMIT, S::min)
+        })
+    });
+    group.finish();
+}
+
+fn conflicts(c: &mut Criterion) {
+    bench(c, "12 agents", &fleet::<f64>("paper12"));
+    bench(c, "12 agents", &fleet::<f32>("paper12"));
+    bench(c, "100 agents", &fleet::<f64>("table6-100"));
+    bench(c, "100 agents that cannot meet", &scattered::<f64>(10));
+}
+
+criterion_group!(benches, conflicts);
+criterion_main!(benches);

@@ -1,0 +1,38 @@
+//! Computes the paper's 12 agents into a table in a `static` and prints it: `cargo run --release`.
+#![no_std]
+#![no_main]
+
+use pcr_board::{AGENTS, Number, entry, out};
+use pcr_core::{Ecm, Piece, Region};
+use pcr_supervisor::dump::{self, Line};
+use pcr_supervisor::{Store, scenario};
+use semihosting::process;
+use static_cell::ConstStaticCell;
+
+type Table = Ecm<Number, [Region; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
+
+static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
+    ConstStaticCell::new(Store::new());
+static TABLE: ConstStaticCell<Table> =
+    ConstStaticCell::new(Ecm::new([Region::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
+
+#[entry]
+fn main() -> ! {
+    process::exit(if run().is_some() { 0 } else { 1 })
+}
+
+fn run() -> Option<()> {
+    let (store, table) = (STORE.try_take()?, TABLE.try_take()?);
+    for agent in &AGENTS {
+        store.add(agent).ok()?;
+    }
+    let fleet = store.motions();
+    for agent in 0..fleet.len() {
+        table.insert(fleet.get(..=agent)?, agent).ok()?;
+    }
+    out::print(dump::HEADING);
+    table.regions(&fleet).for_each(|region| out::print(dump::region(&region).as_bytes()));
+    let line = Line::default().integer(table.len() as u32, 0).text(b" regions, ").integer(table.pieces() as u32, 0);
+    out::print(line.text(b" pieces\n").as_bytes());
+    Some(())
+}

@@ -1,0 +1,68 @@
+//! The library's whole pipeline and nothing else, for its size and its stack: constructors, the table of the 12 agents,
+//! and what one asks of it. The storage is static; the motions, which borrow it, are on the stack.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+use pcr_board::{AGENTS, Number, entry};
+use pcr_core::{Ecm, Full, Interval, Invalid, Motion, Piece, Region};
+use pcr_supervisor::scenario::{self, PIECES, REGIONS};
+use pcr_supervisor::{Agent, Step, Store};
+use semihosting::process;
+use static_cell::ConstStaticCell;
+
+type Table = Ecm<Number, [Region; REGIONS], [Piece<Number>; PIECES]>;
+type BuiltIn = [Agent<Number, &'static [Step<Number>]>];
+
+static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
+    ConstStaticCell::new(Store::new());
+static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]));
+
+// The table of the 12 agents, and what it may take (`check.sh` reads this from the build that succeeds).
+const _: () = assert!(size_of::<Table>() <= 6 * 1024, "the budget of the table");
+
+#[entry]
+fn main() -> ! {
+    let seen = match (STORE.try_take(), TABLE.try_take()) {
+        (Some(store), Some(table)) => job(store, table, black_box(&AGENTS)),
+        _ => None,
+    };
+    process::exit(if seen == Some(2 * 68) { 0 } else { 1 })
+}
+
+/// The job whose stack counts.
+#[inline(never)]
+fn job(
+    store: &mut Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>,
+    table: &mut Table,
+    agents: &BuiltIn,
+) -> Option<usize> {
+    construct(store, agents).ok()?;
+    let fleet = store.motions();
+    build(table, &fleet).ok()?;
+    Some(ask(table, &fleet))
+}
+
+#[inline(never)]
+fn construct(
+    store: &mut Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>,
+    agents: &BuiltIn,
+) -> Result<(), Invalid> {
+    agents.iter().try_for_each(|agent| store.add(agent).map(|_| ()))
+}
+
+#[inline(never)]
+fn build(table: &mut Table, fleet: &[Motion<'_, Number>]) -> Result<(), Full> {
+    (0..fleet.len()).try_for_each(|agent| table.insert(fleet.get(..=agent).unwrap_or_default(), agent))
+}
+
+#[inline(never)]
+fn ask(table: &Table, fleet: &[Motion<'_, Number>]) -> usize {
+    let mut regions = 0_usize;
+    for region in table.regions(fleet) {
+        let (time, length): (Interval<Number>, Interval<Number>) = (region.time(), region.length());
+        black_box((region.contains(time.lo, length.lo), region.slice_at(time.middle()).last()));
+        regions = regions.saturating_add(1);
+    }
+    regions
+}

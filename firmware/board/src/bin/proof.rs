@@ -1,0 +1,244 @@
+//! Calls every public function of the library with values that the compiler knows nothing of. That this links proves
+//! that none of them can panic, in this number format on this target: see `pcr_board::can_panic`.
+//!
+//! `tools/covered.py` fails where a public function is missing here. `Debug` is left out: it is for tests. With the
+//! feature `control` there is one division too many, and the program must not link.
+#![no_std]
+#![no_main]
+
+use core::fmt::Write;
+use core::hint::black_box as any;
+use pcr_board::{Number, entry};
+use pcr_core::scalar::{Angle, Ramp, Unit, Wide};
+use pcr_core::{
+    Bounds, Conflict, Crossing, Curve, Direction, Ecm, Encounter, Full, Interval, Invalid, Limits, Motion, Path,
+    PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region, RegionRef, Scalar, Segment,
+    Turn, Vector, crossings, earliest_start, excess, gaps, plan_delays, safe_intervals, safe_lengths, union,
+};
+
+#[entry]
+fn main() -> ! {
+    arithmetic::<Number>();
+    plane::<Number>();
+    let _ = constructors::<Number>();
+    motions::<Number>(any(&[]));
+    queries::<Number>(any(&[]));
+    table::<Number>(any(&mut []), any(&[]));
+    messages();
+    #[cfg(any(feature = "q12", feature = "q16", feature = "q20"))]
+    fixed();
+    #[cfg(feature = "control")]
+    any(any(1) / any(1));
+    semihosting::process::exit(0)
+}
+
+/// Any number.
+#[inline(never)]
+fn number<S: Scalar>() -> S {
+    any(S::ZERO)
+}
+
+#[inline(never)]
+fn angle<S: Scalar>() -> S::Angle {
+    any(S::Angle::ZERO)
+}
+
+#[inline(never)]
+fn unit<S: Scalar>() -> S::Unit {
+    any(S::Unit::ZERO)
+}
+
+#[inline(never)]
+fn wide<S: Scalar>() -> S::Wide {
+    any(S::Wide::ZERO)
+}
+
+#[inline(never)]
+fn point<S: Scalar>() -> Point<S> {
+    Point::new(number(), number())
+}
+
+#[inline(never)]
+fn interval<S: Scalar>() -> Interval<S> {
+    Interval::new(number(), number())
+}
+
+#[inline(never)]
+fn arithmetic<S: Scalar>() {
+    let (a, b) = (number::<S>(), number::<S>());
+    any((a + b, a - b, -a, a < b, a == b, any(S::LIMIT)));
+    any((
+        Scalar::is_finite(a),
+        Scalar::times(a, b),
+        Scalar::scale(a, unit::<S>()),
+        S::combine(a, unit::<S>(), b, unit::<S>()),
+        Scalar::half(a),
+        Scalar::double(a),
+    ));
+    any((Scalar::abs(a), Scalar::min(a, b), Scalar::max(a, b), Scalar::clamp(number(), a, b), Scalar::quotient(a, b)));
+    any((Scalar::quotient_unit(a, unit::<S>()), S::unit_vector(a, b, number()), Scalar::difference(a, b, wide::<S>())));
+    any((Scalar::slack(a), S::quadratic_roots(a, wide::<S>(), wide::<S>())));
+    let ramp = Ramp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
+    any((S::ramp_length(any(ramp), a), S::ramp_time(any(ramp), a)));
+    any(S::half_tangent_roots(wide::<S>(), wide::<S>(), wide::<S>(), wide::<S>()));
+    any((Scalar::portion(a, b, number()), S::tolerance(a)));
+    any((Scalar::sum(a, b), Scalar::advance(a, b, number(), unit::<S>()), Scalar::sum_up(a, b)));
+    any((S::drift(any(0), a), S::lag(a, b)));
+    any(S::chord(a, angle::<S>(), any(false), [unit::<S>(), unit::<S>()]));
+    let (v, w) = (wide::<S>(), wide::<S>());
+    any((v + w, v - w, -v, v < w, Wide::sqrt(v), Wide::narrow(v), Wide::half(v), Wide::double(v)));
+    let (u, t) = (unit::<S>(), unit::<S>());
+    any((u + t, u - t, -u, u < t, Unit::times(u, t), Unit::abs(u), any(S::Unit::ONE)));
+    let (p, q) = (angle::<S>(), angle::<S>());
+    any((p + q, p - q, -p, p < q, Angle::is_finite(p), Angle::sin_cos(p), Angle::arc_length(p, a)));
+    any((Angle::subtended_rest(p, a, b), Angle::sum(p, q)));
+    any((S::Angle::subtended(a, b), S::Angle::half_subtended(a, b)));
+    any((S::Angle::atan2(a, b), S::Angle::circumference(a)));
+}
+
+#[inline(never)]
+fn plane<S: Scalar>() {
+    let vector: Vector<S> = point::<S>() - point();
+    let direction = Direction::<S>::at(angle::<S>());
+    any((point::<S>() + vector, Vector::along(vector, direction), Vector::across(vector, direction)));
+    any((Vector::norm_squared(vector), any(Direction::<S>::X)));
+    any((Direction::dot(direction, direction), Direction::cross(direction, direction)));
+    any(Direction::vector(direction, number(), number()));
+    let (i, j) = (interval::<S>(), interval::<S>());
+    any((Interval::contains(i, number()), Interval::meets(i, j), Interval::hull(i, j), Interval::length(i)));
+    any(Interval::middle(i));
+    let (a, b) = (Bounds::around(point::<S>(), point()), any(Bounds::around(point::<S>(), point())));
+    any((Bounds::hull(a, b), Bounds::expanded(a, number()), Bounds::meets(a, b), Bounds::extent(a)));
+}
+
+#[inline(never)]
+fn constructors<S: Scalar>() -> Result<(), Invalid> {
+    let pose: Pose<S> = Pose { position: point(), heading: angle::<S>() };
+    let path = Path::<S, 2>::starting_at(any(pose))?;
+    let path = Path::line(path, number())?;
+    let path = Path::arc(path, number(), any(Turn::Left), number())?;
+    let path = any(path);
+    any(Path::as_path(&path));
+    any(PathRef::<S>::new(any(&[])).is_ok());
+    let segment = Segment::standing(any(pose))?;
+    let segment = Segment::then_line(&segment, number())?;
+    let segment = any(Segment::then_arc(&segment, number(), any(Turn::Right), number())?);
+    let curve: Curve<S> = Segment::curve(&segment);
+    any((curve, Segment::length(&segment), Segment::from(&segment), Segment::bounds(&segment)));
+    any((Segment::point_at(&segment, number()), Segment::heading_at(&segment, number())));
+    let phase = Phase::<S>::starting_at(number(), number(), number())?;
+    let phase = any(Phase::then(&phase, number(), number())?);
+    any((Phase::time(&phase), Phase::length(&phase), Phase::speed(&phase), Phase::speed_at(&phase, number())));
+    any(Phase::acceleration(&phase));
+    let limits = Limits { speed: number(), acceleration: number() };
+    any(Profile::<S, 3>::rest_to_rest(number(), limits)?);
+    let pieces: &[(S, S)] = any(&[]);
+    let profile = any(Profile::<S, 4>::from_pieces(number(), pieces.iter().copied())?);
+    any(Profile::as_profile(&profile));
+    any((Phase::acceleration(&phase), ProfileRef::top_speed(profile.as_profile())));
+    any(ProfileRef::<S>::new(any(&[])).is_ok());
+    Ok(())
+}
+
+#[inline(never)]
+fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
+    for motion in fleet {
+        let path: PathRef<'_, S> = Motion::path(motion);
+        any((PathRef::segments(path), PathRef::length(path), PathRef::pose_at(path, number()), PathRef::bounds(path)));
+        any((PathRef::point_at(path, number()), PathRef::curve_at(path, number())));
+        let profile: ProfileRef<'_, S> = Motion::profile(motion);
+        any((ProfileRef::phases(profile), ProfileRef::duration(profile), ProfileRef::length(profile)));
+        any(ProfileRef::top_speed(profile));
+        any((ProfileRef::length_at(profile, number()), ProfileRef::speed_at(profile, number())));
+        any((ProfileRef::first_time_at(profile, number()), ProfileRef::last_time_at(profile, number())));
+        any(Motion::new(path, profile, number(), number()).is_ok());
+        any(Motion::delayed(*motion, number()).is_ok());
+        any((Motion::time_excess(motion), excess(motion, motion)));
+        any((Motion::radius(motion), Motion::time(motion), Motion::bounds(motion), Motion::extent(motion)));
+        any((Motion::length_at(motion, number()), Motion::speed_at(motion, number())));
+        any((Motion::position_at(motion, number()), Motion::time_in(motion, interval())));
+        any((Motion::with_margin(*motion, number()).is_ok(), Motion::inflated(*motion), Motion::margin(motion)));
+        for other in fleet {
+            let found: Option<Crossing<S>> = crossings(motion, other).last();
+            any(found);
+        }
+    }
+}
+
+#[inline(never)]
+fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
+    let intervals: &[Interval<S>] = any(&[]);
+    any(gaps(union(intervals.iter().copied()), interval()).last());
+    if let [ego, other, ..] = fleet {
+        let pair: Encounter<'_, S> = Encounter::new(ego, other);
+        any((Encounter::time(&pair), Encounter::radius(&pair), Encounter::tolerance(&pair)));
+        let mut contacts = Encounter::contacts(&pair, interval());
+        any((contacts.next(), contacts.steps(), Encounter::closest(&pair, interval())));
+        let conflict: Option<Conflict<S>> = Encounter::conflicts(&pair, interval()).last();
+        any(conflict);
+        any(Encounter::blocked(&pair, interval(), interval()).last());
+        any(Encounter::blocked_lengths(&pair, interval()).last());
+    }
+    any(safe_intervals(fleet, any(0), interval(), interval()).last());
+    any(safe_lengths(fleet, any(0), interval()).last());
+}
+
+#[inline(never)]
+fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
+    any(Ecm::build(any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
+    let mut ecm = any(Ecm::<S, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8]));
+    for &agent in agents {
+        any(Ecm::insert(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::remove(&mut ecm, agent));
+        if let Some(&motion) = any(fleet.first()) {
+            any(Ecm::replace(&mut ecm, fleet, agent, motion).is_ok());
+        }
+        any(plan_delays(&ecm, fleet, any(&mut [][..]), any(&mut [][..])).is_ok());
+        any((Ecm::len(&ecm), Ecm::is_empty(&ecm), Ecm::pieces(&ecm)));
+        Ecm::regions(&ecm, fleet).for_each(|region| regions(&region));
+        Ecm::row(&ecm, fleet, agent).for_each(|region| regions(&region));
+        Ecm::pair(&ecm, fleet, agent, any(agent)).for_each(|region| regions(&region));
+    }
+}
+
+#[inline(never)]
+fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
+    any((RegionRef::ego(region), RegionRef::other(region), RegionRef::length(region), RegionRef::other_length(region)));
+    any((RegionRef::time(region), RegionRef::is_open_at_start(region), RegionRef::is_open_at_end(region)));
+    any(RegionRef::excess(region));
+    any((RegionRef::contains(region, number(), number()), RegionRef::other_motion(region)));
+    any((RegionRef::ego_motion(region), RegionRef::forbidden_delays(region)));
+    any(earliest_start(core::iter::once(region.clone()), number()));
+    any(RegionRef::slice_at(region, number()).last());
+    for piece in RegionRef::pieces(region) {
+        any((PieceRef::piece_type(&piece), PieceType::of(piece.ego.curve(), piece.other.curve())));
+    }
+}
+
+/// What only the formats of pcr-fixed have.
+#[cfg(any(feature = "q12", feature = "q16", feature = "q20"))]
+#[inline(never)]
+fn fixed() {
+    type Product = <Number as Scalar>::Wide;
+    type Sine = <Number as Scalar>::Unit;
+    type Turns = <Number as Scalar>::Angle;
+    any((Number::from_bits(any(0)).to_bits(), Product::from_bits(any(0)).to_bits()));
+    any((Sine::from_bits(any(0)).to_bits(), Turns::from_bits(any(0)).to_bits()));
+    any(write!(Nowhere, "{}", number::<Number>()).is_ok());
+}
+
+/// Takes text and forgets it.
+struct Nowhere;
+
+impl Write for Nowhere {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        any(text);
+        Ok(())
+    }
+}
+
+#[inline(never)]
+fn messages() {
+    let (invalid, full, kind) = (any(Invalid::Full("")), any(Full::Pair([0, 0])), any(PieceType::SS));
+    any(write!(Nowhere, "{invalid} {full} {kind}").is_ok());
+}

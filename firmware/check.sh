@@ -1,0 +1,206 @@
+#!/usr/bin/env bash
+# Builds the firmware for every target and number format, runs it in QEMU, and compares what it prints and what it takes
+# with the host and with the files in expected/. Any part that cannot run is a failure.
+#   check.sh                     everything
+#   check.sh TARGET:FORMAT...    some
+#   UPDATE=1 check.sh ...        writes the files in expected/ instead of comparing with them; budgets hold all the same
+# Installs what is missing as root on Debian, and says so; elsewhere it says what to install.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+matrix=(thumbv7em-none-eabihf:f32 thumbv7em-none-eabihf:micro thumbv7m-none-eabi:q16 thumbv6m-none-eabi:q16
+  riscv32imc-unknown-none-elf:q16)
+# Further formats, for the proof that nothing panics.
+proofs=(thumbv6m-none-eabi:q12 thumbv6m-none-eabi:q20)
+
+out=${CARGO_TARGET_DIR:-$PWD/target}
+host=$(rustc -vV | sed -n 's/^host: //p')
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+step() { printf '\n-- %s\n' "$*"; }
+fail() { echo "firmware: $*" >&2; exit 1; }
+
+# need COMMAND PACKAGE
+need() {
+  command -v "$1" >/dev/null && return
+  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || fail "no $1: install $2"
+  echo "installing $2"
+  { apt-get update && apt-get install -y --no-install-recommends "$2"; } >"$scratch/apt.log" 2>&1 || fail "apt-get: $(tail -3 "$scratch/apt.log")"
+  command -v "$1" >/dev/null || fail "no $1 in the package $2"
+}
+
+tools() {
+  step "tools"
+  need qemu-system-arm qemu-system-arm
+  need qemu-system-riscv32 qemu-system-misc
+  need arm-none-eabi-objdump binutils-arm-none-eabi
+  need riscv64-unknown-elf-objdump binutils-riscv64-unknown-elf
+  need readelf binutils
+  need cc gcc
+  need python3 python3
+  tools/covered.py board/src/bin/proof.rs ../pcr-core/src ../pcr-fixed/src
+  cc -shared -fPIC -O2 -Wall -Wextra -o "$scratch/mcount.so" tools/mcount.c
+  cargo build --locked --quiet --target "$host" -p pcr-link
+  cargo test --locked --quiet --target "$host" -p pcr-supervisor --features micromath,fixed
+}
+
+link() { "$out/$host/debug/pcr-link" "$@"; }
+
+# build TARGET FORMAT BINARY...
+build() {
+  local target=$1 format=$2 bins=()
+  shift 2
+  for bin in "$@"; do bins+=(--bin "$bin"); done
+  ./cross.sh "$target" build --locked --release --quiet --no-default-features --features "$format" "${bins[@]}"
+}
+
+# The proof that nothing panics: `proof` links, and with one division more it does not.
+proof() {
+  local target=$1 format=$2
+  step "$target, $format: no public function can panic"
+  build "$target" "$format" proof
+  if build "$target" "$format,control" proof 2>"$scratch/control"; then
+    fail "a program that can panic was linked"
+  fi
+  grep -q "undefined symbol: ERROR: the program can panic" "$scratch/control" || fail "$(cat "$scratch/control")"
+}
+
+# What it prints and sends, against the host.
+behaviour() {
+  local target=$1 format=$2 programs=$out/$1/release
+  step "$target, $format: the same bits as on the host"
+  link table "$format" >"$scratch/host"
+  ./qemu-run.sh "$programs/demo" >"$scratch/target"
+  diff "$scratch/host" "$scratch/target" || fail "the table differs from the host's"
+  tail -1 "$scratch/target"
+  SERIAL=stdio link serial "$format" ./qemu-run.sh "$programs/supervisor"
+  if [ "$format" = f32 ]; then ./qemu-run.sh "$programs/roots"; fi
+}
+
+# Fixed point with the overflow checks that the size figures are without.
+overflow() {
+  local target=$1 format=$2
+  step "$target, $format: no overflow"
+  ./cross.sh "$target" build --locked --release --quiet --features "$format,who-panics" --bin demo \
+    --config 'profile.release.package.pcr-fixed.overflow-checks=true'
+  ./qemu-run.sh "$out/$target/release/demo" | diff "$scratch/host" - || fail "an overflow, or another table"
+}
+
+# section ELF NAME...: bytes of sections.
+section() {
+  local elf=$1
+  shift
+  readelf -SW "$elf" | sed 's/^ *\[ *[0-9]*\] *//' |
+    awk -v names=" $* " 'index(names, " " $1 " ") { print $5 }' | python3 -c 'import sys; print(sum(int(x, 16) for x in sys.stdin))'
+}
+
+symbol() { readelf -sW "$1" | awk -v name="$2" '$8 == name { print $2; exit }'; }
+
+# Bytes of the stack that a run has used, start-up included.
+measured_stack() {
+  local elf=$1
+  local lo hi
+  lo=$(symbol "$elf" __sheap) hi=$(symbol "$elf" _stack_start)
+  PLUGIN="$scratch/mcount.so,lo=0x$lo,hi=0x$hi" PLUGIN_LOG="$scratch/plugin" ./qemu-run.sh "$elf"
+  sed -n 's/.*stack_used \([0-9]*\).*/\1/p;q' "$scratch/plugin"
+}
+
+# The figures of a build, a line each: number, what.
+figures() {
+  local target=$1 format=$2 programs=$out/$1/release
+  local code=".vector_table .text .rodata .text.dummy"
+  printf '%9d  bytes of code and constants of the pipeline\n' \
+    $(($(section "$programs/pipeline" $code) - $(section "$programs/nothing" $code)))
+  printf '%9d  bytes of code of the library in it\n' "$(tools/codesize.py "$programs/pipeline")"
+  printf '%9d  bytes of the table in RAM\n' "$(object "$programs/pipeline" TABLE)"
+  printf '%9d  bytes of the motions in RAM\n' "$(object "$programs/pipeline" STORE)"
+  printf '%9d  bytes of flash of the whole supervisor\n' "$(section "$programs/supervisor" $code .data)"
+  case $target in
+    thumb*) printf '%9d  bytes of stack of the pipeline, bound\n' "$(tools/fwcheck.py "$programs/pipeline" --root pipeline::job 2>/dev/null)" ;;
+  esac
+  printf '%9d  bytes of stack of the pipeline, measured\n' "$(measured_stack "$programs/pipeline")"
+  ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /'
+}
+
+# object ELF NAME: bytes of a static.
+object() { readelf -sW "$1" | awk -v name="$2" '$4 == "OBJECT" && $8 ~ name "17h" { print $3; exit }'; }
+
+# limit FILE WHAT MOST
+limit() {
+  local value
+  value=$(sed -n "s/^ *\([0-9]*\)  $2\$/\1/p" "$1")
+  [ -n "$value" ] || fail "no figure: $2"
+  [ "$value" -le "$3" ] || fail "$2: $value, more than the budget of $3"
+}
+
+budgets() {
+  local file=$1 target=$2 format=$3 programs=$out/$2/release stack=2048
+  # With eight registers at hand, more of them are kept on the stack: docs/firmware.md.
+  if [ "$target" = thumbv6m-none-eabi ]; then stack=2304; fi
+  limit "$file" "bytes of the table in RAM" 6144
+  limit "$file" "bytes of stack of the pipeline, measured" "$stack"
+  case $target in
+    thumb*)
+      limit "$file" "bytes of stack of the pipeline, bound" "$stack"
+      tools/fwcheck.py "$programs/pipeline" --root pipeline::job --max-stack "$stack" --no-alloc --no-panic >/dev/null 2>"$scratch/fwcheck" ||
+        fail "$(cat "$scratch/fwcheck")"
+      ;;
+  esac
+  case $target:$format in
+    thumbv7em*:f32)
+      limit "$file" "bytes of code of the library in it" 20480
+      limit "$file" "instructions: table of all agents" 600000
+      ;;
+    thumb*:q*)
+      limit "$file" "bytes of code of the library in it" "$fixed_budget"
+      tools/fwcheck.py "$programs/pipeline" --no-float || fail "floating point in a fixed-point program"
+      ;;
+  esac
+}
+# 16 KiB was the aim. A Cortex-M0 has no instruction for a 64-bit product and reaches constants through literal pools: see
+# docs/firmware.md.
+fixed_budget=22528
+
+# One line of both compilers: figures depend on it.
+compiler() {
+  if [ -n "$(ls "$(rustc --print target-libdir --target "$1" 2>/dev/null)"/libcore-*.rlib 2>/dev/null)" ] && [ "${CROSS_FORCE:-}" != debian ]; then
+    rustc -V
+  else
+    /usr/bin/rustc -V
+  fi
+}
+
+compare() {
+  local target=$1 format=$2
+  local expected=expected/$target-$format.txt
+  step "$target, $format: what it takes"
+  { echo "# $(compiler "$target")"; figures "$target" "$format"; } >"$scratch/figures"
+  cat "$scratch/figures"
+  budgets "$scratch/figures" "$target" "$format"
+  if [ -n "${UPDATE:-}" ]; then
+    cp "$scratch/figures" "$expected"
+  else
+    tools/compare.py "$expected" "$scratch/figures" || fail "look at the change; if it is meant, run UPDATE=1 firmware/check.sh $target:$format"
+  fi
+}
+
+one() {
+  local target=$1 format=$2 bins=(demo supervisor pipeline nothing measure)
+  if [ "$format" = f32 ]; then bins+=(roots); fi
+  step "$target, $format: build"
+  build "$target" "$format" "${bins[@]}"
+  proof "$target" "$format"
+  behaviour "$target" "$format"
+  compare "$target" "$format"
+  if [ "$target:$format" = thumbv6m-none-eabi:q16 ]; then overflow "$target" "$format"; fi
+}
+
+tools
+if [ $# -gt 0 ]; then
+  for pair in "$@"; do one "${pair%%:*}" "${pair##*:}"; done
+else
+  for pair in "${matrix[@]}"; do one "${pair%%:*}" "${pair##*:}"; done
+  for pair in "${proofs[@]}"; do proof "${pair%%:*}" "${pair##*:}"; done
+fi
+step "firmware: all passed"

@@ -1,0 +1,69 @@
+//! The host's side of the firmware.
+//!
+//! ```text
+//! pcr-link table FORMAT              the table that the demo prints, computed here
+//! pcr-link serial FORMAT COMMAND...  talks to the supervisor over the standard streams of COMMAND and checks its answers
+//! ```
+//!
+//! Numbers are compared bit by bit: the closed forms are the same code on the same operations everywhere.
+
+mod serial;
+
+use pcr_core::{Ecm, Piece, Region};
+use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
+use pcr_supervisor::{Agent, Number, Step, Store, dump};
+use std::error::Error;
+use std::io::{self, Write};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        [what, "f32", ref rest @ ..] => run(what, &scenario::float::AGENTS, rest),
+        [what, "micro", ref rest @ ..] => run(what, &scenario::micro::AGENTS, rest),
+        [what, "q12", ref rest @ ..] => run(what, &scenario::q12::AGENTS, rest),
+        [what, "q16", ref rest @ ..] => run(what, &scenario::q16::AGENTS, rest),
+        [what, "q20", ref rest @ ..] => run(what, &scenario::q20::AGENTS, rest),
+        _ => Err(USAGE.into()),
+    }
+}
+
+const USAGE: &str =
+    "usage: pcr-link table FORMAT | pcr-link serial FORMAT COMMAND...; formats: f32, micro, q12, q16, q20";
+
+fn run<S: Number + Send>(what: &str, agents: BuiltIn<S>, rest: &[&str]) -> Result<(), Box<dyn Error>>
+where
+    S::Angle: Send,
+{
+    match (what, rest) {
+        ("table", []) => table(agents),
+        ("serial", command) => serial::check(agents, command),
+        _ => Err(USAGE.into()),
+    }
+}
+
+/// The built-in agents of a format.
+type BuiltIn<S> = &'static [Agent<S, &'static [Step<S>]>];
+
+/// The fleet of a format, stored.
+fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S, AGENTS, SEGMENTS>, Box<dyn Error>> {
+    let mut store = Store::new();
+    for agent in agents {
+        store.add(agent)?;
+    }
+    Ok(store)
+}
+
+/// Prints what the demo prints.
+fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
+    let store = store(agents)?;
+    let fleet = store.motions();
+    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
+    let mut out = io::stdout().lock();
+    out.write_all(dump::HEADING)?;
+    for region in ecm.regions(&fleet) {
+        out.write_all(dump::region(&region).as_bytes())?;
+    }
+    writeln!(out, "{} regions, {} pieces", ecm.len(), ecm.pieces())?;
+    Ok(())
+}

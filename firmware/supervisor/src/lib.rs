@@ -1,0 +1,30 @@
+//! A supervisor of a fleet for a microcontroller: agents come in, their collision regions go out.
+//!
+//! Everything here is the same code on the target and on the host, so that one can stand for the other in tests:
+//!
+//! ```text
+//! number     what a number format has to offer besides the arithmetic    Number
+//! agent      an agent as it is sent, and its motion                      Agent, Step
+//! fleet      storage for the motions of a fleet, without a heap          Store
+//! message    requests and answers, regions as they are sent              Request, Answer
+//! frame      their bytes on the line: COBS, check, version               encode, Receiver
+//! service    answers requests                                            Service
+//! scenario   the paper's 12 agents, in each format                       (generated)
+//! dump       the table as text                                           region
+//! ```
+#![no_std]
+
+pub mod agent;
+pub mod dump;
+pub mod fleet;
+pub mod frame;
+pub mod message;
+pub mod number;
+pub mod scenario;
+pub mod service;
+
+pub use agent::{Agent, Step};
+pub use fleet::Store;
+pub use message::{Answer, Request};
+pub use number::Number;
+pub use service::Service;

@@ -1,0 +1,239 @@
+//! What the two ends of the line say to each other. Kinds are only ever added, at the end of each list.
+
+use crate::agent::Agent;
+use crate::frame::Damage;
+use crate::number::Number;
+use heapless::Vec;
+use pcr_core::{Encounter, Full, Interval, Invalid, Motion, PieceRef, RegionRef};
+use serde::{Deserialize, Serialize};
+
+/// A request to the supervisor. Each is answered before the next is read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub enum Request<S: Number> {
+    /// Who are you? [`Answer::Hello`].
+    Hello,
+    /// Forget the fleet. [`Answer::Done`].
+    Clear,
+    /// Add an agent. [`Answer::Added`], [`Answer::Refused`].
+    Add(Agent<S>),
+    /// Take the fleet that is built in. [`Answer::Added`].
+    Load,
+    /// Compute the table of the fleet. [`Answer::Computed`], [`Answer::Refused`].
+    Compute,
+    /// All regions of an agent: an [`Answer::Region`] each, an [`Answer::Piece`] for each of its pieces, and
+    /// [`Answer::End`].
+    Row {
+        /// The agent.
+        ego: u16,
+    },
+    /// The first conflict of every two agents that have one, moving as they were given: an [`Answer::Conflict`] each,
+    /// by the lower index, and [`Answer::End`].
+    Conflicts,
+}
+
+/// An answer of the supervisor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub enum Answer<S: Number> {
+    /// Its number format and capacities.
+    Hello {
+        /// [`Number::NAME`].
+        format: Vec<u8, 8>,
+        /// Most agents.
+        agents: u16,
+        /// Most lines and arcs of all agents.
+        segments: u16,
+        /// Most regions, each for both directions of a pair.
+        regions: u16,
+        /// Most pieces of regions.
+        pieces: u16,
+    },
+    /// It is done.
+    Done,
+    /// There are so many agents now.
+    Added {
+        /// Number of agents.
+        agents: u16,
+    },
+    /// The table is complete.
+    Computed {
+        /// Number of regions, each for both directions of a pair.
+        regions: u16,
+        /// Number of pieces.
+        pieces: u16,
+    },
+    /// A region of the agent that was asked for.
+    Region(RegionRecord<S>),
+    /// A piece of the region before.
+    Piece(PieceRecord<S>),
+    /// There are no more.
+    End {
+        /// Number of regions or conflicts sent.
+        count: u16,
+    },
+    /// It was not done, and nothing has changed.
+    Refused(Refusal),
+    /// The first conflict of two agents.
+    Conflict(ConflictRecord<S>),
+}
+
+/// A region as it is sent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct RegionRecord<S: Number> {
+    /// Index of the agent whose region it is.
+    pub ego: u16,
+    /// Index of the agent it must keep clear of.
+    pub other: u16,
+    /// Time range \[s\].
+    pub time: Interval<S>,
+    /// Length range along the ego's path \[m\].
+    pub length: Interval<S>,
+    /// Length range along the other's path \[m\].
+    pub other_length: Interval<S>,
+    /// Whether it reaches back to before the other agent sets off.
+    pub open_at_start: bool,
+    /// Whether it goes on after the other agent's arrival.
+    pub open_at_end: bool,
+    /// Number of its pieces, which follow.
+    pub pieces: u16,
+}
+
+/// A piece of a region as it is sent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct PieceRecord<S: Number> {
+    /// Places of the segments in the paths of the ego and of the other agent.
+    pub segments: [u16; 2],
+    /// Length range along the ego's path \[m\].
+    pub length: Interval<S>,
+    /// Length range along the other's path \[m\].
+    pub other_length: Interval<S>,
+}
+
+/// The first conflict of two agents as it is sent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct ConflictRecord<S: Number> {
+    /// The two agents, the lower index first.
+    pub agents: [u16; 2],
+    /// From when to when their discs overlap \[s\].
+    pub time: Interval<S>,
+    /// Lengths along the path of each meanwhile \[m\].
+    pub lengths: [Interval<S>; 2],
+    /// Largest overlap \[m\].
+    pub depth: S,
+    /// Whether the two only touch.
+    pub touching: bool,
+}
+
+impl<S: Number> ConflictRecord<S> {
+    /// The first conflict of two agents of a fleet, if they have one.
+    pub fn first(fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Option<Self> {
+        let encounter = Encounter::new(fleet.get(agents[0])?, fleet.get(agents[1])?);
+        let conflict = encounter.conflicts(encounter.time()).next()?;
+        Some(Self {
+            agents: agents.map(short),
+            time: conflict.time,
+            lengths: [conflict.length, conflict.other_length],
+            depth: conflict.depth,
+            touching: conflict.touching,
+        })
+    }
+}
+
+/// Why a request was not done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// The frame was damaged.
+    Frame(Damage),
+    /// A value of an agent was refused: which, and why.
+    Agent {
+        /// The quantity, empty where there is no name for it.
+        what: Vec<u8, 24>,
+        /// What is wrong with it.
+        why: Reason,
+    },
+    /// The table has no room for all regions.
+    TableFull,
+}
+
+/// [`Invalid`] without its words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Reason {
+    /// It is NaN or infinite.
+    NonFinite,
+    /// It is below zero.
+    Negative,
+    /// It is not above zero.
+    NonPositive,
+    /// Its magnitude is too large.
+    OutOfRange,
+    /// The arc sweeps more than one turn.
+    SweepOverOneTurn,
+    /// There is no room for another.
+    Full,
+    /// The agent is impossible in another way.
+    Other,
+}
+
+impl<S: Number> RegionRecord<S> {
+    /// A region of the table.
+    pub fn of(region: &RegionRef<'_, S>) -> Self {
+        Self {
+            ego: short(region.ego()),
+            other: short(region.other()),
+            time: region.time(),
+            length: region.length(),
+            other_length: region.other_length(),
+            open_at_start: region.is_open_at_start(),
+            open_at_end: region.is_open_at_end(),
+            pieces: region.pieces().fold(0, |count: u16, _| count.saturating_add(1)),
+        }
+    }
+}
+
+impl<S: Number> PieceRecord<S> {
+    /// A piece of a region.
+    pub fn of(piece: &PieceRef<'_, S>) -> Self {
+        Self { segments: piece.segments.map(short), length: piece.length, other_length: piece.other_length }
+    }
+}
+
+impl From<Invalid> for Refusal {
+    fn from(invalid: Invalid) -> Self {
+        let (why, what) = match invalid {
+            Invalid::NonFinite(what) => (Reason::NonFinite, what),
+            Invalid::Negative(what) => (Reason::Negative, what),
+            Invalid::NonPositive(what) => (Reason::NonPositive, what),
+            Invalid::OutOfRange(what) => (Reason::OutOfRange, what),
+            Invalid::SweepOverOneTurn => (Reason::SweepOverOneTurn, ""),
+            Invalid::Full(what) => (Reason::Full, what),
+            _ => (Reason::Other, ""),
+        };
+        Self::Agent { what: text(what), why }
+    }
+}
+
+impl From<Full> for Refusal {
+    fn from(_: Full) -> Self {
+        Self::TableFull
+    }
+}
+
+/// Counts and indices of the supervisor are below 65536.
+pub(crate) fn short(count: usize) -> u16 {
+    u16::try_from(count).unwrap_or(u16::MAX)
+}
+
+/// Text as it is sent: its bytes, as many as there is room for.
+pub fn text<const N: usize>(text: &str) -> Vec<u8, N> {
+    let mut bytes = Vec::new();
+    for byte in text.bytes() {
+        if bytes.push(byte).is_err() {
+            break;
+        }
+    }
+    bytes
+}

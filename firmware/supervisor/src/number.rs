@@ -1,0 +1,61 @@
+//! Number formats of the supervisor.
+
+use pcr_core::Scalar;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// A number format of the supervisor.
+pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + DeserializeOwned {
+    /// Name in commands and expected files.
+    const NAME: &'static str;
+    /// The bits of the number: what is compared between machines.
+    fn bits(self) -> u32;
+    /// Thousandths, rounded to nearest: what people read.
+    fn thousandths(self) -> i32;
+}
+
+#[cfg(feature = "float")]
+impl Number for f32 {
+    const NAME: &'static str = "f32";
+    fn bits(self) -> u32 {
+        self.to_bits()
+    }
+    fn thousandths(self) -> i32 {
+        (self * 1000.0 + if self < 0.0 { -0.5 } else { 0.5 }) as i32
+    }
+}
+
+#[cfg(feature = "micromath")]
+impl Number for pcr_core::scalar::Micro {
+    const NAME: &'static str = "micro";
+    fn bits(self) -> u32 {
+        self.0.to_bits()
+    }
+    fn thousandths(self) -> i32 {
+        self.0.thousandths()
+    }
+}
+
+#[cfg(feature = "fixed")]
+macro_rules! fixed {
+    ($($format:ident, $name:literal, $fraction_bits:literal;)*) => {
+        $(impl Number for pcr_fixed::$format {
+            const NAME: &'static str = $name;
+            fn bits(self) -> u32 {
+                self.to_bits().cast_unsigned()
+            }
+            fn thousandths(self) -> i32 {
+                // What a table holds is far below the millions where this would wrap.
+                let scaled = i64::from(self.to_bits()).wrapping_mul(1000);
+                (scaled.wrapping_add(1 << ($fraction_bits - 1)) >> $fraction_bits) as i32
+            }
+        })*
+    };
+}
+
+#[cfg(feature = "fixed")]
+fixed! {
+    Q12, "q12", 12;
+    Q16, "q16", 16;
+    Q20, "q20", 20;
+}

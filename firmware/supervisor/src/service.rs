@@ -1,0 +1,110 @@
+//! The supervisor itself: keeps a fleet and its table, and answers requests.
+
+use crate::agent::{Agent, Step};
+use crate::fleet::Store;
+use crate::message::{Answer, ConflictRecord, PieceRecord, Refusal, RegionRecord, Request, short, text};
+use crate::number::Number;
+use crate::scenario::{AGENTS, PIECES, REGIONS, SEGMENTS};
+use pcr_core::{Ecm, Piece, Region};
+
+/// A fleet and its table, made to be a `static`.
+#[derive(Debug)]
+pub struct Service<S: Number> {
+    fleet: Store<S, AGENTS, SEGMENTS>,
+    table: Ecm<S, [Region; REGIONS], [Piece<S>; PIECES]>,
+    built_in: &'static [Agent<S, &'static [Step<S>]>],
+}
+
+impl<S: Number> Service<S> {
+    /// No agents yet, and a fleet to load.
+    pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
+        Self { fleet: Store::new(), table: Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]), built_in }
+    }
+
+    /// Answers a request: one call of `send` for each answer.
+    pub fn answer(&mut self, request: Request<S>, mut send: impl FnMut(Answer<S>)) {
+        match request {
+            Request::Hello => send(Answer::Hello {
+                format: text(S::NAME),
+                agents: short(AGENTS),
+                segments: short(SEGMENTS),
+                regions: short(REGIONS),
+                pieces: short(PIECES),
+            }),
+            Request::Clear => {
+                self.clear();
+                send(Answer::Done);
+            }
+            Request::Add(agent) => send(self.add(&agent)),
+            Request::Load => {
+                self.clear();
+                let built_in = self.built_in.iter();
+                let added = built_in.map(|agent| self.add(agent)).last();
+                send(added.unwrap_or(Answer::Done));
+            }
+            Request::Compute => send(match self.compute() {
+                Ok(()) => Answer::Computed { regions: short(self.table.len()), pieces: short(self.table.pieces()) },
+                Err(refusal) => Answer::Refused(refusal),
+            }),
+            Request::Row { ego } => self.row(usize::from(ego), send),
+            Request::Conflicts => self.conflicts(send),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.empty_table();
+        self.fleet.clear();
+    }
+
+    fn empty_table(&mut self) {
+        (0..AGENTS).for_each(|agent| self.table.remove(agent));
+    }
+
+    fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Answer<S> {
+        match self.fleet.add(agent) {
+            Ok(_) => Answer::Added { agents: short(self.fleet.len()) },
+            Err(invalid) => Answer::Refused(invalid.into()),
+        }
+    }
+
+    fn compute(&mut self) -> Result<(), Refusal> {
+        self.empty_table();
+        let motions = self.fleet.motions();
+        // Agent by agent, each against those before it.
+        let outcome = (0..motions.len()).try_for_each(|agent| {
+            let fleet = motions.get(..=agent).unwrap_or_default();
+            self.table.insert(fleet, agent)
+        });
+        drop(motions);
+        if outcome.is_err() {
+            self.empty_table();
+        }
+        Ok(outcome?)
+    }
+
+    fn row(&self, ego: usize, mut send: impl FnMut(Answer<S>)) {
+        let motions = self.fleet.motions();
+        let mut count = 0_u16;
+        for region in self.table.row(&motions, ego) {
+            send(Answer::Region(RegionRecord::of(&region)));
+            region.pieces().for_each(|piece| send(Answer::Piece(PieceRecord::of(&piece))));
+            count = count.saturating_add(1);
+        }
+        send(Answer::End { count });
+    }
+
+    fn conflicts(&self, mut send: impl FnMut(Answer<S>)) {
+        let motions = self.fleet.motions();
+        let agents = 0..motions.len();
+        let mut count = 0_u16;
+        for pair in
+            agents.clone().flat_map(|first| agents.clone().skip_while(move |&k| k <= first).map(move |k| [first, k]))
+        {
+            if let Some(conflict) = ConflictRecord::first(&motions, pair) {
+                send(Answer::Conflict(conflict));
+                count = count.saturating_add(1);
+            }
+        }
+        send(Answer::End { count });
+    }
+}

@@ -1,0 +1,96 @@
+//! What goes over the line: every kind of message comes back as it was, and so many bytes does a region take.
+
+use pcr_core::{Curve, Interval, Limits, Point, Pose, Turn};
+use pcr_supervisor::frame::{self, Damage, Receiver};
+use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, text};
+use pcr_supervisor::{Agent, Answer, Number, Request, Step};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Debug;
+
+fn there_and_back<T: Serialize + DeserializeOwned + PartialEq + Debug>(message: T) -> usize {
+    let frame = frame::encode(9, &message).expect("a message fits a frame");
+    let mut receiver = Receiver::new();
+    let (last, before) = frame.split_last().expect("not empty");
+    assert!(before.iter().all(|&byte| byte != 0 && receiver.take::<T>(byte).is_none()));
+    assert_eq!(receiver.take::<T>(*last), Some((9, Ok(message))));
+    frame.len()
+}
+
+fn region<S: Number>(number: impl Fn(f64) -> S) -> RegionRecord<S> {
+    let range = |lo, hi| Interval::new(number(lo), number(hi));
+    RegionRecord {
+        ego: 3,
+        other: 11,
+        time: range(12.25, 17.5),
+        length: range(4.125, 5.0625),
+        other_length: range(0.75, 2.375),
+        open_at_start: false,
+        open_at_end: true,
+        pieces: 2,
+    }
+}
+
+fn piece<S: Number>(number: impl Fn(f64) -> S) -> PieceRecord<S> {
+    let range = |lo, hi| Interval::new(number(lo), number(hi));
+    PieceRecord { segments: [1, 2], length: range(4.125, 5.0625), other_length: range(0.75, 2.375) }
+}
+
+/// The bytes of the README's table: header, check and delimiter included.
+#[test]
+fn a_region_takes_so_many_bytes_on_the_wire() {
+    let float = |value: f64| value as f32;
+    assert_eq!(there_and_back(Answer::Region(region(float))), 36);
+    assert_eq!(there_and_back(Answer::Piece(piece(float))), 25);
+    let fixed = |value: f64| pcr_fixed::Q16::from_f64(value).expect("in range");
+    assert_eq!(there_and_back(Answer::Region(region(fixed))), 31);
+    assert_eq!(there_and_back(Answer::Piece(piece(fixed))), 21);
+}
+
+#[test]
+fn every_message_comes_back_as_it_was() {
+    let agent = Agent {
+        radius: 0.11_f32,
+        start_time: 1.5,
+        limits: Limits { speed: 0.58, acceleration: 0.3 },
+        start: Pose { position: Point::new(5.9, -6.5), heading: pcr_core::Radians(-2.97) },
+        path: (0..8)
+            .map(|k| Step { curve: Curve::Arc { radius: 0.5, turn: Turn::Right }, length: 1.0 + k as f32 })
+            .collect(),
+    };
+    there_and_back(Request::Add(agent));
+    for request in [Request::<f32>::Hello, Request::Clear, Request::Load, Request::Compute, Request::Conflicts] {
+        there_and_back(request);
+    }
+    there_and_back(Request::<f32>::Row { ego: 65535 });
+    let range = Interval::new(0.0, 1.0);
+    let conflict =
+        ConflictRecord { agents: [0, 1], time: range, lengths: [range; 2], depth: 0.25_f32, touching: false };
+    there_and_back(Answer::Conflict(conflict));
+    there_and_back(Answer::<f32>::Hello { format: text("f32"), agents: 12, segments: 36, regions: 80, pieces: 112 });
+    for refusal in [
+        Refusal::Frame(Damage::Version(2)),
+        Refusal::Agent { what: text("length of the profile"), why: Reason::OutOfRange },
+        Refusal::TableFull,
+    ] {
+        there_and_back(Answer::<f32>::Refused(refusal));
+    }
+}
+
+#[test]
+fn no_damage_of_one_byte_goes_unnoticed() {
+    let message = Answer::Region(region(|value: f64| value as f32));
+    let frame = frame::encode(9, &message).expect("a message fits a frame");
+    for at in 0..frame.len() - 1 {
+        for bit in 0..8 {
+            let mut damaged = frame.clone();
+            damaged[at] ^= 1 << bit;
+            let mut receiver = Receiver::new();
+            for &byte in &damaged {
+                if let Some((_, seen)) = receiver.take::<Answer<f32>>(byte) {
+                    assert!(seen.is_err(), "byte {at}, bit {bit}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Any bytes as a scenario file: refused with a message, or its regions are computed in every number format.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use pcr_fixed::{Q12, Q16, Q20};
+use pcr_host::fleet::Format;
+use pcr_host::regions::{Answer, Request};
+use pcr_host::scenario::Scenario;
+
+fn answer<S: Format>(scenario: &Scenario) {
+    match Answer::of::<S>(scenario, Request { slices: Some(3), ..Request::default() }) {
+        Ok(answer) => {
+            for region in &answer.regions {
+                assert!(region.t[0] <= region.t[1] && region.l[0] <= region.l[1], "{region:?}");
+                for slice in region.slices.iter().flatten() {
+                    assert!(slice.l.iter().all(|[lo, hi]| lo <= hi), "{slice:?}");
+                    assert!(slice.l.windows(2).all(|pair| pair[0][1] < pair[1][0]), "{slice:?}");
+                }
+            }
+        }
+        Err(failure) => assert!(!failure.to_string().is_empty()),
+    }
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match Scenario::from_json(text) {
+        Err(error) => assert!(!error.to_string().is_empty()),
+        Ok(scenario) => {
+            // What is written is read again.
+            assert_eq!(Scenario::from_json(&scenario.to_json()).as_ref(), Ok(&scenario));
+            // Full turns are one segment each.
+            let segments: f64 = scenario.agents.iter().flat_map(|agent| &agent.path).map(|part| 1.0 + part.length()).sum();
+            if scenario.agents.len() <= 4 && segments < 1e3 {
+                answer::<f64>(&scenario);
+                answer::<f32>(&scenario);
+                answer::<Q16>(&scenario);
+                answer::<Q20>(&scenario);
+                answer::<Q12>(&scenario);
+            }
+        }
+    }
+});

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Fuzzes every target for a bounded number of runs: run.sh [TARGET[=RUNS]...]; installs cargo-fuzz if it is missing.
+# Needs a nightly toolchain. What fails is kept in fuzz/artifacts.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+if ! cargo +nightly --version >/dev/null 2>&1; then
+  echo "fuzz: no nightly toolchain: rustup toolchain install nightly --profile minimal" >&2
+  exit 2
+fi
+if ! command -v cargo-fuzz >/dev/null; then
+  echo "fuzz: installing cargo-fuzz" >&2
+  cargo install --quiet --locked cargo-fuzz --version 0.13.2
+fi
+jobs=("$@")
+if [ $# -eq 0 ]; then jobs=(scenario=60000 pair=3000); fi
+for run in "${jobs[@]}"; do
+  target=${run%%=*} runs=${run##*=}
+  if [ "$runs" = "$target" ]; then runs=100000; fi
+  corpus=fuzz/corpus/$target
+  mkdir -p "$corpus"
+  if [ "$target" = scenario ]; then cp tests/data/paper12.json tests/data/table6-5.json "$corpus"; fi
+  cargo +nightly fuzz run "$target" "$corpus" -- -runs="$runs" -seed=1 -timeout=20 -max_len=4096
+done

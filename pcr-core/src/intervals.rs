@@ -1,0 +1,75 @@
+//! Sets of intervals that are computed when they are asked for, without storage.
+
+use crate::geometry::Interval;
+use crate::scalar::Scalar;
+
+/// The union of intervals in any order: disjoint intervals in increasing order. Cost: for each of them, the
+/// intervals once to find it and once more whenever it grows.
+///
+/// ```
+/// use pcr_core::{Interval, gaps, union};
+/// let intervals = [(3.0, 4.0), (0.5, 1.0), (3.5, 6.0), (1.0, 2.0)].map(|(lo, hi)| Interval::new(lo, hi));
+/// assert!(union(intervals.into_iter()).eq([Interval::new(0.5, 2.0), Interval::new(3.0, 6.0)]));
+/// let gaps = gaps(union(intervals.into_iter()), Interval::new(0.0, 5.0));
+/// assert!(gaps.eq([Interval::new(0.0, 0.5), Interval::new(2.0, 3.0)]));
+/// ```
+pub fn union<S: Scalar, I: Iterator<Item = Interval<S>> + Clone>(intervals: I) -> Union<S, I> {
+    Union { intervals, after: None }
+}
+
+/// What disjoint intervals in increasing order leave of `within`. The ends of a gap are ends of its neighbours; gaps
+/// of length 0 are left out.
+pub fn gaps<S: Scalar, I: Iterator<Item = Interval<S>>>(intervals: I, within: Interval<S>) -> Gaps<S, I> {
+    Gaps { intervals, rest: Some(within) }
+}
+
+/// Iterator of [`union`].
+#[derive(Clone, Debug)]
+pub struct Union<S, I> {
+    intervals: I,
+    after: Option<S>,
+}
+
+impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I> {
+    type Item = Interval<S>;
+
+    fn next(&mut self) -> Option<Interval<S>> {
+        let beyond = |interval: &Interval<S>| self.after.is_none_or(|after| interval.lo > after);
+        let lowest = |a: Interval<S>, b: Interval<S>| if b.lo < a.lo { b } else { a };
+        let mut next = self.intervals.clone().filter(beyond).reduce(lowest)?;
+        loop {
+            let grown = self.intervals.clone().filter(|other| other.meets(next)).fold(next, Interval::hull);
+            if grown == next {
+                break;
+            }
+            next = grown;
+        }
+        self.after = Some(next.hi);
+        Some(next)
+    }
+}
+
+/// Iterator of [`gaps`].
+#[derive(Clone, Debug)]
+pub struct Gaps<S, I> {
+    intervals: I,
+    /// What has not been looked at yet.
+    rest: Option<Interval<S>>,
+}
+
+impl<S: Scalar, I: Iterator<Item = Interval<S>>> Iterator for Gaps<S, I> {
+    type Item = Interval<S>;
+
+    fn next(&mut self) -> Option<Interval<S>> {
+        loop {
+            let rest = self.rest.take()?;
+            let Some(interval) = self.intervals.next().filter(|interval| interval.lo < rest.hi) else {
+                return (rest.lo < rest.hi).then_some(rest);
+            };
+            self.rest = Some(Interval::new(rest.lo.max(interval.hi), rest.hi)).filter(|rest| rest.lo < rest.hi);
+            if rest.lo < interval.lo {
+                return Some(Interval::new(rest.lo, interval.lo));
+            }
+        }
+    }
+}

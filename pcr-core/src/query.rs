@@ -1,0 +1,25 @@
+//! Using motions and regions: do two agents collide, when, and what is free.
+//!
+//! ```text
+//! legs        a motion, cut where its formula changes          (internal)
+//! chord       the relative motion between two instants          (internal)
+//! contact     when two discs are in contact                      Encounter, Contacts
+//! clearance   how near they come                                 Approach
+//! conflict    both: from when to when, where, how deep           Conflict, Conflicts
+//! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
+//! delay       start delays that lead to a conflict               earliest_start
+//! ```
+
+mod chord;
+mod clearance;
+mod conflict;
+mod contact;
+mod delay;
+mod legs;
+mod safe;
+
+pub use clearance::Approach;
+pub use conflict::{Conflict, Conflicts};
+pub use contact::{Contacts, Encounter};
+pub use delay::earliest_start;
+pub use safe::{safe_intervals, safe_lengths};

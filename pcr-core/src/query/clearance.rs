@@ -1,0 +1,71 @@
+//! How near two discs come: the least separation over time.
+//!
+//! The chord of a step (see `contact`) less its error bounds the separation from below, the motion itself at the
+//! nearest point of the chord from above. A step whose lower bound is not below what is known already is done.
+
+use crate::geometry::Interval;
+use crate::query::chord::Chord;
+use crate::query::contact::{Encounter, Window, Windows};
+use crate::scalar::{Scalar, Wide};
+
+/// When two agents are nearest to one another, and how near.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Approach<S> {
+    /// The first such time, as far as the tolerance tells \[s\].
+    pub time: S,
+    /// Distance of the centres \[m\].
+    pub separation: S,
+}
+
+impl<S: Scalar> Encounter<'_, S> {
+    /// When the two are nearest to one another during an interval of time \[s\], and how near: within
+    /// [`Encounter::tolerance`] of the least separation. Both stand at their start before they set off and at their end after
+    /// their arrival. The clearance is the separation less [`Encounter::radius`].
+    ///
+    /// Cost: a comparison of boxes a leg and a few steps for those that come nearer than the legs before.
+    pub fn closest(&self, during: Interval<S>) -> Approach<S> {
+        let separation = (self.other.position_at(during.lo) - self.ego.position_at(during.lo)).norm_squared().sqrt();
+        let mut best = Approach { time: during.lo, separation };
+        for window in Windows::new(self, during) {
+            if window.near(best.separation) {
+                self.closest_in(&window, &mut best);
+            }
+        }
+        best
+    }
+
+    fn closest_in(&self, window: &Window<'_, S>, best: &mut Approach<S>) {
+        let fine = self.tolerance().half();
+        let mut now = window.at(window.time.lo);
+        let mut step = window.time.length();
+        loop {
+            let left = window.time.hi - now.time;
+            let (duration, to) = if step < left { (step, now.time + step) } else { (left, window.time.hi) };
+            let ahead = window.at(to);
+            let chord = Chord::between(now.apart, ahead.apart);
+            let error = window.deviation(&now, &ahead);
+            let (x, distance) = chord.nearest();
+            let mut done = distance - error >= best.separation;
+            if !done {
+                let elapsed = if x < chord.length { duration.portion(x, chord.length) } else { duration };
+                let time = now.time + elapsed;
+                let separation = window.at(time).apart.norm_squared().sqrt();
+                if separation < best.separation {
+                    *best = Approach { time, separation };
+                }
+                let half = duration.half();
+                done = error <= fine || distance - error + fine >= best.separation || now.time + half <= now.time;
+            }
+            if !done {
+                step = duration.half();
+            } else if to >= window.time.hi {
+                return;
+            } else {
+                now = ahead;
+                step = duration.double();
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Safe intervals: when a part of a path is free, and which lengths are free in a window of time.
+//!
+//! Both are one question in coordination space. The part of the one path that is asked for blocks those lengths of
+//! the other from which it is within R. Per pair of segments these are the slabs between events (see `pair::events`) in
+//! whose middle something of the part is covered: closed forms. The other's motion turns lengths into times; an agent
+//! that stands before its start or after its arrival blocks all of that time.
+
+use crate::geometry::{Interval, Pose};
+use crate::intervals::{gaps, union};
+use crate::motion::Motion;
+use crate::pair::events::Events;
+use crate::pair::footprint::Footprint;
+use crate::query::contact::Encounter;
+use crate::scalar::Scalar;
+use crate::segment::{Curve, Segment};
+
+/// Parts of one segment that another one blocks, at most: the gaps between 14 events, no two of them neighbours.
+const PARTS: usize = 7;
+
+impl<'a, S: Scalar> Encounter<'a, S> {
+    /// When the other agent blocks a part of the ego's path \[m\], in an interval of time \[s\]: its disc is then within
+    /// reach of the ego's on some of these lengths. Disjoint windows in increasing order, rounded outward. A single
+    /// length is a part, too; so is a whole segment.
+    ///
+    /// Cost: a comparison of boxes a pair of segments, and a few hundred operations a pair that comes near, for each
+    /// window.
+    pub fn blocked(
+        &self,
+        length: Interval<S>,
+        during: Interval<S>,
+    ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        let other = self.other;
+        union(self.covered(self.ego, length, other)).filter_map(move |covered| times(other, covered, during))
+    }
+
+    /// Lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint, in
+    /// increasing order, rounded outward. Cost as that of [`Encounter::blocked`].
+    pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        let lengths = [during.lo, during.hi].map(|time| self.other.length_at(time));
+        // The length that belongs to a time is right within what rounding does to a distance.
+        let all = Interval::new(S::ZERO, self.other.path().length());
+        let part = Interval::new(lengths[0], lengths[1]).widen(self.pad(), all);
+        union(self.covered(self.other, part, self.ego))
+    }
+
+    /// The lengths of the path of `on` from which some of this part of the path of `by` is within reach, in no order.
+    fn covered(
+        &self,
+        by: &'a Motion<'a, S>,
+        part: Interval<S>,
+        on: &'a Motion<'a, S>,
+    ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        let slack = S::slack(by.extent().max(on.extent()));
+        // The cut of a segment adds roundings of its own.
+        let radius = self.radius() + slack.double();
+        let length = Interval::new(S::ZERO, on.path().length());
+        let theirs = on.path().segments().iter();
+        theirs.flat_map(move |second| {
+            let own = by.path().segments().iter().filter_map(move |first| cut(first, part));
+            let near = own.filter(move |first| first.bounds().expanded(radius).meets(second.bounds()));
+            near.flat_map(move |first| covered(&first, second, radius, slack)).flatten().map(move |covered| {
+                Interval::new(covered.lo + second.from, covered.hi + second.from).widen(slack, length)
+            })
+        })
+    }
+}
+
+/// The safe intervals of a part of an agent's path: when no other agent of the fleet blocks any of these lengths \[m\],
+/// in an interval of time \[s\], in increasing order. Each of the others moves as its motion says, standing before and
+/// after it.
+///
+/// Cost: that of [`Encounter::blocked`] for every other agent, for each interval.
+///
+/// ```
+/// use pcr_core::{Interval, Motion, Path, Point, Pose, Profile, Radians, safe_intervals};
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
+/// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+/// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 1.0);
+/// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
+///
+/// // The middle of the path of agent 0 is blocked while agent 1 passes at 1 m/s, within 0.5 m of it at 3 s.
+/// let mut safe = safe_intervals(&fleet, 0, Interval::new(2.0, 2.0), Interval::new(0.0, 10.0));
+/// let (before, after) = (safe.next().unwrap(), safe.next().unwrap());
+/// assert!(before.lo == 0.0 && (before.hi - 2.5).abs() < 1e-12 && (after.lo - 3.5).abs() < 1e-12 && after.hi == 10.0);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn safe_intervals<'a, S: Scalar>(
+    fleet: &'a [Motion<'a, S>],
+    ego: usize,
+    length: Interval<S>,
+    during: Interval<S>,
+) -> impl Iterator<Item = Interval<S>> + Clone {
+    gaps(union(encounters(fleet, ego).flat_map(move |pair| pair.blocked(length, during))), during)
+}
+
+/// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the dual
+/// of [`safe_intervals`], at the same cost.
+pub fn safe_lengths<'a, S: Scalar>(
+    fleet: &'a [Motion<'a, S>],
+    ego: usize,
+    during: Interval<S>,
+) -> impl Iterator<Item = Interval<S>> + Clone {
+    let length = fleet.get(ego).map_or(S::ZERO, |ego| ego.path().length());
+    let blocked = union(encounters(fleet, ego).flat_map(move |pair| pair.blocked_lengths(during)));
+    gaps(blocked, Interval::new(S::ZERO, length))
+}
+
+/// The ego with every other agent.
+fn encounters<'a, S: Scalar>(fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = Encounter<'a, S>> + Clone {
+    let own = fleet.get(ego);
+    // `enumerate` would check its counter for overflow.
+    let others = (0..fleet.len()).zip(fleet).filter(move |&(other, _)| other != ego);
+    others.filter_map(move |(_, other)| Some(Encounter::new(own?, other)))
+}
+
+/// The part of a segment between these lengths of its path, if there is any.
+fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
+    let own = Interval::new(segment.from, segment.from + segment.length);
+    if !own.meets(part) {
+        return None;
+    }
+    if part.lo <= own.lo && own.hi <= part.hi {
+        return Some(*segment);
+    }
+    let (from, to) = (part.lo.max(own.lo) - own.lo, part.hi.min(own.hi) - own.lo);
+    let pose = Pose { position: segment.point_at(from), heading: segment.heading_at(from) };
+    let length = to - from;
+    let cut = Segment::standing(pose).and_then(|start| match segment.curve {
+        Curve::Line => start.then_line(length),
+        Curve::Arc { radius, turn } => start.then_arc(radius, turn, length),
+    });
+    // It fits where the whole one does, but for rounding at the limits of the format; the whole one blocks no less.
+    Some(cut.unwrap_or(*segment))
+}
+
+/// The lengths of the second segment from which some of the first one is within the radius, distances right within
+/// `slack`.
+fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
+    let events = Events::of(first, second, radius, slack);
+    let events = events.in_order();
+    let mut parts = [None; PARTS];
+    let mut places = parts.iter_mut();
+    let mut place: Option<&mut Option<Interval<S>>> = None;
+    for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
+        // Events may coincide; a second segment of length 0 has this one slab only.
+        if lo >= hi && second.length > S::ZERO {
+            continue;
+        }
+        let slab = Interval::new(lo, hi);
+        let reach = Footprint::of(second.point_at(slab.middle()), first).reach(first, radius);
+        if reach.intervals(first)[0].is_none() {
+            place = None;
+            continue;
+        }
+        match &mut place {
+            Some(part) => **part = part.map(|part| part.hull(slab)),
+            None => {
+                place = places.next();
+                if let Some(part) = &mut place {
+                    **part = Some(slab);
+                }
+            }
+        }
+    }
+    parts
+}
+
+/// The times of an interval at which an agent is on these lengths of its path, standing included.
+pub(super) fn times<S: Scalar>(
+    motion: &Motion<'_, S>,
+    lengths: Interval<S>,
+    during: Interval<S>,
+) -> Option<Interval<S>> {
+    let time = motion.time_in(lengths);
+    let lo = if lengths.lo <= S::ZERO { during.lo } else { time.lo };
+    let hi = if lengths.hi >= motion.path().length() { during.hi } else { time.hi };
+    let window = Interval::new(lo.max(during.lo), hi.min(during.hi));
+    (window.lo <= window.hi).then_some(window)
+}

@@ -1,0 +1,245 @@
+//! [`Micro`]: `f32` with the approximations of the crate `micromath`, refined.
+//!
+//! micromath trades accuracy for size and speed: its square root is off by 6 %, its arctangent by 2.8e-3 rad, its sine
+//! by 1.1e-3. No region computed with these would contain what it has to. As first guesses they are good: Newton's
+//! method squares their errors, and three steps for a root and one for an angle reach the last digits of `f32`.
+//! Sines have no such method, they are the polynomials of `f32`.
+//!
+//! On a core with an FPU `f32` is both faster and more accurate, because its root is one instruction and its
+//! arctangent one polynomial; `docs/firmware.md` has the figures. This type is for those who use micromath already
+//! and want what its functions can be made to guarantee.
+
+use super::{Angle, Radians, Ramp, Scalar, Wide, trig};
+use core::ops::{Add, Neg, Sub};
+use micromath::F32Ext;
+
+/// `f32` with micromath's square root and arctangent, refined by Newton's method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Micro(
+    /// The number.
+    pub f32,
+);
+
+impl Micro {
+    /// Slack in unit roundoffs of the extent: half as much again as that of `f32`, for roots that are right to 1.5
+    /// last digits instead of 0.5.
+    const SLACK: f32 = 24.0;
+}
+
+impl Add for Micro {
+    type Output = Self;
+    fn add(self, rhs: Self) -> Self {
+        Self(self.0 + rhs.0)
+    }
+}
+
+impl Sub for Micro {
+    type Output = Self;
+    fn sub(self, rhs: Self) -> Self {
+        Self(self.0 - rhs.0)
+    }
+}
+
+impl Neg for Micro {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+/// What needs neither roots nor angles is that of `f32`.
+impl Scalar for Micro {
+    type Wide = Self;
+    type Unit = f32;
+    type Angle = Radians<Self>;
+
+    const ZERO: Self = Self(0.0);
+    const LIMIT: Self = Self(<f32 as Scalar>::LIMIT);
+
+    fn is_finite(self) -> bool {
+        self.0.is_finite()
+    }
+    fn times(self, rhs: Self) -> Self {
+        Self(self.0 * rhs.0)
+    }
+    fn scale(self, by: f32) -> Self {
+        Self(self.0 * by)
+    }
+    fn half(self) -> Self {
+        Self(0.5 * self.0)
+    }
+    fn abs(self) -> Self {
+        Self(f32::abs(self.0))
+    }
+    fn quotient(self, divisor: Self) -> Self {
+        Self(self.0.quotient(divisor.0))
+    }
+    fn quotient_unit(self, divisor: f32) -> Option<Self> {
+        self.0.quotient_unit(divisor).map(Self)
+    }
+    fn unit_vector(x: Self, y: Self, norm: Self) -> [f32; 2] {
+        f32::unit_vector(x.0, y.0, norm.0)
+    }
+    fn difference(a: Self, b: Self, squares: Self) -> Self {
+        Self(f32::difference(a.0, b.0, squares.0))
+    }
+    // Without doubt, as in f32.
+    fn quadratic_roots(b: Self, g: Self, _: Self) -> Option<[Self; 2]> {
+        let discriminant = b.0 * b.0 - g.0;
+        if discriminant < 0.0 {
+            return None;
+        }
+        let q = -(b.0 + sqrt(discriminant).copysign(b.0));
+        Some([Self(q), Self(if q == 0.0 { 0.0 } else { g.0 / q })])
+    }
+    fn half_tangent_roots(a: Self, b: Self, g: Self, _: Self) -> Option<[Radians<Self>; 2]> {
+        let discriminant = b.0 * b.0 - a.0 * g.0;
+        if discriminant < 0.0 {
+            return None;
+        }
+        let q = -(b.0 + sqrt(discriminant).copysign(b.0));
+        let angle = |n: f32, m: f32| {
+            let (n, m) = if m < 0.0 { (-n, -m) } else { (n, m) };
+            Radians(Self(2.0 * atan2(n, m)))
+        };
+        Some([angle(q, a.0), angle(g.0, q)])
+    }
+    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+        Self((ramp.slow.0 + 0.5 * ramp.acceleration.0 * elapsed.0) * elapsed.0)
+    }
+    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+        let fast = sqrt(ramp.slow.0 * ramp.slow.0 + 2.0 * (ramp.acceleration.0 * length.0));
+        Self((2.0 * length.0).quotient(ramp.slow.0 + fast))
+    }
+    fn sum(self, rhs: Self) -> (Self, Self) {
+        let (sum, rest) = Scalar::sum(self.0, rhs.0);
+        (Self(sum), Self(rest))
+    }
+    fn sum_up(self, rhs: Self) -> Self {
+        Self(self.0.sum_up(rhs.0))
+    }
+    fn lag(speed: Self, time: Self) -> Self {
+        Self(f32::lag(speed.0, time.0))
+    }
+    fn portion(self, part: Self, whole: Self) -> Self {
+        Self(self.0.portion(part.0, whole.0))
+    }
+    fn tolerance(extent: Self) -> Self {
+        Self(f32::tolerance(extent.0))
+    }
+    fn slack(extent: Self) -> Self {
+        Self(0.5 * Self::SLACK * f32::EPSILON * extent.0)
+    }
+}
+
+impl Wide<Self> for Micro {
+    const ZERO: Self = Self(0.0);
+    fn sqrt(self) -> Self {
+        Self(sqrt(self.0))
+    }
+    fn narrow(self) -> Self {
+        self
+    }
+    fn half(self) -> Self {
+        Self(0.5 * self.0)
+    }
+}
+
+impl Angle<Micro> for Radians<Micro> {
+    const ZERO: Self = Radians(Micro(0.0));
+    fn is_finite(self) -> bool {
+        self.0.0.is_finite()
+    }
+    fn subtended(length: Micro, radius: Micro) -> Self {
+        Radians(Micro(length.0 / radius.0))
+    }
+    fn half_subtended(length: Micro, radius: Micro) -> Self {
+        Radians(Micro(0.5 * (length.0 / radius.0)))
+    }
+    fn subtended_rest(self, length: Micro, radius: Micro) -> Self {
+        Radians(Micro(Angle::<f32>::subtended_rest(Radians(self.0.0), length.0, radius.0).0))
+    }
+    fn sum(self, rhs: Self) -> (Self, Self) {
+        let (sum, rest) = Scalar::sum(self.0, rhs.0);
+        (Radians(sum), Radians(rest))
+    }
+    fn sin_cos(self) -> (f32, f32) {
+        trig::sin_cos_f32(self.0.0)
+    }
+    fn atan2(y: Micro, x: Micro) -> Self {
+        Radians(Micro(atan2(y.0, x.0)))
+    }
+    fn arc_length(self, radius: Micro) -> Micro {
+        Micro(self.0.0 * radius.0)
+    }
+    fn circumference(radius: Micro) -> Micro {
+        Micro(core::f32::consts::TAU * radius.0)
+    }
+}
+
+/// √x, 0 for what is not positive. Right to 1.5 last digits for normal numbers.
+fn sqrt(x: f32) -> f32 {
+    if x > 0.0 {
+        // Heron's step makes e of a relative error e²/2: 6e-2, 1.8e-3, 1.6e-6, 1.3e-12.
+        (0..3).fold(F32Ext::sqrt(x), |root, _| 0.5 * (root + x / root))
+    } else {
+        0.0
+    }
+}
+
+/// Angle of the vector `(x, y)`, absolute error below 5e-7 rad; 0 for the zero vector.
+fn atan2(y: f32, x: f32) -> f32 {
+    use core::f32::consts::PI;
+    /// Below it micromath's squares would lose their digits.
+    const SMALL: f32 = 1e-12;
+    const LARGER: f32 = 1e24;
+    if x == 0.0 && y == 0.0 {
+        return 0.0;
+    }
+    let (y, x) = if x.abs().max(y.abs()) < SMALL { (LARGER * y, LARGER * x) } else { (y, x) };
+    // The angle between the guess and the vector, less a third of its cube: of 2.8e-3 that is 7e-9.
+    let guess = F32Ext::atan2(y, x);
+    let (sin, cos) = trig::sin_cos_f32(guess);
+    (guess + (y * cos - x * sin) / (x * cos + y * sin)).clamp(-PI, PI)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roots_are_right_to_one_and_a_half_last_digits() {
+        let mut worst = 0.0_f64;
+        for step in 0..200_003_u32 {
+            let x = f32::from_bits(0x0080_0000 + step * 10_600);
+            let exact = libm::sqrt(f64::from(x));
+            worst = worst.max((f64::from(sqrt(x)) - exact).abs() / (exact * f64::from(f32::EPSILON)));
+        }
+        assert!(worst < 1.5, "{worst} last digits");
+        assert_eq!((sqrt(0.0), sqrt(-1.0), sqrt(4.0)), (0.0, 0.0, 2.0));
+    }
+
+    #[test]
+    fn arctangents_are_right_to_a_few_last_digits() {
+        let mut worst = 0.0_f64;
+        for step in 0..200_003_u32 {
+            let (sin, cos) = libm::sincos(f64::from(step) * 3.141_6e-5);
+            let length = libm::exp10(f64::from(step % 33) - 20.0);
+            let (y, x) = ((length * sin) as f32, (length * cos) as f32);
+            worst = worst.max((f64::from(atan2(y, x)) - libm::atan2(f64::from(y), f64::from(x))).abs());
+        }
+        assert!(worst < 5e-7, "largest error {worst:e}");
+        for (y, x, angle) in [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1e-30, 1e-30, core::f32::consts::FRAC_PI_4)] {
+            assert!((atan2(y, x) - angle).abs() < 5e-7, "atan2({y}, {x})");
+        }
+        assert!((atan2(1e-9, 1.0) - 1e-9).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_seeds_alone_would_not_do() {
+        assert!((F32Ext::sqrt(2.0_f32) / libm::sqrtf(2.0) - 1.0).abs() > 1e-2);
+        assert!((F32Ext::atan2(0.5_f32, 1.0) - libm::atan2f(0.5, 1.0)).abs() > 1e-3);
+    }
+}

@@ -1,0 +1,200 @@
+//! Sine, cosine and arctangent of `f32` and `f64`, each in its own arithmetic, with one division at most.
+//!
+//! libm's `f32` sine and cosine compute in `f64`, which a single-precision FPU does not have, and its arctangents
+//! divide twice. The polynomials are those of Cephes (Moshier 1989) for `f32` and of fdlibm (Sun 1993) for `f64`.
+
+/// Sine and cosine: reduced by quarter turns, in parts (Cody and Waite), to `[-π/4, π/4]`. The polynomials are
+/// `(sin r / r - 1) / r²` and `(cos r - 1 + r²/2) / r⁴` of `r²`.
+macro_rules! sin_cos {
+    ($(#[$doc:meta])* $name:ident($t:ident), quarter: $quarter:expr, sin: $sin:expr, cos: $cos:expr) => {
+        $(#[$doc])*
+        pub(super) fn $name(x: $t) -> ($t, $t) {
+            // Half of what has no more room for a fraction: a sum with it is rounded, its last bits are the integer's.
+            const ROUND: $t = 1.5 / $t::EPSILON;
+            const SIGN: u32 = 8 * size_of::<$t>() as u32 - 1;
+            let shifted = x * core::$t::consts::FRAC_2_PI + ROUND;
+            let (quarters, k) = (shifted.to_bits(), shifted - ROUND);
+            let r = $quarter.into_iter().fold(x, |r, part: $t| r - k * part);
+            let z = r * r;
+            let sin = r + r * (z * $sin(z));
+            let cos = (1.0 - 0.5 * z) + z * (z * $cos(z));
+            let (sin, cos) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
+            let signed = |value: $t, quarters| $t::from_bits(value.to_bits() ^ ((quarters & 2) << (SIGN - 1)));
+            (signed(sin, quarters), signed(cos, quarters.wrapping_add(1)))
+        }
+    };
+}
+
+/// Arctangent: the angle of the smaller to the larger component, less an eighth of a turn where it is nearer to that, is
+/// `atan(t)` with `|t| <= tan(π/8)`. The polynomial is `(1 - atan t / t) / t²` of `t²`.
+macro_rules! atan2 {
+    ($(#[$doc:meta])* $name:ident($t:ident), polynomial: $polynomial:expr) => {
+        $(#[$doc])*
+        pub(super) fn $name(y: $t, x: $t) -> $t {
+            use core::$t::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+            const TAN_PI_8: $t = 0.414_213_562_373_095_03_f64 as $t;
+            let steep = y.abs() > x.abs();
+            let (small, large) = if steep { (x.abs(), y.abs()) } else { (y.abs(), x.abs()) };
+            let (n, m, eighth) =
+                if small > TAN_PI_8 * large { (small - large, small + large, FRAC_PI_4) } else { (small, large, 0.0) };
+            let t = if m > 0.0 { n / m } else { 0.0 };
+            let z = t * t;
+            let octant = eighth + (t - t * (z * $polynomial(z)));
+            let quadrant = if steep { FRAC_PI_2 - octant } else { octant };
+            let half = if x.is_sign_negative() { PI - quadrant } else { quadrant };
+            half.copysign(y)
+        }
+    };
+}
+
+/// A polynomial by its coefficients, the constant first.
+macro_rules! horner {
+    ($name:ident, $t:ident) => {
+        fn $name<const N: usize>(x: $t, coefficients: [$t; N]) -> $t {
+            coefficients.into_iter().rev().reduce(|sum, coefficient| sum * x + coefficient).unwrap_or(0.0)
+        }
+    };
+}
+horner!(horner_f32, f32);
+horner!(horner_f64, f64);
+
+sin_cos!(
+    /// Absolute error below 1.2e-7 for `|x| <= 128`: twenty turns.
+    sin_cos_f32(f32),
+    quarter: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
+    sin: |z| horner_f32(z, [-1.666_665_5e-1, 8.332_161e-3, -1.951_529_6e-4]),
+    cos: |z| horner_f32(z, [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5])
+);
+
+sin_cos!(
+    /// Absolute error below 2e-16 for `|x|` up to a million; beyond that libm reduces.
+    near_sin_cos_f64(f64),
+    quarter: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
+    sin: |z: f64| {
+        let w = z * z;
+        let odd = horner_f64(w, [8.333_333_333_322_49e-3, 2.755_731_370_707_007e-6, 1.589_690_995_211_55e-10]);
+        let even = horner_f64(w, [-1.666_666_666_666_663_2e-1, -1.984_126_982_985_795e-4, -2.505_076_025_340_686_3e-8]);
+        even + z * odd
+    },
+    cos: |z: f64| {
+        let w = z * z;
+        let odd = horner_f64(w, [-1.388_888_888_887_411e-3, -2.755_731_435_139_066_3e-7, -1.135_964_755_778_819_5e-11]);
+        let even = horner_f64(w, [4.166_666_666_666_66e-2, 2.480_158_728_947_673e-5, 2.087_572_321_298_175e-9]);
+        even + z * odd
+    }
+);
+
+/// Sine and cosine, absolute error below 2e-16.
+pub(super) fn sin_cos_f64(x: f64) -> (f64, f64) {
+    if x.abs() < 1e6 { near_sin_cos_f64(x) } else { libm::sincos(x) }
+}
+
+atan2!(
+    /// Angle of the vector `(x, y)`, absolute error below 3e-7; signed zeros as in C.
+    atan2_f32(f32),
+    polynomial: |z| horner_f32(z, [3.333_295e-1, -1.997_771_1e-1, 1.387_768_6e-1, -8.053_745e-2])
+);
+
+atan2!(
+    /// Angle of the vector `(x, y)`, absolute error below 1e-15; signed zeros as in C.
+    atan2_f64(f64),
+    polynomial: |z: f64| {
+        let w = z * z;
+        let even = horner_f64(
+            w,
+            [
+                3.333_333_333_333_293e-1,
+                1.428_571_427_250_346_6e-1,
+                9.090_887_133_436_507e-2,
+                6.661_073_137_387_531e-2,
+                4.976_877_994_615_932e-2,
+                1.628_582_011_536_578_2e-2,
+            ],
+        );
+        let odd = horner_f64(
+            w,
+            [
+                -1.999_999_999_987_648_3e-1,
+                -1.111_111_040_546_235_6e-1,
+                -7.691_876_205_044_83e-2,
+                -5.833_570_133_790_573_5e-2,
+                -3.653_157_274_421_691_6e-2,
+            ],
+        );
+        even + z * odd
+    }
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest error in either of `pairs`, which is below `bound` and not far below it.
+    fn assert_bound(bound: f64, pairs: impl Iterator<Item = (f64, f64)>) {
+        let worst = pairs.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
+        assert!(worst < bound, "largest error {worst:e}");
+        assert!(worst > 0.2 * bound, "the stated bound is idle: largest error {worst:e}");
+    }
+
+    #[test]
+    fn sin_cos_f32_stays_within_its_bound() {
+        let arguments = (-2_000_003_i32..=2_000_003).map(|step| step as f32 * 6.4e-5);
+        assert_bound(
+            1.2e-7,
+            arguments.flat_map(|x| {
+                let ((sin, cos), exact) = (sin_cos_f32(x), libm::sincos(f64::from(x)));
+                [(f64::from(sin), exact.0), (f64::from(cos), exact.1)]
+            }),
+        );
+    }
+
+    #[test]
+    fn sin_cos_f64_stays_within_its_bound() {
+        // libm's own error, half a unit in the last place, is on top.
+        let near = (-2_000_003_i32..=2_000_003).map(|step| f64::from(step) * 4.0e-6);
+        let far = (-500_003_i32..=500_003).map(|step| f64::from(step) * 1.999_9);
+        assert_bound(
+            2e-16,
+            near.chain(far).flat_map(|x| {
+                let ((sin, cos), exact) = (sin_cos_f64(x), libm::sincos(x));
+                [(sin, exact.0), (cos, exact.1)]
+            }),
+        );
+    }
+
+    #[test]
+    fn sines_and_cosines_are_exact_at_zero() {
+        assert_eq!((sin_cos_f32(0.0), sin_cos_f64(0.0)), ((0.0, 1.0), (0.0, 1.0)));
+        assert_eq!(sin_cos_f64(1e-300), (1e-300, 1.0));
+    }
+
+    /// Every direction, at lengths from 1e-8 to 1e8.
+    fn vectors() -> impl Iterator<Item = (f64, f64)> {
+        (0..2_000_003_u32).map(|step| {
+            let (sin, cos) = libm::sincos(f64::from(step) * 3.141_6e-6);
+            let length = libm::exp10(f64::from(step % 17) - 8.0);
+            (length * sin, length * cos)
+        })
+    }
+
+    #[test]
+    fn arctangents_stay_within_their_bounds() {
+        assert_bound(1e-15, vectors().map(|(y, x)| (atan2_f64(y, x), libm::atan2(y, x))));
+        let vectors = vectors().map(|(y, x)| (y as f32, x as f32));
+        assert_bound(3e-7, vectors.map(|(y, x)| (f64::from(atan2_f32(y, x)), libm::atan2(f64::from(y), f64::from(x)))));
+    }
+
+    #[test]
+    fn arctangents_are_exact_on_axes_and_diagonals() {
+        for (y, x) in
+            [(0.0, 0.0), (0.0, 1.0), (0.0, -1.0), (-0.0, 1.0), (-0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (1.0, 1.0)]
+        {
+            assert_eq!(atan2_f64(y, x).to_bits(), libm::atan2(y, x).to_bits(), "atan2({y}, {x})");
+            let (y, x) = (y as f32, x as f32);
+            assert_eq!(atan2_f32(y, x).to_bits(), libm::atan2f(y, x).to_bits(), "atan2({y}, {x})");
+        }
+        for tiny in [1e-300, 1e-20] {
+            assert_eq!(atan2_f64(tiny, 1.0), tiny);
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Numbers as decimals, without floating point.
+
+use crate::q::Q;
+use crate::turns::Turns;
+use core::fmt;
+
+/// Most decimals that a binary fraction of 24 bits has.
+const MOST: usize = 24;
+
+/// Writes `magnitude / 2^places` with a sign; all decimals, or those of the precision asked for, the last one rounded,
+/// halves up.
+fn decimal(f: &mut fmt::Formatter<'_>, negative: bool, magnitude: u32, places: u32) -> fmt::Result {
+    let mask = (1_u64 << places) - 1;
+    let mut whole = u64::from(magnitude) >> places;
+    let mut rest = u64::from(magnitude) & mask;
+    // The point and the decimals.
+    let mut text = [b'0'; MOST + 1];
+    text[0] = b'.';
+    let asked = f.precision();
+    let mut count = 0;
+    for digit in text.iter_mut().skip(1).take(asked.unwrap_or(MOST)) {
+        if rest == 0 && asked.is_none() {
+            break;
+        }
+        *digit = b'0' + ((10 * rest) >> places) as u8;
+        rest = (10 * rest) & mask;
+        count += 1;
+    }
+    let mut carry = 2 * rest > mask;
+    for digit in text.iter_mut().skip(1).take(count).rev() {
+        if carry && *digit == b'9' {
+            *digit = b'0';
+        } else {
+            *digit += u8::from(carry);
+            carry = false;
+        }
+    }
+    whole += u64::from(carry);
+    f.write_str(if negative {
+        "-"
+    } else if f.sign_plus() {
+        "+"
+    } else {
+        ""
+    })?;
+    write!(f, "{whole}")?;
+    let shown = if count > 0 { text.get(..=count).unwrap_or_default() } else { &[] };
+    f.write_str(core::str::from_utf8(shown).unwrap_or_default())
+}
+
+/// All decimals, or as many as asked for.
+impl<const F: u32> fmt::Display for Q<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        decimal(f, self.to_bits() < 0, self.to_bits().unsigned_abs(), F)
+    }
+}
+
+/// As [`Display`](fmt::Display): a number is its value.
+impl<const F: u32> fmt::Debug for Q<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// The bits: they tell all angles apart.
+impl fmt::Debug for Turns {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Turns({} / 2^32)", self.to_bits())
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<const F: u32> defmt::Format for Q<F> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{=i32} / 2^{=u32}", self.to_bits(), F);
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Turns {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{=i32} / 2^32 turns", self.to_bits());
+    }
+}

@@ -1,0 +1,182 @@
+//! The number type, and how it fulfils the contract of `pcr-core`.
+
+use crate::integer::divide;
+use crate::product::Product;
+use crate::sine::Sine;
+use crate::turns::Turns;
+use crate::{ramp, roots};
+use core::ops::{Add, Neg, Sub};
+use pcr_core::Scalar;
+use pcr_core::scalar::{Angle, Ramp, Unit, Wide};
+
+/// Fixed-point number of 32 bits, `F` of them after the binary point: a length \[m\], time \[s\], speed \[m/s\] or
+/// acceleration \[m/s²\]. `F` is 8 to 24.
+///
+/// Sums and differences are plain: they overflow where an integer would, which the constructors of `pcr-core` exclude.
+///
+/// ```compile_fail
+/// let _ = pcr_fixed::Q::<32>::from_bits(1) + pcr_fixed::Q::<32>::from_bits(1); // no room for a metre
+/// ```
+/// ```compile_fail,E0308
+/// let _ = pcr_fixed::Q16::from_bits(1) + pcr_fixed::Q20::from_bits(1); // formats do not mix
+/// ```
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Q<const F: u32>(i32);
+
+/// Last digit 15 µm, arena ±4096 m, times up to 68 min.
+pub type Q16 = Q<16>;
+/// Last digit 0.95 µm, arena ±256 m, times up to 256 s.
+pub type Q20 = Q<20>;
+/// Last digit 0.24 mm, arena ±65 km, times up to 18 h.
+pub type Q12 = Q<12>;
+
+/// Largest bits that constructors accept: eight times that is what the kernels need (docs/errors-fixed.md).
+const LIMIT: i32 = 1 << 28;
+
+/// The residual that rounding may cause, in last digits, in a small arena.
+const SLACK: i32 = 5;
+/// Directions and angles are right to 2⁻³⁰: the residual grows by one last digit for so many of the extent.
+const SLACK_SHIFT: u32 = 26;
+
+impl<const F: u32> Q<F> {
+    const CHECKED: () = assert!(8 <= F && F <= 24, "8 to 24 fraction bits");
+
+    /// One.
+    pub const ONE: Self = Self::from_bits(1 << F);
+    /// Smallest positive number.
+    pub const LAST_DIGIT: Self = Self::from_bits(1);
+
+    /// The number `bits / 2^F`.
+    pub const fn from_bits(bits: i32) -> Self {
+        let () = Self::CHECKED;
+        Self(bits)
+    }
+
+    /// The number times `2^F`.
+    pub const fn to_bits(self) -> i32 {
+        self.0
+    }
+}
+
+impl<const F: u32> Add for Q<F> {
+    type Output = Self;
+    fn add(self, rhs: Self) -> Self {
+        Self(self.0 + rhs.0)
+    }
+}
+
+impl<const F: u32> Sub for Q<F> {
+    type Output = Self;
+    fn sub(self, rhs: Self) -> Self {
+        Self(self.0 - rhs.0)
+    }
+}
+
+impl<const F: u32> Neg for Q<F> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<const F: u32> Scalar for Q<F> {
+    type Wide = Product<F>;
+    type Unit = Sine;
+    type Angle = Turns;
+
+    const ZERO: Self = Self::from_bits(0);
+    const LIMIT: Self = Self::from_bits(LIMIT);
+
+    fn is_finite(self) -> bool {
+        true
+    }
+    fn times(self, rhs: Self) -> Product<F> {
+        Product::from_bits(i64::from(self.0) * i64::from(rhs.0))
+    }
+    fn scale(self, by: Sine) -> Self {
+        Self(by.of(self.0))
+    }
+    fn combine(a: Self, u: Sine, b: Self, v: Sine) -> Self {
+        Self(Sine::combine(a.0, u, b.0, v))
+    }
+    fn half(self) -> Self {
+        Self(self.0 >> 1)
+    }
+    /// A length by a speed, a speed by an acceleration: what the constructor of a profile divides.
+    fn quotient(self, divisor: Self) -> Self {
+        const MOST: u64 = 2 * LIMIT as u64;
+        let (dividend, by) = (u64::from(self.0.unsigned_abs()) << F, divisor.0.unsigned_abs());
+        let magnitude = if dividend == 0 {
+            0
+        } else if dividend >= MOST * u64::from(by) {
+            MOST as u32
+        } else {
+            divide(dividend + u64::from(by >> 1), by)
+        };
+        Self(signed(magnitude, (self.0 < 0) != (divisor.0 < 0)))
+    }
+    fn portion(self, part: Self, whole: Self) -> Self {
+        let (magnitude, by) = (self.0.unsigned_abs(), whole.0.unsigned_abs());
+        let product = u64::from(magnitude) * u64::from(part.0.unsigned_abs());
+        Self(signed(divide(product + u64::from(by >> 1), by), self.0 < 0))
+    }
+    /// The one division of two lines that cross: their distance by the sine of their angle.
+    fn quotient_unit(self, divisor: Sine) -> Option<Self> {
+        let (bits, by) = (divisor.to_bits(), divisor.to_bits().unsigned_abs());
+        let dividend = u64::from(self.0.unsigned_abs()) << Sine::FRACTION_BITS;
+        let magnitude = (dividend < LIMIT as u64 * u64::from(by)).then(|| divide(dividend + u64::from(by >> 1), by))?;
+        Some(Self(signed(magnitude, (self.0 < 0) != (bits < 0))))
+    }
+    fn unit_vector(x: Self, y: Self, _: Self) -> [Sine; 2] {
+        Sine::unit_vector(x.0, y.0)
+    }
+    /// The difference itself: what cancels in floating point is exact here, and `b` is a root rounded to nearest.
+    fn difference(a: Self, b: Self, _: Product<F>) -> Self {
+        a - b
+    }
+    /// `-b ± √(b² - g)`: either is off by the rounding of the root, half a last digit.
+    fn quadratic_roots(b: Self, g: Product<F>, doubt: Product<F>) -> Option<[Self; 2]> {
+        let discriminant = b.times(b) - g;
+        if discriminant < -doubt {
+            return None;
+        }
+        let root = discriminant.sqrt();
+        Some([-b - root, -b + root])
+    }
+    fn half_tangent_roots(a: Product<F>, b: Product<F>, g: Product<F>, doubt: Product<F>) -> Option<[Turns; 2]> {
+        roots::half_tangent(a.to_bits(), b.to_bits(), g.to_bits(), doubt.to_bits())
+    }
+    fn chord(radius: Self, half: Turns, right: bool, direction: [Sine; 2]) -> [Self; 2] {
+        let (sin, cos) = Angle::<Self>::sin_cos(half);
+        let (along, across) = (sin.times(cos), if right { -sin.times(sin) } else { sin.times(sin) });
+        let [cos, sin] = direction;
+        let unit = [Unit::combine(along, cos, across, -sin), Unit::combine(along, sin, across, cos)];
+        unit.map(|unit| radius.double().scale(unit))
+    }
+    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+        ramp::length(ramp, elapsed)
+    }
+    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+        ramp::time(ramp, length)
+    }
+    fn slack(extent: Self) -> Self {
+        Self(SLACK + (extent.0 >> SLACK_SHIFT))
+    }
+    /// The product is added with all its digits.
+    fn advance(self, rest: Self, length: Self, by: Sine) -> (Self, Self) {
+        let (whole, rest) = by.of_with_rest(length.0, rest.0);
+        (Self(self.0 + whole), Self(rest))
+    }
+    /// Half a last digit of the chord of each arc, and the rounding of its angle, 2⁻³⁰ of what lies behind it.
+    fn drift(arcs: usize, extent: Self) -> Self {
+        let arcs = arcs as i64;
+        Self((arcs + 1 + ((arcs * i64::from(extent.0)) >> 29)) as i32 >> 1)
+    }
+}
+
+/// A number of this magnitude, below 2³¹.
+fn signed(magnitude: u32, negative: bool) -> i32 {
+    if negative { -(magnitude as i32) } else { magnitude as i32 }
+}

@@ -1,0 +1,90 @@
+//! Sines, cosines and components of unit vectors.
+
+use crate::integer::{divide, multiply, sqrt};
+use core::ops::{Add, Neg, Sub};
+use pcr_core::scalar::Unit;
+
+/// Number between -2 and 2 in 32 bits, 30 of them after the binary point: a direction is right to 10⁻⁹ rad.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Sine(i32);
+
+impl Sine {
+    pub(crate) const FRACTION_BITS: u32 = 30;
+
+    /// The number `bits / 2³⁰`.
+    pub const fn from_bits(bits: i32) -> Self {
+        Self(bits)
+    }
+
+    /// The number times 2³⁰.
+    pub const fn to_bits(self) -> i32 {
+        self.0
+    }
+
+    /// `self · number`, rounded to nearest.
+    pub(crate) fn of(self, number: i32) -> i32 {
+        multiply::<{ Self::FRACTION_BITS }>(number, self.0)
+    }
+
+    /// `self · number` and a number of 2⁻³⁰ more, rounded to nearest, and what that leaves in 2⁻³⁰.
+    pub(crate) fn of_with_rest(self, number: i32, rest: i32) -> (i32, i32) {
+        let sum = i64::from(number) * i64::from(self.0) + i64::from(rest);
+        let whole = (sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS;
+        (whole as i32, (sum - (whole << Self::FRACTION_BITS)) as i32)
+    }
+
+    /// `a u + b v`, rounded once.
+    pub(crate) fn combine(a: i32, u: Self, b: i32, v: Self) -> i32 {
+        let sum = i64::from(a) * i64::from(u.0) + i64::from(b) * i64::from(v.0);
+        ((sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32
+    }
+
+    /// The direction of `(x, y)`, which is not zero, right to 2 · 2⁻³⁰.
+    ///
+    /// One root, and one division: multiplying by the reciprocal of the norm saves the other.
+    pub(crate) fn unit_vector(x: i32, y: i32) -> [Self; 2] {
+        // The larger component fills 31 bits, so that the norm has as many, and 1/2 more.
+        let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
+        let (x, y) = (x << shift, y << shift);
+        let square = |x: i32| i64::from(x).unsigned_abs().pow(2);
+        let norm = sqrt(square(x) + square(y));
+        let reciprocal = divide((1 << 62) + u64::from(norm >> 1), norm);
+        [x, y].map(|x| Self(((i64::from(x) * i64::from(reciprocal) + (1 << 31)) >> 32) as i32))
+    }
+}
+
+impl Add for Sine {
+    type Output = Self;
+    fn add(self, rhs: Self) -> Self {
+        Self(self.0 + rhs.0)
+    }
+}
+
+impl Sub for Sine {
+    type Output = Self;
+    fn sub(self, rhs: Self) -> Self {
+        Self(self.0 - rhs.0)
+    }
+}
+
+impl Neg for Sine {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Unit for Sine {
+    const ZERO: Self = Self(0);
+    const ONE: Self = Self(1 << Self::FRACTION_BITS);
+
+    fn times(self, rhs: Self) -> Self {
+        Self(self.of(rhs.0))
+    }
+    fn combine(a: Self, u: Self, b: Self, v: Self) -> Self {
+        Self(Self::combine(a.0, u, b.0, v))
+    }
+}

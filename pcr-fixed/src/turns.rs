@@ -1,0 +1,104 @@
+//! Angles as 32-bit fractions of a turn, which wrap as angles do.
+
+use crate::integer::{divide, multiply};
+use crate::q::Q;
+use crate::sine::Sine;
+use crate::trigonometry::{atan2, sin_cos};
+use core::ops::{Add, Neg, Sub};
+use pcr_core::scalar::Angle;
+
+/// Angle, counter-clockwise positive, modulo one turn: 2³² is a turn, the last digit 1.5·10⁻⁹ rad.
+///
+/// ```
+/// use pcr_fixed::Turns;
+/// assert_eq!(Turns::HALF + Turns::HALF, Turns::ZERO);
+/// assert_eq!(Turns::from_radians(-core::f64::consts::FRAC_PI_2), Ok(-Turns::QUARTER));
+/// ```
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Turns(i32);
+
+impl Turns {
+    /// The zero angle.
+    pub const ZERO: Self = Self(0);
+    /// A quarter turn to the left.
+    pub const QUARTER: Self = Self(1 << 30);
+    /// Half a turn. It is its own negative.
+    pub const HALF: Self = Self(i32::MIN);
+
+    /// The angle `bits / 2³²` of a turn.
+    pub const fn from_bits(bits: i32) -> Self {
+        Self(bits)
+    }
+
+    /// The angle in 2⁻³² of a turn, from -2³¹ (half a turn) to 2³¹ - 1.
+    pub const fn to_bits(self) -> i32 {
+        self.0
+    }
+}
+
+impl Add for Turns {
+    type Output = Self;
+    fn add(self, rhs: Self) -> Self {
+        Self(self.0.wrapping_add(rhs.0))
+    }
+}
+
+impl Sub for Turns {
+    type Output = Self;
+    fn sub(self, rhs: Self) -> Self {
+        Self(self.0.wrapping_sub(rhs.0))
+    }
+}
+
+impl Neg for Turns {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(self.0.wrapping_neg())
+    }
+}
+
+/// `length / radius` \[rad\] times 2²⁹, up to one turn.
+///
+/// The division of an arc: an angle is a length by a radius.
+fn sweep<const F: u32>(length: Q<F>, radius: Q<F>) -> u64 {
+    let (length, radius) = (length.to_bits().unsigned_abs(), radius.to_bits().unsigned_abs());
+    u64::from(divide((u64::from(length) << 29) + u64::from(radius >> 1), radius))
+}
+
+/// `2³² · 2 / π`: from radians times 2²⁹ to 2⁻³³ of a turn, times 2³².
+const TURNS: u64 = 2_734_261_102;
+
+impl<const F: u32> Angle<Q<F>> for Turns {
+    const ZERO: Self = Self::ZERO;
+
+    fn is_finite(self) -> bool {
+        true
+    }
+    /// A sweep to the left: the length is not negative.
+    fn subtended(length: Q<F>, radius: Q<F>) -> Self {
+        Self(((sweep(length, radius) * TURNS + (1 << 30)) >> 31) as i32)
+    }
+    fn half_subtended(length: Q<F>, radius: Q<F>) -> Self {
+        Self(((sweep(length, radius) * TURNS + (1 << 31)) >> 32) as i32)
+    }
+    fn sin_cos(self) -> (Sine, Sine) {
+        let (sin, cos) = sin_cos(self.0);
+        (Sine::from_bits(sin), Sine::from_bits(cos))
+    }
+    fn atan2(y: Q<F>, x: Q<F>) -> Self {
+        Self(atan2(y.to_bits(), x.to_bits()))
+    }
+    fn arc_length(self, radius: Q<F>) -> Q<F> {
+        /// `2²⁹ π`
+        const HALF_TURN: i32 = 1_686_629_713;
+        let radians = multiply::<31>(self.0, HALF_TURN);
+        Q::from_bits(multiply::<29>(radians, radius.to_bits()))
+    }
+    fn circumference(radius: Q<F>) -> Q<F> {
+        /// `2²⁸ · 2π`
+        const TURN: i32 = 1_686_629_713;
+        Q::from_bits(multiply::<28>(radius.to_bits(), TURN))
+    }
+}

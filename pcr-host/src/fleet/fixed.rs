@@ -1,0 +1,30 @@
+//! Fixed point as a format of the tool.
+
+use super::Format;
+use pcr_fixed::{Q12, Q16, Q20, Turns};
+
+macro_rules! impl_format {
+    ($t:ident, $name:literal) => {
+        impl Format for $t {
+            const NAME: &'static str = $name;
+            /// Saturates: what is beyond the format is above its limit, too, and refused by name.
+            fn from_f64(value: f64) -> Self {
+                let largest = if value < 0.0 { i32::MIN } else { i32::MAX };
+                $t::from_f64(value).unwrap_or($t::from_bits(largest))
+            }
+            fn to_f64(self) -> f64 {
+                $t::to_f64(self)
+            }
+            fn angle(radians: f64) -> Turns {
+                Turns::from_radians(radians).unwrap_or_default()
+            }
+            fn radians(angle: Turns) -> f64 {
+                angle.to_radians()
+            }
+        }
+    };
+}
+
+impl_format!(Q12, "q12");
+impl_format!(Q16, "q16");
+impl_format!(Q20, "q20");

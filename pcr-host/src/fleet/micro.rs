@@ -1,0 +1,21 @@
+//! Scenarios in [`Micro`], for the tests of that number type.
+
+use super::Format;
+use pcr_core::Radians;
+use pcr_core::scalar::Micro;
+
+impl Format for Micro {
+    const NAME: &'static str = "micro";
+    fn from_f64(value: f64) -> Self {
+        Self(f32::from_f64(value))
+    }
+    fn to_f64(self) -> f64 {
+        self.0.to_f64()
+    }
+    fn angle(radians: f64) -> Radians<Self> {
+        Radians(Self(f32::angle(radians).0))
+    }
+    fn radians(angle: Radians<Self>) -> f64 {
+        angle.0.to_f64()
+    }
+}

@@ -1,0 +1,238 @@
+//! Layouts, orders and plans in the formats that fleets use already, read leniently.
+//!
+//! ```text
+//! nav2        route graphs of the nav2 route server (GeoJSON)
+//! lif         layouts of the VDMA (JSON)
+//! vda5050     orders and states (JSON)
+//! rmf         buildings and fleets of Open-RMF (YAML)
+//! opendrive   reference lines of roads (XML)
+//! opentcs     plant models (XML)
+//! ccbs        roadmaps and plans of Continuous-CBS (XML)
+//! trajectory  NURBS as VDA 5050 and LIF write them
+//! nurbs       NURBS to Bézier curves
+//! biarc       curves to lines and arcs, with a certified distance
+//! samples     paths by their points (text)
+//! timed       plans of points and times
+//! layout      what they all become: nodes, and edges of lines and arcs     Layout
+//! trace       lines and arcs anywhere in the plane to one path
+//! speed       the fastest motion under changing limits
+//! route       the shortest way between nodes, corners rounded
+//! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
+//! warnings    what was wrong and was read nevertheless                     Warnings
+//! ```
+//!
+//! A reader leaves out what it cannot use and warns about it by name; where nothing useful is left, or a path would
+//! be wrong, it refuses with an [`ImportError`]. No input makes it panic.
+
+mod biarc;
+mod ccbs;
+mod layout;
+mod lif;
+mod nav2;
+mod nurbs;
+mod opendrive;
+mod opentcs;
+mod rmf;
+mod route;
+mod samples;
+mod speed;
+mod timed;
+mod trace;
+mod trajectory;
+mod value;
+mod vda5050;
+mod vehicle;
+mod warnings;
+mod xml;
+
+pub use layout::{Edge, Id, Layout, Node, Placed};
+pub use trace::{KINK, TURN};
+pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
+pub use warnings::Warnings;
+
+use crate::scenario::Scenario;
+use clap::ValueEnum;
+use serde_json::Value;
+use std::path::Path;
+use std::{fmt, fs};
+use vehicle::Given;
+
+/// Formats of files that are not scenarios.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Route graph of the nav2 route server (.geojson)
+    Nav2,
+    /// Layout Interchange Format of the VDMA (.lif.json, or by its content)
+    Lif,
+    /// Building of Open-RMF (.building.yaml)
+    Rmf,
+    /// Reference lines of the roads of an OpenDRIVE file (.xodr)
+    #[value(name = "opendrive")]
+    OpenDrive,
+    /// Plant model of openTCS (.xml, by its content)
+    #[value(name = "opentcs")]
+    OpenTcs,
+    /// Roadmap or plan of Continuous-CBS (.xml, by its content)
+    Ccbs,
+    /// Points of paths, `x y` a line, an empty line between agents (.path, .csv)
+    Path,
+    /// Orders and states of VDA 5050 (JSON, by their content)
+    Vda5050,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Nav2 => "nav2",
+            Self::Lif => "lif",
+            Self::Rmf => "rmf",
+            Self::OpenDrive => "opendrive",
+            Self::OpenTcs => "opentcs",
+            Self::Ccbs => "ccbs",
+            Self::Path => "path",
+            Self::Vda5050 => "vda5050",
+        })
+    }
+}
+
+/// Why a file was refused.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportError(String);
+
+impl ImportError {
+    pub(crate) fn new(problem: impl Into<String>) -> Self {
+        Self(problem.into())
+    }
+}
+
+impl fmt::Display for ImportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for ImportError {}
+
+/// A layout and the vehicle that travels it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// Nodes and edges.
+    pub layout: Layout,
+    /// Who travels them.
+    pub vehicle: Vehicle,
+}
+
+impl Format {
+    /// The format of a file with this name and content, `None` for a scenario.
+    pub fn of(file: &Path, text: &str) -> Option<Self> {
+        let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
+        if name.ends_with(".geojson") {
+            return Some(Self::Nav2);
+        }
+        if name.ends_with(".lif.json") || name.ends_with(".lif") {
+            return Some(Self::Lif);
+        }
+        if name.ends_with(".yaml") || name.ends_with(".yml") {
+            return Some(Self::Rmf);
+        }
+        if name.ends_with(".path") || name.ends_with(".csv") {
+            return Some(Self::Path);
+        }
+        match xml::root_of(text) {
+            Some("OpenDRIVE") => return Some(Self::OpenDrive),
+            Some("model") => return Some(Self::OpenTcs),
+            Some("root" | "graphml") => return Some(Self::Ccbs),
+            _ => {}
+        }
+        // What has agents is a scenario, and said to be wrong as one.
+        if text.contains("\"agents\"") {
+            return None;
+        }
+        let root = serde_json::Deserializer::from_str(text).into_iter::<Value>().next()?.ok()?;
+        if lif::is_layout(&root) { Some(Self::Lif) } else { vda5050::is_message(&root).then_some(Self::Vda5050) }
+    }
+}
+
+/// Reads a layout.
+///
+/// # Errors
+/// [`ImportError`] where the file is not of the format, or holds no layout.
+pub fn layout(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
+    imported(format, text, options, false, warnings)
+}
+
+/// The layout for a vehicle that stands or `moves`.
+fn imported(
+    format: Format,
+    text: &str,
+    options: &Options,
+    moves: bool,
+    warnings: &mut Warnings,
+) -> Result<Imported, ImportError> {
+    let given = given(options)?;
+    let vehicle = options.vehicle(&given, moves, warnings);
+    let layout = match format {
+        Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings)?,
+        Format::Lif => lif::read(text, options, warnings)?,
+        Format::Rmf => rmf::read(text, options, warnings)?,
+        Format::OpenDrive => opendrive::read(text, options, warnings)?,
+        Format::OpenTcs => opentcs::read(text, options, warnings)?,
+        Format::Ccbs => ccbs::roadmap(text, options, warnings)?,
+        Format::Path => return Err(ImportError::new("paths of agents are not a layout")),
+        Format::Vda5050 => return Err(ImportError::new("an order or a state is not a layout")),
+    };
+    Ok(Imported { layout, vehicle })
+}
+
+/// What the configuration of the fleet says about the vehicle.
+fn given(options: &Options) -> Result<Given, ImportError> {
+    let mut given = Given::default();
+    if let Some(file) = &options.fleet {
+        let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
+        let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
+        given = rmf::fleet(&text).map_err(|error| failed(&error))?;
+    }
+    if options.vehicle.is_some() {
+        given.name.clone_from(&options.vehicle);
+    }
+    Ok(given)
+}
+
+/// Reads a scenario: what the file says of agents and motions, or the routes that the options ask for on its layout.
+///
+/// # Errors
+/// [`ImportError`] where the file is not of the format, or a route is not possible.
+pub fn scenario(
+    format: Format,
+    text: &str,
+    options: &Options,
+    warnings: &mut Warnings,
+) -> Result<Scenario, ImportError> {
+    let scenario = match format {
+        Format::Ccbs if xml::root_of(text) != Some("graphml") => plan(text, options, warnings)?,
+        Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
+            let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
+            route::scenario(&layout, &vehicle, options, warnings)?
+        }
+        Format::Path => samples::read(text, options, &options.vehicle(&given(options)?, true, warnings))?,
+        Format::Vda5050 => {
+            let vehicle = options.vehicle(&given(options)?, true, warnings);
+            vda5050::read(text, options, &vehicle, warnings)?
+        }
+    };
+    checked(&scenario)
+}
+
+/// The plan in a log of Continuous-CBS, which gives no radius.
+fn plan(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Scenario, ImportError> {
+    let given = Given { radius: Some(ccbs::RADIUS), ..Given::default() };
+    if options.radius.is_none() {
+        warnings.add("radius", "not in the file; the default of the program, √2/4, is taken");
+    }
+    ccbs::log(text, &options.vehicle(&given, false, warnings))
+}
+
+/// The scenario as its file would be read: what a scenario file may not hold is refused here as well.
+pub(crate) fn checked(scenario: &Scenario) -> Result<Scenario, ImportError> {
+    Scenario::from_json(&scenario.to_json()).map_err(|error| ImportError::new(error.to_string()))
+}

@@ -1,0 +1,166 @@
+//! A layout: nodes, and edges between them with their true geometry, whatever file they come from.
+
+use super::trace::Tracer;
+use crate::scenario::PathSegment;
+use serde::Serialize;
+use std::cmp::Ordering;
+use std::fmt;
+
+/// Name of a node or an edge, as in the source file.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(untagged)]
+pub enum Id {
+    /// A number.
+    Number(u64),
+    /// A text.
+    Text(String),
+}
+
+impl fmt::Display for Id {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Text(text) => text.fmt(f),
+        }
+    }
+}
+
+impl Ord for Id {
+    fn cmp(&self, other: &Self) -> Ordering {
+        match (self, other) {
+            (Self::Number(a), Self::Number(b)) => a.cmp(b),
+            (Self::Text(a), Self::Text(b)) => a.cmp(b),
+            (Self::Number(_), Self::Text(_)) => Ordering::Less,
+            (Self::Text(_), Self::Number(_)) => Ordering::Greater,
+        }
+    }
+}
+
+impl PartialOrd for Id {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// A place where vehicles may stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// As in the file, unique.
+    pub id: Id,
+    /// A second name that the file gives it.
+    pub name: Option<String>,
+    /// Place of its level in [`Layout::levels`].
+    pub level: usize,
+    /// \[m\]
+    pub at: [f64; 2],
+}
+
+/// A line or an arc where the file has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Where it begins \[m\].
+    pub at: [f64; 2],
+    /// Direction there \[rad\].
+    pub heading: f64,
+    /// What it is.
+    pub shape: PathSegment,
+}
+
+impl Placed {
+    /// The line between two points.
+    pub fn line(from: [f64; 2], to: [f64; 2]) -> Self {
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        Self { at: from, heading: y.atan2(x), shape: PathSegment::Line { length: x.hypot(y) } }
+    }
+
+    /// Direction at its end \[rad\].
+    pub fn heading_at_end(&self) -> f64 {
+        match self.shape {
+            PathSegment::Line { .. } => self.heading,
+            PathSegment::Arc { sweep, .. } => self.heading + sweep,
+        }
+    }
+
+    /// Where it ends \[m\].
+    pub fn end(&self) -> [f64; 2] {
+        let (chord, direction) = match self.shape {
+            PathSegment::Line { length } => (length, self.heading),
+            PathSegment::Arc { radius, sweep } => {
+                (2.0 * radius * (sweep.abs() / 2.0).sin(), self.heading + sweep / 2.0)
+            }
+        };
+        [self.at[0] + chord * direction.cos(), self.at[1] + chord * direction.sin()]
+    }
+
+    /// The same, travelled the other way.
+    pub fn reversed(&self) -> Self {
+        let shape = match self.shape {
+            PathSegment::Line { .. } => self.shape,
+            PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
+        };
+        Self { at: self.end(), heading: self.heading_at_end() + std::f64::consts::PI, shape }
+    }
+}
+
+/// A way from node to node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    /// As in the file, unique.
+    pub id: Id,
+    /// Places in [`Layout::nodes`] of the nodes where it begins and ends.
+    pub ends: [usize; 2],
+    /// Its lines and arcs, each beginning where the one before it ends.
+    pub curve: Vec<Placed>,
+    /// Whether it may be travelled backward as well.
+    pub two_way: bool,
+    /// Largest speed \[m/s\], where it is limited.
+    pub speed: Option<f64>,
+    /// Largest speed of rotation \[rad/s\], where it is limited.
+    pub rotation: Option<f64>,
+    /// Largest distance of the curve in the file from `curve` \[m\]: 0 where the file has lines and arcs.
+    pub deviation: f64,
+}
+
+impl Edge {
+    /// Length \[m\].
+    pub fn length(&self) -> f64 {
+        self.curve.iter().map(|placed| placed.shape.length()).sum()
+    }
+}
+
+/// Nodes and edges.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// Name, empty if the file gives none.
+    pub name: String,
+    /// Floors or maps: what lies on different ones cannot collide. At least one if there are nodes.
+    pub levels: Vec<String>,
+    /// The nodes.
+    pub nodes: Vec<Node>,
+    /// The edges.
+    pub edges: Vec<Edge>,
+    /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
+    pub corner_radius: Option<f64>,
+}
+
+impl Layout {
+    /// Place of the node of this id or, if there is none, of this name.
+    pub fn node(&self, name: &str) -> Option<usize> {
+        let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);
+        by_id.or_else(|| self.nodes.iter().position(|node| node.name.as_deref() == Some(name)))
+    }
+
+    /// The path along an edge: start pose, segments, and the largest distance of the curve in the file from them \[m\].
+    pub(crate) fn path_of(&self, edge: &Edge) -> ([f64; 3], Vec<PathSegment>, f64) {
+        let mut tracer = Tracer::default();
+        edge.curve.iter().for_each(|piece| tracer.follow(piece));
+        let trace = tracer.finish(self.nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at));
+        let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
+        (trace.start, path, trace.deviation + edge.deviation)
+    }
+
+    /// Level of an edge: that of the node where it begins.
+    pub fn level(&self, edge: &Edge) -> usize {
+        self.nodes.get(edge.ends[0]).map_or(0, |node| node.level)
+    }
+}

@@ -1,0 +1,34 @@
+//! Trajectories of VDA 5050 and LIF: NURBS in the project's coordinates.
+
+use super::biarc::{Fit, fit};
+use super::nurbs::Nurbs;
+use super::value::Object;
+use super::{ImportError, Warnings};
+
+/// Reads a trajectory and fits lines and arcs to it.
+///
+/// Degree 1 and even knots where they are missing, weight 1 likewise. Some senders give the order, which is the degree plus 1, as
+/// `degree`: where the number of knots says so, it is taken as that, with a warning.
+pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings) -> Result<Fit, ImportError> {
+    let named = |error: ImportError| ImportError::new(format!("{}: {error}", object.name));
+    let mut points = Vec::new();
+    for (k, value) in object.list("controlPoints")?.iter().enumerate() {
+        let point = Object::new(format!("{}, control point {}", object.name, k + 1), value)?;
+        points.push((point.point()?, point.number("weight")?.unwrap_or(1.0)));
+    }
+    let mut knots = Vec::new();
+    for value in object.list("knotVector")? {
+        let knot = value.as_f64().ok_or_else(|| ImportError::new("a knot that is not a number"));
+        knots.push(knot.map_err(named)?);
+    }
+    let mut degree = match object.number("degree")? {
+        None => 1,
+        Some(degree) if degree.fract() == 0.0 && (1.0..=64.0).contains(&degree) => degree as usize,
+        Some(degree) => return Err(named(ImportError::new(format!("degree {degree}, which is no degree")))),
+    };
+    if degree > 1 && !knots.is_empty() && knots.len() == points.len() + degree {
+        warnings.add(&object.name, "its degree is one more than its knots say; it is taken as the order of the curve");
+        degree -= 1;
+    }
+    fit(&Nurbs { degree, knots, points }.beziers().map_err(named)?, tolerance).map_err(named)
+}

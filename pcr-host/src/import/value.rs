@@ -1,0 +1,114 @@
+//! Lenient reading of JSON: `null` is as good as nothing, and what has the wrong type is named.
+
+use super::ImportError;
+use crate::scenario::LIMIT;
+use serde_json::{Map, Value};
+
+/// The value in a JSON text; a byte order mark at its start is skipped.
+pub(super) fn parse(text: &str) -> Result<Value, ImportError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    serde_json::from_str(text).map_err(|error| ImportError::new(format!("not JSON: {error}")))
+}
+
+/// An object and how messages name it.
+#[derive(Clone, Debug)]
+pub(super) struct Object<'j> {
+    pub(super) name: String,
+    members: &'j Map<String, Value>,
+}
+
+impl<'j> Object<'j> {
+    pub(super) fn new(name: impl Into<String>, value: &'j Value) -> Result<Self, ImportError> {
+        let name = name.into();
+        match value {
+            Value::Object(members) => Ok(Self { name, members }),
+            other => Err(ImportError::new(format!("{name}: {} where an object is expected", kind(other)))),
+        }
+    }
+
+    /// The same under another name.
+    pub(super) fn called(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// All members with their names.
+    pub(super) fn members(&self) -> impl Iterator<Item = (&'j String, &'j Value)> + use<'j> {
+        self.members.iter()
+    }
+
+    /// A member that is there and not `null`.
+    pub(super) fn get(&self, field: &str) -> Option<&'j Value> {
+        self.members.get(field).filter(|value| !value.is_null())
+    }
+
+    pub(super) fn missing(&self, field: &str) -> ImportError {
+        ImportError::new(format!("{}, {field}: missing", self.name))
+    }
+
+    fn unexpected(&self, field: &str, found: &Value, expected: &str) -> ImportError {
+        ImportError::new(format!("{}, {field}: {} where {expected} is expected", self.name, kind(found)))
+    }
+
+    pub(super) fn object(&self, field: &str) -> Result<Option<Object<'j>>, ImportError> {
+        self.get(field).map(|value| Object::new(format!("{}, {field}", self.name), value)).transpose()
+    }
+
+    /// The elements of a list; none where it is missing.
+    pub(super) fn list(&self, field: &str) -> Result<&'j [Value], ImportError> {
+        match self.get(field) {
+            None => Ok(&[]),
+            Some(Value::Array(elements)) => Ok(elements),
+            Some(other) => Err(self.unexpected(field, other, "a list")),
+        }
+    }
+
+    /// A number of a magnitude that can be computed with.
+    pub(super) fn number(&self, field: &str) -> Result<Option<f64>, ImportError> {
+        let Some(value) = self.get(field) else {
+            return Ok(None);
+        };
+        let number = value.as_f64().ok_or_else(|| self.unexpected(field, value, "a number"))?;
+        if number.abs() <= LIMIT {
+            Ok(Some(number))
+        } else {
+            Err(ImportError::new(format!(
+                "{}, {field}: {number:e} is out of range; allowed is up to {LIMIT:e}",
+                self.name
+            )))
+        }
+    }
+
+    pub(super) fn required(&self, field: &str) -> Result<f64, ImportError> {
+        self.number(field)?.ok_or_else(|| self.missing(field))
+    }
+
+    /// A number above zero.
+    pub(super) fn positive(&self, field: &str) -> Result<Option<f64>, ImportError> {
+        match self.number(field)? {
+            Some(number) if number <= 0.0 => {
+                Err(ImportError::new(format!("{}, {field}: {number} where a number above 0 is expected", self.name)))
+            }
+            number => Ok(number),
+        }
+    }
+
+    pub(super) fn text(&self, field: &str) -> Result<Option<&'j str>, ImportError> {
+        self.get(field).map(|value| value.as_str().ok_or_else(|| self.unexpected(field, value, "a text"))).transpose()
+    }
+
+    /// `x` and `y`.
+    pub(super) fn point(&self) -> Result<[f64; 2], ImportError> {
+        Ok([self.required("x")?, self.required("y")?])
+    }
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "true or false",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a text",
+        Value::Array(_) => "a list",
+        Value::Object(_) => "an object",
+    }
+}

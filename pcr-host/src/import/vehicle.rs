@@ -1,0 +1,191 @@
+//! The vehicle that travels a layout, and what the command line says about it and its routes.
+
+use super::{Format, ImportError, Warnings};
+use clap::Args;
+use std::path::PathBuf;
+
+/// What a vehicle is and can.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vehicle {
+    /// Name or type, where it has one.
+    pub name: Option<String>,
+    /// Radius of its disc \[m\].
+    pub radius: f64,
+    /// Margin to be kept around it \[m\].
+    pub margin: f64,
+    /// \[m/s\]
+    pub speed: f64,
+    /// \[m/s²\]
+    pub acceleration: f64,
+    /// \[rad/s\]
+    pub rotation: f64,
+    /// \[rad/s²\]
+    pub rotation_acceleration: f64,
+}
+
+/// What a file says about the vehicle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Given {
+    pub(super) name: Option<String>,
+    pub(super) radius: Option<f64>,
+    pub(super) margin: Option<f64>,
+    pub(super) speed: Option<f64>,
+    pub(super) acceleration: Option<f64>,
+    pub(super) rotation: Option<f64>,
+    pub(super) rotation_acceleration: Option<f64>,
+}
+
+/// Largest deviation of a fitted path from a curve, if no other is asked for \[m\].
+pub const TOLERANCE: f64 = 1e-3;
+
+/// Corner radius of nav2 \[m\].
+pub const CORNER_RADIUS: f64 = 1.0;
+
+/// How to read files that are not scenarios.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Options {
+    /// Format of the file; by its name and content if left out
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub from: Option<Format>,
+    /// Route on a layout: from node to node, setting off at a time in seconds (0 if left out); give one for each agent
+    #[arg(long = "route", value_name = "FROM:TO[@TIME]")]
+    pub routes: Vec<String>,
+    /// Radius of the vehicle
+    #[arg(long, value_name = "M", value_parser = positive)]
+    pub radius: Option<f64>,
+    /// Margin to keep around each disc that has none of its own; regions with margins are listed apart from contact
+    #[arg(long, value_name = "M", value_parser = not_negative)]
+    pub margin: Option<f64>,
+    /// Largest speed of the vehicle
+    #[arg(long, value_name = "M/S", value_parser = positive)]
+    pub speed: Option<f64>,
+    /// Largest acceleration of the vehicle
+    #[arg(long, value_name = "M/S2", value_parser = positive)]
+    pub acceleration: Option<f64>,
+    /// Largest speed of rotation of the vehicle
+    #[arg(long, value_name = "RAD/S", value_parser = positive)]
+    pub rotation: Option<f64>,
+    /// Largest angular acceleration of the vehicle
+    #[arg(long, value_name = "RAD/S2", value_parser = positive)]
+    pub rotation_acceleration: Option<f64>,
+    /// Type of the vehicle, where a layout has several (LIF)
+    #[arg(long, value_name = "TYPE")]
+    pub vehicle: Option<String>,
+    /// Configuration of the fleet (Open-RMF), with speeds and radii
+    #[arg(long, value_name = "FILE")]
+    pub fleet: Option<PathBuf>,
+    /// Radius of corners (nav2: 1 if left out)
+    #[arg(long, value_name = "M", value_parser = not_negative)]
+    pub corner_radius: Option<f64>,
+    /// Largest distance of lines and arcs from a curve that they replace, added to the radius (0.001 if left out)
+    #[arg(long, value_name = "M", value_parser = positive)]
+    pub tolerance: Option<f64>,
+    /// Navigation graph, where a building has several (Open-RMF)
+    #[arg(long, value_name = "N")]
+    pub graph: Option<u64>,
+    /// Travel the horizon of an order as well, not only its base (VDA 5050)
+    #[arg(long)]
+    pub horizon: bool,
+}
+
+/// Largest value of an option: beyond it nothing is a vehicle.
+const MOST: f64 = 1e6;
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=MOST).contains(&number) => Ok(number),
+        _ => Err(format!("a number from 0 to {MOST:e} is expected")),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match not_negative(text) {
+        Ok(number) if number >= 1.0 / MOST => Ok(number),
+        _ => Err(format!("a number from {:e} to {MOST:e} is expected", 1.0 / MOST)),
+    }
+}
+
+impl Options {
+    /// Whether anything is asked for that a scenario file has itself.
+    pub fn any(&self) -> bool {
+        let numbers = [
+            self.radius,
+            self.speed,
+            self.acceleration,
+            self.rotation,
+            self.rotation_acceleration,
+            self.corner_radius,
+            self.tolerance,
+        ];
+        numbers.iter().any(Option::is_some) || !self.routes.is_empty() || self.vehicle.is_some() || self.fleet.is_some()
+    }
+
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(TOLERANCE)
+    }
+
+    /// The vehicle: what the options say, else the file, else a default that is warned about. If nothing `moves` only the
+    /// radius matters.
+    pub(super) fn vehicle(&self, given: &Given, moves: bool, warnings: &mut Warnings) -> Vehicle {
+        let mut assumed = Vec::new();
+        let mut choose = |option: Option<f64>, given: Option<f64>, default: f64, what: &str| {
+            option.or(given).unwrap_or_else(|| {
+                assumed.push(format!("{what} {default}"));
+                default
+            })
+        };
+        let radius = choose(self.radius, given.radius, 0.5, "radius [m]");
+        let vehicle = Vehicle {
+            name: given.name.clone(),
+            radius,
+            margin: self.margin.or(given.margin).unwrap_or(0.0),
+            speed: choose(self.speed, given.speed, 1.0, "speed [m/s]"),
+            acceleration: choose(self.acceleration, given.acceleration, 0.5, "acceleration [m/s²]"),
+            rotation: choose(self.rotation, given.rotation, 1.0, "rotation [rad/s]"),
+            rotation_acceleration: choose(
+                self.rotation_acceleration,
+                given.rotation_acceleration,
+                1.0,
+                "rotation-acceleration [rad/s²]",
+            ),
+        };
+        if !moves {
+            assumed.retain(|what| what.starts_with("radius"));
+        }
+        if !assumed.is_empty() {
+            warnings.add("vehicle", format!("not in the file and not given, hence taken as: {}", assumed.join(", ")));
+        }
+        vehicle
+    }
+}
+
+/// A route that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Asked {
+    pub(super) ends: [usize; 2],
+    pub(super) time: f64,
+}
+
+impl Asked {
+    /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons.
+    pub(super) fn parse(text: &str, node: impl Fn(&str) -> Option<usize>) -> Result<Self, ImportError> {
+        let ends = |text: &str| {
+            text.match_indices(':')
+                .find_map(|(colon, _)| Some([node(text.get(..colon)?)?, node(text.get(colon + 1..)?)?]))
+        };
+        let timed = || {
+            let (text, time) = text.rsplit_once('@')?;
+            let time = time.parse::<f64>().ok().filter(|time| time.abs() <= MOST)?;
+            Some(Self { ends: ends(text)?, time })
+        };
+        if let Some(asked) = ends(text).map(|ends| Self { ends, time: 0.0 }).or_else(timed) {
+            return Ok(asked);
+        }
+        let names = text.rsplit_once('@').map_or(text, |(names, _)| names);
+        let unknown = names.split_once(':').map(|(from, to)| if node(from).is_none() { from } else { to });
+        Err(ImportError::new(match unknown {
+            Some(name) if node(name).is_none() => format!("route {text}: there is no node {name}"),
+            _ => format!("route {text}: FROM:TO or FROM:TO@TIME is expected"),
+        }))
+    }
+}

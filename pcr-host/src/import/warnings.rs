@@ -1,0 +1,61 @@
+//! What a lenient reader has to say about a file that it reads nevertheless.
+
+use std::fmt;
+
+/// Names of one warning that are listed; the others are counted.
+const LISTED: usize = 8;
+
+/// Warnings, each with the names of what it is about.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Warnings {
+    list: Vec<(String, Vec<String>)>,
+}
+
+impl Warnings {
+    /// Adds a warning about the thing of this name. Warnings of the same words are told once, with all their names.
+    pub(crate) fn add(&mut self, name: impl fmt::Display, problem: impl Into<String>) {
+        let (name, problem) = (name.to_string(), problem.into());
+        match self.list.iter_mut().find(|(other, _)| *other == problem) {
+            Some((_, names)) => names.push(name),
+            None => self.list.push((problem, vec![name])),
+        }
+    }
+
+    /// Whether there is nothing to warn about.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The warnings: problems, and the names of what has them, in the order in which they were found.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.list.iter().map(|(problem, names)| (problem.as_str(), names.as_slice()))
+    }
+
+    /// The lines in which they are told.
+    pub fn lines(&self) -> Vec<String> {
+        let line = |(problem, names): &(String, Vec<String>)| {
+            let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+            match names.len().saturating_sub(LISTED) {
+                0 => format!("{listed}: {problem}"),
+                more => format!("{listed} and {more} more: {problem}"),
+            }
+        };
+        self.list.iter().map(line).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_words_are_told_once() {
+        let mut warnings = Warnings::default();
+        for k in 0..10 {
+            warnings.add(format_args!("edge {k}"), "too short");
+        }
+        warnings.add("node 3", "given twice");
+        let edges = (0..8).map(|k| format!("edge {k}")).collect::<Vec<_>>().join(", ");
+        assert_eq!(warnings.lines(), [format!("{edges} and 2 more: too short"), "node 3: given twice".to_owned()]);
+    }
+}

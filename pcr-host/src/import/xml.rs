@@ -1,0 +1,61 @@
+//! Lenient reading of XML: attributes as numbers, and messages that name the element.
+
+use super::ImportError;
+use crate::scenario::LIMIT;
+use roxmltree::{Document, Node};
+
+/// Deepest nesting of elements that is read: the parser recurses.
+const DEPTH: usize = 200;
+
+/// The document in a text; a byte order mark at its start is skipped.
+pub(super) fn parse(text: &str) -> Result<Document<'_>, ImportError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut depth = 0_usize;
+    for tag in text.split('<').skip(1) {
+        let closes = tag.starts_with('/') || tag.starts_with('?') || tag.starts_with('!');
+        let empty = tag.split('>').next().is_some_and(|tag| tag.ends_with('/'));
+        depth = if tag.starts_with('/') { depth.saturating_sub(1) } else { depth + usize::from(!closes && !empty) };
+        if depth > DEPTH {
+            return Err(ImportError::new(format!("not XML that is read: nested deeper than {DEPTH} elements")));
+        }
+    }
+    Document::parse(text).map_err(|error| ImportError::new(format!("not XML: {error}")))
+}
+
+/// The name of the first element of a text, where it begins like XML.
+pub(super) fn root_of(text: &str) -> Option<&str> {
+    let mut rest = text.strip_prefix('\u{feff}').unwrap_or(text).trim_start();
+    loop {
+        let (skipped, end) = match rest {
+            _ if rest.starts_with("<?") => (2, "?>"),
+            _ if rest.starts_with("<!--") => (4, "-->"),
+            _ => break,
+        };
+        let end = rest.get(skipped..)?.find(end)? + skipped + end.len();
+        rest = rest.get(end..)?.trim_start();
+    }
+    let name = rest.strip_prefix('<')?;
+    name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()
+}
+
+/// An attribute as a number.
+pub(super) fn number(node: Node<'_, '_>, name: &str, attribute: &str) -> Result<f64, ImportError> {
+    let text = node.attribute(attribute).ok_or_else(|| ImportError::new(format!("{name}, {attribute}: missing")))?;
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.abs() <= LIMIT => Ok(number),
+        _ => {
+            let text: String = text.chars().take(40).collect();
+            Err(ImportError::new(format!("{name}, {attribute}: {text:?} where a number up to {LIMIT:e} is expected")))
+        }
+    }
+}
+
+/// The children of an element of this name.
+pub(super) fn children<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |child| child.has_tag_name(name))
+}
+
+/// The first child of this name.
+pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
+    children(node, name).next()
+}

@@ -1,0 +1,80 @@
+//! From a scenario to its file.
+
+use super::{Agent, MotionSpec, PathSegment, Scenario};
+use serde_json::Value;
+use std::fmt::{self, Display};
+
+impl Scenario {
+    /// The file of the scenario, an agent a line. Every number is written with all its digits, so that
+    /// [`Scenario::from_json`] reads the same paths back.
+    pub fn to_json(&self) -> String {
+        let agents = self.agents.iter().map(|agent| format!("    {}", Json(agent))).collect::<Vec<_>>().join(",\n");
+        let agents = if agents.is_empty() { "[]".to_owned() } else { format!("[\n{agents}\n  ]") };
+        format!("{{ \"name\": {},\n  \"agents\": {agents} }}\n", Value::from(self.name.as_str()))
+    }
+}
+
+/// Something as JSON writes it.
+struct Json<T>(T);
+
+impl Display for Json<&Agent> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Agent { id, radius, margin, t_start, start: [x, y, heading], path, motion } = self.0;
+        write!(f, "{{ \"id\": {id}, \"radius\": {radius:?}, ")?;
+        if *margin > 0.0 {
+            write!(f, "\"margin\": {margin:?}, ")?;
+        }
+        write!(f, "\"t_start\": {t_start:?}, ")?;
+        write!(f, "\"start\": {{ \"x\": {x:?}, \"y\": {y:?}, \"heading\": {heading:?} }}, \"path\": [")?;
+        for (k, segment) in path.iter().enumerate() {
+            let comma = if k > 0 { "," } else { "" };
+            match segment {
+                PathSegment::Line { length } => write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?} }}")?,
+                PathSegment::Arc { radius, sweep } => {
+                    write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?} }}")?;
+                }
+            }
+        }
+        f.write_str(if path.is_empty() { "], " } else { " ], " })?;
+        match motion {
+            MotionSpec::RestToRest { v_max, a_max } => write!(f, "\"v_max\": {v_max:?}, \"a_max\": {a_max:?} }}"),
+            MotionSpec::Profile { v0, pieces } => {
+                write!(f, "\"profile\": {{ \"v0\": {v0:?}, \"pieces\": [")?;
+                for (k, (duration, accel)) in pieces.iter().enumerate() {
+                    let comma = if k > 0 { "," } else { "" };
+                    write!(f, "{comma} {{ \"duration\": {duration:?}, \"accel\": {accel:?} }}")?;
+                }
+                f.write_str(if pieces.is_empty() { "] } }" } else { " ] } }" })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let agent = Agent {
+            id: u64::MAX,
+            radius: 1.0 / 3.0,
+            margin: 0.1,
+            t_start: -1e9,
+            start: [1e-300, -7.0, 0.1 + 0.2],
+            path: vec![PathSegment::Line { length: 0.5 }, PathSegment::Arc { radius: 1e-9, sweep: -1e-9 }],
+            motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
+        };
+        let length = agent.length();
+        let stands = Agent { id: 0, margin: 0.0, path: Vec::new(), ..agent.clone() };
+        let moves = Agent {
+            id: 1,
+            motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
+            ..agent.clone()
+        };
+        let scenario = Scenario { name: "a \"name\"\n\\".into(), agents: vec![agent, stands, moves] };
+        assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+        let empty = Scenario { name: String::new(), agents: Vec::new() };
+        assert_eq!(Scenario::from_json(&empty.to_json()), Ok(empty));
+    }
+}

@@ -1,0 +1,61 @@
+//! Files of other formats: by their extension or `--from`, with warnings on standard error.
+
+use crate::fixture::{file, run, run_with};
+use serde_json::Value;
+
+const WAREHOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+const VEHICLE: [&str; 10] =
+    ["--radius", "0.4", "--speed", "1", "--acceleration", "0.5", "--rotation", "1", "--rotation-acceleration", "1"];
+
+#[test]
+fn every_command_reads_a_layout_with_routes() {
+    let routes = ["--route", "0:50", "--route", "50:0"];
+    let regions = run(&[&["regions", WAREHOUSE, "--format", "json"], &routes[..], &VEHICLE].concat());
+    assert_eq!(regions.status, 0, "{}", regions.err);
+    // The drawing of the graph does not match its nodes.
+    assert_eq!(regions.err.lines().count(), 1);
+    assert!(regions.err.starts_with("pcr: warning: ") && regions.err.contains("edge 10118"), "{}", regions.err);
+    let imported = run(&[&["import", "nav2", WAREHOUSE], &routes[..], &VEHICLE].concat());
+    assert_eq!(imported.status, 0, "{}", imported.err);
+    let scenario = file("import", "scenario.json", &imported.out);
+    let again: Value = run(&["regions", &scenario, "--format", "json"]).json();
+    let direct: Value = serde_json::from_str(&regions.out).unwrap();
+    let (direct, again) = (direct["regions"].as_array().unwrap(), again["regions"].as_array().unwrap());
+    assert!(direct.len() == again.len() && !direct.is_empty(), "they meet");
+    for (direct, again) in direct.iter().zip(again) {
+        assert_eq!((&direct["i"], &direct["j"], &direct["l"]), (&again["i"], &again["j"], &again["l"]));
+        let time = |region: &Value, k: usize| region["t"][k].as_f64().unwrap();
+        // A profile is scaled by its last digit whenever it is read.
+        assert!((0..2).all(|k| (time(direct, k) - time(again, k)).abs() < 1e-9));
+    }
+}
+
+#[test]
+fn a_format_may_be_named_and_come_through_a_pipe() {
+    let graph = std::fs::read(WAREHOUSE).unwrap();
+    let piped = run_with(&[&["regions", "-", "--from", "nav2", "--route", "0:50"], &VEHICLE[..]].concat(), &graph);
+    assert_eq!(piped.status, 0, "{}", piped.err);
+    let name = file("import", "graph.txt", &graph);
+    let written = std::path::Path::new(&name).with_file_name("written.json");
+    let arguments = ["import", "nav2", &name, "--route", "3:4", "-o", written.to_str().unwrap()];
+    let run = run(&[&arguments, &VEHICLE[..]].concat());
+    assert_eq!((run.status, run.out.as_str()), (0, ""));
+    assert!(std::fs::read_to_string(written).unwrap().starts_with("{ \"name\": \"warehouse_graph\""));
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let failed = run(&["regions", WAREHOUSE, "--route", "0:1000"]).failed(2);
+    assert!(failed.ends_with("route 0:1000: there is no node 1000 (read as nav2)\n"), "{failed}");
+    let scenario = file("import", "plain.json", crate::fixture::crossing().to_string());
+    let failed = run(&["regions", &scenario, "--radius", "1"]).failed(2);
+    assert!(
+        failed.ends_with("a scenario has its own vehicles and paths; options for layouts are of no use\n"),
+        "{failed}"
+    );
+    let failed = run(&["regions", &scenario, "--from", "nav2"]).failed(2);
+    assert!(failed.ends_with("graph, features: missing (read as nav2)\n"), "{failed}");
+    let refused = run(&["regions", WAREHOUSE, "--radius=-1"]);
+    assert_eq!(refused.status, 2);
+    assert!(refused.err.contains("a number from 1e-6 to 1e6 is expected"), "{}", refused.err);
+}

@@ -1,0 +1,80 @@
+//! `pcr plan`: a plan is a scenario that the check finds free.
+
+use crate::fixture::{crossing, directory, file, run, straight};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+/// The report of a plan, and the scenario it wrote.
+fn plan(name: &str, scenario: &Value, arguments: &[&str]) -> (i32, Value, Option<String>) {
+    let input = file("plan", &format!("{name}.json"), scenario.to_string());
+    let output = directory("plan").join(format!("{name}-plan.json"));
+    let _ = fs::remove_file(&output);
+    let output = output.to_str().unwrap().to_owned();
+    let run = run(&[&["plan", &input, "-o", &output, "--format", "json"], arguments].concat());
+    assert_eq!(run.err, "");
+    let written = Path::new(&output).exists().then_some(output);
+    (run.status, serde_json::from_str(&run.out).unwrap(), written)
+}
+
+#[test]
+fn a_crossing_is_resolved_by_the_delay_of_the_second() {
+    let (status, report, written) = plan("crossing", &crossing(), &["--priority", "2"]);
+    assert_eq!((status, &report["order"], &report["method"]), (0, &json!([2, 1]), &json!("delay")));
+    let delays = [0, 1].map(|k| report["agents"][k]["delay"].as_f64().unwrap());
+    // Both pass the crossing at 1 m/s, but the first begins to slow down a second after: a little more than R √2.
+    assert!(delays[1] == 0.0 && (0.7..0.72).contains(&delays[0]), "{delays:?}");
+    assert_eq!((&report["lower_bound"], &report["unsolved"]), (&json!(10.0), &json!([])));
+    assert!((report["makespan"].as_f64().unwrap() - 5.0 - delays[0]).abs() < 1e-12);
+    assert!((report["sum_of_costs"].as_f64().unwrap() - 10.0 - delays[0]).abs() < 1e-12);
+    let free = run(&["check", &written.unwrap(), "--format", "json"]);
+    assert_eq!(free.json()["conflicts"], json!([]));
+}
+
+#[test]
+fn the_papers_agents_are_resolved_and_the_plan_is_free() {
+    let output = directory("plan").join("paper12-plan.json").to_str().unwrap().to_owned();
+    let table = run(&["plan", "-o", &output]).ok();
+    assert!(table.starts_with("paper12: a plan without conflicts, by start delays"), "{table}");
+    assert!(table.lines().count() == 15 && table.contains("makespan"), "{table}");
+    let check = run(&["check", &output]).ok();
+    assert_eq!(check, "paper12: no conflicts\n");
+    let csv = run(&["plan", "--format", "csv"]).ok();
+    assert!(csv.starts_with("name,id,delay,t_end\npaper12,1,") && csv.lines().count() == 13, "{csv}");
+}
+
+#[test]
+fn what_cannot_work_is_named_and_nothing_is_written() {
+    let head_on =
+        json!({ "agents": [straight(4, [0.0, 0.0, 0.0], 4.0), straight(9, [4.0, 0.0, std::f64::consts::PI], 4.0)] });
+    let (status, report, written) = plan("head-on", &head_on, &[]);
+    assert_eq!((status, &report["agents"], written), (1, &json!([]), None));
+    let unsolved = &report["unsolved"][0];
+    assert_eq!(unsolved["ids"], json!([9, 4]));
+    assert!(unsolved["why"].as_str().unwrap().contains("head-on without a passing place"), "{unsolved}");
+}
+
+#[test]
+fn margins_are_kept() {
+    let mut wide = crossing();
+    wide["agents"][0]["margin"] = json!(0.1);
+    let (_, near, _) = plan("near", &crossing(), &["--priority", "1,2"]);
+    let (_, far, _) = plan("far", &wide, &["--priority", "1,2"]);
+    let delay = |report: &Value| report["agents"][1]["delay"].as_f64().unwrap();
+    assert!(delay(&far) > delay(&near) + 0.1, "{far} {near}");
+}
+
+#[test]
+fn what_is_refused() {
+    let input = file("plan", "refused.json", crossing().to_string());
+    let message = run(&["plan", &input, "--priority", "3"]).failed(2);
+    assert_eq!(message, format!("pcr: {input}: no agent 3; there are 1, 2\n"));
+    for wrong in ["fast", "1,1", "1,,2", "-1"] {
+        let run = run(&["plan", &input, &format!("--priority={wrong}")]);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{wrong}");
+    }
+    let blocked = format!("{}/plan.json", file("plan", "blocked", ""));
+    let message = run(&["plan", &input, "-o", &blocked]).failed(3);
+    assert!(message.starts_with(&format!("pcr: {blocked}: cannot be written: ")), "{message}");
+    assert!(run(&["plan", "--help"]).ok().contains("  1  no plan\n"));
+}

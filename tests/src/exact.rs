@@ -1,0 +1,10 @@
+//! Positions, travelled lengths and times in 106 bits, for the format's numbers as exact input: what the bounds of
+//! `docs/errors.md` are held against, `f64`'s included. Nothing is shared with the library but the numbers.
+
+mod route;
+mod travel;
+mod twofold;
+
+pub use route::{Place, Route};
+pub use travel::Travel;
+pub use twofold::Twofold;

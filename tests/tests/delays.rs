@@ -1,0 +1,198 @@
+//! Start delays: every region forbids the interval that the definition forbids, and known answers.
+
+use pcr_core::{Encounter, Interval, RegionRef, earliest_start, union};
+use pcr_host::fleet::{Format, build_ecm};
+use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::generators::driven_pairs;
+use pcr_tests::oracle::Pair;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+fn config() -> ProptestConfig {
+    let cases = if cfg!(debug_assertions) { 60 } else { 1_500 };
+    let rng_seed = RngSeed::Fixed(43);
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed,
+        max_global_rejects: cases,
+        ..ProptestConfig::default()
+    }
+}
+
+/// Delays between which the forbidden set is sampled, in both directions.
+const SAMPLES: u32 = 60;
+
+/// Contacts as `tests/conflicts.rs` certifies them, at delays inside and outside of what the regions forbid.
+fn audited<S: Format>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(), TestCaseError> {
+    let course = |k: usize| {
+        let (drive, start) = &drives[k];
+        Course::<S>::driven(&discs[k].rounded::<S>(), &drive.rounded::<S>(), S::from_f64(*start).to_f64())
+    };
+    let (Ok(ego), Ok(other)) = (course(0), course(1)) else {
+        return Err(TestCaseError::reject("does not fit"));
+    };
+    let fleet = [ego.motion(), other.motion()];
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let regions: Vec<RegionRef<'_, S>> = ecm.pair(&fleet, 0, 1).collect();
+    // A region that is all slack forbids what its ranges allow.
+    let pair = Pair::new(&discs[0].rounded::<S>(), &discs[1].rounded::<S>());
+    let tolerance = Encounter::new(&fleet[0], &fleet[1]).tolerance().to_f64();
+    let deep = |region: &RegionRef<'_, S>| {
+        let (time, from) = (region.other_length(), region.other_motion());
+        (0..=SAMPLES).any(|k| {
+            let s = time.lo.to_f64() + time.length().to_f64() * f64::from(k) / f64::from(SAMPLES);
+            let at = from.time_in(Interval::new(S::from_f64(s), S::from_f64(s))).lo;
+            let s = from.length_at(at);
+            region.slice_at(at).any(|slice| pair.clearance(s.to_f64(), slice.middle().to_f64()) < -2.0 * tolerance)
+        })
+    };
+    if !regions.iter().all(deep) {
+        return Err(TestCaseError::reject("discs that only touch"));
+    }
+    let forbidden: Vec<Interval<S>> = union(regions.iter().map(RegionRef::forbidden_delays)).collect();
+
+    let [own, their] = [fleet[0].time(), fleet[1].time()];
+    let (lo, hi) = ((their.lo - own.hi).to_f64() - 1.0, (their.hi - own.lo).to_f64() + 1.0);
+    let ends = forbidden.iter().flat_map(|interval| [interval.lo, interval.hi]).filter(|end| end.abs() < S::LIMIT);
+    let even = (0..=SAMPLES).map(|k| S::from_f64(lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES)));
+    for delay in even.chain(ends) {
+        let Ok(delayed) = fleet[0].delayed(delay) else { continue };
+        let encounter = Encounter::new(&delayed, &fleet[1]);
+        // Long before and after: both stand.
+        let one = S::from_f64(1.0);
+        let during = Interval::new(encounter.time().lo - one, encounter.time().hi + one);
+        let closest = encounter.closest(during);
+        let clearance = (closest.separation - encounter.radius()).to_f64();
+        // Inside the closed interval, but not at its ends, where the search stopped outside.
+        let is_forbidden = forbidden.iter().any(|interval| interval.lo < delay && delay < interval.hi);
+        let slip = slip(&encounter, &fleet[0], &fleet[1]);
+        if is_forbidden {
+            prop_assert!(clearance <= slip, "free at {delay:?} by {clearance}: {forbidden:?}");
+        } else {
+            let tolerance = encounter.tolerance().to_f64();
+            prop_assert!(clearance >= -tolerance, "met at {delay:?} by {clearance}: {forbidden:?}");
+        }
+    }
+
+    // The earliest start is free, and no later than the end of what is forbidden; discs that just touch all the time may
+    // count as forbidden or free.
+    for from in [S::from_f64(lo), S::ZERO] {
+        let clearance_at = |delay: S| {
+            let delayed = fleet[0].delayed(delay).expect("a valid delay");
+            let encounter = Encounter::new(&delayed, &fleet[1]);
+            let clearance = (encounter.closest(encounter.time()).separation - encounter.radius()).to_f64();
+            (clearance, slip(&encounter, &fleet[0], &fleet[1]), encounter.tolerance().to_f64())
+        };
+        let end = forbidden.iter().find(|interval| interval.lo <= from && from < interval.hi);
+        let end = end.map_or(from, |interval| interval.hi);
+        match earliest_start(regions.iter().cloned(), from) {
+            Some(found) => {
+                let (clearance, slip, tolerance) = clearance_at(found);
+                // An ego that hardly moves is hardly nearer a little earlier.
+                let late = (found - end).to_f64() > slip && clearance_at(end).0 > slip;
+                prop_assert!(from <= found && !late, "{found:?} for {end:?}");
+                prop_assert!(clearance >= -tolerance, "{clearance} at {found:?}");
+            }
+            None if end >= S::LIMIT => {}
+            None => {
+                let (clearance, slip, _) = clearance_at(end);
+                prop_assert!(clearance <= slip, "free by {clearance} at {end:?}: {forbidden:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What the bracket of a delay may be off, as a distance at top speed and as a time.
+fn slip<S: Format>(
+    encounter: &Encounter<'_, S>,
+    ego: &pcr_core::Motion<'_, S>,
+    other: &pcr_core::Motion<'_, S>,
+) -> f64 {
+    let latest = |time: Interval<S>| time.lo.abs().max(time.hi.abs());
+    let bracket = S::tolerance(latest(ego.time()).max(latest(other.time()))).to_f64();
+    let speed = ego.profile().top_speed().to_f64() + other.profile().top_speed().to_f64();
+    encounter.tolerance().to_f64() + 2.0 * bracket * speed.max(1.0)
+}
+
+proptest! {
+    #![proptest_config(config())]
+    #[test]
+    fn regions_forbid_what_the_definition_forbids_f64((pair, drives) in driven_pairs()) {
+        audited::<f64>([&pair.0, &pair.1], &drives)?;
+    }
+
+    #[test]
+    fn regions_forbid_what_the_definition_forbids_f32((pair, drives) in driven_pairs()) {
+        audited::<f32>([&pair.0, &pair.1], &drives)?;
+    }
+}
+
+fn line(start: [f64; 3], length: f64, speed: f64) -> Course<f64> {
+    let disc = Disc { radius: 0.25, start, legs: vec![Leg::Line(length)] };
+    Course::driven(&disc, &Drive::Pieces(speed, vec![(length / speed, 0.0)]), 0.0).expect("a valid disc")
+}
+
+fn forbidden(courses: [&Course<f64>; 2]) -> Vec<Interval<f64>> {
+    let fleet = courses.map(Course::motion);
+    let ecm = build_ecm(&fleet).expect("a small table");
+    ecm.pair(&fleet, 0, 1).map(|region| region.forbidden_delays()).collect()
+}
+
+#[test]
+fn a_crossing_at_constant_speeds_forbids_the_interval_of_the_closed_form() {
+    for (angle, v, w) in [(FRAC_PI_2, 1.0, 1.0), (FRAC_PI_2, 0.5, 2.0), (1.0, 1.2, 0.7), (2.5, 0.4, 0.9)] {
+        let (sin, cos) = angle.sin_cos();
+        let found = forbidden([&line([-4.0, 0.0, 0.0], 8.0, v), &line([-4.0 * cos, -4.0 * sin, angle], 8.0, w)]);
+        // They pass the crossing at 4 / v and 4 / w; R = 0.5.
+        let middle = 4.0 / w - 4.0 / v;
+        let half = 0.5 * (v * v + w * w - 2.0 * v * w * cos).sqrt() / (v * w * sin);
+        let [interval] = found[..] else { panic!("{found:?}") };
+        let off = (interval.lo - (middle - half)).abs().max((interval.hi - (middle + half)).abs());
+        assert!(off < 1e-8, "{interval:?} for {} to {}", middle - half, middle + half);
+        assert!(interval.lo <= middle - half && middle + half <= interval.hi, "outward");
+    }
+}
+
+#[test]
+fn agents_head_on_on_one_line_are_never_free() {
+    let found = forbidden([&line([0.0, 0.0, 0.0], 4.0, 1.0), &line([4.0, 0.0, PI], 4.0, 1.0)]);
+    // Late, the ego is met at its start; early, the other is.
+    assert_eq!(found, [Interval::new(-1e12, 1e12)]);
+}
+
+#[test]
+fn following_needs_the_headway_of_the_slower_one() {
+    // The other sets off 0.6 m ahead and goes on beyond the end of the ego's path. As fast as it: 0.1 s to spare.
+    let found = forbidden([&line([0.0, 0.0, 0.0], 4.0, 1.0), &line([0.6, 0.0, 0.0], 8.0, 1.0)]);
+    let [interval] = found[..] else { panic!("{found:?}") };
+    assert!(interval.lo == -1e12 && (interval.hi + 0.1).abs() < 1e-8, "{interval:?}");
+    // At half the speed it leaves the ego's goal behind by R after 3.9 m or 7.8 s; the ego may arrive then, after its 4 s.
+    let found = forbidden([&line([0.0, 0.0, 0.0], 4.0, 1.0), &line([0.6, 0.0, 0.0], 8.0, 0.5)]);
+    let [interval] = found[..] else { panic!("{found:?}") };
+    assert!(interval.lo == -1e12 && (interval.hi - 3.8).abs() < 1e-8, "{interval:?}");
+}
+
+#[test]
+fn an_agent_that_parks_on_the_way_has_to_be_passed_before() {
+    // The other arrives at the ego's path at x = 0, from the south, after 4 s. The ego gets by if it is through by then.
+    let found = forbidden([&line([-2.0, 0.0, 0.0], 4.0, 1.0), &line([0.0, -4.0, FRAC_PI_2], 4.0, 1.0)]);
+    let [interval] = found[..] else { panic!("{found:?}") };
+    assert!(interval.hi == 1e12 && (interval.lo - (2.0 - 0.5 * 2.0_f64.sqrt())).abs() < 1e-8, "{interval:?}");
+    assert_eq!(
+        earliest_start_of([&line([-2.0, 0.0, 0.0], 4.0, 1.0), &line([0.0, -4.0, FRAC_PI_2], 4.0, 1.0)], 0.0),
+        Some(0.0)
+    );
+    assert_eq!(
+        earliest_start_of([&line([-2.0, 0.0, 0.0], 4.0, 1.0), &line([0.0, -4.0, FRAC_PI_2], 4.0, 1.0)], 2.0),
+        None
+    );
+}
+
+fn earliest_start_of(courses: [&Course<f64>; 2], from: f64) -> Option<f64> {
+    let fleet = courses.map(Course::motion);
+    let ecm = build_ecm(&fleet).expect("a small table");
+    earliest_start(ecm.row(&fleet, 0), from)
+}

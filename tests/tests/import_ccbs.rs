@@ -1,0 +1,168 @@
+//! Continuous-CBS: plans of others, checked against separations that are computed here from their sections.
+
+use pcr_host::check::Verdict;
+use pcr_host::import::{Format, Options, Warnings, layout, scenario};
+use pcr_host::scenario::Scenario;
+
+const GRID: &str = include_str!("../data/real/ccbs/example_grid_task_log.xml");
+const PUBLISHED: &str = include_str!("../data/real/ccbs/example_roadmap_task_log.xml");
+const MAP: &str = include_str!("../data/real/ccbs/sparse_map.xml");
+
+/// Radius of `example_config.xml`.
+const RADIUS: f64 = 0.353_553;
+
+fn read(text: &str, radius: f64) -> Scenario {
+    let options = Options { radius: Some(radius), ..Options::default() };
+    scenario(Format::Ccbs, text, &options, &mut Warnings::default()).unwrap()
+}
+
+/// A section: begin and end in time, and in space.
+type Section = ([f64; 2], [[f64; 2]; 2]);
+
+/// The sections of every agent, cut out of the text.
+fn sections(text: &str) -> Vec<Vec<Section>> {
+    let value = |line: &str, name: &str| -> f64 {
+        let rest = line.split_once(&format!("{name}=\"")).unwrap().1;
+        rest.split('"').next().unwrap().parse().unwrap()
+    };
+    let mut agents: Vec<Vec<Section>> = Vec::new();
+    for line in text.lines() {
+        if line.contains("<agent number") {
+            agents.push(Vec::new());
+        } else if line.contains("<section") {
+            let [from, to] =
+                [["start_i", "start_j"], ["goal_i", "goal_j"]].map(|names| names.map(|name| value(line, name)));
+            let sections = agents.last_mut().unwrap();
+            let begin = sections.last().map_or(0.0, |(time, _)| time[1]);
+            sections.push(([begin, begin + value(line, "duration")], [from, to]));
+        }
+    }
+    for sections in &mut agents {
+        let &([_, end], [_, at]) = sections.last().unwrap();
+        // It stays at its goal.
+        sections.push(([end, 1e6], [at, at]));
+    }
+    agents
+}
+
+/// Smallest separation of two agents, and when: of each pair of sections the distance is the root of a parabola in time.
+fn closest(a: &[Section], b: &[Section]) -> (f64, f64) {
+    let mut best = (f64::INFINITY, 0.0);
+    for (time, own) in a {
+        for (other_time, other) in b {
+            let (begin, end) = (time[0].max(other_time[0]), time[1].min(other_time[1]));
+            if begin > end {
+                continue;
+            }
+            let at = |t: f64| {
+                let place = |time: &[f64; 2], [from, to]: &[[f64; 2]; 2], k: usize| {
+                    from[k] + (to[k] - from[k]) * (t - time[0]) / (time[1] - time[0])
+                };
+                [0, 1].map(|k| place(time, own, k) - place(other_time, other, k))
+            };
+            let (first, last) = (at(begin), at(end));
+            let step = [last[0] - first[0], last[1] - first[1]];
+            let square = step[0] * step[0] + step[1] * step[1];
+            let share =
+                if square > 0.0 { (-(first[0] * step[0] + first[1] * step[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+            let separation = (first[0] + step[0] * share).hypot(first[1] + step[1] * share);
+            if separation < best.0 {
+                best = (separation, begin + (end - begin) * share);
+            }
+        }
+    }
+    best
+}
+
+#[test]
+fn separations_are_those_of_the_sections() {
+    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/data/real/ccbs/solved");
+    let mut files: Vec<_> = std::fs::read_dir(directory).unwrap().map(|file| file.unwrap().path()).collect();
+    files.sort();
+    assert_eq!(files.len(), 7);
+    let mut texts: Vec<(String, String)> = Vec::new();
+    for file in files {
+        texts.push((file.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read_to_string(&file).unwrap()));
+    }
+    texts.push(("published".into(), PUBLISHED.into()));
+    texts.push(("grid".into(), GRID.into()));
+    // The smallest separation of each in nanometres, as it was computed elsewhere.
+    let known = [
+        ("01", 707_106_780),
+        ("02", 707_105_743),
+        ("04", 707_106_789),
+        ("05", 707_106_748),
+        ("07", 707_106_786),
+        ("08", 707_106_846),
+        ("09", 707_106_831),
+    ];
+    for (name, text) in &texts {
+        let agents = sections(text);
+        let scenario = read(text, RADIUS);
+        assert_eq!(scenario.agents.len(), agents.len());
+        let verdict = Verdict::of::<f64>(&scenario, true).unwrap();
+        let mut least = f64::INFINITY;
+        for pair in verdict.closest.as_ref().unwrap() {
+            let (separation, time) = closest(&agents[pair.i as usize], &agents[pair.j as usize]);
+            // Ramps of a nanosecond and turns of a nanometre.
+            assert!((pair.separation - separation).abs() < 1e-7, "{name} {pair:?}: {separation} at {time}");
+            least = least.min(pair.separation);
+            let conflicts = verdict.conflicts.iter().filter(|conflict| (conflict.i, conflict.j) == (pair.i, pair.j));
+            let deepest = conflicts.map(|conflict| conflict.depth).fold(0.0, f64::max);
+            let overlap = 2.0 * RADIUS - separation;
+            assert!((deepest - overlap.max(0.0)).abs() < 1e-7, "{name} {pair:?}: {deepest} {overlap}");
+        }
+        if let Some((_, expected)) = known.iter().find(|(number, _)| name.starts_with(&format!("sparse_{number}"))) {
+            assert!((least - f64::from(*expected) * 1e-9).abs() < 1e-8, "{name}: {least} {expected}");
+        }
+    }
+}
+
+#[test]
+fn the_published_plan_collides_and_the_solved_ones_only_touch() {
+    let radius = std::f64::consts::SQRT_2 / 4.0;
+    let verdict = Verdict::of::<f64>(&read(PUBLISHED, radius), true).unwrap();
+    let deep: Vec<_> = verdict.conflicts.iter().filter(|conflict| conflict.depth > 1e-5).collect();
+    assert_eq!(deep.len(), 1, "{deep:?}");
+    assert_eq!((deep[0].i, deep[0].j), (0, 3));
+    assert!((deep[0].t[0] - 76.6741).abs() < 1e-4 && (deep[0].t[1] - 76.9845).abs() < 1e-4, "{:?}", deep[0]);
+    let pair = verdict.closest.unwrap().into_iter().find(|pair| (pair.i, pair.j) == (0, 3)).unwrap();
+    assert!((pair.separation - 0.641329).abs() < 1e-6 && (pair.t - 76.829).abs() < 1e-3, "{pair:?}");
+    // Exact tangency: free for a radius that is a millionth smaller.
+    let touching = Verdict::of::<f64>(&read(GRID, radius), true).unwrap();
+    assert!(touching.conflicts.iter().all(|conflict| conflict.depth < 1e-7));
+    assert!(!touching.conflicts.is_empty());
+    assert!(Verdict::of::<f64>(&read(GRID, RADIUS), false).unwrap().conflicts.is_empty());
+}
+
+#[test]
+fn a_roadmap_is_a_layout() {
+    let options = Options { radius: Some(RADIUS), ..Options::default() };
+    let imported = layout(Format::Ccbs, MAP, &options, &mut Warnings::default()).unwrap();
+    assert_eq!((imported.layout.nodes.len(), imported.layout.edges.len()), (170, 698));
+    let locks = pcr_host::locks::Locks::of(&imported, false).unwrap();
+    assert!(locks.locks.len() > 698 / 2, "at least every edge with the one back");
+}
+
+#[test]
+fn what_is_no_plan_is_refused_by_name() {
+    let failed = |text: &str| {
+        scenario(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+    };
+    for (text, expected) in [
+        (include_str!("../data/real/ccbs/example_grid_task.xml"), "root: there is no log in it, hence no plan"),
+        (include_str!("../data/real/ccbs/example_grid_map.xml"), "root: there is no log in it, hence no plan"),
+        (include_str!("../data/real/ccbs/example_config.xml"), "root: there is no log in it, hence no plan"),
+        ("<root><log/></root>", "log: there is no agent in it"),
+        ("<root><log><agent number=\"4\"/></log></root>", "agent 4, path: missing"),
+        ("<root><log><agent number=\"4\"><path/></agent></log></root>", "agent 4: no point at all"),
+    ] {
+        assert_eq!(failed(text), expected);
+    }
+    let torn = GRID.replacen("number=\"1\" start_i=\"5\"", "number=\"1\" start_i=\"5.5\"", 1);
+    assert_eq!(failed(&torn), "agent 0, section 1: it does not begin where the one before it ends");
+    let text = GRID.replacen("duration=\"1\"", "duration=\"long\"", 1);
+    assert!(failed(&text).ends_with("duration: \"long\" where a number up to 1e10 is expected"), "{}", failed(&text));
+    let negative = GRID.replacen("duration=\"1\"", "duration=\"-1\"", 1);
+    assert!(failed(&negative).starts_with("agent 0: point "), "{}", failed(&negative));
+}

@@ -1,0 +1,194 @@
+//! Damaged files: every importer gives an error or a result, and never panics or hangs.
+
+use pcr_host::fleet::Fleet;
+use pcr_host::import::{Format, Options, Warnings, layout, scenario};
+use pcr_host::locks::Locks;
+use serde_json::{Value, json};
+
+/// One file of every kind.
+const FILES: [(Format, &str); 12] = [
+    (Format::Nav2, include_str!("../data/real/nav2/sample_graph.geojson")),
+    (Format::Nav2, include_str!("../data/real/nav2/aws_graph.geojson")),
+    (Format::Lif, include_str!("../data/real/lif/example_17.lif.json")),
+    (Format::Lif, include_str!("../data/real/lif/example_10.lif.json")),
+    (Format::Vda5050, include_str!("../data/real/vda5050/order_v2_flywei.json")),
+    (Format::Vda5050, STATE),
+    (Format::Ccbs, include_str!("../data/real/ccbs/example_grid_task_log.xml")),
+    (Format::Ccbs, ROADMAP),
+    (Format::OpenDrive, TRACK),
+    (Format::OpenTcs, PLANT),
+    (Format::Path, "0 0\n1 0\n2 0.1\n3 0.3\n4,0.6\n\n5 5 # stands\n\n1 1\n1 2\n3 2\n"),
+    (Format::Rmf, include_str!("../data/real/rmf/triple_H.building.yaml")),
+];
+
+/// A state with both kinds of paths.
+const STATE: &str = r#"{ "timestamp": "2026-11-21T08:00:00.000Z", "serialNumber": "r7", "orderId": "o", "nodeStates": [],
+    "mobileRobotPosition": { "x": 4.0, "y": 0.0, "theta": 0.0, "mapId": "m" },
+    "intermediatePath": { "polyline": [ { "x": 6.0, "y": 0.0, "eta": "2026-11-21T08:00:02Z" },
+        { "x": 6.0, "y": 3.0, "eta": "2026-11-21T08:00:05+00:00" } ] },
+    "plannedPath": { "trajectory": { "degree": 3, "knotVector": [0, 0, 0, 0, 0.5, 1, 1, 1, 1], "controlPoints": [
+        { "x": 0, "y": 0 }, { "x": 1, "y": 2, "weight": 2 }, { "x": 3, "y": -1 }, { "x": 4, "y": 0 }, { "x": 9, "y": 1 } ] } } }"#;
+
+const ROADMAP: &str = r#"<?xml version="1.0"?><graphml><graph id="G"><node id="n0"><data key="key0">70,182</data></node>
+    <node id="n1"><data key="key0">68,55</data></node><node id="n2"><data key="key0">6,5.5</data></node>
+    <edge id="e0" source="n0" target="n1"/><edge id="e1" source="n1" target="n2"/></graph></graphml>"#;
+
+const TRACK: &str = r#"<OpenDRIVE><header name="t"/>
+    <road id="1"><link><successor elementType="road" elementId="2" contactPoint="start"/></link>
+    <planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/></geometry>
+    <geometry s="5" x="5" y="0" hdg="0" length="3"><arc curvature="0.25"/></geometry></planView></road>
+    <road id="2"><link><predecessor elementType="road" elementId="1" contactPoint="end"/></link><type><speed max="25" unit="mph"/></type>
+    <planView><geometry s="0" x="7.7265" y="1.0732" hdg="0.75" length="4"><line/></geometry></planView></road></OpenDRIVE>"#;
+
+const PLANT: &str = r#"<model name="p"><point name="A" positionX="0" positionY="0"/><point name="B" positionX="4000" positionY="0"/>
+    <path name="A-B" sourcePoint="A" destinationPoint="B" length="4000" maxVelocity="1000" maxReverseVelocity="500">
+    <pathLayout connectionType="BEZIER"><controlPoint x="20" y="-40"/><controlPoint x="60" y="-40"/></pathLayout></path>
+    <path name="B-A" sourcePoint="B" destinationPoint="A" length="1"/></model>"#;
+
+/// Reads the text in every way. What it becomes has to be fit for use.
+fn read(format: Format, text: &str) {
+    let options =
+        |routes: &[&str]| Options { routes: routes.iter().map(ToString::to_string).collect(), ..Options::default() };
+    let mut warnings = Warnings::default();
+    if let Ok(imported) = layout(format, text, &options(&[]), &mut warnings) {
+        let _ = Locks::of(&imported, true);
+        let ids: Vec<String> = imported.layout.nodes.iter().map(|node| node.id.to_string()).collect();
+        for pair in ids.windows(2).take(4) {
+            let route = format!("{}:{}", pair[0], pair[1]);
+            if let Ok(scenario) = scenario(format, text, &options(&[&route]), &mut warnings) {
+                let _ = Fleet::<f64>::new(&scenario);
+            }
+        }
+    }
+    if let Ok(scenario) = scenario(format, text, &options(&[]), &mut warnings) {
+        let _ = Fleet::<f64>::new(&scenario);
+    }
+    assert!(warnings.lines().iter().all(|line| !line.is_empty()));
+}
+
+/// Numbers that look random and are the same in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % bound.max(1)
+    }
+}
+
+#[test]
+fn files_that_end_early() {
+    for (format, text) in FILES {
+        for k in 0..60 {
+            let end = text.len() * k / 60;
+            read(format, &text[..text.floor_char_boundary(end)]);
+        }
+    }
+}
+
+#[test]
+fn files_with_other_bytes() {
+    let mut dice = Dice(1);
+    let bytes = b"0129-+.eE\"{}[],:<>/=&; \nNa\0\xf0";
+    for (format, text) in FILES {
+        for _ in 0..150 {
+            let mut damaged = text.as_bytes().to_vec();
+            for _ in 0..=dice.below(6) {
+                let place = dice.below(damaged.len());
+                match dice.below(3) {
+                    0 if damaged.is_empty() => {}
+                    0 => damaged[place] = bytes[dice.below(bytes.len())],
+                    1 => damaged.insert(place, bytes[dice.below(bytes.len())]),
+                    _ => drop(damaged.drain(place..(place + dice.below(40)).min(damaged.len()))),
+                }
+            }
+            read(format, &String::from_utf8_lossy(&damaged));
+        }
+    }
+}
+
+/// All places in a JSON value, as pointers.
+fn places(value: &Value, at: &str, into: &mut Vec<String>) {
+    into.push(at.to_owned());
+    match value {
+        Value::Array(elements) => {
+            for (k, element) in elements.iter().enumerate() {
+                places(element, &format!("{at}/{k}"), into);
+            }
+        }
+        Value::Object(members) => {
+            for (key, member) in members {
+                places(member, &format!("{at}/{}", key.replace('~', "~0").replace('/', "~1")), into);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn json_with_other_values() {
+    let mut dice = Dice(2);
+    for (format, text) in FILES {
+        let Ok(value) = serde_json::from_str::<Value>(text) else { continue };
+        let mut all = Vec::new();
+        places(&value, "", &mut all);
+        for k in 0..400 {
+            let mut damaged = value.clone();
+            for _ in 0..=k % 3 {
+                let other = [
+                    json!(null),
+                    json!(1e308),
+                    json!(-1e-308),
+                    json!(-1),
+                    json!(0),
+                    json!(u64::MAX),
+                    json!(3.5),
+                    json!("text"),
+                    json!(""),
+                    json!(true),
+                    json!([]),
+                    json!({}),
+                    json!([[[[1]]]]),
+                    value.pointer(&all[dice.below(all.len())]).cloned().unwrap_or_default(),
+                ];
+                if let Some(place) = damaged.pointer_mut(&all[dice.below(all.len())]) {
+                    *place = other[dice.below(other.len())].clone();
+                }
+            }
+            read(format, &damaged.to_string());
+        }
+    }
+}
+
+#[test]
+fn texts_of_another_kind() {
+    let deep = "[".repeat(100_000);
+    let texts = [
+        "",
+        " ",
+        "\u{feff}",
+        "null",
+        "[]",
+        "{}",
+        "0",
+        "<a/>",
+        "<a>",
+        "a: b",
+        "- - -",
+        "\"",
+        "{\"features\": {}}",
+        &deep,
+    ];
+    for (format, _) in FILES {
+        for text in texts {
+            assert!(
+                layout(format, text, &Options::default(), &mut Warnings::default()).is_err(),
+                "{format} {text:.20}"
+            );
+            assert!(
+                scenario(format, text, &Options::default(), &mut Warnings::default()).is_err(),
+                "{format} {text:.20}"
+            );
+        }
+    }
+}

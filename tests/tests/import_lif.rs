@@ -1,0 +1,152 @@
+//! Layouts of the VDMA: the published examples, trajectories within their tolerance, vehicle types, levels.
+
+use pcr_host::import::{Format, Id, Layout, Options, Warnings, layout, scenario};
+use pcr_host::scenario::PathSegment;
+use serde_json::{Value, json};
+
+const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
+const TYPES: &str = include_str!("../data/real/lif/example_10.lif.json");
+const LEVELS: &str = include_str!("../data/real/lif/example_05.lif.json");
+
+fn options() -> Options {
+    Options {
+        radius: Some(0.4),
+        speed: Some(1.0),
+        acceleration: Some(0.5),
+        rotation: Some(1.0),
+        rotation_acceleration: Some(1.0),
+        ..Options::default()
+    }
+}
+
+fn read(text: &str, options: &Options) -> (Layout, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let imported = layout(Format::Lif, text, options, &mut warnings).unwrap();
+    (imported.layout, warnings.lines())
+}
+
+#[test]
+fn every_example_is_read() {
+    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/data/real/lif");
+    let mut read_files = 0;
+    for file in std::fs::read_dir(directory).unwrap() {
+        let path = file.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let value: Value = serde_json::from_str(&text).unwrap();
+        let count = |list: &str| {
+            let lists = value["layouts"].as_array().unwrap().iter().filter_map(|layout| layout[list].as_array());
+            lists.map(Vec::len).sum::<usize>()
+        };
+        assert_eq!(Format::of(&path, &text), Some(Format::Lif));
+        assert_eq!(Format::of("a.json".as_ref(), &text), Some(Format::Lif));
+        let (layout, _) = read(&text, &options());
+        assert_eq!((layout.nodes.len(), layout.edges.len()), (count("nodes"), count("edges")), "{path:?}");
+        read_files += 1;
+    }
+    assert_eq!(read_files, 11);
+}
+
+/// The quadratic spans of the first trajectory of example 17, written out: knots 0, 1/2, 1.
+fn first_trajectory(u: f64) -> [f64; 2] {
+    let controls: [[f64; 2]; 4] = [[0.0, 0.0], [0.0, 1.8], [3.6, 1.8], [3.6, 0.0]];
+    let middle = [1.8, 1.8];
+    let (a, b, c, t) = if u < 0.5 {
+        (controls[0], controls[1], middle, 2.0 * u)
+    } else {
+        (middle, controls[2], controls[3], 2.0 * u - 1.0)
+    };
+    [0, 1].map(|k| a[k] * (1.0 - t) * (1.0 - t) + 2.0 * b[k] * t * (1.0 - t) + c[k] * t * t)
+}
+
+#[test]
+fn trajectories_become_arcs_within_the_tolerance() {
+    for tolerance in [1e-2, 1e-4, 1e-6] {
+        let (layout, warnings) = read(CURVES, &Options { tolerance: Some(tolerance), ..options() });
+        let edge = &layout.edges[0];
+        assert!(edge.deviation > 0.0 && edge.deviation <= tolerance);
+        let radii = edge.curve.iter().filter_map(|piece| match piece.shape {
+            PathSegment::Arc { radius, .. } => Some(radius),
+            PathSegment::Line { .. } => None,
+        });
+        let radii: Vec<f64> = radii.collect();
+        assert_eq!(radii.len(), edge.curve.len());
+        // The curve has radii of 1.27 m to 3.6 m, and those of its arcs lie between.
+        let (least, most) = radii.iter().fold((f64::MAX, 0.0_f64), |(lo, hi), r| (lo.min(*r), hi.max(*r)));
+        assert!(least > 1.27 && most < 3.6 && least < 1.45 && most > 2.5, "{least} {most}");
+        let length: f64 = (0..20_000)
+            .map(|k| {
+                let [a, b] = [k, k + 1].map(|k| first_trajectory(f64::from(k) / 20_000.0));
+                (a[0] - b[0]).hypot(a[1] - b[1])
+            })
+            .sum();
+        assert!((edge.length() - length).abs() < tolerance, "{} {length}", edge.length());
+        // The file draws them elsewhere than its nodes.
+        assert_eq!(warnings.len(), 4, "{warnings:?}");
+        assert_eq!(warnings[0], "edge N1-N2: its trajectory begins 5.000 m from its node");
+    }
+}
+
+#[test]
+fn a_route_keeps_the_deviation_of_its_curves_as_margin() {
+    let mut value: Value = serde_json::from_str(CURVES).unwrap();
+    value["layouts"][0]["nodes"][0]["nodePosition"] = json!({ "x": 0.0, "y": 0.0 });
+    value["layouts"][0]["nodes"][1]["nodePosition"] = json!({ "x": 3.6, "y": 0.0 });
+    let options = Options { routes: vec!["N1:N2".into()], margin: Some(0.05), ..options() };
+    let mut warnings = Warnings::default();
+    let scenario = scenario(Format::Lif, &value.to_string(), &options, &mut warnings).unwrap();
+    assert!(warnings.is_empty());
+    let (layout, _) = read(&value.to_string(), &options);
+    let agent = &scenario.agents[0];
+    assert!((agent.radius - 0.4 - layout.edges[0].deviation).abs() < 1e-9 && agent.radius > 0.4);
+    assert_eq!(agent.margin, 0.05);
+    assert_eq!(agent.path.iter().filter(|segment| segment.letter() == 'A').count(), layout.edges[0].curve.len());
+}
+
+#[test]
+fn edges_are_those_of_the_vehicle_type() {
+    let (all, warnings) = read(TYPES, &options());
+    assert_eq!(all.edges.len(), 6);
+    assert!(warnings[0].starts_with("Vehicle_Type_1, Vehicle_Type_2, Vehicle_Type_3: several vehicle types"));
+    for (vehicle, edges) in [("Vehicle_Type_1", 4), ("Vehicle_Type_2", 2), ("Vehicle_Type_3", 2)] {
+        let (layout, warnings) = read(TYPES, &Options { vehicle: Some(vehicle.into()), ..options() });
+        assert_eq!((layout.edges.len(), warnings.len()), (edges, 0), "{vehicle}");
+    }
+    let unknown = Options { vehicle: Some("truck".into()), ..options() };
+    let error = layout(Format::Lif, TYPES, &unknown, &mut Warnings::default()).unwrap_err().to_string();
+    assert_eq!(error, "vehicle truck: no edge is for it; there are Vehicle_Type_1, Vehicle_Type_2, Vehicle_Type_3");
+}
+
+#[test]
+fn maps_are_levels() {
+    let (layout, _) = read(LEVELS, &options());
+    assert_eq!(layout.levels, ["Map_Z-Level_1", "Map_Z-Level_2"]);
+    assert_eq!(layout.nodes.iter().map(|node| node.level).collect::<Vec<_>>(), [0, 0, 1, 1]);
+}
+
+#[test]
+fn what_is_wrong_is_left_out_and_named() {
+    let mut value: Value = serde_json::from_str(CURVES).unwrap();
+    value["layouts"][0]["edges"][0]["vehicleTypeEdgeProperties"][0]["trajectory"]["degree"] = json!(3);
+    value["layouts"][0]["edges"][1]["vehicleTypeEdgeProperties"][0]["trajectory"]["knotVector"][2] = json!("0");
+    let (layout, warnings) = read(&value.to_string(), &options());
+    // Seven knots say that degree 3 is meant as the order.
+    assert_eq!(layout.edges.iter().map(|edge| edge.id.clone()).collect::<Vec<_>>(), [Id::Text("N1-N2".into())]);
+    assert!(
+        warnings.contains(
+            &"edge N1-N2, trajectory: its degree is one more than its knots say; it is taken as the order of the curve"
+                .into()
+        )
+    );
+    assert!(warnings.contains(&"edge N2-N1, trajectory: a knot that is not a number: left out".into()), "{warnings:?}");
+    value["layouts"][0]["edges"][0]["endNodeId"] = json!("N9");
+    value["layouts"][0]["nodes"][1]["nodePosition"]["x"] = json!(null);
+    let (layout, warnings) = read(&value.to_string(), &options());
+    assert_eq!((layout.nodes.len(), layout.edges.len()), (1, 0));
+    for expected in [
+        "node N2, nodePosition, x: missing: left out",
+        "edge N1-N2, endNodeId: there is no node N9: left out",
+        "edge N2-N1, startNodeId: there is no node N2: left out",
+    ] {
+        assert!(warnings.join("\n").contains(expected.trim_end_matches(": left out")), "{expected} in {warnings:?}");
+    }
+}

@@ -1,0 +1,199 @@
+//! Route graphs of nav2: routes against an independent shortest path, the paths against the polygons they round.
+
+use pcr_core::{Curve, Motion};
+use pcr_host::fleet::Fleet;
+use pcr_host::import::{Format, Imported, Layout, Options, TURN, Warnings, layout, scenario};
+use pcr_host::scenario::{MotionSpec, Scenario};
+
+const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+const AWS: &str = include_str!("../data/real/nav2/aws_graph.geojson");
+const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
+
+fn options(routes: &[&str], corner_radius: f64) -> Options {
+    Options {
+        routes: routes.iter().map(ToString::to_string).collect(),
+        radius: Some(0.4),
+        speed: Some(1.0),
+        acceleration: Some(0.5),
+        rotation: Some(0.8),
+        rotation_acceleration: Some(1.5),
+        corner_radius: Some(corner_radius),
+        ..Options::default()
+    }
+}
+
+fn read(text: &str) -> (Layout, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let Imported { layout, .. } = layout(Format::Nav2, text, &options(&[], 1.0), &mut warnings).unwrap();
+    (layout, warnings.lines())
+}
+
+fn route(text: &str, routes: &[&str], corner_radius: f64) -> Scenario {
+    scenario(Format::Nav2, text, &options(routes, corner_radius), &mut Warnings::default()).unwrap()
+}
+
+#[test]
+fn the_published_graphs_are_read_whole() {
+    let (warehouse, warnings) = read(WAREHOUSE);
+    let length = |layout: &Layout| layout.edges.iter().map(|edge| edge.length()).sum::<f64>();
+    assert_eq!((warehouse.nodes.len(), warehouse.edges.len()), (96, 172));
+    assert!((length(&warehouse) - 651.1).abs() < 1e-9);
+    // Its drawing was not kept up with its nodes.
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].starts_with("edge 10118, edge 10119, ") && warnings[0].contains("and 10 more: its drawn line"));
+    let (aws, warnings) = read(AWS);
+    assert_eq!((aws.nodes.len(), aws.edges.len()), (40, 84));
+    assert_eq!(warnings, ["edge 112: its length is 0"]);
+    let (sample, warnings) = read(SAMPLE);
+    assert_eq!((sample.nodes.len(), sample.edges.len(), warnings.len()), (9, 24, 0));
+    assert_eq!(sample.edges.iter().filter_map(|edge| edge.speed).collect::<Vec<_>>(), [0.85]);
+}
+
+/// Lengths of the shortest ways by the algorithm of Floyd and Warshall.
+fn all_pairs(layout: &Layout) -> Vec<Vec<f64>> {
+    let count = layout.nodes.len();
+    let mut lengths = vec![vec![f64::INFINITY; count]; count];
+    for edge in &layout.edges {
+        let [from, to] = edge.ends;
+        let [a, b] = edge.ends.map(|node| layout.nodes[node].at);
+        lengths[from][to] = lengths[from][to].min((a[0] - b[0]).hypot(a[1] - b[1]));
+    }
+    for (node, row) in lengths.iter_mut().enumerate() {
+        row[node] = 0.0;
+    }
+    for via in 0..count {
+        for from in 0..count {
+            for to in 0..count {
+                let through = lengths[from][via] + lengths[via][to];
+                lengths[from][to] = lengths[from][to].min(through);
+            }
+        }
+    }
+    lengths
+}
+
+#[test]
+fn routes_are_shortest_ways() {
+    for text in [WAREHOUSE, AWS, SAMPLE] {
+        let (layout, _) = read(text);
+        let lengths = all_pairs(&layout);
+        for from in (0..layout.nodes.len()).step_by(7) {
+            for to in (0..layout.nodes.len()).step_by(5) {
+                let name = format!("{}:{}", layout.nodes[from].id, layout.nodes[to].id);
+                let outcome = scenario(Format::Nav2, text, &options(&[&name], 0.0), &mut Warnings::default());
+                if lengths[from][to].is_infinite() {
+                    assert_eq!(
+                        outcome.unwrap_err().to_string(),
+                        format!("route {name}: there is no way from node to node")
+                    );
+                } else {
+                    // Turns in place are arcs of a nanometre.
+                    let length = outcome.unwrap().agents[0].length();
+                    assert!((length - lengths[from][to]).abs() < 1e-6, "{name}: {length} {}", lengths[from][to]);
+                }
+            }
+        }
+    }
+}
+
+/// Calls with the motion of a route.
+fn with_motion(scenario: &Scenario, agent: usize, mut test: impl FnMut(&Motion<'_, f64>)) {
+    let fleet = Fleet::<f64>::new(scenario).unwrap();
+    test(&fleet.motions()[agent]);
+}
+
+#[test]
+fn a_route_cuts_its_corners_by_what_the_radius_allows() {
+    let (layout, _) = read(WAREHOUSE);
+    let routes = ["0:50", "90:7", "20:80", "3:95"];
+    let scenario = route(WAREHOUSE, &routes, 1.0);
+    let again = Scenario::from_json(&scenario.to_json()).unwrap();
+    for (read, written) in again.agents.iter().zip(&scenario.agents) {
+        // A profile is scaled by the last digit as it is read.
+        assert_eq!((read.start, &read.path, read.radius), (written.start, &written.path, written.radius));
+    }
+    for (agent, name) in routes.iter().enumerate() {
+        let ends = name.split(':').map(|node| layout.nodes[layout.node(node).unwrap()].at).collect::<Vec<_>>();
+        with_motion(&scenario, agent, |motion| {
+            let path = motion.path();
+            let (first, last) = (path.point_at(0.0), path.point_at(path.length()));
+            assert!((first.x - ends[0][0]).hypot(first.y - ends[0][1]) < 1e-12);
+            assert!((last.x - ends[1][0]).hypot(last.y - ends[1][1]) < 1e-8, "{name}");
+            let mut arcs = 0;
+            for segment in path.segments() {
+                if let Curve::Arc { radius, .. } = segment.curve() {
+                    assert!(radius == 1.0 || radius == TURN);
+                    arcs += usize::from(radius == 1.0);
+                }
+            }
+            assert!(arcs > 0, "{name}");
+            // No point of it is farther from the edges than the middle of the arc in a right angle, the sharpest corner.
+            for k in 0..=1000 {
+                let point = path.point_at(path.length() * f64::from(k) / 1000.0);
+                let distance = |edge: &pcr_host::import::Edge| {
+                    let [a, b] = edge.ends.map(|node| layout.nodes[node].at);
+                    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+                    let along = ((point.x - a[0]) * dx + (point.y - a[1]) * dy) / (dx * dx + dy * dy).max(1e-300);
+                    let along = along.clamp(0.0, 1.0);
+                    (point.x - a[0] - along * dx).hypot(point.y - a[1] - along * dy)
+                };
+                let nearest = layout.edges.iter().map(distance).fold(f64::INFINITY, f64::min);
+                assert!(nearest < 2.0_f64.sqrt() - 1.0 + 1e-9, "{name}: {nearest}");
+            }
+        });
+    }
+}
+
+#[test]
+fn where_no_arc_fits_the_vehicle_stops_and_turns() {
+    // Edges of 1 m cannot have arcs of 1 m radius.
+    let scenario = route(SAMPLE, &["0:1", "0:4"], 1.0);
+    let turning = &scenario.agents[1];
+    let MotionSpec::Profile { pieces, .. } = &turning.motion else { panic!("{turning:?}") };
+    let turns: Vec<f64> =
+        turning.path.iter().filter(|segment| segment.letter() == 'A').map(|arc| arc.length() / TURN).collect();
+    assert!(!turns.is_empty());
+    // By hand: 1 m at 0.5 m/s² up to 1/√2 m/s, and a turn at 1.5 rad/s² up to 0.8 rad/s.
+    let turn = |angle: f64| if angle > 0.64 / 1.5 { angle / 0.8 + 0.8 / 1.5 } else { 2.0 * (angle / 1.5).sqrt() };
+    let lines = turning.path.iter().filter(|segment| segment.letter() == 'S').count();
+    let expected = lines as f64 * 2.0 * 2.0_f64.sqrt() + turns.iter().map(|angle| turn(*angle)).sum::<f64>();
+    let duration: f64 = pieces.iter().map(|(duration, _)| duration).sum();
+    // The first edge has a speed limit of 0.85 m/s, more than is reached.
+    // A turn in place moves the vehicle by nanometres.
+    assert!((duration - expected).abs() < 1e-8, "{duration} {expected}");
+    assert_eq!(Scenario::from_json(&scenario.to_json()).unwrap().agents.len(), 2);
+    with_motion(&scenario, 1, |motion| {
+        let corner = motion.path().point_at(1.0);
+        let stands = 2.0 * 2.0_f64.sqrt() + 0.5 * turn(turns[0]);
+        let at = motion.position_at(stands);
+        assert!((at.x - corner.x).hypot(at.y - corner.y) < 1e-8 && motion.speed_at(stands) < 1e-8);
+    });
+}
+
+#[test]
+fn speed_limits_are_fractions_or_percentages() {
+    let slow = SAMPLE.replace("0.85", "40");
+    assert_ne!(slow, SAMPLE);
+    let scenario = route(&slow, &["0:1"], 1.0);
+    let expected = MotionSpec::Profile { v0: 0.0, pieces: vec![(0.8, 0.5), (1.7, 0.0), (0.8, -0.5)] };
+    let MotionSpec::Profile { pieces: expected, .. } = expected else { unreachable!() };
+    let MotionSpec::Profile { pieces, .. } = &scenario.agents[0].motion else { panic!() };
+    assert_eq!(pieces.len(), 3);
+    for ((duration, accel), (of, at)) in pieces.iter().zip(expected) {
+        assert!((duration - of).abs() < 1e-12 && (accel - at).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn wrong_routes_are_named() {
+    let failed = |routes: &[&str]| {
+        scenario(Format::Nav2, WAREHOUSE, &options(routes, 1.0), &mut Warnings::default()).unwrap_err().to_string()
+    };
+    assert_eq!(failed(&["0:999"]), "route 0:999: there is no node 999");
+    assert_eq!(failed(&["x:1@3"]), "route x:1@3: there is no node x");
+    assert_eq!(failed(&["0:1@noon"]), "route 0:1@noon: FROM:TO or FROM:TO@TIME is expected");
+    assert_eq!(failed(&["0"]), "route 0: FROM:TO or FROM:TO@TIME is expected");
+    assert!(failed(&[]).starts_with("a layout has no agents; ask for routes with --route FROM:TO"));
+    let late = route(WAREHOUSE, &["0:1@12.5", "1:1"], 1.0);
+    assert_eq!((late.agents[0].t_start, late.agents[1].path.len()), (12.5, 0));
+}

@@ -1,0 +1,132 @@
+//! OpenDRIVE: lines and arcs as they are, joints closed, roads joined at shared nodes.
+
+use pcr_host::import::{Edge, Format, Layout, Options, Warnings, layout, scenario};
+use pcr_host::locks::Locks;
+use pcr_host::scenario::PathSegment;
+
+const TOWN_1: &str = include_str!("../data/real/opendrive/Town01.planview.xodr");
+const TOWN_2: &str = include_str!("../data/real/opendrive/Town02.planview.xodr");
+
+fn read(text: &str) -> (Layout, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let options = Options { radius: Some(0.9), ..Options::default() };
+    let imported = layout(Format::OpenDrive, text, &options, &mut warnings).unwrap();
+    (imported.layout, warnings.lines())
+}
+
+#[test]
+fn every_record_is_a_line_or_an_arc() {
+    for (text, roads, lines, arcs, kilometres) in [(TOWN_1, 98, 240, 112, 3.92), (TOWN_2, 68, 329, 81, 1.76)] {
+        assert_eq!(Format::of("town".as_ref(), text), Some(Format::OpenDrive));
+        let (layout, warnings) = read(text);
+        let pieces = || layout.edges.iter().flat_map(|edge| &edge.curve);
+        let is_line = |shape: &PathSegment| matches!(shape, PathSegment::Line { .. });
+        // Records without length are not there.
+        let empty = text.matches("length=\"0.0000000000000000e+0\"><").count();
+        assert_eq!(layout.edges.len(), roads);
+        let found = [
+            pieces().filter(|piece| is_line(&piece.shape)).count(),
+            pieces().filter(|piece| !is_line(&piece.shape)).count(),
+        ];
+        assert!(found[0] + found[1] + empty == lines + arcs && found[1] <= arcs, "{found:?} {empty}");
+        let length: f64 = layout.edges.iter().map(Edge::length).sum();
+        assert!((length / 1000.0 - kilometres).abs() < 0.005, "{length}");
+        for piece in pieces() {
+            if let PathSegment::Arc { radius, .. } = piece.shape {
+                assert!((2.69..512.0).contains(&radius), "{radius}");
+            }
+        }
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(warnings[0].contains("joints are open, by "), "{warnings:?}");
+    }
+}
+
+#[test]
+fn linked_roads_share_nodes() {
+    for text in [TOWN_1, TOWN_2] {
+        let (layout, _) = read(text);
+        assert!(layout.nodes.len() < 2 * layout.edges.len());
+        for edge in &layout.edges {
+            let (first, last) = (edge.curve.first().unwrap(), edge.curve.last().unwrap());
+            for (node, at) in edge.ends.into_iter().zip([first.at, last.end()]) {
+                let [x, y] = layout.nodes[node].at;
+                assert!((x - at[0]).hypot(y - at[1]) < 0.05, "road {}: {x} {y} {at:?}", edge.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn paths_keep_to_the_records() {
+    let (layout, _) = read(TOWN_1);
+    let options = |k: usize| {
+        let [from, to] = layout.edges[k].ends.map(|node| &layout.nodes[node].id);
+        Options { radius: Some(0.9), routes: vec![format!("{from}:{to}")], ..Options::default() }
+    };
+    let mut driven = 0;
+    for (k, edge) in layout.edges.iter().enumerate().step_by(9) {
+        let Ok(scenario) = scenario(Format::OpenDrive, TOWN_1, &options(k), &mut Warnings::default()) else {
+            panic!("road {}", edge.id);
+        };
+        let agent = &scenario.agents[0];
+        // Open joints are margin, up to what the maps are off by, a little more for gaps of several.
+        assert!(agent.radius >= 0.9 && agent.radius < 0.91, "road {}: {}", edge.id, agent.radius);
+        driven += agent.path.len();
+    }
+    assert!(driven > 11);
+}
+
+#[test]
+fn roads_that_start_together_lock_each_other() {
+    let (layout, _) = read(TOWN_1);
+    let options = Options { radius: Some(0.9), ..Options::default() };
+    let imported = pcr_host::import::layout(Format::OpenDrive, TOWN_1, &options, &mut Warnings::default()).unwrap();
+    let table = Locks::of(&imported, false).unwrap();
+    for (k, a) in layout.edges.iter().enumerate() {
+        for b in layout.edges.iter().skip(k + 1).filter(|b| b.ends[0] == a.ends[0]) {
+            let (first, second) = if a.id < b.id { (a, b) } else { (b, a) };
+            let starts = table.locks.iter().any(|lock| {
+                (&lock.a, &lock.b) == (&first.id, &second.id) && lock.a_length[0] <= 0.0 && lock.b_length[0] <= 0.0
+            });
+            assert!(starts, "{} {}", a.id, b.id);
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_is_left_out_and_named() {
+    let road = |id: &str, geometry: &str| format!("<road id=\"{id}\"><planView>{geometry}</planView></road>");
+    let line = "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry>";
+    let file = |roads: &[String]| format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
+    let spiral = line.replace("<line/>", "<spiral curvStart=\"0\" curvEnd=\"0.1\"/>");
+    let apart = line.replace("x=\"0\"", "x=\"6\"");
+    let text = file(&[
+        road("7", line),
+        road("8", &spiral),
+        road("9", &format!("{line}{apart}")),
+        road("10", &line.replace("5", "1e300")),
+        road("7", line),
+        road("12", &line.replace("<line/>", "<arc curvature=\"1e4\"/>")),
+        road("11", ""),
+    ]);
+    let (layout, warnings) = read(&text);
+    assert_eq!((layout.edges.len(), layout.nodes.len()), (1, 2));
+    let warnings = warnings.join("\n");
+    for expected in [
+        "road 8, geometry 1: spiral is not a line and not an arc",
+        "road 9, geometry 2: it begins 1.000 m from the end of the one before",
+        "road 10, geometry 1, length: \"1e300\" where a number up to 1e10 is expected",
+        "road 12, geometry 1: its length, heading or sweep is out of range",
+        "road 7: given twice; the first is taken",
+        "road 11: left out: it has no geometry",
+    ] {
+        assert!(warnings.contains(expected), "{expected} in {warnings}");
+    }
+    let failed = |text: &str| layout_error(text);
+    assert_eq!(failed("<a/>"), "a: not an OpenDRIVE file");
+    assert_eq!(failed(&file(&[road("1", &spiral)])), "OpenDRIVE: there is no road of lines and arcs in it");
+}
+
+fn layout_error(text: &str) -> String {
+    layout(Format::OpenDrive, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+}

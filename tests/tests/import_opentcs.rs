@@ -1,0 +1,68 @@
+//! The demo plant of openTCS: its Bézier paths become arcs, and its lengths are warned about.
+
+use pcr_host::import::{Edge, Format, Options, Warnings, layout, scenario};
+use pcr_host::scenario::PathSegment;
+
+const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
+
+fn options(routes: &[&str]) -> Options {
+    Options { radius: Some(0.6), routes: routes.iter().map(ToString::to_string).collect(), ..Options::default() }
+}
+
+#[test]
+fn the_demo_is_read_with_warnings_about_its_lengths() {
+    let mut warnings = Warnings::default();
+    let plant = layout(Format::OpenTcs, DEMO, &options(&[]), &mut warnings).unwrap().layout;
+    assert_eq!((plant.name.as_str(), plant.edges.len()), ("Demo-01", 75));
+    let is_curved = |edge: &&Edge| edge.deviation > 0.0;
+    assert_eq!(plant.edges.iter().filter(is_curved).count(), 35);
+    assert!(plant.edges.iter().all(|edge| edge.deviation <= 1e-3));
+    let listed =
+        warnings.iter().find(|(problem, _)| *problem == "its length is not that of its geometry, which counts");
+    // 34 of the 40 straight ones, and most of the curves.
+    let listed = listed.unwrap().1;
+    let straight = plant.edges.iter().filter(|edge| !is_curved(edge) && listed.contains(&format!("path {}", edge.id)));
+    assert!((30..=34).contains(&straight.count()), "{listed:?}");
+    assert!(listed.len() >= 34 + 24, "{}", listed.len());
+    for edge in &plant.edges {
+        let [from, to] = edge.ends.map(|node| plant.nodes[node].at);
+        let (begin, end) = (edge.curve[0].at, edge.curve.last().unwrap().end());
+        assert!((from[0] - begin[0]).hypot(from[1] - begin[1]) < 1e-9);
+        assert!((to[0] - end[0]).hypot(to[1] - end[1]) < 1e-9);
+    }
+}
+
+#[test]
+fn a_curve_is_the_cubic_of_its_control_points() {
+    // Point-0001 to Point-0002 over (610, -180) twice, in units of 50 mm.
+    let plant = layout(Format::OpenTcs, DEMO, &options(&[]), &mut Warnings::default()).unwrap().layout;
+    let edge = plant.edges.iter().find(|edge| edge.id.to_string() == "Point-0001 --- Point-0002").unwrap();
+    let points = [[31.0, 11.0], [30.5, 9.0], [30.5, 9.0], [25.0, 9.0]];
+    let mut pieces = 0;
+    for piece in &edge.curve {
+        // The middle of each arc is near the curve.
+        let half = match piece.shape {
+            PathSegment::Line { length } => PathSegment::Line { length: length / 2.0 },
+            PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep / 2.0 },
+        };
+        let middle = pcr_host::import::Placed { shape: half, ..*piece }.end();
+        let distance = |k: u32| {
+            let t = f64::from(k) / 20_000.0;
+            let weights = [(1.0 - t).powi(3), 3.0 * t * (1.0 - t).powi(2), 3.0 * t * t * (1.0 - t), t.powi(3)];
+            let at =
+                [0, 1].map(|axis| weights.iter().zip(points).map(|(weight, point)| weight * point[axis]).sum::<f64>());
+            (at[0] - middle[0]).hypot(at[1] - middle[1])
+        };
+        let nearest = (0..=20_000).map(distance).fold(f64::INFINITY, f64::min);
+        assert!(nearest <= 1.1e-3, "{nearest}");
+        pieces += 1;
+    }
+    assert!(pieces > 2);
+}
+
+#[test]
+fn vehicles_keep_the_velocity_of_a_path() {
+    let mut warnings = Warnings::default();
+    let scenario = scenario(Format::OpenTcs, DEMO, &options(&["Point-0001:Point-0003"]), &mut warnings).unwrap();
+    assert!((scenario.agents[0].length() - 6.0).abs() < 1e-12);
+}

@@ -1,0 +1,151 @@
+//! Buildings of Open-RMF: scales, levels, lanes and the limits of the fleets.
+
+use pcr_host::import::{Format, Imported, Layout, Options, TURN, Warnings, layout, scenario};
+use pcr_host::locks::Locks;
+use pcr_host::scenario::{MotionSpec, Scenario};
+use std::path::PathBuf;
+
+const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
+const TRIPLE_H: &str = include_str!("../data/real/rmf/triple_H.building.yaml");
+const ROYALE: &str = include_str!("../data/real/rmf/battle_royale.building.yaml");
+const HOTEL: &str = include_str!("../data/real/rmf/hotel.building.yaml");
+
+fn fleet(name: &str) -> Option<PathBuf> {
+    Some(PathBuf::from(format!("{}/data/real/rmf/config/{name}_config.yaml", env!("CARGO_MANIFEST_DIR"))))
+}
+
+fn read(text: &str, options: &Options) -> (Imported, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let imported = layout(Format::Rmf, text, options, &mut warnings).unwrap();
+    (imported, warnings.lines())
+}
+
+fn tiny(routes: &[&str]) -> Options {
+    Options {
+        fleet: fleet("office_tinyRobot"),
+        routes: routes.iter().map(ToString::to_string).collect(),
+        ..Options::default()
+    }
+}
+
+fn node(layout: &Layout, name: &str) -> [f64; 2] {
+    layout.nodes[layout.node(name).unwrap()].at
+}
+
+#[test]
+fn scales_are_the_mean_of_the_measurements() {
+    // Pixels of a vertex of a lane, and the metres of a pixel.
+    for (text, lanes, vertex, pixels, scale) in [
+        (TRIPLE_H, 22, "L1/0", [46.368, 40.342], 0.044166),
+        (OFFICE, 30, "", [0.0; 2], 0.008465),
+        (ROYALE, 20, "", [0.0; 2], 0.052414),
+        (HOTEL, 122, "", [0.0; 2], 0.055680),
+    ] {
+        let (imported, _) = read(text, &tiny(&[]));
+        let layout = &imported.layout;
+        assert_eq!(layout.edges.len(), lanes);
+        assert!(layout.edges.iter().all(|edge| edge.two_way && edge.speed.is_none()));
+        if vertex.is_empty() {
+            // The scale by the first lane of the file and its vertices.
+            let lane = text.lines().skip_while(|line| !line.contains("lanes:")).nth(1).unwrap();
+            let ends: Vec<usize> = lane.split(['[', ',']).filter_map(|part| part.trim().parse().ok()).take(2).collect();
+            let vertices =
+                text.lines().skip_while(|line| !line.trim_start().starts_with("vertices:") || line.contains('['));
+            let vertices: Vec<[f64; 2]> = vertices
+                .skip(1)
+                .map_while(|line| {
+                    let mut numbers = line.trim().strip_prefix("- [")?.split(',').map(|part| part.trim().parse().ok());
+                    Some([numbers.next()??, numbers.next()??])
+                })
+                .collect();
+            let [a, b] = [vertices[ends[0]], vertices[ends[1]]];
+            let measured = layout.edges[0].length() / (a[0] - b[0]).hypot(a[1] - b[1]);
+            assert!((measured / scale - 1.0).abs() < 1e-4, "{measured} {scale}");
+        } else {
+            let [x, y] = node(layout, vertex);
+            // y points down in pixels.
+            assert!((x / pixels[0] / scale - 1.0).abs() < 2e-5 && (-y / pixels[1] / scale - 1.0).abs() < 2e-5);
+        }
+    }
+    let (office, warnings) = read(OFFICE, &tiny(&[]));
+    let length: f64 = office.layout.edges.iter().map(|edge| edge.length()).sum();
+    assert!((length - 68.6).abs() < 0.05, "{length}");
+    // Its measurements differ by 0.3 %.
+    assert!(warnings.iter().all(|line| !line.contains("measurement")), "{warnings:?}");
+}
+
+#[test]
+fn fleets_have_their_limits() {
+    let (Imported { vehicle, .. }, _) = read(OFFICE, &tiny(&[]));
+    assert_eq!(
+        (vehicle.name.as_deref(), vehicle.radius, vehicle.speed, vehicle.acceleration),
+        (Some("tinyRobot"), 0.3, 0.5, 0.75)
+    );
+    assert_eq!((vehicle.margin * 1e9).round(), 0.2 * 1e9);
+    assert_eq!((vehicle.rotation, vehicle.rotation_acceleration), (0.6, 2.0));
+    let options = Options { radius: Some(1.5), fleet: fleet("hotel_cleanerBotA"), ..Options::default() };
+    let (Imported { vehicle, .. }, warnings) = read(TRIPLE_H, &options);
+    assert_eq!((vehicle.radius, vehicle.speed, warnings.len()), (1.5, 0.7, 0));
+    let wrong = Options { fleet: Some("nowhere.yaml".into()), ..Options::default() };
+    let error = layout(Format::Rmf, OFFICE, &wrong, &mut Warnings::default()).unwrap_err().to_string();
+    assert!(error.starts_with("nowhere.yaml: cannot be read"), "{error}");
+}
+
+#[test]
+fn vehicles_stop_and_turn_at_corners() {
+    let mut warnings = Warnings::default();
+    let scenario = scenario(Format::Rmf, TRIPLE_H, &tiny(&["TopLeft:TopCenterLeft"]), &mut warnings).unwrap();
+    let agent = &scenario.agents[0];
+    let turns: Vec<f64> =
+        agent.path.iter().filter(|segment| segment.letter() == 'A').map(|arc| arc.length() / TURN).collect();
+    // Down, to the right, up again; the lanes between are straight to a hundredth of a radian.
+    assert_eq!(turns.iter().filter(|turn| (**turn - std::f64::consts::FRAC_PI_2).abs() < 0.01).count(), 2, "{turns:?}");
+    assert!(turns.iter().all(|turn| *turn < 0.01 || *turn > 1.5));
+    let MotionSpec::Profile { pieces, .. } = &agent.motion else { panic!() };
+    let duration: f64 = pieces.iter().map(|(duration, _)| duration).sum();
+    // Three straight drives and two turns, each from rest to rest.
+    let pixels = [(160.537 - 40.342), (166.427 - 46.387), (160.494 - 40.353)];
+    let drive = |length: f64| length / 0.5 + 0.5 / 0.75;
+    let turn = std::f64::consts::FRAC_PI_2 / 0.6 + 0.6 / 2.0;
+    let expected = pixels.iter().map(|pixels| drive(pixels * 0.044166)).sum::<f64>() + 2.0 * turn;
+    assert!((duration - expected).abs() < 0.02, "{duration} {expected}");
+    assert!(Scenario::from_json(&scenario.to_json()).is_ok());
+}
+
+#[test]
+fn levels_are_apart_and_lifts_are_not_read() {
+    let (imported, warnings) = read(HOTEL, &tiny(&[]));
+    assert_eq!(imported.layout.levels, ["L1", "L2", "L3"]);
+    let lanes = |level: usize| imported.layout.edges.iter().filter(|edge| imported.layout.level(edge) == level).count();
+    assert_eq!([0, 1, 2].map(lanes), [58, 32, 32]);
+    assert!(warnings.contains(&"lifts: they are not read; routes stay on their level".to_owned()));
+    assert!(
+        warnings.contains(&"graphs 0, 1, 2: the lanes of all of them are taken (--graph N)".to_owned()),
+        "{warnings:?}"
+    );
+    let (one, _) = read(HOTEL, &Options { graph: Some(1), ..tiny(&[]) });
+    assert!(one.layout.edges.len() < 122 && !one.layout.edges.is_empty());
+    let table = Locks::of(&imported, false).unwrap();
+    let level = |id: &pcr_host::import::Id| id.to_string().split('/').next().map(str::to_owned);
+    assert!(!table.locks.is_empty() && table.locks.iter().all(|lock| level(&lock.a) == level(&lock.b)));
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let start = TRIPLE_H.find("measurements:").unwrap();
+    let end = start + TRIPLE_H[start..].find("vertices:").unwrap();
+    let unmeasured = format!("{}{}", &TRIPLE_H[..start], &TRIPLE_H[end..]);
+    assert_eq!(failed(&unmeasured), "level L1, measurements: none that gives the scale of its pixels");
+    assert_eq!(
+        failed(&format!("coordinate_system: wgs84\n{TRIPLE_H}")),
+        "building, coordinate_system: wgs84 is not read"
+    );
+    assert_eq!(failed("a: b"), "building, levels: missing");
+    let config = std::fs::read_to_string(fleet("office_tinyRobot").unwrap()).unwrap();
+    assert_eq!(failed(&config), "it is the configuration of a fleet; give it beside a building, with --fleet");
+    assert!(failed("a: [").starts_with("not YAML: "));
+    let (broken, warnings) = read(&TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1), &tiny(&[]));
+    assert_eq!(broken.layout.edges.len(), 21);
+    assert_eq!(warnings, ["lane L1/0: left out: there is no vertex 999"]);
+}

@@ -1,0 +1,170 @@
+//! Orders and states of VDA 5050: published ones, and what the specification allows.
+
+use pcr_host::fleet::Fleet;
+use pcr_host::import::{Format, Options, Warnings, scenario};
+use pcr_host::scenario::{MotionSpec, Scenario};
+use serde_json::{Value, json};
+
+const FLYWEI: &str = include_str!("../data/real/vda5050/order_v2_flywei.json");
+const NULLS: &str = include_str!("../data/real/vda5050/order_v2_nulls_opentcs.json");
+
+fn options() -> Options {
+    Options {
+        radius: Some(0.4),
+        speed: Some(2.0),
+        acceleration: Some(0.5),
+        rotation: Some(1.0),
+        rotation_acceleration: Some(1.0),
+        ..Options::default()
+    }
+}
+
+fn read(text: &str, options: &Options) -> Result<(Scenario, Vec<String>), String> {
+    let mut warnings = Warnings::default();
+    let scenario = scenario(Format::Vda5050, text, options, &mut warnings).map_err(|error| error.to_string())?;
+    Ok((scenario, warnings.lines()))
+}
+
+/// An order of 3.0 along the nodes of a square, with everything optional left out or null.
+fn square() -> Value {
+    let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    let nodes = corners.iter().enumerate().map(|(k, [x, y])| {
+        json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "released": k < 3, "actions": [],
+            "nodePosition": { "x": x, "y": y, "theta": null, "mapId": "m" } })
+    });
+    let edges = (0..3).map(|k| {
+        json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k + 1, "released": k < 2, "actions": [], "trajectory": null,
+            "maximumSpeed": if k == 0 { json!(0.5) } else { json!(null) } })
+    });
+    // Lists in any order: the numbers count.
+    let (nodes, edges): (Vec<_>, Vec<_>) = (nodes.rev().collect(), edges.rev().collect());
+    json!({ "orderId": "square", "version": "3.0.0", "nodes": nodes, "edges": edges })
+}
+
+#[test]
+fn published_orders() {
+    for name in ["order.json", "x"] {
+        assert_eq!(Format::of(name.as_ref(), FLYWEI), Some(Format::Vda5050));
+    }
+    let (scenario, warnings) = read(FLYWEI, &options()).unwrap();
+    let agent = &scenario.agents[0];
+    assert_eq!((scenario.name.as_str(), agent.path.len()), ("order-pick-A14-to-DOCK-7", 1));
+    assert!((agent.length() - 36.8_f64.hypot(10.5)).abs() < 1e-12);
+    // 1.5 m/s on the edge, though the vehicle can do 2.
+    let MotionSpec::Profile { pieces, .. } = &agent.motion else { panic!() };
+    assert!((pieces[0].0 - 3.0).abs() < 1e-9 && pieces.len() == 3);
+    assert!(warnings[0].contains("its actions take no time here"));
+    let error = read(NULLS, &options()).unwrap_err();
+    let expected = "order some-order-id, edge some-edge-id, startNodeId: source-node, \
+        but by sequenceId it is node-with-node-position-and-action";
+    assert_eq!(error, expected);
+    let joined = NULLS.replace("\"source-node\"", "null").replace("\"destination-node\"", "null");
+    let expected = "order some-order-id, node node-without-node-position, nodePosition: missing";
+    assert_eq!(read(&joined, &options()).unwrap_err(), expected);
+}
+
+#[test]
+fn the_base_is_travelled_and_the_horizon_if_asked_for() {
+    let text = square().to_string();
+    let (scenario, warnings) = read(&text, &options()).unwrap();
+    assert_eq!(scenario.agents[0].structure(), "SAS");
+    assert_eq!(warnings, ["order square: 1 of 3 edges are not released and left out (--horizon)"]);
+    let (scenario, warnings) = read(&text, &Options { horizon: true, ..options() }).unwrap();
+    assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("SASAS", 0));
+    // 0.5 m/s on the first edge: 1 s up and down, and 7 s; then a quarter turn.
+    let MotionSpec::Profile { pieces, .. } = &scenario.agents[0].motion else { panic!() };
+    let durations: Vec<f64> = pieces.iter().take(3).map(|(duration, _)| duration.round()).collect();
+    assert_eq!(durations, [1.0, 7.0, 1.0]);
+}
+
+#[test]
+fn several_messages_are_several_agents() {
+    let (one, other) = (square().to_string(), FLYWEI);
+    for text in [format!("{one}\n{other}"), format!("[{one},{other}]"), format!("\u{feff}{one} {other}\n\n")] {
+        let (scenario, _) = read(&text, &options()).unwrap();
+        assert_eq!(scenario.agents.iter().map(|agent| agent.id).collect::<Vec<_>>(), [1, 2]);
+        assert!(Fleet::<f64>::new(&scenario).is_ok());
+    }
+}
+
+/// A quarter of a circle of radius 2, as a rational curve.
+fn quarter() -> Value {
+    json!({ "degree": 2, "knotVector": [0, 0, 0, 1, 1, 1],
+        "controlPoints": [{ "x": 4, "y": 0 }, { "x": 6, "y": 0, "weight": std::f64::consts::FRAC_1_SQRT_2 }, { "x": 6, "y": 2 }] })
+}
+
+#[test]
+fn trajectories_are_followed_from_node_to_node() {
+    let mut order = square();
+    // The lists are reversed: the second edge and the third node.
+    order["edges"][1]["trajectory"] = quarter();
+    order["nodes"][1]["nodePosition"] = json!({ "x": 6.0, "y": 2.0 });
+    let (scenario, _) = read(&order.to_string(), &options()).unwrap();
+    let agent = &scenario.agents[0];
+    assert_eq!(agent.structure(), "SAA");
+    assert!((agent.length() - 4.0 - std::f64::consts::PI).abs() < 1e-9);
+    assert!((agent.radius - 0.4).abs() < 1e-12);
+    order["nodes"][1]["nodePosition"]["y"] = json!(2.5);
+    let error = read(&order.to_string(), &options()).unwrap_err();
+    assert_eq!(error, "order square, edge e1: its trajectory ends 0.500 m from its node");
+}
+
+#[test]
+fn states_tell_paths_with_or_without_times() {
+    let pose = json!({ "x": 4.0, "y": 0.0, "theta": 0.0, "mapId": "m", "localized": true });
+    let state = |more: Value| {
+        let mut state = json!({ "timestamp": "2026-11-21T08:00:00.000Z", "serialNumber": "r7", "orderId": "o",
+            "nodeStates": [{ "nodeId": "n1" }], "edgeStates": [], "mobileRobotPosition": pose });
+        state.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        state.to_string()
+    };
+    let (scenario, _) =
+        read(&state(json!({ "plannedPath": { "trajectory": quarter(), "traversedNodes": [] } })), &options()).unwrap();
+    assert_eq!(scenario.agents[0].structure(), "AA");
+    let (scenario, warnings) = read(&state(json!({})), &options()).unwrap();
+    assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [4.0, 0.0, 0.0]));
+    assert_eq!(warnings, ["state of r7: it tells no path; it is taken as standing where it is"]);
+    let point = |x: f64, y: f64, eta: &str| json!({ "x": x, "y": y, "eta": eta });
+    let polyline = [
+        point(6.0, 0.0, "2026-11-21T08:00:02Z"),
+        point(6.0, 0.0, "2026-11-21T08:00:03.5Z"),
+        point(6.0, 3.0, "2026-11-21T08:00:05.500Z"),
+    ];
+    let text = state(json!({ "intermediatePath": { "polyline": polyline } }));
+    // A second state that was sent a second later.
+    let later = text.replace("08:00:00.000Z", "08:00:01Z");
+    let (scenario, _) = read(&format!("{text}\n{later}"), &options()).unwrap();
+    let fleet = Fleet::<f64>::new(&scenario).unwrap();
+    let motions = fleet.motions();
+    for (time, [x, y]) in
+        [(1.0, [5.0, 0.0]), (2.0, [6.0, 0.0]), (3.0, [6.0, 0.0]), (4.5, [6.0, 1.5]), (9.0, [6.0, 3.0])]
+    {
+        let at = motions[0].position_at(time);
+        assert!((at.x - x).hypot(at.y - y) < 1e-8, "{at:?} at {time}");
+    }
+    assert_eq!(motions[1].time().lo, 1.0);
+    let backward = text.replace("08:00:03.5Z", "07:00:03.5Z");
+    assert!(read(&backward, &options()).unwrap_err().contains("intermediatePath: point 3 is reached at -3596.5 s"));
+    let no_stamp = text.replace("2026-11-21T08:00:02Z", "soon");
+    assert!(read(&no_stamp, &options()).unwrap_err().ends_with("eta: \"soon\" is not a time stamp"));
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let broken = |pointer: &str, value: Value| {
+        let mut order = square();
+        *order.pointer_mut(pointer).unwrap() = value;
+        read(&order.to_string(), &Options { horizon: true, ..options() }).unwrap_err()
+    };
+    assert_eq!(broken("/edges", json!([])), "order square: 4 nodes and 0 edges, which is no path");
+    assert_eq!(broken("/nodes/0/nodeId", json!(3)), "order square, node 1, nodeId: a number where a text is expected");
+    assert_eq!(
+        broken("/edges/2/maximumSpeed", json!(-1)),
+        "order square, edge e0, maximumSpeed: -1 where a number above 0 is expected"
+    );
+    assert_eq!(
+        broken("/nodes/0/nodePosition/x", json!(1e300)),
+        "order square, node n3, nodePosition, x: 1e300 is out of range; allowed is up to 1e10"
+    );
+    assert_eq!(broken("/nodes", json!(null)), "message 1, nodes or nodeStates: missing");
+}

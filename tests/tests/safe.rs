@@ -1,0 +1,153 @@
+//! Safe intervals against the definition: a window is blocked where some point of the part is within reach of the other
+//! agent, wherever that stands.
+
+use pcr_core::{Encounter, Interval, gaps, safe_intervals, safe_lengths, union};
+use pcr_host::fleet::Format;
+use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::generators::driven_pairs;
+use pcr_tests::oracle::line::{below, reaches};
+use pcr_tests::oracle::{Pair, Travel};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::f64::consts::FRAC_PI_2;
+
+/// Samples of each set of windows, and in each window.
+const SAMPLES: u32 = 16;
+
+fn config() -> ProptestConfig {
+    let cases = if cfg!(debug_assertions) { 40 } else { 400 };
+    let rng_seed = RngSeed::Fixed(42);
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed,
+        max_global_rejects: cases,
+        ..ProptestConfig::default()
+    }
+}
+
+fn samples([lo, hi]: [f64; 2]) -> impl Iterator<Item = f64> {
+    (0..=SAMPLES).map(move |k| lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES))
+}
+
+fn audited<S: Format>(discs: [Disc; 2], drives: [(Drive, f64); 2], [from, to]: [f64; 2]) -> Result<(), TestCaseError> {
+    let discs = discs.map(|disc| disc.rounded::<S>());
+    let [ego, other] = [0, 1].map(|k| (&discs[k], drives[k].0.rounded::<S>(), S::from_f64(drives[k].1)));
+    let course = |(disc, drive, start): &(&Disc, Drive, S)| Course::<S>::driven(disc, drive, start.to_f64());
+    let (Ok(a), Ok(b)) = (course(&ego), course(&other)) else {
+        return Err(TestCaseError::reject("does not fit"));
+    };
+    let pair = Pair::new(&discs[0], &discs[1]);
+    let travel = Travel::new(&other.1, discs[1].length(), other.2.to_f64());
+    let (a, b) = (a.motion(), b.motion());
+    let encounter = Encounter::new(&a, &b);
+    let tolerance = encounter.tolerance().to_f64();
+    let slip = 8.0 * S::slack(b.time().lo.abs().max(b.time().hi.abs())).to_f64();
+
+    // When a part of the ego's path is blocked. Both ends of the part are numbers of the format.
+    let length = |part: f64| S::from_f64(part * discs[0].length()).min(a.path().length());
+    let part = Interval::new(length(from.min(to)), length(from.max(to)));
+    let one = S::from_f64(1.0);
+    let during = Interval::new(b.time().lo - one, b.time().hi + one);
+    let windows: Vec<_> = encounter.blocked(part, during).collect();
+    let [lo, hi] = [part.lo.to_f64(), part.hi.to_f64()];
+    let reaches_at = |time: f64, margin: f64| {
+        let s = travel.length_at(time);
+        reaches(|l| pair.clearance(s, l), lo, hi, margin, 1e-10)
+    };
+    let deep_at = |time: f64| {
+        let s = travel.length_at(time);
+        !below(|l| pair.clearance(s, l) + tolerance, lo, hi, 0.0, 1e-10).inner.is_empty()
+    };
+    for window in &windows {
+        prop_assert!(during.lo <= window.lo && window.lo <= window.hi && window.hi <= during.hi);
+        for time in samples([window.lo.to_f64(), window.hi.to_f64()]) {
+            let near = [time, time - slip, time + slip].into_iter().any(|time| reaches_at(time, tolerance));
+            prop_assert!(near, "not blocked at {time}: {window:?}");
+        }
+    }
+    for free in gaps(union(windows.iter().copied()), during) {
+        let inside = [free.lo.to_f64() + slip, free.hi.to_f64() - slip];
+        for time in samples(inside).filter(|_| inside[0] < inside[1]) {
+            prop_assert!(!deep_at(time), "not free at {time}: {free:?}");
+        }
+    }
+
+    // Which lengths are blocked in a window of time.
+    let time = |part: f64| S::from_f64(during.lo.to_f64() + part * (during.hi - during.lo).to_f64());
+    let window = Interval::new(time(from.min(to)), time(from.max(to)));
+    let way = [window.lo, window.hi].map(|time| travel.length_at(time.to_f64()));
+    let all = Interval::new(S::ZERO, a.path().length());
+    let blocked: Vec<_> = encounter.blocked_lengths(window).collect();
+    for part in &blocked {
+        prop_assert!(all.lo <= part.lo && part.lo <= part.hi && part.hi <= all.hi);
+        for l in samples([part.lo.to_f64(), part.hi.to_f64()]) {
+            let near = reaches(|s| pair.clearance(s, l), way[0], way[1], tolerance, 1e-10);
+            prop_assert!(near, "not blocked at {l}: {part:?}");
+        }
+    }
+    for free in gaps(blocked.iter().copied(), all) {
+        for l in samples([free.lo.to_f64(), free.hi.to_f64()]) {
+            let inner = below(|s| pair.clearance(s, l) + tolerance, way[0], way[1], 0.0, 1e-10).inner;
+            prop_assert!(inner.is_empty(), "not free at {l}: {free:?}");
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config())]
+    #[test]
+    fn blocked_parts_are_those_of_the_definition_f64(
+        (pair, drives) in driven_pairs(), from in 0.0..1.0_f64, to in 0.0..1.0_f64,
+    ) {
+        audited::<f64>([pair.0, pair.1], drives, [from, to])?;
+    }
+
+    #[test]
+    fn blocked_points_are_those_of_the_definition_f64((pair, drives) in driven_pairs(), at in 0.0..1.0_f64) {
+        audited::<f64>([pair.0, pair.1], drives, [at, at])?;
+    }
+
+    #[test]
+    fn blocked_parts_are_those_of_the_definition_f32(
+        (pair, drives) in driven_pairs(), from in 0.0..1.0_f64, to in 0.0..1.0_f64,
+    ) {
+        audited::<f32>([pair.0, pair.1], drives, [from, to])?;
+    }
+}
+
+fn line(start: [f64; 3], length: f64, at: f64) -> Course<f64> {
+    let disc = Disc { radius: 0.25, start, legs: vec![Leg::Line(length)] };
+    Course::driven(&disc, &Drive::Unit, at).expect("a valid disc")
+}
+
+fn close(found: &[Interval<f64>], exact: &[(f64, f64)]) -> bool {
+    let near = |(found, exact): (&Interval<f64>, &(f64, f64))| {
+        (found.lo - exact.0).abs() < 1e-12 && (found.hi - exact.1).abs() < 1e-12
+    };
+    found.len() == exact.len() && found.iter().zip(exact).all(near)
+}
+
+#[test]
+fn the_others_of_a_fleet_block_together_and_parked_ones_for_good() {
+    let north = |x: f64, length: f64, at: f64| line([x, -2.0, FRAC_PI_2], length, at);
+    // Two pass, one after the other; the third arrives on the path and stays; the fourth stands on it until it leaves.
+    let courses = [
+        line([-4.0, 0.0, 0.0], 8.0, 0.0),
+        north(0.0, 4.0, 0.0),
+        north(0.0, 4.0, 0.5),
+        north(2.0, 2.0, 1.0),
+        line([-2.0, 0.0, FRAC_PI_2], 3.0, 5.0),
+    ];
+    let fleet = courses.each_ref().map(Course::motion);
+    let time = Interval::new(-1.0, 20.0);
+    let at = |l: f64| safe_intervals(&fleet, 0, Interval::new(l, l), time).collect::<Vec<_>>();
+    assert!(close(&at(4.0), &[(-1.0, 1.5), (3.0, 20.0)]), "{:?}", at(4.0));
+    assert!(close(&at(6.0), &[(-1.0, 2.5)]), "{:?}", at(6.0));
+    assert!(close(&at(2.0), &[(5.5, 20.0)]), "{:?}", at(2.0));
+    assert!(close(&at(0.0), &[(-1.0, 20.0)]), "{:?}", at(0.0));
+    let lengths = |lo: f64, hi: f64| safe_lengths(&fleet, 0, Interval::new(lo, hi)).collect::<Vec<_>>();
+    assert!(close(&lengths(10.0, 20.0), &[(0.0, 5.5), (6.5, 8.0)]), "{:?}", lengths(10.0, 20.0));
+    assert!(close(&lengths(-1.0, 2.0), &[(0.0, 1.5), (2.5, 3.5), (4.5, 8.0)]), "{:?}", lengths(-1.0, 2.0));
+}
