@@ -9,7 +9,7 @@
 //! ```text
 //! scalar     numbers: f32, f64, or your own format          Scalar, Wide, Unit, Angle
 //! geometry   points, directions, intervals, boxes           Point, Pose, Interval
-//! intervals  unions and gaps without storage                   union, gaps
+//! intervals  unions and gaps without storage                union, gaps
 //! segment    lines and arcs, placed in the plane            Segment, Curve, Turn
 //! path       G1 chains of them (ρ of Eq. 1)                 Path, PathRef
 //! profile    speed over time (λ of Eq. 1-3), and inverse    Profile, ProfileRef, Limits
@@ -18,8 +18,8 @@
 //! pieces     their fixed-capacity store                     Piece
 //! region     connected regions in path-time space (t, l)    RegionRef
 //! ecm        all regions of a fleet                         Ecm
-//! query      conflicts, safe intervals, start delays            Encounter, safe_intervals, earliest_start
-//! plan       start delays of a fleet by priorities             plan_delays
+//! query      conflicts, safe intervals, start delays        Encounter, safe_intervals, earliest_start
+//! plan       start delays of a fleet by priorities          plan_delays
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
 //!

@@ -4,12 +4,12 @@
 //! scenario   what a file says, and everything that is refused     Scenario, Agent
 //! fleet      its paths and motions in a number format             Fleet, build_ecm
 //! regions    the answer as plain numbers, and its JSON            Answer, Request
-//! check      the conflicts of the motions as given               Verdict
-//! locks      which edges of a layout exclude one another              Locks
+//! check      the conflicts of the motions as given              Verdict
+//! locks      which edges of a layout exclude one another        Locks
 //! plan       delays without conflicts                           Plan
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
-//! import     layouts, orders and plans in the formats of others        Format, Layout
+//! import     layouts, orders and plans in the formats of others Format, Layout
 //! picture    SVG, PNG and a page for the browser                  write
 //! paper      the embedded scenario and the paper's numbers
 //! progress   a line on the terminal about long work

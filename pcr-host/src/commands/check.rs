@@ -1,0 +1,89 @@
+//! `pcr check`.
+
+use super::number::{Number, with_scalar};
+use super::work::{Work, run};
+use super::{CONFLICTS, Form, Stop, WRONG_INPUT};
+use clap::Args;
+use pcr_host::check::Verdict;
+use pcr_host::import::Options;
+use pcr_host::regions::Failure;
+use pcr_host::report;
+use pcr_host::scenario::Scenario;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const STATUSES: &str = "\
+Exit status:
+  0  no conflicts
+  1  conflicts
+  2  wrong arguments, or a scenario that cannot be read or was refused (one line of JSON Lines is enough)
+  3  the output could not be written";
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr check plan.json                                who collides when, where and how deep
+  pcr check plan.json --closest                      and how near every two agents come
+  pcr check plan.json > /dev/null && echo free       for scripts: the exit status says it
+  pcr check - --format json < plans.jsonl            JSON Lines: a scenario a line in, a line a scenario out";
+
+/// Tell whether the agents collide, moving as the scenario says: who, when, where, how deep
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+pub(super) struct Arguments {
+    /// Scenario (JSON); `-` reads JSON Lines on standard input; the paper's 12 agents if left out
+    file: Option<PathBuf>,
+    /// Form of the output
+    #[arg(long, value_enum, default_value_t = Form::Table)]
+    format: Form,
+    /// Add how near every two agents come, and when (not in CSV)
+    #[arg(long)]
+    closest: bool,
+    /// Number format of the computation
+    #[arg(long, value_enum, default_value_t = Number::F64)]
+    scalar: Number,
+    #[command(flatten)]
+    import: Options,
+}
+
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        if self.closest && self.format == Form::Csv {
+            return Err(Stop::Error("--closest is for --format json and table".into(), WRONG_INPUT));
+        }
+        let work = Check { scalar: self.scalar, closest: self.closest };
+        let found = run(&work, self.file.as_deref(), &self.import, self.format)?;
+        Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
+    }
+}
+
+/// `pcr check`.
+struct Check {
+    scalar: Number,
+    closest: bool,
+}
+
+impl Work for Check {
+    type Answer = Verdict;
+    const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
+
+    fn answer(&self, scenario: &Scenario) -> Result<Verdict, Failure> {
+        Ok(with_scalar!(self.scalar, S => Verdict::of::<S>(scenario, self.closest))?)
+    }
+
+    fn refused(&self, name: &str, error: String) -> Verdict {
+        Verdict::refused(name, error)
+    }
+
+    fn found(&self, verdict: &Verdict) -> bool {
+        !verdict.conflicts.is_empty()
+    }
+
+    fn print(&self, verdict: &Verdict, format: Form, out: &mut impl Write) -> io::Result<()> {
+        match format {
+            Form::Table => report::conflicts_table(verdict, out),
+            Form::Json => report::json(verdict, out),
+            Form::Csv => report::conflicts_csv(verdict, out),
+        }
+    }
+}

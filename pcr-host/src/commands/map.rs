@@ -1,0 +1,57 @@
+//! `pcr map`.
+
+use super::{STATUSES, Stop, scenario};
+use clap::Args;
+use pcr_host::fleet::Fleet;
+use pcr_host::import::Options;
+use pcr_host::picture;
+use pcr_host::progress::Progress;
+use pcr_host::regions::{self, Failure};
+use pcr_host::scenario::Scenario;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr map -o pcr-out                  the paper's 12 agents
+  pcr map fleet.json -o pictures      any other scenario";
+
+/// Draw a scenario: its paths, and the extended collision map of each agent, as SVG and PNG
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+pub(super) struct Arguments {
+    /// Scenario (JSON); `-` reads it from standard input; the paper's 12 agents if left out
+    file: Option<PathBuf>,
+    /// Directory for the pictures; created where it does not exist, files in it are overwritten
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    import: Options,
+}
+
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        let file = self.file.as_deref();
+        let scenario = scenario(file, &self.import)?;
+        // What is wrong with the scenario is said before anything is written.
+        let named = |failure: Failure| Stop::wrong(file, failure);
+        let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
+        regions::table(&scenario, &fleet.motions()).map_err(named)?;
+        draw(&scenario, &self.output, &mut io::stdout().lock())?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Draws a scenario to a directory.
+pub(super) fn draw(scenario: &Scenario, directory: &Path, out: &mut impl Write) -> Result<(), Stop> {
+    let progress = Progress::new("pictures");
+    let files = picture::write(scenario, directory, &mut |done, total| progress.set(done, total));
+    drop(progress);
+    let files = files.map_err(|error| Stop::not_written(directory, &error))?;
+    let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
+    if let Some(first) = page.or(files.first()) {
+        writeln!(out, "Pictures: {} files in {}; begin with {}", files.len(), directory.display(), first.display())?;
+    }
+    Ok(())
+}
