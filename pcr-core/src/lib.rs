@@ -58,9 +58,12 @@ pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
-pub use plan::{Unsolved, plan_delays};
+pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
-pub use query::{Approach, Conflict, Conflicts, Contacts, Encounter, earliest_start, safe_intervals, safe_lengths};
+pub use query::{
+    Approach, Conflict, Conflicts, Contacts, Encounter, Met, earliest_start, first_conflict, safe_intervals,
+    safe_lengths,
+};
 pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]
 pub use scalar::Radians;

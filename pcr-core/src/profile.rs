@@ -31,9 +31,34 @@ impl<S: Scalar> Phase<S> {
     /// A final speed that is negative by rounding only is taken as 0.
     pub fn starting_at(speed: S, duration: S, acceleration: S) -> Result<Self, Invalid> {
         not_negative(speed, "initial speed")?;
+        Self::origin(speed).then(duration, acceleration)
+    }
+
+    /// What comes before the first phase: no time, no length.
+    pub(crate) fn origin(speed: S) -> Self {
         let origin = Interval::new(S::ZERO, S::ZERO);
-        let at_rest = Self { time: origin, length: origin, speed: [speed, speed], acceleration: S::ZERO };
-        at_rest.then(duration, acceleration)
+        Self { time: origin, length: origin, speed: [speed, speed], acceleration: S::ZERO }
+    }
+
+    /// The phase that follows `self`, to the length `to` and the speed `speed`, which are told rather than computed, so that
+    /// no rounding adds up.
+    pub(crate) fn until(&self, duration: S, to: S, speed: S, acceleration: S) -> Self {
+        Self {
+            time: Interval::new(self.time.hi, self.time.hi + duration),
+            length: Interval::new(self.length.hi, to),
+            speed: [self.speed[1], speed],
+            acceleration,
+        }
+    }
+
+    /// Both phases as one, if they follow one another at the same acceleration.
+    pub(crate) fn joined(&self, next: &Self) -> Option<Self> {
+        (self.acceleration == next.acceleration).then(|| Self {
+            time: Interval::new(self.time.lo, next.time.hi),
+            length: Interval::new(self.length.lo, next.length.hi),
+            speed: [self.speed[0], next.speed[1]],
+            acceleration: self.acceleration,
+        })
     }
 
     /// The phase that follows `self`: `duration` \[s\] at `acceleration` \[m/s²\].
@@ -197,6 +222,24 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
             phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
         }
         Ok(Self { phases })
+    }
+
+    /// The profile of an agent that stands: no phases.
+    pub const fn standing() -> Self {
+        Self { phases: Vec::new() }
+    }
+
+    /// Appends a phase that follows the last one, to which it is joined where both are of the same acceleration; an
+    /// empty phase adds nothing.
+    pub(crate) fn extend(&mut self, phase: Phase<S>) -> Result<(), Invalid> {
+        if phase.time.length() <= S::ZERO {
+            return Ok(());
+        }
+        match self.phases.last_mut().and_then(|last| Some((last.joined(&phase)?, last))) {
+            Some((joined, last)) => *last = joined,
+            None => self.phases.push(phase).map_err(|_| Invalid::Full("phase"))?,
+        }
+        Ok(())
     }
 
     /// The profile as the algorithms take it.

@@ -5,7 +5,7 @@
 //! chord       the relative motion between two instants          (internal)
 //! contact     when two discs are in contact                      Encounter, Contacts
 //! clearance   how near they come                                 Approach
-//! conflict    both: from when to when, where, how deep           Conflict, Conflicts
+//! conflict    both: from when to when, where, how deep           Conflict, Conflicts, first_conflict
 //! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
 //! delay       start delays that lead to a conflict               earliest_start
 //! ```
@@ -19,7 +19,7 @@ mod legs;
 mod safe;
 
 pub use clearance::Approach;
-pub use conflict::{Conflict, Conflicts};
+pub use conflict::{Conflict, Conflicts, Met, first_conflict};
 pub use contact::{Contacts, Encounter};
 pub use delay::earliest_start;
 pub use safe::{safe_intervals, safe_lengths};

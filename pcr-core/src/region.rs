@@ -169,7 +169,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 
     /// The pieces, at least one.
-    pub fn pieces(&self) -> impl Iterator<Item = PieceRef<'a, S>> {
+    pub fn pieces(&self) -> impl Iterator<Item = PieceRef<'a, S>> + Clone + use<'a, S> {
         let (pair, transposed) = (self.pair, self.transposed);
         self.pieces.clone().filter_map(move |piece| {
             let indices = [usize::from(piece.first_segment), usize::from(piece.second_segment)];

@@ -8,10 +8,12 @@
 //! ```text
 //! route    position on a path
 //! travel   travelled length over time, and its inverse by bisection
+//! contact  when two driven discs touch
 //! line     what a disc covers of a path: certified intervals
 //! plane    connected components in the (s, l) plane: certified
 //! ```
 
+pub mod contact;
 pub mod line;
 pub mod plane;
 pub mod route;

@@ -4,14 +4,10 @@ use pcr_core::{Encounter, Interval, Motion, Unsolved, plan_delays};
 use pcr_host::fleet::build_ecm;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::{Dice, drive, leg};
-use pcr_tests::oracle::line::{Intervals, below};
-use pcr_tests::oracle::{Pair, Travel};
+use pcr_tests::oracle::contact::{Driven, contacts};
 use std::f64::consts::PI;
 
 const FLEETS: u64 = if cfg!(debug_assertions) { 150 } else { 5_000 };
-
-/// A disc, how it is driven, and when it sets off at the earliest.
-type Driven = (Disc, Drive, f64);
 
 /// Two to six agents in a square of 6 m, or on one another's paths.
 fn fleet(dice: &mut Dice) -> Vec<Driven> {
@@ -24,16 +20,6 @@ fn fleet(dice: &mut Dice) -> Vec<Driven> {
         (disc, drive, if dice.chance(0.5) { 0.0 } else { dice.range(0.0, 5.0) })
     };
     (0..agents).map(|_| agent(dice)).collect()
-}
-
-/// What is known of the times at which two discs are in contact, or within `margin` of it.
-fn contacts(a: &Driven, b: &Driven, starts: [f64; 2], during: [f64; 2], margin: f64) -> Intervals {
-    let pair = Pair::new(&a.0, &b.0);
-    let travels =
-        [(a, starts[0]), (b, starts[1])].map(|(driven, start)| Travel::new(&driven.1, driven.0.length(), start));
-    let speed = a.1.top_speed() + b.1.top_speed() + 1e-3;
-    let clearance = |x: f64| pair.clearance(travels[1].length_at(x / speed), travels[0].length_at(x / speed));
-    below(clearance, during[0] * speed, during[1] * speed, margin, 1e-9)
 }
 
 #[test]

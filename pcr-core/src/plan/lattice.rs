@@ -1,0 +1,224 @@
+//! The motions among which a speed plan is chosen.
+//!
+//! The path is divided into cells of the same length, with one shorter cell in the middle. At the border of two cells the
+//! agent has one of a few speeds, the squares of which are evenly spaced from 0 to the top speed; a cell is as long as a
+//! ramp from one of them to the next at full acceleration (or twice, four times ... as long, on a path of many cells).
+//! Inside a cell the agent speeds up at once, or slows down as late as possible, at full acceleration:
+//!
+//! ```text
+//! speed   ____        ____
+//!        /                \        the fastest motions between two speeds
+//!       /                  \       that stay at or below the higher one
+//! ```
+//!
+//! Hence the fastest motion from rest to rest over the whole path is among them.
+
+use crate::error::{Invalid, not_negative, positive};
+use crate::geometry::Interval;
+use crate::profile::{Limits, Phase};
+use crate::scalar::{Scalar, Wide};
+
+/// Speeds at the borders of cells: rest and four others, the last one of which is the top speed.
+pub(super) const LEVELS: usize = 5;
+/// And the speeds at the ends of the path.
+const SPEEDS: usize = LEVELS + 2;
+/// Parts of a cell, for each of which it is known when it is blocked.
+pub(super) const SLABS: usize = 4;
+
+/// How an agent may move, and how it begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Drive<S> {
+    /// Largest speed and acceleration.
+    pub limits: Limits<S>,
+    /// Speed at the start of the path \[m/s\]. An agent that is in motion there cannot wait.
+    pub start: S,
+    /// Speed at the end of the path \[m/s\].
+    pub goal: S,
+}
+
+impl<S: Scalar> Drive<S> {
+    /// From rest to rest.
+    pub const fn rest_to_rest(limits: Limits<S>) -> Self {
+        Self { limits, start: S::ZERO, goal: S::ZERO }
+    }
+}
+
+/// The fastest motion over a cell between two speeds, without exceeding the higher one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge<S> {
+    phases: [Phase<S>; 2],
+    /// When each slab is entered, and when the last one is left, from the begin of the cell on \[s\].
+    pub(super) passes: [S; SLABS + 1],
+}
+
+impl<S: Scalar> Edge<S> {
+    /// Nothing for speeds that are too far apart for the cell.
+    fn new(from: S, to: S, length: S, acceleration: S) -> Option<Self> {
+        let (slow, fast) = (from.min(to), from.max(to));
+        if fast <= S::ZERO || length <= S::ZERO {
+            return None;
+        }
+        let ramp = (fast - slow).quotient(acceleration);
+        let mut way = (slow + fast).times(ramp).narrow().half();
+        let rounding = S::slack(length);
+        if way > length + rounding.double() {
+            return None;
+        }
+        // What rounding leaves of a cell is no phase of its own.
+        if length - way <= rounding.double() {
+            way = length;
+        }
+        let cruise = (length - way).quotient(fast);
+        let origin = Phase::origin(from);
+        let phases = if from < to {
+            let first = origin.until(ramp, way, to, acceleration);
+            [first, first.until(cruise, length, to, S::ZERO)]
+        } else {
+            let first = origin.until(cruise, length - way, from, S::ZERO);
+            [first, first.until(ramp, length, to, -acceleration)]
+        };
+        let mut passes = [S::ZERO; SLABS + 1];
+        let [first, second] = &phases;
+        for (pass, border) in passes.iter_mut().zip(borders(Interval::new(S::ZERO, length))) {
+            let phase = if border <= first.length().hi { first } else { second };
+            *pass = phase.time_at(border);
+        }
+        if let Some(last) = passes.last_mut() {
+            *last = second.time().hi;
+        }
+        Some(Self { phases, passes })
+    }
+
+    /// Time that it takes \[s\].
+    pub(super) fn duration(&self) -> S {
+        let [_, last] = &self.phases;
+        last.time().hi
+    }
+
+    /// The phases, none of them empty: duration, way, speed at the end, acceleration.
+    pub(super) fn phases(&self) -> impl Iterator<Item = (S, S, S, S)> {
+        let phases = self.phases.iter().filter(|phase| phase.time().length() > S::ZERO);
+        phases.map(|phase| {
+            let [_, after] = phase.speed();
+            (phase.time().length(), phase.length().length(), after, phase.acceleration())
+        })
+    }
+}
+
+/// The borders of the slabs of a cell.
+pub(super) fn borders<S: Scalar>(cell: Interval<S>) -> [S; SLABS + 1] {
+    let (quarter, half) = (cell.length().half().half(), cell.length().half());
+    [cell.lo, cell.lo + quarter, cell.lo + half, cell.lo + half + quarter, cell.hi]
+}
+
+/// Speeds, cells, and the ways from one border to the next.
+#[derive(Clone, Debug)]
+pub(super) struct Lattice<S> {
+    speeds: [S; SPEEDS],
+    edges: [[Option<Edge<S>>; SPEEDS]; SPEEDS],
+    /// Those of the cell in the middle.
+    short: [[Option<Edge<S>>; SPEEDS]; SPEEDS],
+    /// Length of a cell, and of the one in the middle \[m\].
+    cell: S,
+    middle: S,
+    /// Cells on either side of the middle.
+    halves: [usize; 2],
+    /// Places of the speeds at both ends of the path.
+    ends: [usize; 2],
+}
+
+impl<S: Scalar> Lattice<S> {
+    /// Of at most `most` cells, at least two.
+    pub(super) fn new(length: S, drive: Drive<S>, most: usize) -> Result<Self, Invalid> {
+        let Limits { speed, acceleration } = drive.limits;
+        positive(speed, "largest speed")?;
+        positive(acceleration, "largest acceleration")?;
+        for (end, what) in [(drive.start, "speed at the start"), (drive.goal, "speed at the goal")] {
+            if not_negative(end, what)? > speed {
+                return Err(Invalid::OutOfRange(what));
+            }
+        }
+        // Where the ramps up and down meet: v² = a L + (v₀² + v₁²) / 2.
+        let square = |v: S| v.times(v);
+        let peak = acceleration.times(length) + (square(drive.start) + square(drive.goal)).half();
+        let peak = if peak < square(speed) { peak.sqrt() } else { speed };
+        let top = square(peak);
+        let quarter = top.half().half();
+        let levels = [S::Wide::ZERO, quarter, top.half(), top.half() + quarter].map(Wide::sqrt);
+        let [rest, first, second, third] = levels;
+        let speeds = [rest, first, second, third, peak, drive.start, drive.goal];
+        let ramp = peak.times(peak.quotient(acceleration)).narrow().half();
+        // Shorter on a path that is but a part of a ramp.
+        let mut cell = ramp.half().half().min(length.half().half());
+        let mut count = cells(length, cell, most);
+        while count.is_none() && cell < length {
+            cell = cell.double();
+            count = cells(length, cell, most);
+        }
+        let Some((count, middle)) = count else {
+            return Err(Invalid::Full("station"));
+        };
+        let edges = |length: S| speeds.map(|from| speeds.map(|to| Edge::new(from, to, length, acceleration)));
+        let place = |end: S, place: usize| if end > S::ZERO { place } else { 0 };
+        let half = count / 2;
+        Ok(Self {
+            speeds,
+            edges: edges(cell),
+            short: edges(middle),
+            cell,
+            middle,
+            halves: [half, count.saturating_sub(half)],
+            ends: [place(drive.start, LEVELS), place(drive.goal, LEVELS.saturating_add(1))],
+        })
+    }
+
+    /// The lengths of the cells in their order \[m\], with whether it is the one in the middle.
+    pub(super) fn cells(&self) -> impl DoubleEndedIterator<Item = (S, bool)> + use<S> {
+        let [before, after] = self.halves;
+        let cell = (self.cell, false);
+        let middle = (self.middle > S::ZERO).then_some((self.middle, true));
+        core::iter::repeat_n(cell, before).chain(middle).chain(core::iter::repeat_n(cell, after))
+    }
+
+    /// The way over a cell from the speed in one place to that in another one.
+    pub(super) fn edge(&self, is_middle: bool, from: usize, to: usize) -> Option<&Edge<S>> {
+        let edges = if is_middle { &self.short } else { &self.edges };
+        edges.get(from)?.get(to)?.as_ref()
+    }
+
+    /// The speed in a place \[m/s\].
+    pub(super) fn speed(&self, place: usize) -> S {
+        self.speeds.get(place).copied().unwrap_or_default()
+    }
+
+    /// Place of the speed at the start and at the goal.
+    pub(super) fn ends(&self) -> [usize; 2] {
+        self.ends
+    }
+}
+
+/// How many cells there are, and what is left in the middle \[m\]; nothing for more than `most` or less than 2.
+fn cells<S: Scalar>(length: S, cell: S, most: usize) -> Option<(usize, S)> {
+    if cell <= S::ZERO {
+        return None;
+    }
+    let (mut count, mut rest) = (0_usize, length);
+    while rest >= cell {
+        rest = rest - cell;
+        count = count.saturating_add(1);
+        if count > most {
+            return None;
+        }
+    }
+    // Each difference may be off by a rounding.
+    let rounding = S::slack(length);
+    if cell - rest <= rounding {
+        (count, rest) = (count.saturating_add(1), S::ZERO);
+    } else if rest <= rounding {
+        rest = S::ZERO;
+    }
+    let all = count.saturating_add(usize::from(rest > S::ZERO));
+    (2 <= all && all <= most).then_some((count, rest))
+}

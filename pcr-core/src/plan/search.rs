@@ -1,0 +1,253 @@
+//! The search behind a speed plan: forward for the times at every station, backward for the motion.
+
+use crate::error::Invalid;
+use crate::geometry::Interval;
+use crate::plan::lattice::{LEVELS, Lattice, SLABS, borders};
+use crate::plan::speed::{NoSpeedPlan, SpeedPlan, Station};
+use crate::plan::times::Times;
+use crate::profile::{Phase, Profile};
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+/// The regions that a path of this length has to keep out of, and the motions among which is chosen.
+pub(super) struct Search<S: Scalar, I> {
+    pub(super) lattice: Lattice<S>,
+    pub(super) regions: I,
+    /// Of the path \[m\].
+    pub(super) length: S,
+}
+
+/// When the slabs of a cell are blocked, and when its end is.
+struct Blocked<S> {
+    slabs: [Times<S>; SLABS],
+    end: Times<S>,
+}
+
+impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
+    /// Sets up the stations, with the times at which the agent may set off from the first one.
+    pub(super) fn begin(&self, from: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
+        let cells = self.lattice.cells().map(|(cell, _)| cell);
+        let mut length = S::ZERO;
+        for (station, cell) in stations.iter_mut().zip(core::iter::once(S::ZERO).chain(cells)) {
+            length = length + cell;
+            station.clear();
+            station.length = length;
+        }
+        if let Some(goal) = stations.last_mut() {
+            // What rounding has left.
+            goal.length = self.length;
+        }
+        let [start, _] = self.lattice.ends();
+        let at_rest = start == 0;
+        let before = if at_rest { Interval::new(-S::LIMIT, from) } else { Interval::new(from, from) };
+        stands(&self.regions, S::ZERO, before)?;
+        let mut blocked = Times::NONE;
+        self.cover(&mut blocked, Interval::new(S::ZERO, S::ZERO));
+        let until = blocked.first().unwrap_or(S::LIMIT);
+        if let Some(times) = stations.first_mut().and_then(|station| station.reached_mut(start)) {
+            times.add(Interval::new(from, if at_rest { until } else { from }));
+        }
+        Ok(())
+    }
+
+    /// When a part of the path is blocked.
+    fn cover(&self, times: &mut Times<S>, part: Interval<S>) {
+        let always = Interval::new(-S::LIMIT, S::LIMIT);
+        self.near(part).flat_map(|region| region.blocked(part, always)).for_each(|window| times.cover(window));
+    }
+
+    /// The regions on a part of the path.
+    fn near(&self, part: Interval<S>) -> impl Iterator<Item = RegionRef<'a, S>> + use<'a, S, I> {
+        self.regions.clone().filter(move |region| region.length().meets(part))
+    }
+
+    fn blocked(&self, cell: Interval<S>) -> Blocked<S> {
+        let mut blocked = Blocked { slabs: [const { Times::NONE }; SLABS], end: Times::NONE };
+        let borders = borders(cell);
+        for ((slab, &lo), &hi) in blocked.slabs.iter_mut().zip(&borders).zip(borders.iter().skip(1)) {
+            self.cover(slab, Interval::new(lo, hi));
+        }
+        self.cover(&mut blocked.end, Interval::new(cell.hi, cell.hi));
+        blocked
+    }
+
+    /// The times at which the agent may leave a station so that it passes the cell after it freely.
+    fn departures(&self, reached: &Times<S>, passes: &[S], blocked: &Blocked<S>) -> Times<S> {
+        let mut departures = reached.clone();
+        for ((slab, &enters), &leaves) in blocked.slabs.iter().zip(passes).zip(passes.iter().skip(1)) {
+            for window in slab.iter() {
+                // A window without end stays one.
+                let until = if window.hi >= S::LIMIT { S::LIMIT.double() } else { window.hi - enters };
+                departures.remove(Interval::new(window.lo - leaves, until));
+            }
+        }
+        departures
+    }
+
+    /// The places of the speeds at a station.
+    fn levels(&self, is_first: bool, is_last: bool) -> core::ops::Range<usize> {
+        let [start, goal] = self.lattice.ends();
+        let only = |level: usize| level..level.saturating_add(1);
+        match (is_first, is_last) {
+            (true, _) => only(start),
+            (_, true) => only(goal),
+            _ => 0..LEVELS,
+        }
+    }
+
+    /// When the agent can be at each station with each speed.
+    pub(super) fn reach(&self, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
+        let (mut rest, mut is_first) = (stations, true);
+        for (_, is_middle) in self.lattice.cells() {
+            let Some((here, after)) = rest.split_first_mut() else { break };
+            let is_last = after.len() <= 1;
+            let Some(next) = after.first_mut() else { break };
+            let blocked = self.blocked(Interval::new(here.length, next.length));
+            for from in self.levels(is_first, false) {
+                for to in self.levels(false, is_last) {
+                    let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(is_middle, from, to))
+                    else {
+                        continue;
+                    };
+                    let departures = self.departures(reached, &edge.passes, &blocked);
+                    let Some(arrivals) = next.reached_mut(to) else { continue };
+                    departures.iter().for_each(|times| arrivals.add(later(times, edge.duration())));
+                }
+            }
+            if let Some(times) = next.reached.first_mut().filter(|_| self.levels(false, is_last).contains(&0)) {
+                wait(times, &blocked.end);
+            }
+            if next.reached.iter().all(Times::is_empty) {
+                return Err(self.stopped(Interval::new(here.length, next.length)));
+            }
+            (rest, is_first) = (after, false);
+        }
+        Ok(())
+    }
+
+    /// What is said where no motion passes a cell.
+    fn stopped(&self, cell: Interval<S>) -> NoSpeedPlan<S> {
+        let until = |region: &RegionRef<'a, S>| if region.is_open_at_end() { S::LIMIT } else { region.time().hi };
+        let later = |a: RegionRef<'a, S>, b: RegionRef<'a, S>| if until(&b) > until(&a) { b } else { a };
+        match self.near(cell).reduce(later) {
+            Some(region) => NoSpeedPlan::Beyond { length: cell.lo, other: region.other() },
+            // Nothing is in the way: the speeds are too far apart, or the time is over.
+            None => NoSpeedPlan::Invalid(Invalid::OutOfRange("speed or time")),
+        }
+    }
+
+    /// From when on the goal is free for good.
+    pub(super) fn free_from(&self) -> Result<S, NoSpeedPlan<S>> {
+        let place = Interval::new(self.length, self.length);
+        let always = Interval::new(-S::LIMIT, S::LIMIT);
+        let mut free = -S::LIMIT;
+        for region in self.near(place) {
+            let until = region.blocked(place, always).map(|window| window.hi).fold(-S::LIMIT, S::max);
+            if until >= S::LIMIT {
+                return Err(NoSpeedPlan::AtGoal(region.other()));
+            }
+            free = free.max(until);
+        }
+        Ok(free)
+    }
+
+    /// The earliest time at the goal, which is free from a time on.
+    pub(super) fn arrive(&self, stations: &[Station<S>], free: S) -> Result<S, NoSpeedPlan<S>> {
+        let [_, goal] = self.lattice.ends();
+        let times = stations.last().and_then(|station| station.reached(goal));
+        let arrival = times.into_iter().flat_map(Times::iter).find(|times| times.hi >= free);
+        let place = Interval::new(self.length, self.length);
+        arrival.map(|times| times.lo.max(free)).ok_or_else(|| self.stopped(place))
+    }
+
+    /// From the goal back to the start: which speed at which station, and when the agent leaves it.
+    pub(super) fn trace(&self, arrival: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
+        let [_, goal] = self.lattice.ends();
+        if let Some(last) = stations.last_mut() {
+            (last.level, last.leaves) = (goal, arrival);
+        }
+        let mut rest = stations;
+        for (_, is_middle) in self.lattice.cells().rev() {
+            let Some((next, before)) = rest.split_last_mut() else { break };
+            let is_first = before.len() <= 1;
+            let Some(here) = before.last_mut() else { break };
+            let cell = Interval::new(here.length, next.length);
+            let blocked = self.blocked(cell);
+            // At rest it may have waited since its place was free.
+            let waits = next.level == 0;
+            let since =
+                blocked.end.iter().map(|window| window.hi).filter(|&hi| hi <= next.leaves).fold(-S::LIMIT, S::max);
+            let mut best: Option<(S, S, usize)> = None;
+            for from in self.levels(is_first, false) {
+                let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(is_middle, from, next.level))
+                else {
+                    continue;
+                };
+                for times in self.departures(reached, &edge.passes, &blocked).iter() {
+                    let arrivals = later(times, edge.duration());
+                    let at = arrivals.hi.min(next.leaves);
+                    let possible = arrivals.lo <= at && if waits { since <= at } else { at >= next.leaves };
+                    // The least wait, at the highest speed.
+                    if possible && best.is_none_or(|(best, ..)| at >= best) {
+                        best = Some((at, (at - edge.duration()).clamp(times.lo, times.hi), from));
+                    }
+                }
+            }
+            let Some((_, leaves, level)) = best else { return Err(self.stopped(cell)) };
+            (here.leaves, here.level) = (leaves, level);
+            rest = before;
+        }
+        Ok(())
+    }
+
+    /// The motion that was traced.
+    pub(super) fn profile<const N: usize>(&self, stations: &[Station<S>]) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
+        let [start, _] = self.lattice.ends();
+        let first = stations.first().map_or(S::ZERO, |station| station.leaves);
+        let mut phase = Phase::origin(self.lattice.speed(start));
+        let mut profile = Profile::standing();
+        let mut now = first;
+        let pairs = stations.iter().zip(stations.iter().skip(1));
+        for ((here, next), (_, is_middle)) in pairs.zip(self.lattice.cells()) {
+            let wait = here.leaves - now;
+            if here.level == 0 && wait > S::ZERO {
+                phase = phase.until(wait, here.length, S::ZERO, S::ZERO);
+                profile.extend(phase)?;
+            }
+            let edge = self.lattice.edge(is_middle, here.level, next.level).ok_or(Invalid::Disconnected("phase"))?;
+            let mut parts = edge.phases().peekable();
+            while let Some((duration, way, speed, acceleration)) = parts.next() {
+                let to = if parts.peek().is_some() { phase.length().hi + way } else { next.length };
+                phase = phase.until(duration, to, speed, acceleration);
+                profile.extend(phase)?;
+            }
+            now = here.leaves.max(now) + edge.duration();
+        }
+        Ok(SpeedPlan { start: first, profile })
+    }
+}
+
+/// Refuses an agent that stands in someone's way at some time of an interval.
+pub(super) fn stands<'a, S: Scalar>(
+    regions: &(impl Iterator<Item = RegionRef<'a, S>> + Clone),
+    length: S,
+    during: Interval<S>,
+) -> Result<(), NoSpeedPlan<S>> {
+    let place = Interval::new(length, length);
+    let met = regions.clone().find(|region| region.blocked(place, during).next().is_some());
+    met.map_or(Ok(()), |region| Err(NoSpeedPlan::AtStart(region.other())))
+}
+
+/// All times later by a duration.
+fn later<S: Scalar>(times: Interval<S>, duration: S) -> Interval<S> {
+    Interval::new(times.lo + duration, (times.hi + duration).min(S::LIMIT).max(times.lo + duration))
+}
+
+/// Lets the agent wait from each of the times on until its place is blocked.
+fn wait<S: Scalar>(times: &mut Times<S>, blocked: &Times<S>) {
+    let arrivals = core::mem::replace(times, Times::NONE);
+    for arrival in arrivals.iter() {
+        let until = blocked.iter().map(|window| window.lo).find(|&lo| lo >= arrival.lo).unwrap_or(S::LIMIT);
+        times.add(Interval::new(arrival.lo, arrival.hi.max(until)));
+    }
+}

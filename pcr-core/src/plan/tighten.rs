@@ -1,0 +1,115 @@
+//! The last step of a speed plan: it is checked, and waits become as short as contacts allow.
+
+use crate::error::Invalid;
+use crate::geometry::Interval;
+use crate::motion::Motion;
+use crate::plan::search::Search;
+use crate::plan::speed::{NoSpeedPlan, SpeedPlan};
+use crate::profile::{Phase, Profile};
+use crate::query::{Met, first_conflict};
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+/// Halvings of a wait at most; fewer where the format has fewer digits.
+const HALVINGS: u32 = 32;
+
+impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
+    /// The first agent that is met from a time on.
+    fn met<const N: usize>(
+        &self,
+        ego: &Motion<'_, S>,
+        plan: &SpeedPlan<S, N>,
+        from: S,
+    ) -> Result<Option<Met<S>>, Invalid> {
+        let motion = Motion::new(ego.path(), plan.profile.as_profile(), ego.radius(), plan.start)?;
+        let ends = self.regions.clone().map(|region| region.other_motion().time()).chain([motion.time()]);
+        let all = ends.reduce(Interval::hull).unwrap_or_default();
+        let during = Interval::new(from.max(all.lo), all.hi);
+        Ok(first_conflict(&motion, self.regions.clone(), during))
+    }
+
+    /// Refuses a plan with an overlap that is more than a rounding.
+    pub(super) fn check<const N: usize>(
+        &self,
+        ego: &Motion<'_, S>,
+        plan: &SpeedPlan<S, N>,
+    ) -> Result<(), NoSpeedPlan<S>> {
+        let [start, _] = self.lattice.ends();
+        let from = if start == 0 { -S::LIMIT } else { plan.start };
+        match self.met(ego, plan, from)? {
+            Some(met) if !met.conflict.touching => {
+                Err(NoSpeedPlan::Beyond { length: met.conflict.length.lo, other: met.other })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Shortens the waits, the first one first, as far as nobody is met.
+    pub(super) fn tighten<const N: usize>(
+        &self,
+        ego: &Motion<'_, S>,
+        plan: &mut SpeedPlan<S, N>,
+    ) -> Result<(), NoSpeedPlan<S>> {
+        let [start, _] = self.lattice.ends();
+        if start == 0 {
+            self.shorten(ego, plan, None, plan.start - ego.time().lo)?;
+        }
+        let mut place = 0_usize;
+        while let Some(phase) = plan.profile.as_profile().phases().get(place) {
+            let wait = phase.time().length();
+            if phase.speed() == [S::ZERO; 2] {
+                self.shorten(ego, plan, Some(place), wait)?;
+            }
+            place = place.saturating_add(1);
+        }
+        Ok(())
+    }
+
+    /// Shortens the wait before the start, or the phase in a place, which is one.
+    fn shorten<const N: usize>(
+        &self,
+        ego: &Motion<'_, S>,
+        plan: &mut SpeedPlan<S, N>,
+        place: Option<usize>,
+        wait: S,
+    ) -> Result<(), NoSpeedPlan<S>> {
+        let end = place.and_then(|place| plan.profile.as_profile().phases().get(place)).map(|phase| phase.time().hi);
+        let leaves = plan.start + end.unwrap_or_default();
+        let resolution = S::tolerance(leaves.abs().max(ego.time().hi.abs()));
+        let (mut free, mut doubtful) = (S::ZERO, wait);
+        let mut tried = wait;
+        for _ in 0..HALVINGS {
+            if doubtful - free <= resolution {
+                break;
+            }
+            let sooner = plan.sooner(place, tried)?;
+            // What comes before stays as it is.
+            if self.met(ego, &sooner, leaves - wait)?.is_none() {
+                free = tried;
+            } else {
+                doubtful = tried;
+            }
+            tried = free + (doubtful - free).half();
+        }
+        *plan = plan.sooner(place, free)?;
+        Ok(())
+    }
+}
+
+impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
+    /// The plan with an earlier start, or with a shorter phase in a place.
+    fn sooner(&self, place: Option<usize>, by: S) -> Result<Self, Invalid> {
+        let phases = self.profile.as_profile().phases();
+        let Some(place) = place else {
+            return Ok(Self { start: self.start - by, profile: self.profile.clone() });
+        };
+        let mut profile = Profile::standing();
+        let mut last = phases.first().map_or(Phase::origin(S::ZERO), |first| Phase::origin(first.speed()[0]));
+        for (k, phase) in (0..phases.len()).zip(phases) {
+            let duration = phase.time().length() - if k == place { by } else { S::ZERO };
+            last = last.until(duration, phase.length().hi, phase.speed()[1], phase.acceleration());
+            profile.extend(last)?;
+        }
+        Ok(Self { start: self.start, profile })
+    }
+}

@@ -1,0 +1,162 @@
+//! Sets of times of fixed capacity.
+
+use crate::geometry::Interval;
+use crate::scalar::Scalar;
+use heapless::Vec;
+
+/// Intervals of a set, at most. What a set loses for want of room is said where it is used.
+const MOST: usize = 8;
+
+/// Disjoint closed intervals of time \[s\] in increasing order.
+#[derive(Clone, Debug)]
+pub(super) struct Times<S> {
+    intervals: Vec<Interval<S>, MOST>,
+}
+
+impl<S: Scalar> Times<S> {
+    pub(super) const NONE: Self = Self { intervals: Vec::new() };
+
+    pub(super) fn iter(&self) -> impl DoubleEndedIterator<Item = Interval<S>> + Clone {
+        self.intervals.iter().copied()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.intervals.is_empty()
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.intervals.clear();
+    }
+
+    /// The earliest of the times.
+    pub(super) fn first(&self) -> Option<S> {
+        self.intervals.first().map(|first| first.lo)
+    }
+
+    /// Adds an interval. Without room the last interval but one is lost: the earliest times are the best, and the last ones
+    /// are those at which everybody else has arrived.
+    pub(super) fn add(&mut self, interval: Interval<S>) {
+        let interval = self.absorb(interval);
+        let at = self.intervals.partition_point(|before| before.lo < interval.lo);
+        if self.intervals.push(interval).is_ok() {
+            self.carry(at, interval);
+            return;
+        }
+        // Of the full set and the new interval together the last but one is left out.
+        let mut last_two = self.intervals.iter_mut().rev();
+        let (Some(last), Some(before)) = (last_two.next(), last_two.next()) else { return };
+        if interval.lo > last.lo {
+            *last = interval;
+        } else if interval.lo < before.lo {
+            let mut entry = interval;
+            let room = MOST.saturating_sub(2);
+            // The place of the one that is left out takes what moves up.
+            self.intervals
+                .iter_mut()
+                .take(room.saturating_add(1))
+                .skip(at)
+                .for_each(|p| core::mem::swap(p, &mut entry));
+        }
+    }
+
+    /// Adds an interval to a set that may be too large, but not too small: without room two of its neighbours become one.
+    pub(super) fn cover(&mut self, interval: Interval<S>) {
+        let interval = self.absorb(interval);
+        let at = self.intervals.partition_point(|before| before.lo < interval.lo);
+        if self.intervals.push(interval).is_ok() {
+            self.carry(at, interval);
+            return;
+        }
+        let neighbour = if at < MOST { self.intervals.get_mut(at) } else { self.intervals.last_mut() };
+        if let Some(neighbour) = neighbour {
+            *neighbour = neighbour.hull(interval);
+        }
+    }
+
+    /// Takes the inside of an interval out of the set; its ends stay. Without room as [`Times::add`].
+    pub(super) fn remove(&mut self, inside: Interval<S>) {
+        if !self.iter().any(|interval| interval.lo < inside.hi && inside.lo < interval.hi) {
+            return;
+        }
+        let before = core::mem::replace(self, Self::NONE);
+        for interval in before.iter() {
+            if interval.hi <= inside.lo || inside.hi <= interval.lo {
+                self.add(interval);
+                continue;
+            }
+            if interval.lo <= inside.lo {
+                self.add(Interval::new(interval.lo, inside.lo));
+            }
+            if inside.hi <= interval.hi {
+                self.add(Interval::new(inside.hi, interval.hi));
+            }
+        }
+    }
+
+    /// Takes out what meets an interval, and returns the hull.
+    fn absorb(&mut self, mut interval: Interval<S>) -> Interval<S> {
+        self.intervals.retain(|other| {
+            let meets = other.meets(interval);
+            if meets {
+                interval = interval.hull(*other);
+            }
+            !meets
+        });
+        interval
+    }
+
+    /// Moves the last interval, which is `entry`, to its place.
+    fn carry(&mut self, at: usize, mut entry: Interval<S>) {
+        self.intervals.iter_mut().skip(at).for_each(|place| core::mem::swap(place, &mut entry));
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+
+    fn set(intervals: &[(f64, f64)]) -> Times<f64> {
+        let mut set = Times::NONE;
+        intervals.iter().for_each(|&(lo, hi)| set.add(Interval::new(lo, hi)));
+        set
+    }
+
+    fn is(set: &Times<f64>, intervals: &[(f64, f64)]) -> bool {
+        set.iter().eq(intervals.iter().map(|&(lo, hi)| Interval::new(lo, hi)))
+    }
+
+    #[test]
+    fn intervals_that_meet_become_one() {
+        assert!(is(&set(&[(5.0, 6.0), (1.0, 2.0), (2.0, 3.0), (5.5, 7.0)]), &[(1.0, 3.0), (5.0, 7.0)]));
+    }
+
+    #[test]
+    fn the_ends_of_what_is_removed_stay() {
+        let mut times = set(&[(0.0, 4.0), (6.0, 8.0)]);
+        times.remove(Interval::new(3.0, 6.0));
+        assert!(is(&times, &[(0.0, 3.0), (6.0, 8.0)]));
+        times.remove(Interval::new(1.0, 2.0));
+        assert!(is(&times, &[(0.0, 1.0), (2.0, 3.0), (6.0, 8.0)]));
+    }
+
+    #[test]
+    fn without_room_the_last_but_one_is_lost() {
+        let all: Vec<(f64, f64), 9> = (0..9).map(|k| (f64::from(2 * k), f64::from(2 * k + 1))).collect();
+        for new in 0..9 {
+            let mut order = all.clone();
+            let late = order.remove(new);
+            order.push(late).unwrap();
+            let mut kept = all.clone();
+            kept.remove(7);
+            assert!(is(&set(&order), &kept), "{new}");
+        }
+    }
+
+    #[test]
+    fn a_cover_loses_nothing() {
+        let mut times = Times::NONE;
+        (0..12).for_each(|k| times.cover(Interval::new(f64::from(5 * k % 12), f64::from(5 * k % 12) + 0.5)));
+        (0..12).for_each(|k| assert!(times.iter().any(|i| i.lo <= f64::from(k) && f64::from(k) + 0.5 <= i.hi)));
+        assert_eq!(times.iter().count(), MOST);
+    }
+}

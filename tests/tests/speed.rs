@@ -1,0 +1,196 @@
+//! Speed plans: against a fine dynamic program and the definition, in every format, and known answers.
+
+use pcr_core::{Drive as Speeds, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed};
+use pcr_fixed::Q16;
+use pcr_host::fleet::{Format, build_ecm};
+use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::generators::{Dice, leg};
+use pcr_tests::oracle::contact::{Driven, contacts};
+use pcr_tests::velocity::Grid;
+use std::f64::consts::PI;
+
+const CASES: u64 = if cfg!(debug_assertions) { 40 } else { 2_000 };
+const GRID: Grid = Grid { step: 0.05, acceleration: 1.0, speeds: 20, lengths: 3200 };
+
+/// The plan of the first of the courses against the others.
+fn planned<S: Format>(courses: &[Course<S>], drive: Speeds<S>) -> Result<SpeedPlan<S, 48>, NoSpeedPlan<S>> {
+    let fleet: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let mut stations = vec![Station::EMPTY; 40];
+    plan_speed(&fleet[0], drive, ecm.row(&fleet, 0), &mut stations)
+}
+
+fn limits<S: Format>() -> Limits<S> {
+    Limits { speed: S::from_f64(1.0), acceleration: S::from_f64(1.0) }
+}
+
+/// An ego of 4 m that drives at 1 m/s and 1 m/s² at most, and two to five others that cross its way.
+fn scene(dice: &mut Dice) -> (Disc, Vec<Driven>) {
+    let bent = dice.chance(0.5);
+    let legs = if bent { vec![Leg::Line(1.5), Leg::arc(0.8, 1.25), Leg::Line(1.5)] } else { vec![Leg::Line(4.0)] };
+    let ego = Disc { radius: dice.range(0.1, 0.3), start: [-2.0, 0.0, 0.0], legs };
+    let other = |dice: &mut Dice| {
+        let start = [dice.range(-2.5, 2.5), dice.range(-2.5, 2.5), dice.range(-PI, PI)];
+        let legs = (0..1 + dice.below(3)).map(|_| leg(dice)).collect();
+        let other = Disc { radius: dice.range(0.1, 0.3), start, legs };
+        (other, Drive::Limits(dice.range(0.3, 1.5), dice.range(0.5, 2.0)), dice.range(0.0, 6.0))
+    };
+    let others = (0..2 + dice.below(4)).map(|_| other(dice)).collect();
+    (ego, others)
+}
+
+/// The motion of a plan as the oracle takes it.
+fn driven<S: Format>(ego: &Disc, plan: &SpeedPlan<S, 48>) -> Driven {
+    let phases = plan.profile.as_profile().phases();
+    let pieces = phases.iter().map(|phase| (phase.time().length().to_f64(), phase.acceleration().to_f64()));
+    let speed = phases.first().map_or(0.0, |first| first.speed()[0].to_f64());
+    (ego.clone(), Drive::Pieces(speed, pieces.collect()), plan.start.to_f64())
+}
+
+/// Limits are kept and nobody is met, by the definition; all within `slip` \[m\].
+fn audited<S: Format>(ego: &Disc, others: &[Driven], plan: &SpeedPlan<S, 48>, slip: f64) {
+    let ego = driven(ego, plan);
+    let Drive::Pieces(mut speed, pieces) = ego.1.clone() else { unreachable!("pieces") };
+    for (duration, acceleration) in &pieces {
+        speed += duration * acceleration;
+        assert!(acceleration.abs() <= 1.0 && -slip <= speed && speed <= 1.0 + slip, "{pieces:?}");
+    }
+    assert!(speed.abs() <= slip, "comes to rest: {pieces:?}");
+    let end = plan.start.to_f64() + plan.profile.as_profile().duration().to_f64();
+    for other in others {
+        let last = (other.2 + pcr_tests::oracle::Travel::new(&other.1, other.0.length(), 0.0).time().1).max(end) + 1.0;
+        let smaller = (ego.0.grown(-slip), ego.1.clone(), ego.2);
+        let met = contacts(&smaller, other, [ego.2, other.2], [-1.0, last], 0.0).inner;
+        assert!(met.is_empty(), "{met:?} with {other:?}");
+    }
+}
+
+#[test]
+fn plans_arrive_when_a_fine_dynamic_program_does_and_meet_nobody() {
+    let (mut both, mut late, mut lost, mut neither) = (0_u32, 0_u32, 0_u32, 0_u32);
+    for seed in 0..CASES {
+        let (ego, others) = scene(&mut Dice::seeded(seed));
+        let course = |driven: &Driven| Course::<f64>::driven(&driven.0, &driven.1, driven.2).expect("a valid disc");
+        let mut courses = vec![course(&(ego.clone(), Drive::Limits(1.0, 1.0), 0.0))];
+        courses.extend(others.iter().map(course));
+        let plan = planned(&courses, Speeds::rest_to_rest(limits()));
+        let latest = courses.iter().map(|course| course.motion().time().hi).fold(0.0, f64::max) + 12.0;
+        if let Ok(plan) = &plan {
+            audited(&ego, &others, plan, 1e-8);
+        }
+        match (plan, GRID.earliest(&ego, &others, latest)) {
+            (Ok(plan), Some(grid)) => {
+                both += 1;
+                late += u32::from(plan.start + plan.profile.as_profile().duration() > grid + 0.06);
+            }
+            (Ok(_), None) => panic!("seed {seed}: the grid has none"),
+            (Err(_), Some(_)) => lost += 1,
+            (Err(_), None) => neither += 1,
+        }
+    }
+    println!("{both} planned by both, {late} of them late; {lost} by the program only, {neither} by neither");
+    assert!(both > 2 * neither && neither > 0, "{both} planned");
+    // docs/using.md states both shares.
+    assert!(u64::from(late) * 200 <= CASES && u64::from(lost) * 200 <= CASES, "{late} late, {lost} lost of {CASES}");
+}
+
+/// Plans in another format, for what is left of the numbers in it.
+fn audited_in<S: Format>(slip: f64) {
+    let mut solved = 0;
+    for seed in 0..CASES / 4 {
+        let (ego, others) = scene(&mut Dice::seeded(seed));
+        let (ego, others) = (ego.rounded::<S>(), others.into_iter());
+        let round =
+            |(disc, drive, start): Driven| (disc.rounded::<S>(), drive.rounded::<S>(), S::from_f64(start).to_f64());
+        let others: Vec<Driven> = others.map(round).collect();
+        let course = |driven: &Driven| Course::<S>::driven(&driven.0, &driven.1, driven.2).expect("a valid disc");
+        let mut courses = vec![course(&(ego.clone(), Drive::Limits(1.0, 1.0), 0.0))];
+        courses.extend(others.iter().map(course));
+        if let Ok(plan) = planned(&courses, Speeds::rest_to_rest(limits::<S>())) {
+            audited(&ego, &others, &plan, slip);
+            solved += 1;
+        }
+    }
+    assert!(solved * 2 > CASES / 4, "{solved}");
+}
+
+#[test]
+fn plans_meet_nobody_in_f32_and_q16() {
+    audited_in::<f32>(5e-4);
+    audited_in::<Q16>(5e-3);
+}
+
+fn line(start: [f64; 3], length: f64, drive: Drive, at: f64) -> Course<f64> {
+    let disc = Disc { radius: 0.25, start, legs: vec![Leg::Line(length)] };
+    Course::driven(&disc, &drive, at).expect("a valid disc")
+}
+
+fn ego() -> Course<f64> {
+    line([-2.0, 0.0, 0.0], 4.0, Drive::Limits(1.0, 1.0), 0.0)
+}
+
+fn arrival(courses: &[Course<f64>]) -> Result<f64, NoSpeedPlan<f64>> {
+    let plan = planned(courses, Speeds::rest_to_rest(limits()))?;
+    Ok(plan.start + plan.profile.as_profile().duration())
+}
+
+#[test]
+fn a_free_way_takes_the_trapezoid() {
+    let far = line([0.0, 9.0, 0.0], 1.0, Drive::Unit, 0.0);
+    assert!((arrival(&[ego(), far]).unwrap() - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn at_a_crossing_the_later_one_passes_behind() {
+    // Both would be there at 2.5 s; at the same speed the one has to pass R √2 behind the other.
+    let other = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), 0.0);
+    assert!((arrival(&[ego(), other]).unwrap() - 5.0 - 0.5 * 2.0_f64.sqrt()).abs() < 1e-6);
+}
+
+#[test]
+fn a_leader_is_followed_at_the_distance_of_the_radii() {
+    // It goes ahead at half the speed and leaves the end of the ego's way behind by R after 3.9 m.
+    let leader = line([-1.4, 0.0, 0.0], 8.0, Drive::Pieces(0.5, vec![(16.0, 0.0)]), 0.0);
+    // The ego arrives as it is left: at rest, 7.8 s.
+    let found = arrival(&[ego(), leader]).unwrap();
+    assert!((7.8..7.8 + 1.0).contains(&found), "{found}");
+}
+
+#[test]
+fn who_is_in_the_way_is_named() {
+    let met = |other| arrival(&[ego(), other]);
+    let head_on = line([2.0, 0.0, PI], 4.0, Drive::Limits(1.0, 1.0), 0.0);
+    assert!(matches!(met(head_on), Err(NoSpeedPlan::AtStart(1) | NoSpeedPlan::Beyond { other: 1, .. })));
+    let on_the_goal = line([2.0, -3.0, PI / 2.0], 3.0, Drive::Limits(1.0, 1.0), 0.0);
+    assert_eq!(met(on_the_goal), Err(NoSpeedPlan::AtGoal(1)));
+    let at_the_start = line([-2.0, 0.3, PI / 2.0], 3.0, Drive::Limits(1.0, 1.0), 1.0);
+    assert_eq!(met(at_the_start), Err(NoSpeedPlan::AtStart(1)));
+    let on_the_way = line([0.0, -3.0, PI / 2.0], 3.0, Drive::Limits(1.0, 1.0), -9.0);
+    assert!(matches!(met(on_the_way), Err(NoSpeedPlan::Beyond { other: 1, length }) if (1.2..=1.5).contains(&length)));
+}
+
+#[test]
+fn speeds_at_the_ends_are_kept() {
+    let far = line([0.0, 9.0, 0.0], 1.0, Drive::Unit, 0.0);
+    let drive = Speeds { limits: limits(), start: 0.6, goal: 0.3 };
+    let plan = planned(&[ego(), far], drive).unwrap();
+    let phases = plan.profile.as_profile();
+    assert!((phases.speed_at(0.0) - 0.6).abs() < 1e-12 && (phases.speed_at(phases.duration()) - 0.3).abs() < 1e-9);
+    // Up to 1 m/s and down, at 1 m/s over the rest.
+    let ramps = (1.0 - 0.36 + 1.0 - 0.09) / 2.0;
+    assert!((phases.duration() - (0.4 + 0.7 + (4.0 - ramps))).abs() < 0.1, "{}", phases.duration());
+    let too_fast = Speeds { limits: limits(), start: 1.5, goal: 0.0 };
+    assert!(matches!(planned(&[ego()], too_fast), Err(NoSpeedPlan::Invalid(_))));
+}
+
+#[test]
+fn an_agent_in_motion_slows_down_for_one_that_crosses() {
+    let other = || line([0.0, -2.0, PI / 2.0], 4.0, Drive::Pieces(1.0, vec![(4.0, 0.0)]), 0.0);
+    let drive = Speeds { limits: limits(), start: 1.0, goal: 0.0 };
+    let plan = planned(&[ego(), other()], drive).unwrap();
+    assert_eq!(plan.start, 0.0);
+    // Without the other it takes 4.5 s, and passing behind takes at least R √2 more.
+    let least = 4.5 + 0.5 * 2.0_f64.sqrt();
+    let found = plan.profile.as_profile().duration();
+    assert!((least - 1e-6..least + 0.5).contains(&found), "{found}");
+}
