@@ -8,6 +8,7 @@ mod number;
 mod overview;
 mod plan;
 mod regions;
+mod traffic;
 mod work;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -61,6 +62,7 @@ enum Command {
     Plan(plan::Arguments),
     Map(map::Arguments),
     Locks(locks::Arguments),
+    Traffic(traffic::Arguments),
     Import(import::Arguments),
 }
 
@@ -74,6 +76,7 @@ impl Arguments {
             Some(Command::Plan(arguments)) => arguments.run(),
             Some(Command::Map(arguments)) => arguments.run(),
             Some(Command::Locks(arguments)) => arguments.run(),
+            Some(Command::Traffic(arguments)) => arguments.run(),
             Some(Command::Import(arguments)) => arguments.run(),
         }
     }

@@ -50,7 +50,7 @@ pub use trace::{KINK, TURN};
 pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
 
-use crate::scenario::Scenario;
+use crate::scenario::{Agent, Scenario};
 use clap::ValueEnum;
 use serde_json::Value;
 use std::path::Path;
@@ -159,6 +159,23 @@ impl Format {
 /// [`ImportError`] where the file is not of the format, or holds no layout.
 pub fn layout(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
     imported(format, text, options, false, warnings)
+}
+
+/// Reads a layout for a vehicle that moves: what is assumed about its speeds is warned about as well.
+///
+/// # Errors
+/// As [`layout`].
+pub fn roads(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
+    imported(format, text, options, true, warnings)
+}
+
+/// The agent that travels the shortest way between two nodes (places in [`Layout::nodes`]), from the time 0; `None` where there
+/// is no way.
+///
+/// # Errors
+/// [`ImportError`] where the way is not a path: a curve that does not reach its node.
+pub fn mission(imported: &Imported, id: u64, ends: [usize; 2]) -> Result<Option<Agent>, ImportError> {
+    route::mission(&imported.layout, &imported.vehicle, id, ends)
 }
 
 /// The layout for a vehicle that stands or `moves`.

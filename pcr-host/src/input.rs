@@ -87,17 +87,19 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
     }
 }
 
-/// The layout in a file, or on standard input for `-`, with the warnings of the reader.
+/// The layout in a file, or on standard input for `-`, with the warnings of the reader; for vehicles of which only the
+/// disc matters, or that move.
 ///
 /// # Errors
 /// [`InputError`], naming the file.
-pub fn read_layout(file: &Path, options: &Options) -> Result<(Imported, Warnings), InputError> {
+pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Imported, Warnings), InputError> {
     let (name, text) = text(file)?;
     let mut warnings = Warnings::default();
     let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
         return Err(InputError::NoLayout(name));
     };
-    match import::layout(format, &text, options, &mut warnings) {
+    let read = if moves { import::roads } else { import::layout };
+    match read(format, &text, options, &mut warnings) {
         Ok(imported) => Ok((imported, warnings)),
         Err(error) => Err(InputError::Foreign(name, format, error)),
     }

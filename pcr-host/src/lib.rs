@@ -7,6 +7,7 @@
 //! check      the conflicts of the motions as given              Verdict
 //! locks      which edges of a layout exclude one another        Locks
 //! plan       delays without conflicts                           Plan
+//! traffic    random missions on a layout, and their plan             Traffic
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
 //! import     layouts, orders and plans in the formats of others Format, Layout
@@ -28,3 +29,4 @@ pub mod progress;
 pub mod regions;
 pub mod report;
 pub mod scenario;
+pub mod traffic;

@@ -64,6 +64,17 @@ pub struct Unsolved {
     pub why: String,
 }
 
+impl Unsolved {
+    /// The first agent cannot start because of the second, `always` or after it.
+    pub(crate) fn of(ids: [u64; 2], always: bool) -> Self {
+        let why = match always {
+            true => "they meet whenever they start: head-on without a passing place, or starts or ends that overlap",
+            false => "the first cannot start because of the second in any order that was tried",
+        };
+        Self { ids: ids.to_vec(), why: why.to_owned() }
+    }
+}
+
 impl Plan {
     /// Delays for the agents of a scenario, and the scenario with them where there are.
     ///
@@ -133,16 +144,8 @@ impl Plan {
         };
         if let Err(never) = outcome {
             plan.unsolved.push(match never {
-                Never::Always([a, b]) => Unsolved {
-                    ids: vec![id(a), id(b)],
-                    why:
-                        "they meet whenever they start: head-on without a passing place, or starts or ends that overlap"
-                            .into(),
-                },
-                Never::Priorities([a, b]) => Unsolved {
-                    ids: vec![id(a), id(b)],
-                    why: "the first cannot start because of the second in any order that was tried".into(),
-                },
+                Never::Always([a, b]) => Unsolved::of([id(a), id(b)], true),
+                Never::Priorities([a, b]) => Unsolved::of([id(a), id(b)], false),
                 other => Unsolved { ids: Vec::new(), why: other.to_string() },
             });
             return Ok((plan, None));
@@ -171,7 +174,7 @@ impl Plan {
 
 /// The motions with their margins, and with what the check may take for a contact. A radius at the limit of the format
 /// stays as it is, and the check has the last word.
-fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
+pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
     let motions = fleet.motions();
     let tolerance = motions.iter().map(|motion| Encounter::new(motion, motion).tolerance()).fold(0.0, f64::max);
     // The growths of two agents add up: what planning and what the check may be off.

@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let (imported, warnings) = input::read_layout(&self.layout, &self.import)?;
+        let (imported, warnings) = input::read_layout(&self.layout, &self.import, false)?;
         warn(&self.layout, &warnings);
         let locks = Locks::of(&imported, self.nodes).map_err(|error| Stop::wrong(Some(&self.layout), error))?;
         if let Some(directory) = &self.output {

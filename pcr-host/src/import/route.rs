@@ -12,6 +12,7 @@ use super::{ImportError, Options, Vehicle, Warnings, speed};
 use crate::scenario::{Agent, PathSegment, Scenario};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::fmt;
 
 /// Angle between edges that nav2 takes as straight, or as turning back \[rad\].
 const SHALLOW: f64 = 1e-9;
@@ -201,17 +202,28 @@ pub(super) fn scenario(
     let mut levels = Vec::new();
     for (k, route) in options.routes.iter().enumerate() {
         let asked = Asked::parse(route, |name| layout.node(name))?;
-        let steps = shortest(layout, asked.ends)
-            .ok_or_else(|| ImportError::new(format!("route {route}: there is no way from node to node")))?;
-        let trace = trace(layout, asked.ends[0], &steps)
-            .map_err(|error| ImportError::new(format!("route {route}: {error}")))?;
+        let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
+        let agent = mission(layout, vehicle, k as u64 + 1, asked.ends).map_err(|error| refused(&error))?;
+        let agent = agent.ok_or_else(|| refused(&"there is no way from node to node"))?;
         levels.push(layout.nodes.get(asked.ends[0]).map_or(0, |node| node.level));
-        agents.push(agent(k as u64 + 1, &trace, vehicle, asked.time));
+        agents.push(Agent { t_start: asked.time, ..agent });
     }
     if levels.windows(2).any(|pair| pair[0] != pair[1]) {
         warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
     }
     Ok(Scenario { name: layout.name.clone(), agents })
+}
+
+/// The agent that travels the shortest way between two nodes from the time 0, if there is one.
+pub(super) fn mission(
+    layout: &Layout,
+    vehicle: &Vehicle,
+    id: u64,
+    ends: [usize; 2],
+) -> Result<Option<Agent>, ImportError> {
+    let Some(steps) = shortest(layout, ends) else { return Ok(None) };
+    let trace = trace(layout, ends[0], &steps)?;
+    Ok(Some(agent(id, &trace, vehicle, 0.0)))
 }
 
 /// The agent that travels a path.

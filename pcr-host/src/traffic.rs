@@ -1,0 +1,146 @@
+//! Random traffic on a layout: what `pcr traffic` prints and draws.
+//!
+//! Every agent has one mission, the shortest way between two random nodes. All would set off at once; the plan delays them.
+//! Agents for which there is no delay, because they meet others whenever they start, are left out and counted.
+
+mod choices;
+mod missions;
+mod schedule;
+
+use crate::check::Verdict;
+use crate::fleet::Fleet;
+use crate::import::{Id, Imported};
+use crate::plan::{self, Unsolved};
+use crate::regions::{self, Failure};
+use crate::scenario::{Agent, Scenario};
+use missions::Mission;
+use schedule::{Forbidden, Schedule};
+use serde::Serialize;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Agents that shall have missions.
+    pub agents: usize,
+    /// Another number gives other missions.
+    pub seed: u64,
+}
+
+/// Missions, and how well they can be carried out. The JSON output, field for field in this order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Traffic {
+    /// Name of the layout.
+    pub layout: String,
+    /// From which the missions follow.
+    pub seed: u64,
+    /// Radius of the discs, without their margin and the deviation of their paths \[m\].
+    pub radius: f64,
+    /// Agents asked for.
+    pub asked: usize,
+    /// Agents that have a mission; for the others there is no room to start or to end.
+    pub placed: usize,
+    /// Agents that have a mission and a plan.
+    pub planned: usize,
+    /// Collision regions of the agents that have a mission, both directions of every pair.
+    pub regions: usize,
+    /// Conflicts of the agents that have a plan if all set off at once.
+    pub conflicts_before: usize,
+    /// Conflicts with the plan.
+    pub conflicts_after: usize,
+    /// From the start of all to the last arrival \[s\].
+    pub makespan: f64,
+    /// Sum over the agents of the time until they arrive \[s\].
+    pub sum_of_costs: f64,
+    /// The sum of costs if nobody had to wait \[s\].
+    pub lower_bound: f64,
+    /// Missions carried out in the makespan, an hour.
+    pub missions_per_hour: f64,
+    /// The missions, by the number of their agent.
+    pub missions: Vec<Travel>,
+    /// Why agents have no plan, the first of each `ids`.
+    pub unsolved: Vec<Unsolved>,
+}
+
+/// A mission and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Travel {
+    /// Number of the agent.
+    pub id: u64,
+    /// Node where it begins, as in the layout.
+    pub from: Id,
+    /// Node where it ends.
+    pub to: Id,
+    /// Length of the way \[m\].
+    pub length: f64,
+    /// How long it waits before it starts \[s\]; none without a plan.
+    pub delay: Option<f64>,
+    /// When it arrives \[s\]; none without a plan.
+    pub t_end: Option<f64>,
+}
+
+impl Traffic {
+    /// The traffic on a layout, the scenario of all missions with all agents setting off at once, and that of the plan.
+    ///
+    /// # Errors
+    /// [`Failure`] where the missions cannot be computed with.
+    pub fn of(imported: &Imported, request: Request) -> Result<(Self, [Scenario; 2]), Failure> {
+        let drawn = missions::draw(imported, request.agents, request.seed);
+        let layout = &imported.layout;
+        let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
+        let missions = Scenario { name: layout.name.clone(), agents };
+        let fleet = Fleet::<f64>::new(&missions)?;
+        let ecm = regions::table(&missions, &fleet.motions())?;
+        let regions = (0..missions.agents.len()).map(|agent| ecm.row(&fleet.motions(), agent).count()).sum();
+        let motions = plan::grown(&fleet);
+        let ecm = regions::table(&missions, &motions)?;
+        let mut longest_first: Vec<usize> = (0..motions.len()).collect();
+        longest_first.sort_by(|&a, &b| motions[b].time().length().total_cmp(&motions[a].time().length()));
+        let Schedule { delays, out, .. } = Forbidden::of(&ecm, &motions).schedule(longest_first, request.seed);
+        let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
+        let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
+        let at_once =
+            Scenario { name: missions.name.clone(), agents: kept.clone().map(|(agent, _)| agent.clone()).collect() };
+        let later = kept.map(|(agent, delay)| Agent { t_start: delay, ..agent.clone() });
+        let plan = Scenario { name: missions.name.clone(), agents: later.collect() };
+        let conflicts = |scenario: &Scenario| Verdict::of::<f64>(scenario, false).map(|found| found.conflicts.len());
+        let travels: Vec<Travel> =
+            drawn.iter().zip(&delays).map(|(mission, delay)| Travel::of(mission, imported, *delay)).collect();
+        let ends = || travels.iter().filter_map(|travel| travel.t_end);
+        let makespan = ends().fold(0.0, f64::max);
+        let traffic = Self {
+            layout: layout.name.clone(),
+            seed: request.seed,
+            radius: imported.vehicle.radius,
+            asked: request.agents,
+            placed: drawn.len(),
+            planned: plan.agents.len(),
+            regions,
+            conflicts_before: conflicts(&at_once)?,
+            conflicts_after: conflicts(&plan)?,
+            makespan,
+            sum_of_costs: ends().sum(),
+            lower_bound: at_once.agents.iter().map(Agent::duration).sum(),
+            missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
+            missions: travels,
+            unsolved: out.iter().map(|out| Unsolved::of([id(out.agent), id(out.by)], out.always)).collect(),
+        };
+        Ok((traffic, [missions, plan]))
+    }
+}
+
+impl Travel {
+    fn of(mission: &Mission, imported: &Imported, delay: Option<f64>) -> Self {
+        let node = |place: usize| {
+            let node = imported.layout.nodes.get(place);
+            node.map_or_else(|| Id::Text(String::new()), |node| node.id.clone())
+        };
+        Self {
+            id: mission.agent.id,
+            from: node(mission.ends[0]),
+            to: node(mission.ends[1]),
+            length: mission.agent.length(),
+            delay,
+            t_end: delay.map(|delay| delay + mission.agent.duration()),
+        }
+    }
+}

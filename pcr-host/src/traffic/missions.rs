@@ -1,0 +1,72 @@
+//! Random missions: pairs of nodes with a way between them.
+
+use super::choices::Choices;
+use crate::import::{Imported, Placed, mission};
+use crate::scenario::Agent;
+
+/// How many times the sum of their radii and margins agents keep that wait at their starts or stand at their ends: more than
+/// 1 by what plans and checks may take for a contact.
+const CLEAR: f64 = 1.0 + 1e-6;
+
+/// A way from node to node.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mission {
+    /// Places of its nodes in the layout.
+    pub(super) ends: [usize; 2],
+    /// Who travels it, from the time 0.
+    pub(super) agent: Agent,
+}
+
+impl Mission {
+    /// Where the agent stands before and after \[m\].
+    fn stands(&self) -> [[f64; 2]; 2] {
+        let Agent { start: [x, y, heading], ref path, .. } = self.agent;
+        let end = path.iter().fold((([x, y]), heading), |(at, heading), &shape| {
+            let placed = Placed { at, heading, shape };
+            (placed.end(), placed.heading_at_end())
+        });
+        [[x, y], end.0]
+    }
+
+    /// Whether its agent and another one can stand at their starts at the same time, and at their ends.
+    fn is_clear_of(&self, other: &Self) -> bool {
+        let reach = [self, other].map(|mission| mission.agent.radius + mission.agent.margin).iter().sum::<f64>();
+        let pairs = self.stands().into_iter().zip(other.stands());
+        pairs.into_iter().all(|(own, other)| distance(own, other) > reach * CLEAR)
+    }
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Missions for up to `count` agents on the level that has most nodes: each from a random node to another one, so that
+/// no two agents overlap at their starts or at their ends. Fewer where there is no such pair of nodes with a way between them.
+pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Vec<Mission> {
+    let Imported { layout, vehicle } = imported;
+    let on = |level: usize| (0..layout.nodes.len()).filter(move |&node| layout.nodes[node].level == level);
+    // Among equals the first.
+    let level = (0..layout.levels.len()).rev().max_by_key(|&level| on(level).count()).unwrap_or(0);
+    let there: Vec<usize> = on(level).collect();
+    let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
+    let mut choices = Choices(seed);
+    let mut missions: Vec<Mission> = Vec::new();
+    for id in (1..).take(count) {
+        let free = &|end: usize, node: usize| {
+            let apart = |mission: &Mission| distance(layout.nodes[mission.ends[end]].at, layout.nodes[node].at) > reach;
+            missions.iter().all(apart)
+        };
+        let (starts, ends) = (choices.shuffled(&there), choices.shuffled(&there));
+        let pairs = starts.iter().filter(|&&from| free(0, from)).flat_map(|&from| {
+            let ends = ends.iter().filter(move |&&to| to != from && free(1, to));
+            ends.map(move |&to| [from, to])
+        });
+        // A way that is no path is no mission.
+        let possible = pairs.filter_map(|ends| Some(Mission { ends, agent: mission(imported, id, ends).ok()?? }));
+        let clear =
+            |drawn: &Mission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
+        let Some(drawn) = possible.into_iter().find(clear) else { break };
+        missions.push(drawn);
+    }
+    missions
+}

@@ -1,0 +1,102 @@
+//! Random traffic: missions are what they say, and no two agents of a plan come nearer than their radii, by positions
+//! at many times.
+
+use pcr_host::fleet::Fleet;
+use pcr_host::import::{Format, Imported, Options, Warnings, roads};
+use pcr_host::scenario::Scenario;
+use pcr_host::traffic::{Request, Traffic};
+use std::collections::HashSet;
+
+const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+const LEVELS: &str = include_str!("../data/real/rmf/office.building.yaml");
+
+/// Between two times that are looked at \[s\].
+const STEP: f64 = 0.05;
+
+fn read(format: Format, text: &str, radius: f64) -> Imported {
+    let options = Options { radius: Some(radius), ..Options::default() };
+    roads(format, text, &options, &mut Warnings::default()).unwrap()
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The least distance of two agents less their radii, at many times.
+fn clearance(scenario: &Scenario) -> f64 {
+    let fleet = Fleet::<f64>::new(scenario).unwrap();
+    let motions = fleet.motions();
+    let end = motions.iter().map(|motion| motion.time().hi).fold(0.0, f64::max);
+    let mut least = f64::INFINITY;
+    for k in 0..=(end / STEP) as usize {
+        let discs: Vec<_> =
+            motions.iter().map(|motion| (motion.position_at(k as f64 * STEP), motion.radius())).collect();
+        for (place, (a, own)) in discs.iter().enumerate() {
+            for (b, other) in &discs[..place] {
+                least = least.min(distance([a.x, a.y], [b.x, b.y]) - own - other);
+            }
+        }
+    }
+    least
+}
+
+#[test]
+fn agents_of_a_plan_keep_clear_and_those_at_once_do_not() {
+    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let (traffic, [missions, plan]) = Traffic::of(&imported, Request { agents: 12, seed: 1 }).unwrap();
+    assert_eq!((traffic.placed, missions.agents.len()), (12, 12));
+    assert_eq!((traffic.planned + traffic.unsolved.len(), plan.agents.len()), (12, traffic.planned));
+    assert!(traffic.planned >= 8, "{}", traffic.planned);
+    assert!(traffic.conflicts_before > 0 && traffic.conflicts_after == 0);
+    assert!(clearance(&missions) < 0.0 && clearance(&plan) > 0.0);
+}
+
+#[test]
+fn missions_join_their_nodes_and_keep_apart_at_both_ends() {
+    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let (traffic, [missions, _]) = Traffic::of(&imported, Request { agents: 14, seed: 7 }).unwrap();
+    let fleet = Fleet::<f64>::new(&missions).unwrap();
+    let node = |id| imported.layout.nodes.iter().find(|node| node.id == id).unwrap().at;
+    let mut ends: [Vec<[f64; 2]>; 2] = Default::default();
+    for (motion, mission) in fleet.motions().iter().zip(&traffic.missions) {
+        let path = motion.path();
+        assert!((path.length() - mission.length).abs() < 1e-9);
+        for (place, length, id) in [(0, 0.0, &mission.from), (1, path.length(), &mission.to)] {
+            let point = path.point_at(length);
+            assert!(distance([point.x, point.y], node(id.clone())) < 1e-6);
+            assert!(ends[place].iter().all(|other| distance(*other, [point.x, point.y]) > 0.8));
+            ends[place].push([point.x, point.y]);
+        }
+    }
+}
+
+#[test]
+fn what_is_counted_is_what_the_missions_say() {
+    let imported = read(Format::Rmf, LEVELS, 0.2);
+    let request = Request { agents: 8, seed: 3 };
+    let (traffic, [_, plan]) = Traffic::of(&imported, request).unwrap();
+    assert_eq!(Traffic::of(&imported, request).unwrap().0, traffic, "the same seed, the same traffic");
+    let other = Traffic::of(&imported, Request { seed: 4, ..request }).unwrap().0;
+    assert_ne!(other.missions, traffic.missions);
+    let planned: Vec<_> = traffic.missions.iter().filter(|mission| mission.delay.is_some()).collect();
+    assert_eq!(planned.len(), traffic.planned);
+    for (mission, agent) in planned.iter().zip(&plan.agents) {
+        assert_eq!((mission.id, mission.delay), (agent.id, Some(agent.t_start)));
+        assert!((mission.t_end.unwrap() - agent.t_start - agent.duration()).abs() < 1e-9);
+    }
+    let last = planned.iter().filter_map(|mission| mission.t_end).fold(0.0, f64::max);
+    assert_eq!(traffic.makespan, last);
+    assert!((traffic.missions_per_hour - 3600.0 * planned.len() as f64 / last).abs() < 1e-9);
+    let waits: f64 = planned.iter().filter_map(|mission| mission.delay).sum();
+    assert!((traffic.sum_of_costs - traffic.lower_bound - waits).abs() < 1e-6);
+    let ids: HashSet<u64> = traffic.unsolved.iter().filter_map(|unsolved| unsolved.ids.first()).copied().collect();
+    assert!(ids.iter().all(|id| plan.agents.iter().all(|agent| agent.id != *id)));
+}
+
+#[test]
+fn where_there_is_no_room_fewer_are_placed() {
+    let imported = read(Format::Nav2, WAREHOUSE, 3.0);
+    let (traffic, _) = Traffic::of(&imported, Request { agents: 96, seed: 1 }).unwrap();
+    assert!(traffic.placed < 30 && traffic.placed > 0, "{}", traffic.placed);
+    assert_eq!(traffic.asked, 96);
+}
