@@ -164,33 +164,49 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// The parts of the first path that a piece covers at the length `s` of the second one.
     pub(crate) fn slices_of_first(&self, piece: &Piece<S>, s: S) -> [Option<Interval<S>>; 2] {
-        if !piece.second.contains(s) {
-            return [None; 2];
-        }
         let (Some(own), Some(other)) = self.segments(piece) else {
             return [None; 2];
         };
+        if !piece.second.contains(s) {
+            return [None; 2];
+        }
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
-        let hull = Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack);
-        piece.share.of(covered, own, hull).map(|slice| slice.map(|slice| along_path(slice, own)))
+        self.share(piece, own, covered).map(|slice| slice.map(|slice| along_path(slice, own)))
     }
 
     /// The parts of the second path that a piece covers at the length `l` of the first one.
     pub(crate) fn slices_of_second(&self, piece: &Piece<S>, l: S) -> [Option<Interval<S>>; 2] {
-        if !piece.first.contains(l) {
-            return [None; 2];
-        }
         let (Some(own), Some(other)) = self.segments(piece) else {
             return [None; 2];
         };
+        if !piece.first.contains(l) {
+            return [None; 2];
+        }
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
         // One interval of the second segment is connected, hence part of one region: that of its middle. It may go
         // on beyond the piece.
         let belongs = |slice: &Interval<S>| {
-            let slices = self.slices_of_first(piece, slice.middle() + other.from);
-            slices.into_iter().flatten().any(|slice| slice.contains(l))
+            let middle = slice.middle();
+            let footprint = Footprint::of(other.point_at(middle), own);
+            let holds = |slices: [Option<Interval<S>>; 2]| {
+                slices.into_iter().flatten().any(|slice| along_path(slice, own).contains(l))
+            };
+            let at = |radius| footprint.reach(own, radius).intervals(own);
+            let mut slices = at(self.radius);
+            if !holds(slices) {
+                // Contact all along a circle: its middle, too, is covered by rounding alone, which may see it the other
+                // way round from here.
+                slices = at(self.radius + self.excess());
+            }
+            piece.second.contains(middle + other.from) && holds(self.share(piece, own, slices))
         };
         covered.map(|slice| slice.filter(belongs).map(|slice| along_path(slice, other)))
+    }
+
+    /// Of what is covered of the first segment, that which a piece stands for.
+    fn share(&self, piece: &Piece<S>, own: &Segment<S>, covered: [Option<Interval<S>>; 2]) -> [Option<Interval<S>>; 2] {
+        let hull = Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack);
+        piece.share.of(covered, own, hull)
     }
 
     fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {

@@ -6,16 +6,13 @@
 //!
 //! Prints the seed of every violation; the exit status is 1 if there was one, 2 for wrong arguments.
 
-use pcr_tests::outward::{FORMATS, Tally};
+use pcr_tests::outward::{FORMATS, Tally, run_on_all_processors};
 use std::process::ExitCode;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Pairs that a thread takes at a time.
-const BATCH: u64 = 10_000;
-
-/// Violations that are printed of each format.
+/// Pairs between two lines that tell how far it is.
+const PROGRESS: u64 = 1_000_000;
+/// Violations that are printed of each format, but for those of its last batch.
 const PRINTED: usize = 50;
 
 struct Arguments {
@@ -54,33 +51,17 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut violated = false;
     for (name, run) in FORMATS.iter().filter(|(name, _)| format.as_ref().is_none_or(|format| format == name)) {
-        let (next, total, start) = (AtomicU64::new(0), Mutex::new(Tally::default()), Instant::now());
-        std::thread::scope(|scope| {
-            for _ in 0..threads {
-                scope.spawn(|| {
-                    loop {
-                        let first = next.fetch_add(BATCH, Ordering::Relaxed);
-                        if first >= pairs {
-                            break;
-                        }
-                        let batch = run(seed.wrapping_add(first), BATCH.min(pairs - first));
-                        let mut total = total.lock().expect("no thread panics with it");
-                        for violation in batch.violations.iter().take(PRINTED.saturating_sub(total.violations.len())) {
-                            println!("{name} {violation}");
-                        }
-                        total.add(batch);
-                        let done = total.seen.pairs + total.refused;
-                        if done / 1_000_000 > (done - BATCH.min(done)) / 1_000_000 {
-                            eprintln!("{name}: {done} of {pairs} pairs in {:.0} s", start.elapsed().as_secs_f64());
-                        }
-                    }
-                });
+        let start = Instant::now();
+        let total = run_on_all_processors(*run, seed, pairs, |batch: &Tally, total: &Tally| {
+            if total.violations.len() <= PRINTED + batch.violations.len() {
+                batch.violations.iter().for_each(|violation| println!("{name} {violation}"));
+            }
+            if total.cases() / PROGRESS > (total.cases() - batch.cases()) / PROGRESS {
+                eprintln!("{name}: {} of {pairs} pairs in {:.0} s", total.cases(), start.elapsed().as_secs_f64());
             }
         });
-        let total = total.into_inner().expect("no thread panics with it");
         println!("{name}: {total}");
         violated |= !total.violations.is_empty();
     }

@@ -12,9 +12,12 @@ use crate::disc::{Course, Disc, Drive};
 use crate::exact::{Route, Travel, Twofold};
 use crate::generators::{Dice, case};
 use pcr_core::excess;
+use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_host::fleet::{Format, build_ecm};
-use std::fmt;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::{fmt, thread};
 use view::View;
 
 /// What is checked of a pair, and how far it went.
@@ -73,10 +76,15 @@ pub struct Tally {
 
 impl Tally {
     /// Counts another run as well.
-    pub fn add(&mut self, other: Self) {
+    pub fn add(&mut self, other: &Self) {
         self.seen = self.seen.and(other.seen);
         self.refused += other.refused;
-        self.violations.extend(other.violations);
+        self.violations.extend_from_slice(&other.violations);
+    }
+
+    /// Cases, those included that the format cannot hold.
+    pub fn cases(&self) -> u64 {
+        self.seen.pairs + self.refused
     }
 }
 
@@ -100,6 +108,7 @@ pub type Run = fn(u64, u64) -> Tally;
 pub const FORMATS: &[(&str, Run)] = &[
     (f64::NAME, run::<f64>),
     (f32::NAME, run::<f32>),
+    (Micro::NAME, run::<Micro>),
     (Q20::NAME, run::<Q20>),
     (Q16::NAME, run::<Q16>),
     (Q12::NAME, run::<Q12>),
@@ -120,6 +129,30 @@ pub fn run<S: Format>(first: u64, count: u64) -> Tally {
         }
     }
     tally
+}
+
+/// The same on all processors. What a batch of the cases has come to is told beside the sum of those that were done.
+pub fn run_on_all_processors(run: Run, first: u64, count: u64, tell: impl Fn(&Tally, &Tally) + Sync) -> Tally {
+    const BATCH: u64 = 1_000;
+    let (next, total) = (AtomicU64::new(0), Mutex::new(Tally::default()));
+    let work = || {
+        loop {
+            let done = next.fetch_add(BATCH, Ordering::Relaxed);
+            if done >= count {
+                break;
+            }
+            let batch = run(first.wrapping_add(done), BATCH.min(count - done));
+            let mut total = total.lock().expect("no thread panics with it");
+            total.add(&batch);
+            tell(&batch, &total);
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+    total.into_inner().expect("no thread panics with it")
 }
 
 /// A disc in motion, in the library and exactly.

@@ -7,21 +7,9 @@ use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::line::{below, nearest};
 use pcr_tests::oracle::{Pair, Travel};
+use pcr_tests::settings::settings;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-fn config(release: u32) -> ProptestConfig {
-    let cases = if cfg!(debug_assertions) { release / 20 } else { release };
-    let rng_seed = RngSeed::Fixed(41);
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed,
-        max_global_rejects: cases,
-        ..ProptestConfig::default()
-    }
-}
 
 /// A disc, how it is driven, and when it sets off.
 type Driven = (Disc, Drive, f64);
@@ -141,7 +129,7 @@ fn steps_bound(truth: &Truth, during: [f64; 2], tolerance: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(config(4_000))]
+    #![proptest_config(settings(4_000, 20, 41))]
     #[test]
     fn conflicts_are_those_of_the_definition_f64((pair, drives) in driven_pairs()) {
         let [(a, s), (b, t)] = drives;

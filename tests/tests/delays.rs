@@ -5,21 +5,9 @@ use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::Pair;
+use pcr_tests::settings::settings;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use std::f64::consts::{FRAC_PI_2, PI};
-
-fn config() -> ProptestConfig {
-    let cases = if cfg!(debug_assertions) { 60 } else { 1_500 };
-    let rng_seed = RngSeed::Fixed(43);
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed,
-        max_global_rejects: cases,
-        ..ProptestConfig::default()
-    }
-}
 
 /// Delays between which the forbidden set is sampled, in both directions.
 const SAMPLES: u32 = 60;
@@ -118,7 +106,7 @@ fn slip<S: Format>(
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(settings(1_500, 25, 43))]
     #[test]
     fn regions_forbid_what_the_definition_forbids_f64((pair, drives) in driven_pairs()) {
         audited::<f64>([&pair.0, &pair.1], &drives)?;

@@ -5,25 +5,12 @@ use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::{Pair, Travel};
+use pcr_tests::settings::settings;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 /// Bound on the error of travelled lengths and of times, in slacks of the largest length, time, or length travelled
 /// meanwhile: each phase adds a few roundings.
 const MOTION: f64 = 16.0;
-
-fn config(release: u32) -> ProptestConfig {
-    let cases = if cfg!(debug_assertions) { release / 10 } else { release };
-    let rng_seed = RngSeed::Fixed(39);
-    // More rejections than cases would mean that hardly anything is tested.
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed,
-        max_global_rejects: cases,
-        ..ProptestConfig::default()
-    }
-}
 
 /// A pair with its drives and start times.
 type Driven = ((Disc, Disc), [(Drive, f64); 2]);
@@ -194,7 +181,7 @@ macro_rules! in_format {
             use super::*;
 
             proptest! {
-                #![proptest_config(config(2000))]
+                #![proptest_config(settings(2000, 10, 39))]
 
                 #[test]
                 fn lengths_are_those_of_the_phases_monotone_and_exact_at_the_ends(driven in driven_pairs()) {

@@ -9,8 +9,8 @@ use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, moved, pairs, reversed, split};
 use pcr_tests::oracle::plane::Effort;
+use pcr_tests::settings::settings;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 /// Samples along each side of the rectangle of lengths.
 const SAMPLES: usize = if cfg!(debug_assertions) { 12 } else { 24 };
@@ -21,12 +21,6 @@ const EFFORT: Effort =
 
 /// What it may spend on finding out whether the number of components is critical.
 const GLANCE: Effort = Effort { resolution: 3e-2, boxes: 3_000, range: f64::INFINITY };
-
-/// How many pairs a property is tried on.
-fn config(release: u32) -> ProptestConfig {
-    let cases = if cfg!(debug_assertions) { release / 10 } else { release };
-    ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(38), ..ProptestConfig::default() }
-}
 
 fn audit<S: Format>((ego, other): &(Disc, Disc)) -> Option<Audit<S>> {
     let (ego, other) = (ego.rounded::<S>(), other.rounded::<S>());
@@ -47,7 +41,7 @@ macro_rules! audited {
             use super::*;
 
             proptest! {
-                #![proptest_config(config(2000))]
+                #![proptest_config(settings(2000, 10, 38))]
 
                 #[test]
                 fn p1_ends_of_slices_are_contacts_and_slices_lie_in_the_ranges(pair in pairs()) {
@@ -67,7 +61,7 @@ macro_rules! audited {
             }
 
             proptest! {
-                #![proptest_config(config(800))]
+                #![proptest_config(settings(800, 10, 38))]
 
                 #[test]
                 fn p2_what_is_covered_at_a_time_is_in_one_slice(pair in pairs()) {
@@ -113,7 +107,7 @@ audited!(in_f64, f64);
 audited!(in_f32, f32);
 
 proptest! {
-    #![proptest_config(config(300))]
+    #![proptest_config(settings(300, 10, 38))]
 
     #[test]
     fn p9_regions_are_the_connected_components_f64(pair in pairs()) {

@@ -7,24 +7,12 @@ use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::line::{below, reaches};
 use pcr_tests::oracle::{Pair, Travel};
+use pcr_tests::settings::settings;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use std::f64::consts::FRAC_PI_2;
 
 /// Samples of each set of windows, and in each window.
 const SAMPLES: u32 = 16;
-
-fn config() -> ProptestConfig {
-    let cases = if cfg!(debug_assertions) { 40 } else { 400 };
-    let rng_seed = RngSeed::Fixed(42);
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed,
-        max_global_rejects: cases,
-        ..ProptestConfig::default()
-    }
-}
 
 fn samples([lo, hi]: [f64; 2]) -> impl Iterator<Item = f64> {
     (0..=SAMPLES).map(move |k| lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES))
@@ -96,7 +84,7 @@ fn audited<S: Format>(discs: [Disc; 2], drives: [(Drive, f64); 2], [from, to]: [
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(settings(400, 10, 42))]
     #[test]
     fn blocked_parts_are_those_of_the_definition_f64(
         (pair, drives) in driven_pairs(), from in 0.0..1.0_f64, to in 0.0..1.0_f64,

@@ -5,8 +5,9 @@
 //! laps can only meet where the disc covers the whole circle.
 //!
 //! The lengths of a piece are the hull of its slices at the turning points, at the slab ends and in the middle of each
-//! slab: nothing between them can be extreme. (Where contact is transversal the slab ends inside the second segment
-//! would not be needed; between almost parallel lines a turning point may be anywhere between them, and be lost.)
+//! slab, and of the ends of the first segment that are in contact: nothing between them can be extreme. (Where contact is
+//! transversal the slab ends inside the second segment would not be needed; between almost parallel lines a turning point
+//! may be anywhere between them, and be lost.)
 
 use super::events::{Events, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share, shift};
@@ -57,11 +58,11 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
     /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
         let events = Events::of(self.first, self.second, self.radius, self.slack);
-        let events = events.in_order();
         let begin = pieces.last_pending();
         let mut open = [NONE; Lap::ALL.len()];
         let mut before = Slab { covered: false, foot: S::ZERO };
-        for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
+        let lengths = events.in_order();
+        for (&lo, &hi) in lengths.iter().zip(lengths.iter().skip(1)) {
             // Events may coincide; a second segment of length 0 has this one slab only.
             if lo >= hi && self.second.length > S::ZERO {
                 continue;
@@ -89,6 +90,12 @@ impl<'a, S: Scalar> SegmentPair<'a, S> {
             self.limit_open(pieces, &open, &self.edge(self.second.length), before);
         }
         if pieces.last_pending() != begin {
+            if !self.wraps {
+                // A turning point so near an end of the segment that rounding finds it beyond.
+                for (l, contacts) in [S::ZERO, self.first.length].into_iter().zip(events.ends) {
+                    contacts.into_iter().flatten().for_each(|s| self.turn_back(pieces, begin, l, s));
+                }
+            }
             turning_points(self.first, self.second, self.radius, self.slack, |l, s| {
                 self.turn_back(pieces, begin, l, s)
             });

@@ -26,19 +26,23 @@ use heapless::Vec;
 const MAX_EVENTS: usize = 14;
 
 /// Events of a pair of segments, in order.
-pub(crate) struct Events<S>(Vec<S, MAX_EVENTS>);
+pub(crate) struct Events<S> {
+    lengths: Vec<S, MAX_EVENTS>,
+    /// Those at which the start and the end of the first segment are in contact.
+    pub(crate) ends: [[Option<S>; 2]; 2],
+}
 
 impl<S: Scalar> Events<S> {
     /// The events along `second`, for discs whose radii add up to `radius`, distances right within `slack`.
     pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> Self {
-        let mut events = Self(Vec::new());
+        let mut events = Self { lengths: Vec::new(), ends: [[None; 2]; 2] };
         events.add(S::ZERO);
         events.add(second.length);
 
         let start = Footprint::of(first.start, second);
-        events.add_ends(&start, second, radius, slack);
+        events.ends[0] = events.add_ends(&start, second, radius, slack);
         if first.length > S::ZERO {
-            events.add_ends(&Footprint::of(first.end, second), second, radius, slack);
+            events.ends[1] = events.add_ends(&Footprint::of(first.end, second), second, radius, slack);
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
         normal.lengths_at(&[radius, -radius], S::ZERO, slack, |s| events.add(s));
@@ -61,14 +65,14 @@ impl<S: Scalar> Events<S> {
 
     /// The events in increasing order, the ends of the segment among them.
     pub(crate) fn in_order(&self) -> &[S] {
-        &self.0
+        &self.lengths
     }
 
     /// Inserts an event at its place.
     fn add(&mut self, s: S) {
         // The capacity is the most that `of` can add.
-        if self.0.push(s).is_ok() {
-            let mut events = self.0.iter_mut().rev();
+        if self.lengths.push(s).is_ok() {
+            let mut events = self.lengths.iter_mut().rev();
             let Some(mut place) = events.next() else {
                 return;
             };
@@ -82,8 +86,11 @@ impl<S: Scalar> Events<S> {
         }
     }
 
-    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S, slack: S) {
-        ends(footprint, second, radius, slack).into_iter().flatten().for_each(|s| self.add(s));
+    /// Adds where the point of a footprint is in contact, and returns that if it is not for the slack alone.
+    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
+        let ends = ends(footprint, second, radius, slack);
+        ends.into_iter().flatten().for_each(|s| self.add(s));
+        if footprint.offset.abs() <= radius { ends } else { [None; 2] }
     }
 }
 

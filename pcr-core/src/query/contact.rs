@@ -63,7 +63,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         };
         let extent = ego.extent().max(other.extent());
         let quadruple = |length: S| length.double().double();
-        let pad = quadruple(S::slack(extent + late(ego) + late(other)));
+        let pad = quadruple(S::slack(extent + late(ego) + late(other))) + ego.drift() + other.drift();
         Self { ego, other, pad, tolerance: S::tolerance(extent).max(quadruple(pad)) }
     }
 
@@ -79,7 +79,8 @@ impl<'a, S: Scalar> Encounter<'a, S> {
 
     /// ε: contacts deeper than this are never missed, clearances above it never taken for a contact \[m\]. The larger
     /// of [`Scalar::tolerance`] of the larger extent and 16 slacks of that extent and both ways at top speed since the
-    /// time 0; 2e-10 of the extent in `f64` unless times are beyond 1e5 extents.
+    /// time 0, with four times the [`Scalar::drift`] of both; 2e-10 of the extent in `f64` unless times are beyond 1e5
+    /// extents.
     pub fn tolerance(&self) -> S {
         self.tolerance
     }

@@ -8,6 +8,7 @@
 use crate::geometry::{Interval, Pose};
 use crate::intervals::{gaps, union};
 use crate::motion::Motion;
+use crate::pair::Pair;
 use crate::pair::events::Events;
 use crate::pair::footprint::Footprint;
 use crate::query::contact::Encounter;
@@ -51,7 +52,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         part: Interval<S>,
         on: &'a Motion<'a, S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let slack = S::slack(by.extent().max(on.extent()));
+        let slack = Pair::new(by, on).slack;
         // The cut of a segment adds roundings of its own.
         let radius = self.radius() + slack.double();
         let length = Interval::new(S::ZERO, on.path().length());

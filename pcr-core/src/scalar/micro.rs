@@ -23,8 +23,8 @@ pub struct Micro(
 );
 
 impl Micro {
-    /// Slack in unit roundoffs of the extent: half as much again as that of `f32`, for roots that are right to 1.5
-    /// last digits instead of 0.5.
+    /// Slack in unit roundoffs of the extent: twice that of `f32`, for roots that are right to 1.5 last digits instead of
+    /// 0.5.
     const SLACK: f32 = 24.0;
 }
 
