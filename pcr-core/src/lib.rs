@@ -58,7 +58,7 @@ pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
-pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed};
+pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
     Approach, Conflict, Conflicts, Contacts, Encounter, Met, earliest_start, first_conflict, safe_intervals,

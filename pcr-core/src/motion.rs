@@ -82,6 +82,14 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self { radius, extent, margin: S::ZERO, ..self }
     }
 
+    /// The same disc on the same path with another profile and start time \[s\].
+    ///
+    /// # Errors
+    /// As [`Motion::new`].
+    pub fn with_profile(self, profile: ProfileRef<'a, S>, start: S) -> Result<Self, Invalid> {
+        Self::new(self.path, profile, self.radius, start)?.with_margin(self.margin)
+    }
+
     /// The same motion, later by `delay` \[s\].
     ///
     /// # Errors

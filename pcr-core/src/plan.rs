@@ -1,21 +1,27 @@
 //! Plans without collisions: start delays and speed profiles, by priorities.
 //!
 //! ```text
+//! order       agents one after the other, and who moves up       Unsolved
 //! delays      who starts when, moving as before                  plan_delays
 //! times       sets of times of fixed capacity                    (internal)
 //! lattice     the motions among which a speed plan is chosen     Drive
 //! search      the fastest of them that meets nobody              (internal)
 //! tighten     its waits made as short as contacts allow          (internal)
 //! speed       both                                               plan_speed
+//! speeds      a fleet of them                                    plan_speeds
 //! ```
 
 mod delays;
 mod lattice;
+mod order;
 mod search;
 mod speed;
+mod speeds;
 mod tighten;
 mod times;
 
-pub use delays::{Unsolved, plan_delays};
+pub use delays::plan_delays;
 pub use lattice::Drive;
+pub use order::Unsolved;
 pub use speed::{NoSpeedPlan, SpeedPlan, Station, plan_speed};
+pub use speeds::plan_speeds;

@@ -1,14 +1,34 @@
 //! Plans without collisions: what `pcr plan` prints and writes.
 //!
-//! The agents start one after the other in an order of priority, each as early as those before it allow. Every plan is
-//! checked as `pcr check` does before it is returned.
+//! The agents are planned one after the other in an order of priority, each to arrive as early as those before it allow: by
+//! a later start, or by its speed along the path. Every plan is checked as `pcr check` does before it is returned.
 
 use crate::check::Verdict;
 use crate::fleet::Fleet;
+use crate::fleet::HostEcm;
 use crate::regions::{self, Failure};
-use crate::scenario::Scenario;
-use pcr_core::{Encounter, Motion, Unsolved as Never, plan_delays};
+use crate::scenario::{MotionSpec, Scenario};
+use pcr_core::{Encounter, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
 use serde::Serialize;
+
+/// How conflicts are avoided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Agents start later and then move as the scenario says.
+    Delay,
+    /// Agents wait and change their speed on the way, under the largest speed and acceleration of their own motions.
+    Speed,
+}
+
+impl Method {
+    /// Its name in the output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Delay => "delay",
+            Self::Speed => "speed",
+        }
+    }
+}
 
 /// How the agents are put in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +39,8 @@ pub enum Priority {
     Longest,
     /// The one with most regions first; else as in the file.
     Crowded,
-    /// The best of the order of the file and the other two: the least sum of costs.
+    /// The least sum of costs of the order of the file, the other two, and what comes of moving the agent that loses most
+    /// to the front, again and again while that is better.
     Best,
 }
 
@@ -75,27 +96,80 @@ impl Unsolved {
     }
 }
 
+/// Rounds of [`Priority::Best`] in which the agent that loses most is moved to the front.
+const ROUNDS: usize = 8;
+/// Phases of a speed profile, at most.
+const PHASES: usize = 64;
+/// Stations along a path: 256 cells.
+const STATIONS: usize = 257;
+
+/// A plan with the scenario that it makes, where there is one.
+type Answer = (Plan, Option<Scenario>);
+
 impl Plan {
-    /// Delays for the agents of a scenario, and the scenario with them where there are.
+    /// Starts or speeds for the agents of a scenario, and the scenario with them where there are.
     ///
     /// # Errors
     /// [`Failure`] where a value does not fit, the table cannot hold the fleet, or an agent of the order is not there.
-    pub fn of(scenario: &Scenario, priority: &Priority) -> Result<(Self, Option<Scenario>), Failure> {
-        let ids: Vec<u64> = scenario.agents.iter().map(|agent| agent.id).collect();
+    pub fn of(scenario: &Scenario, method: Method, priority: &Priority) -> Result<Answer, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
         let motions = grown(&fleet);
         let ecm = regions::table(scenario, &motions)?;
+        let planner = Planner { scenario, method, motions: &motions, ecm: &ecm };
+        let mut orders = planner.orders(priority)?.into_iter();
+        // There is at least one order.
+        let mut best = planner.plan(orders.next().unwrap_or_default())?;
+        for order in orders {
+            best = better(best, planner.plan(order)?);
+        }
+        for _ in 0..if *priority == Priority::Best { ROUNDS } else { 0 } {
+            let Some(order) = planner.with_the_latest_first(&best.0) else { break };
+            let cost = best.0.sum_of_costs;
+            best = better(best, planner.plan(order)?);
+            if best.0.sum_of_costs >= cost {
+                break;
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// The second answer if it costs less than the first, or is the only one with a plan.
+fn better(first: Answer, second: Answer) -> Answer {
+    let is_better = match (&first.1, &second.1) {
+        (Some(_), Some(_)) => second.0.sum_of_costs < first.0.sum_of_costs,
+        (first, second) => first.is_none() && second.is_some(),
+    };
+    if is_better { second } else { first }
+}
+
+/// What all attempts have in common.
+struct Planner<'a> {
+    scenario: &'a Scenario,
+    method: Method,
+    motions: &'a [Motion<'a, f64>],
+    ecm: &'a HostEcm<f64>,
+}
+
+impl Planner<'_> {
+    fn id(&self, agent: usize) -> u64 {
+        self.scenario.agents.get(agent).map_or(0, |agent| agent.id)
+    }
+
+    /// The orders to be tried.
+    fn orders(&self, priority: &Priority) -> Result<Vec<Vec<usize>>, Failure> {
+        let ids: Vec<u64> = self.scenario.agents.iter().map(|agent| agent.id).collect();
+        let file: Vec<usize> = (0..ids.len()).collect();
         let place =
             |id: &u64| ids.iter().position(|there| there == id).ok_or_else(|| Failure::NoSuchAgent(*id, ids.clone()));
-        let file: Vec<usize> = (0..ids.len()).collect();
         let sorted = |key: &dyn Fn(usize) -> f64| {
             let mut order = file.clone();
             order.sort_by(|&a, &b| key(b).total_cmp(&key(a)));
             order
         };
-        let longest = || sorted(&|agent| motions[agent].time().length());
-        let crowded = || sorted(&|agent| ecm.row(&motions, agent).count() as f64);
-        let orders = match priority {
+        let longest = || sorted(&|agent| self.motions[agent].time().length());
+        let crowded = || sorted(&|agent| self.ecm.row(self.motions, agent).count() as f64);
+        Ok(match priority {
             Priority::Given(given) => {
                 let mut order = given.iter().map(place).collect::<Result<Vec<usize>, Failure>>()?;
                 let rest: Vec<usize> = file.iter().copied().filter(|agent| !order.contains(agent)).collect();
@@ -105,63 +179,53 @@ impl Plan {
             Priority::Longest => vec![longest()],
             Priority::Crowded => vec![crowded()],
             Priority::Best => vec![file.clone(), longest(), crowded()],
-        };
-        let mut best: Option<(Self, Option<Scenario>)> = None;
-        for mut order in orders {
-            let mut planned = motions.clone();
-            let outcome = plan_delays(&ecm, &motions, &mut planned, &mut order);
-            let answer = Self::assemble(scenario, &motions, &planned, &order, outcome)?;
-            let better = best.as_ref().is_none_or(|(plan, solved)| match (&answer.1, solved) {
-                (Some(_), None) => true,
-                (Some(_), Some(_)) => answer.0.sum_of_costs < plan.sum_of_costs,
-                (None, _) => false,
-            });
-            if better {
-                best = Some(answer);
-            }
-        }
-        // There is at least one order.
-        best.ok_or(Failure::NoSuchAgent(0, ids))
+        })
     }
 
-    fn assemble(
-        scenario: &Scenario,
-        motions: &[Motion<'_, f64>],
-        planned: &[Motion<'_, f64>],
-        order: &[usize],
-        outcome: Result<(), Never>,
-    ) -> Result<(Self, Option<Scenario>), Failure> {
-        let id = |agent: usize| scenario.agents.get(agent).map_or(0, |agent| agent.id);
-        let mut plan = Self {
-            name: scenario.name.clone(),
-            method: "delay",
-            order: order.iter().map(|&agent| id(agent)).collect(),
+    /// The order of a plan with the agent first that arrives later than it could by most; nothing if it is first.
+    fn with_the_latest_first(&self, plan: &Plan) -> Option<Vec<usize>> {
+        let late = |agent: &usize| {
+            plan.agents.get(*agent).map_or(0.0, |planned| planned.t_end) - self.motions[*agent].time().hi
+        };
+        let latest = (0..self.motions.len()).max_by(|a, b| late(a).total_cmp(&late(b)))?;
+        let place = |id: &u64| self.scenario.agents.iter().position(|agent| agent.id == *id);
+        let order: Vec<usize> = plan.order.iter().filter_map(place).collect();
+        if plan.agents.is_empty() || order.first() == Some(&latest) {
+            return None;
+        }
+        Some(core::iter::once(latest).chain(order.into_iter().filter(|&agent| agent != latest)).collect())
+    }
+
+    /// A plan by this order, or one that it leads to.
+    fn plan(&self, mut order: Vec<usize>) -> Result<Answer, Failure> {
+        let agents = self.motions.len();
+        let slots = if self.method == Method::Speed { 4 * agents } else { 0 };
+        let mut profiles = vec![Profile::<f64, PHASES>::standing(); slots];
+        let mut stations = vec![Station::EMPTY; if slots > 0 { STATIONS } else { 0 }];
+        let mut planned = self.motions.to_vec();
+        let outcome = match self.method {
+            Method::Delay => plan_delays(self.ecm, self.motions, &mut planned, &mut order),
+            Method::Speed => {
+                plan_speeds(self.ecm, self.motions, &mut planned, &mut order, &mut profiles, &mut stations)
+            }
+        };
+        let mut plan = Plan {
+            name: self.scenario.name.clone(),
+            method: self.method.name(),
+            order: order.iter().map(|&agent| self.id(agent)).collect(),
             agents: Vec::new(),
             makespan: 0.0,
             sum_of_costs: 0.0,
-            lower_bound: motions.iter().map(|motion| motion.time().length()).sum(),
+            lower_bound: self.motions.iter().map(|motion| motion.time().length()).sum(),
             unsolved: Vec::new(),
         };
         if let Err(never) = outcome {
-            plan.unsolved.push(match never {
-                Never::Always([a, b]) => Unsolved::of([id(a), id(b)], true),
-                Never::Priorities([a, b]) => Unsolved::of([id(a), id(b)], false),
-                other => Unsolved { ids: Vec::new(), why: other.to_string() },
-            });
+            plan.unsolved.push(self.unsolved(never));
             return Ok((plan, None));
         }
-        let mut solved = scenario.clone();
-        for (agent, motion) in solved.agents.iter_mut().zip(planned) {
-            agent.t_start = motion.time().lo;
-        }
-        let earliest = motions.iter().map(|motion| motion.time().lo).fold(f64::INFINITY, f64::min);
-        for ((agent, motion), planned) in scenario.agents.iter().zip(motions).zip(planned) {
-            let [start, end] = [planned.time().lo, planned.time().hi];
-            plan.agents.push(Planned { id: agent.id, delay: start - motion.time().lo, t_end: end });
-            plan.makespan = plan.makespan.max(end - earliest);
-            plan.sum_of_costs += end - motion.time().lo;
-        }
+        plan.sum_up(self, &planned);
         // Nothing is returned that the check would refuse.
+        let solved = self.solved(&planned);
         let verdict = Verdict::of::<f64>(&solved, false)?;
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);
@@ -169,6 +233,51 @@ impl Plan {
             return Ok((plan, None));
         }
         Ok((plan, Some(solved)))
+    }
+
+    fn unsolved(&self, never: Never) -> Unsolved {
+        let pair = |agents: [usize; 2], why: &str| Unsolved {
+            ids: agents.map(|agent| self.id(agent)).to_vec(),
+            why: why.into(),
+        };
+        match never {
+            Never::Starts(agents) => pair(agents, "they overlap at their starts"),
+            Never::Ends(agents) => pair(agents, "they overlap at the ends of their paths"),
+            Never::Always([a, b]) => Unsolved::of([self.id(a), self.id(b)], true),
+            Never::Priorities([a, b]) => Unsolved::of([self.id(a), self.id(b)], false),
+            Never::Full(agent) => Unsolved {
+                ids: vec![self.id(agent)],
+                why: "its plan takes too many profiles or phases, or too long".into(),
+            },
+            other => Unsolved { ids: Vec::new(), why: other.to_string() },
+        }
+    }
+
+    /// The scenario with the motions of a plan.
+    fn solved(&self, planned: &[Motion<'_, f64>]) -> Scenario {
+        let mut solved = self.scenario.clone();
+        for ((agent, given), motion) in solved.agents.iter_mut().zip(self.motions).zip(planned) {
+            agent.t_start = motion.time().lo;
+            let phases = motion.profile().phases();
+            if phases != given.profile().phases() {
+                let v0 = phases.first().map_or(0.0, |first| first.speed()[0]);
+                let pieces = phases.iter().map(|phase| (phase.time().length(), phase.acceleration()));
+                agent.motion = MotionSpec::Profile { v0, pieces: pieces.collect() };
+            }
+        }
+        solved
+    }
+}
+
+impl Plan {
+    fn sum_up(&mut self, planner: &Planner<'_>, planned: &[Motion<'_, f64>]) {
+        let earliest = planner.motions.iter().map(|motion| motion.time().lo).fold(f64::INFINITY, f64::min);
+        for ((agent, motion), planned) in planner.scenario.agents.iter().zip(planner.motions).zip(planned) {
+            let [start, end] = [planned.time().lo, planned.time().hi];
+            self.agents.push(Planned { id: agent.id, delay: start - motion.time().lo, t_end: end });
+            self.makespan = self.makespan.max(end - earliest);
+            self.sum_of_costs += end - motion.time().lo;
+        }
     }
 }
 

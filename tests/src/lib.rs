@@ -9,6 +9,7 @@ pub mod generators;
 pub mod oracle;
 pub mod outward;
 pub mod paper;
+pub mod plans;
 pub mod reference;
 pub mod settings;
 pub mod velocity;

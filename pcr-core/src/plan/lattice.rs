@@ -15,6 +15,7 @@
 
 use crate::error::{Invalid, not_negative, positive};
 use crate::geometry::Interval;
+use crate::motion::Motion;
 use crate::profile::{Limits, Phase};
 use crate::scalar::{Scalar, Wide};
 
@@ -42,6 +43,16 @@ impl<S: Scalar> Drive<S> {
     /// From rest to rest.
     pub const fn rest_to_rest(limits: Limits<S>) -> Self {
         Self { limits, start: S::ZERO, goal: S::ZERO }
+    }
+
+    /// Of a motion: its largest speed and acceleration, and the speeds with which it begins and ends.
+    pub fn of(motion: &Motion<'_, S>) -> Self {
+        let phases = motion.profile().phases();
+        let accelerations = phases.iter().map(|phase| phase.acceleration().abs());
+        let limits = Limits { speed: motion.profile().top_speed(), acceleration: accelerations.fold(S::ZERO, S::max) };
+        let [start, _] = phases.first().map_or([S::ZERO; 2], Phase::speed);
+        let [_, goal] = phases.last().map_or([S::ZERO; 2], Phase::speed);
+        Self { limits, start, goal }
     }
 }
 

@@ -69,6 +69,13 @@ pub struct SpeedPlan<S: Scalar, const N: usize> {
     pub profile: Profile<S, N>,
 }
 
+impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
+    /// When the agent arrives \[s\].
+    pub fn end(&self) -> S {
+        self.start + self.profile.as_profile().duration()
+    }
+}
+
 /// Why there is no speed plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -123,7 +130,7 @@ impl<S: core::fmt::Debug> core::error::Error for NoSpeedPlan<S> {}
 /// dynamic program over length, speed and time. A set of more than 8 separate intervals of times at one
 /// border and speed loses the last but one.
 ///
-/// The plan is checked by [`first_conflict`]: no overlap is deeper than [`Encounter::tolerance`](crate::Encounter::tolerance). Plan with a radius that
+/// The plan is checked by [`first_conflict`](crate::first_conflict): no overlap is deeper than [`Encounter::tolerance`](crate::Encounter::tolerance). Plan with a radius that
 /// is larger by that, so that agents of the true radii do not even touch.
 ///
 /// Cost: for each region a few hundred operations a slab on its length, a few for each window of a slab and two speeds,

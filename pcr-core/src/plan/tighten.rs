@@ -21,7 +21,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
         plan: &SpeedPlan<S, N>,
         from: S,
     ) -> Result<Option<Met<S>>, Invalid> {
-        let motion = Motion::new(ego.path(), plan.profile.as_profile(), ego.radius(), plan.start)?;
+        let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         let ends = self.regions.clone().map(|region| region.other_motion().time()).chain([motion.time()]);
         let all = ends.reduce(Interval::hull).unwrap_or_default();
         let during = Interval::new(from.max(all.lo), all.hi);

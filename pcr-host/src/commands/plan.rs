@@ -3,7 +3,7 @@
 use super::{CONFLICTS, Form, Stop, scenario, write_to};
 use clap::{Args, ValueEnum};
 use pcr_host::import::Options;
-use pcr_host::plan::{Plan, Priority};
+use pcr_host::plan::{Method, Plan, Priority};
 use pcr_host::regions::Failure;
 use pcr_host::report;
 use std::io::{self, BufWriter, Write};
@@ -20,9 +20,10 @@ Exit status:
 const EXAMPLES: &str = "\
 Examples:
   pcr plan fleet.json -o plan.json                    the scenario with start delays, without conflicts
+  pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
   pcr plan fleet.json --priority 7,3 --format json    agents 7 and 3 first, then the others as in the file";
 
-/// Resolve the conflicts of a scenario: later starts, by priorities
+/// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
@@ -32,8 +33,8 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// How conflicts are avoided
-    #[arg(long, value_enum, default_value_t = Method::Delay)]
-    method: Method,
+    #[arg(long, value_enum, default_value_t = Means::Delay)]
+    method: Means,
     /// Who goes first: agent numbers with commas between them, `longest`, `crowded` or `best`
     #[arg(long, value_name = "ORDER", default_value = "best", value_parser = priority)]
     priority: Priority,
@@ -45,9 +46,20 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Method {
+enum Means {
     /// Agents start later and then move as the scenario says
     Delay,
+    /// Agents wait and change their speed on the way, under the limits that the scenario gives them
+    Speed,
+}
+
+impl From<Means> for Method {
+    fn from(means: Means) -> Self {
+        match means {
+            Means::Delay => Self::Delay,
+            Means::Speed => Self::Speed,
+        }
+    }
 }
 
 /// An order of priority from the command line.
@@ -73,9 +85,8 @@ impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let file = self.file.as_deref();
         let scenario = scenario(file, &self.import)?;
-        let Method::Delay = self.method;
-        let (plan, solved) =
-            Plan::of(&scenario, &self.priority).map_err(|failure: Failure| Stop::wrong(file, failure))?;
+        let (plan, solved) = Plan::of(&scenario, self.method.into(), &self.priority)
+            .map_err(|failure: Failure| Stop::wrong(file, failure))?;
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
             write_to(output, solved)?;
         }

@@ -34,7 +34,8 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
         }
         return Ok(());
     }
-    writeln!(out, "{name}: a plan without conflicts, by start delays; priorities from top to bottom")?;
+    let means = if plan.method == "speed" { "speeds" } else { "start delays" };
+    writeln!(out, "{name}: a plan without conflicts, by {means}; priorities from top to bottom")?;
     let mut columns = Columns::new(&["agent", "delay [s]", "t_end [s]"]);
     let by_priority = plan.order.iter().filter_map(|id| plan.agents.iter().find(|agent| agent.id == *id));
     for agent in by_priority {

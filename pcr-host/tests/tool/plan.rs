@@ -44,6 +44,23 @@ fn the_papers_agents_are_resolved_and_the_plan_is_free() {
 }
 
 #[test]
+fn speeds_are_planned_and_written_as_profiles() {
+    // Behind the second at the crossing, in front of a third that passes its start.
+    let agents = json!({ "agents": [
+        straight(1, [0.0, 0.0, 0.0], 8.0),
+        straight(2, [0.0, -1.2, std::f64::consts::FRAC_PI_2], 12.0),
+        straight(3, [5.0, -5.0, std::f64::consts::FRAC_PI_2], 10.0)
+    ] });
+    let (status, report, written) = plan("speeds", &agents, &["--method", "speed", "--priority", "2,3,1"]);
+    assert_eq!((status, &report["order"], &report["method"]), (0, &json!([2, 3, 1]), &json!("speed")));
+    let written = written.unwrap();
+    let scenario: Value = serde_json::from_str(&fs::read_to_string(&written).unwrap()).unwrap();
+    assert!(scenario["agents"][0]["profile"]["pieces"].as_array().unwrap().len() > 3, "{scenario}");
+    assert!(scenario["agents"][1]["v_max"].is_number(), "{scenario}");
+    assert_eq!(run(&["check", &written, "--format", "json"]).json()["conflicts"], json!([]));
+}
+
+#[test]
 fn what_cannot_work_is_named_and_nothing_is_written() {
     let head_on =
         json!({ "agents": [straight(4, [0.0, 0.0, 0.0], 4.0), straight(9, [4.0, 0.0, std::f64::consts::PI], 4.0)] });

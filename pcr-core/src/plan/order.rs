@@ -1,0 +1,98 @@
+//! Agents one after the other by priority, and what to do where one cannot be planned.
+//!
+//! An agent for which there is no plan because of one of higher priority (that parks on its way, or passes over its
+//! start) is moved up before it in the order, and the search goes on from there; a bounded number of times.
+
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+/// Agents for which no plan was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Unsolved {
+    /// Their discs overlap at the starts of their paths.
+    Starts([usize; 2]),
+    /// Their discs overlap at the ends of their paths.
+    Ends([usize; 2]),
+    /// However they move, they meet: head-on without a passing place, or each on the way of the other while it stands.
+    Always([usize; 2]),
+    /// There is no plan for the first with the priorities that were tried, because of the second.
+    Priorities([usize; 2]),
+    /// There is no room for the plan of this agent: profiles, phases or stations; or its times are out of range.
+    Full(usize),
+    /// There is no such agent, or not as many plans as motions.
+    NoSuchAgent(usize),
+}
+
+impl core::fmt::Display for Unsolved {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Starts([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap at their starts"),
+            Self::Ends([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap at the ends of their paths"),
+            Self::Always([a, b]) => write!(f, "agents {a} and {b} of the fleet meet however they move"),
+            Self::Priorities([a, b]) => write!(f, "agent {a} of the fleet cannot go because of agent {b}"),
+            Self::Full(agent) => write!(f, "there is no room for a plan of agent {agent} of the fleet"),
+            Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
+        }
+    }
+}
+
+impl core::error::Error for Unsolved {}
+
+/// Why there is no plan for an agent.
+pub(super) enum Blocked {
+    /// Because of another one, with the priorities as they are.
+    By(usize),
+    /// With none.
+    Never(Unsolved),
+}
+
+/// Plans the agents of an order, each after those before it; the order may change.
+pub(super) fn in_order(
+    order: &mut [usize],
+    mut plan: impl FnMut(&[usize], usize) -> Result<(), Blocked>,
+) -> Result<(), Unsolved> {
+    let mut moves = order.len();
+    let mut place = 0_usize;
+    while let Some(&agent) = order.get(place) {
+        let before = order.get(..place).unwrap_or_default();
+        match plan(before, agent) {
+            Ok(()) => place = place.wrapping_add(1),
+            Err(Blocked::Never(unsolved)) => return Err(unsolved),
+            Err(Blocked::By(by)) => {
+                let to = before.iter().position(|&other| other == by);
+                let (Some(to), Some(left)) = (to, moves.checked_sub(1)) else {
+                    return Err(Unsolved::Priorities([agent, by]));
+                };
+                if let Some(moved) = order.get_mut(to..=place) {
+                    moved.rotate_right(1);
+                }
+                (place, moves) = (to, left);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether two agents meet in this region however they move, and why.
+///
+/// The region is connected. If the ego can pass neither before the other (it reaches the ego's end, or the other's
+/// start) nor after it (the ego's start, or the other's end), it parts the start of both from the end of both.
+pub(super) fn separated<S: Scalar>(region: &RegionRef<'_, S>) -> Option<Unsolved> {
+    let agents = [region.ego(), region.other()];
+    let (ego, other) = (region.ego_motion().path().length(), region.other_motion().path().length());
+    let length = region.length();
+    let before = length.hi >= ego || region.is_open_at_start();
+    let after = length.lo <= S::ZERO || region.is_open_at_end();
+    (before && after).then(|| {
+        if region.covers(S::ZERO, S::ZERO) {
+            Unsolved::Starts(agents)
+        } else if region.covers(ego, other) {
+            Unsolved::Ends(agents)
+        } else {
+            Unsolved::Always(agents)
+        }
+    })
+}
