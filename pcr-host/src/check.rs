@@ -3,7 +3,8 @@
 //! The types are the JSON output, field for field in this order. All motions run from the earliest start to the latest
 //! arrival; every agent stands at its start before and at its end after its motion.
 
-use crate::fleet::{Fleet, Format, Refused};
+use crate::fleet::{Format, Refused};
+use crate::footprint::{Bodies, Disced};
 use crate::scenario::Scenario;
 use pcr_core::{Encounter, Interval, Motion};
 use serde::Serialize;
@@ -63,31 +64,44 @@ impl Verdict {
     /// # Errors
     /// [`Refused`] where a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Refused> {
-        let fleet = Fleet::<S>::new(scenario)?;
+        let Bodies { fleet, discs, .. } = Bodies::<S>::new(scenario)?;
         let motions = fleet.motions();
         let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
-        let mut agents: Vec<(u64, &Motion<'_, S>)> =
-            scenario.agents.iter().map(|agent| agent.id).zip(&motions).collect();
+        let mut agents: Vec<(u64, Vec<Body<'_, S>>)> =
+            scenario.agents.iter().map(|agent| (agent.id, Vec::new())).collect();
+        for body in discs.iter().zip(&motions) {
+            if let Some((_, bodies)) = agents.get_mut(body.0.agent) {
+                bodies.push(body);
+            }
+        }
         agents.sort_by_key(|&(id, _)| id);
         let pairs = agents.iter().enumerate().flat_map(|(k, a)| agents[k + 1..].iter().map(move |b| (a, b)));
         let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
-        for (&(i, first), &(j, second)) in pairs {
-            let encounter = Encounter::new(first, second);
-            conflicts.extend(encounter.conflicts(time).map(|conflict| Conflict {
-                i,
-                j,
-                t: ends(conflict.time),
-                depth: conflict.depth.to_f64(),
-                l_i: ends(conflict.length),
-                l_j: ends(conflict.other_length),
-                touching: conflict.touching,
-            }));
-            if closest {
-                let approach = encounter.closest(time);
-                let clearance = (approach.separation - encounter.radius()).to_f64();
-                let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
-                nearest.push(Closest { i, j, t, separation, clearance });
+        for ((i, first), (j, second)) in pairs {
+            let mut found: Vec<Conflict> = Vec::new();
+            let mut closest_of: Option<Closest> = None;
+            for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
+                let encounter = Encounter::new(own.1, other.1);
+                found.extend(encounter.conflicts(time).map(|conflict| Conflict {
+                    i: *i,
+                    j: *j,
+                    t: ends(conflict.time),
+                    depth: conflict.depth.to_f64(),
+                    l_i: own.0.on_agent(ends(conflict.length)),
+                    l_j: other.0.on_agent(ends(conflict.other_length)),
+                    touching: conflict.touching,
+                }));
+                if closest {
+                    let approach = encounter.closest(time);
+                    let clearance = (approach.separation - encounter.radius()).to_f64();
+                    if closest_of.is_none_or(|closest| clearance < closest.clearance) {
+                        let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
+                        closest_of = Some(Closest { i: *i, j: *j, t, separation, clearance });
+                    }
+                }
             }
+            conflicts.extend(if first.len() * second.len() > 1 { joined(found) } else { found });
+            nearest.extend(closest_of);
         }
         // Stable: those that begin together stay in the order of the agents.
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
@@ -98,6 +112,27 @@ impl Verdict {
     pub fn refused(name: &str, error: String) -> Self {
         Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, error: Some(error) }
     }
+}
+
+/// A disc of an agent, and its motion.
+type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
+
+/// The conflicts of two agents by those of their discs: what lasts on is one.
+fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
+    conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
+    let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let mut joined: Vec<Conflict> = Vec::new();
+    for next in conflicts {
+        match joined.last_mut() {
+            Some(last) if next.t[0] <= last.t[1] => {
+                (last.t, last.depth) = (hull(last.t, next.t), last.depth.max(next.depth));
+                (last.l_i, last.l_j) = (hull(last.l_i, next.l_i), hull(last.l_j, next.l_j));
+                last.touching &= next.touching;
+            }
+            _ => joined.push(next),
+        }
+    }
+    joined
 }
 
 fn ends<S: Format>(interval: Interval<S>) -> [f64; 2] {

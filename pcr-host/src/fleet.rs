@@ -83,6 +83,13 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
+impl Refused {
+    /// An agent that has no place in the format `S`.
+    pub(crate) fn of<S: Format>(agent: u64, problem: &str) -> Self {
+        Self { agent, part: None, format: S::NAME, problem: problem.to_owned() }
+    }
+}
+
 /// The number of the format for a field; what it would overflow or lose altogether is refused.
 fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
     let number = S::from_f64(value);

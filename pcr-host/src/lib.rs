@@ -3,6 +3,7 @@
 //! ```text
 //! scenario   what a file says, and everything that is refused     Scenario, Agent
 //! fleet      its paths and motions in a number format             Fleet, build_ecm
+//! footprint  outlines that are no discs, covered by discs             Footprint
 //! regions    the answer as plain numbers, and its JSON            Answer, Request
 //! check      the conflicts of the motions as given              Verdict
 //! locks      which edges of a layout exclude one another        Locks
@@ -18,6 +19,7 @@
 
 pub mod check;
 pub mod fleet;
+pub mod footprint;
 pub mod import;
 pub mod input;
 mod json;

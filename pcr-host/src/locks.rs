@@ -83,7 +83,16 @@ impl Place<'_> {
         };
         // Any motion does: lengths do not depend on it.
         let motion = MotionSpec::RestToRest { v_max: 1.0, a_max: 1.0 };
-        Agent { id: number as u64, radius: radius + deviation, margin: 0.0, t_start: 0.0, start, path, motion }
+        Agent {
+            id: number as u64,
+            radius: radius + deviation,
+            footprint: None,
+            margin: 0.0,
+            t_start: 0.0,
+            start,
+            path,
+            motion,
+        }
     }
 }
 

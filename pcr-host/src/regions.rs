@@ -3,8 +3,11 @@
 //! The types are the JSON output, field for field in this order. All numbers are `f64` and hold
 //! the results of the chosen number format exactly, hence rounded outward.
 
+mod outlines;
+
 use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm};
-use crate::scenario::Scenario;
+use crate::footprint::{Bodies, Disc};
+use crate::scenario::{Agent, Scenario};
 use pcr_core::{Crossing, Curve, Full, Motion, RegionRef, Turn, crossings};
 use serde::Serialize;
 use std::fmt;
@@ -21,8 +24,22 @@ pub struct Answer {
     /// The same for the discs with their margins, if any agent has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin_regions: Option<Vec<Region>>,
+    /// The covers of the agents that have footprints, if any has.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub footprints: Vec<Cover>,
     /// Why the scenario was refused.
     pub error: Option<String>,
+}
+
+/// The discs that an agent with a footprint is computed with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cover {
+    /// Number of the agent.
+    pub id: u64,
+    /// No point of a disc is farther than this from the polygon \[m\].
+    pub overhang: f64,
+    /// The discs.
+    pub discs: Vec<Disc>,
 }
 
 /// A collision region: what agent `i` has to keep out of because of agent `j`.
@@ -184,13 +201,18 @@ impl Answer {
         if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
             return Err(Failure::NoSuchAgent(asked, ids));
         }
-        let fleet = Fleet::<S>::new(scenario)?;
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
+        let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
         let motions = fleet.motions();
         let regions = |motions: &[Motion<'_, S>]| -> Result<Vec<Region>, Failure> {
-            let ecm = table(scenario, motions)?;
+            let ecm = table(&discs, motions)?;
             let work = Work { ids: &ids, fleet: &fleet, motions, ecm: &ecm, slices: request.slices };
-            let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
-            let mut regions: Vec<Region> = egos.flat_map(|ego| work.row(ego)).collect();
+            let mut regions: Vec<Region> = if outlined {
+                outlines::regions(&work, &owners, request.agent)
+            } else {
+                let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
+                egos.flat_map(|ego| work.row(ego)).collect()
+            };
             regions.sort_by(|a, b| {
                 let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
                 (a.i, a.j).cmp(&(b.i, b.j)).then(starts)
@@ -205,13 +227,28 @@ impl Answer {
             scalar: S::NAME,
             regions: regions(&motions)?,
             margin_regions,
+            footprints: scenario.agents.iter().filter_map(Cover::of).collect(),
             error: None,
         })
     }
 
     /// No regions, and why.
     pub fn refused<S: Format>(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), scalar: S::NAME, regions: Vec::new(), margin_regions: None, error: Some(error) }
+        Self {
+            name: name.to_owned(),
+            scalar: S::NAME,
+            regions: Vec::new(),
+            margin_regions: None,
+            footprints: Vec::new(),
+            error: Some(error),
+        }
+    }
+}
+
+impl Cover {
+    fn of(agent: &Agent) -> Option<Self> {
+        let footprint = agent.footprint.as_ref()?;
+        Some(Self { id: agent.id, overhang: footprint.overhang(), discs: footprint.discs().to_vec() })
     }
 }
 

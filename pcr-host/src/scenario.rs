@@ -21,6 +21,8 @@
 //!   accelerations, never below speed 0. It has to travel the length of the path within [`LENGTH_TOLERANCE`] and is
 //!   scaled onto it.
 //! - `name` and `t_start` may be left out, and with a profile `v_max` and `a_max`. An unknown key is refused.
+//! - `"footprint": { "polygon": [ { "ahead": 0.8, "left": 0.4 }, ... ], "overhang": 0.1 }` instead of `radius` is the outline of
+//!   the vehicle around the point that travels the path; see [`Footprint`].
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
@@ -30,6 +32,7 @@ mod decode;
 mod encode;
 mod fields;
 
+use crate::footprint::Footprint;
 pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::speed_after;
 pub(crate) use fields::figure;
@@ -53,8 +56,10 @@ pub struct Scenario {
 pub struct Agent {
     /// Number, unique in its scenario.
     pub id: u64,
-    /// Radius of the disc \[m\].
+    /// Radius of the disc \[m\]; with a footprint that of the disc around all of it.
     pub radius: f64,
+    /// Its outline, if it is no disc.
+    pub footprint: Option<Footprint>,
     /// Margin to be kept around the disc \[m\].
     pub margin: f64,
     /// When it sets off \[s\].
@@ -138,6 +143,21 @@ pub enum MotionSpec {
         /// Duration \[s\] and acceleration \[m/s²\] of each piece.
         pieces: Vec<(f64, f64)>,
     },
+}
+
+impl MotionSpec {
+    /// Speed at the start of a path of this length \[m/s\], then durations \[s\] and accelerations \[m/s²\].
+    pub(crate) fn pieces(&self, length: f64) -> (f64, Vec<(f64, f64)>) {
+        match self {
+            Self::Profile { v0, pieces } => (*v0, pieces.clone()),
+            Self::RestToRest { .. } if length <= 0.0 => (0.0, Vec::new()),
+            Self::RestToRest { v_max, a_max } => {
+                let peak = v_max.min((length * a_max).sqrt());
+                let cruise = (length / peak - peak / a_max).max(0.0);
+                (0.0, vec![(peak / a_max, *a_max), (cruise, 0.0), (peak / a_max, -a_max)])
+            }
+        }
+    }
 }
 
 impl Agent {

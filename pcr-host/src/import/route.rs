@@ -231,6 +231,7 @@ pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> 
     Agent {
         id,
         radius: vehicle.radius + trace.deviation,
+        footprint: None,
         margin: vehicle.margin,
         t_start,
         start: trace.start,

@@ -46,6 +46,7 @@ pub(super) fn agent(id: u64, radius: f64, stops: &[Stop]) -> Result<Agent, Impor
     Ok(Agent {
         id,
         radius: radius + trace.deviation,
+        footprint: None,
         margin: 0.0,
         t_start,
         start: trace.start,

@@ -188,6 +188,7 @@ impl Reader<'_> {
         Ok(Agent {
             id,
             radius: self.vehicle.radius,
+            footprint: None,
             margin: self.vehicle.margin,
             t_start: 0.0,
             start: [x, y, 0.0],

@@ -62,6 +62,10 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&answer.name);
     let (regions, number) = (answer.regions.len(), all.len());
     writeln!(out, "{name}: {regions} collision regions, {number} crossings ({})", answer.scalar)?;
+    for cover in &answer.footprints {
+        let discs = cover.discs.len();
+        writeln!(out, "agent {}: a footprint of {discs} discs that reach {:.3} m out of it", cover.id, cover.overhang)?;
+    }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
         let mut columns = Columns::new(&[

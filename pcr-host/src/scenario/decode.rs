@@ -2,6 +2,7 @@
 
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
 use super::{Agent, MotionSpec, PathSegment, Scenario};
+use crate::footprint::Footprint;
 use crate::json::{self, Data, Json};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -87,7 +88,8 @@ impl Scenario {
 
 impl Agent {
     fn decode(json: &Json, index: usize) -> Result<Self, ScenarioError> {
-        const KNOWN: [&str; 9] = ["id", "radius", "margin", "v_max", "a_max", "t_start", "start", "path", "profile"];
+        const KNOWN: [&str; 10] =
+            ["id", "radius", "footprint", "margin", "v_max", "a_max", "t_start", "start", "path", "profile"];
         let given = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "id").map(|(_, id)| id),
             _ => None,
@@ -104,7 +106,11 @@ impl Agent {
         let fields = place.fields(json, &KNOWN)?;
         let given = fields.required("id")?;
         let id = id.ok_or_else(|| fields.unexpected("id", given, "a whole number from 0"))?;
-        let radius = fields.number("radius", Range::Positive)?;
+        let footprint = fields.get("footprint").map(|_| footprint(&fields)).transpose()?;
+        let radius = match &footprint {
+            None => fields.number("radius", Range::Positive)?,
+            Some(footprint) => footprint.reach(),
+        };
         let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
         let start = fields.object("start", "start.", &["x", "y", "heading"])?;
@@ -135,7 +141,7 @@ impl Agent {
             (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
             _ => MotionSpec::decode(&fields, length)?,
         };
-        let agent = Self { id, radius, margin, t_start, start, path, motion };
+        let agent = Self { id, radius, footprint, margin, t_start, start, path, motion };
         let duration = agent.duration();
         if duration > LIMIT || (t_start + duration).abs() > LIMIT {
             let field = if !moves {
@@ -154,6 +160,21 @@ impl Agent {
         }
         Ok(agent)
     }
+}
+
+/// The footprint of an agent, which has no radius then.
+fn footprint(agent: &Fields<'_>) -> Result<Footprint, ScenarioError> {
+    if let Some(radius) = agent.get("radius") {
+        return Err(agent.error(radius.line, "radius", "an agent has a radius or a footprint, not both"));
+    }
+    let fields = agent.object("footprint", "footprint.", &["polygon", "overhang"])?;
+    let corners = fields.array("polygon")?.iter().enumerate().map(|(index, json)| {
+        let corner = agent.place.part("corner", index).fields(json, &["ahead", "left"])?;
+        Ok([corner.number("ahead", Range::Any)?, corner.number("left", Range::Any)?])
+    });
+    let corners = corners.collect::<Result<_, ScenarioError>>()?;
+    let overhang = fields.get("overhang").map(|_| fields.number("overhang", Range::Positive)).transpose()?;
+    Footprint::new(corners, overhang).map_err(|problem| agent.error(fields.line, "footprint", problem))
 }
 
 impl PathSegment {

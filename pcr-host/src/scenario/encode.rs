@@ -19,8 +19,20 @@ struct Json<T>(T);
 
 impl Display for Json<&Agent> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Agent { id, radius, margin, t_start, start: [x, y, heading], path, motion } = self.0;
-        write!(f, "{{ \"id\": {id}, \"radius\": {radius:?}, ")?;
+        let Agent { id, radius, footprint, margin, t_start, start: [x, y, heading], path, motion } = self.0;
+        write!(f, "{{ \"id\": {id}, ")?;
+        match footprint {
+            None => write!(f, "\"radius\": {radius:?}, ")?,
+            Some(footprint) => {
+                let corners = footprint.polygon().iter();
+                let corners = corners.map(|[ahead, left]| format!("{{ \"ahead\": {ahead:?}, \"left\": {left:?} }}"));
+                write!(f, "\"footprint\": {{ \"polygon\": [ {} ]", corners.collect::<Vec<_>>().join(", "))?;
+                if let Some(overhang) = footprint.allowed() {
+                    write!(f, ", \"overhang\": {overhang:?}")?;
+                }
+                f.write_str(" }, ")?;
+            }
+        }
         if *margin > 0.0 {
             write!(f, "\"margin\": {margin:?}, ")?;
         }
@@ -53,12 +65,14 @@ impl Display for Json<&Agent> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::footprint::Footprint;
 
     #[test]
     fn what_is_written_is_read_again() {
         let agent = Agent {
             id: u64::MAX,
             radius: 1.0 / 3.0,
+            footprint: None,
             margin: 0.1,
             t_start: -1e9,
             start: [1e-300, -7.0, 0.1 + 0.2],
@@ -72,7 +86,9 @@ mod tests {
             motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
             ..agent.clone()
         };
-        let scenario = Scenario { name: "a \"name\"\n\\".into(), agents: vec![agent, stands, moves] };
+        let outline = Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap();
+        let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
+        let scenario = Scenario { name: "a \"name\"\n\\".into(), agents: vec![agent, stands, moves, outlined] };
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
         let empty = Scenario { name: String::new(), agents: Vec::new() };
         assert_eq!(Scenario::from_json(&empty.to_json()), Ok(empty));

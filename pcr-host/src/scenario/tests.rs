@@ -60,7 +60,7 @@ fn unknown_keys_are_refused_with_those_that_are_known() {
     refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading");
     refused(
         &with("/speed", &json!(1)),
-        "agent 7, speed: unknown key; known are id, radius, margin, v_max, a_max, t_start, start, path, profile",
+        "agent 7, speed: unknown key; known are id, radius, footprint, margin, v_max, a_max, t_start, start, path, profile",
     );
     refused(&json!({ "agents": [], "units": "m" }), "units: unknown key; known are name, agents");
 }

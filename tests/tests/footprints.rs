@@ -1,0 +1,242 @@
+//! Agents with polygons for outlines: their discs move with them, and regions and conflicts contain those of the polygons and
+//! exceed them by no more than the overhang.
+
+use pcr_core::Motion;
+use pcr_host::check::Verdict;
+use pcr_host::fleet::Fleet;
+use pcr_host::regions::{Answer, Region, Request};
+use pcr_host::scenario::Scenario;
+use pcr_tests::generators::Dice;
+use serde_json::{Value, json};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+type Point = [f64; 2];
+type Polygon = Vec<Point>;
+
+/// Ahead of and behind the reference point, and to both sides.
+const TRUCK: [[f64; 2]; 4] = [[-0.3, -0.35], [0.9, -0.35], [0.9, 0.35], [-0.3, 0.35]];
+const SQUARE: [[f64; 2]; 4] = [[-0.25, -0.25], [0.25, -0.25], [0.25, 0.25], [-0.25, 0.25]];
+
+/// What turns in place of a nanometre cost in rounding, and more \[m\].
+const SLACK: f64 = 1e-4;
+
+fn outline(polygon: &[[f64; 2]]) -> Value {
+    let corners = polygon.iter().map(|[ahead, left]| json!({ "ahead": ahead, "left": left }));
+    json!({ "polygon": corners.collect::<Vec<_>>() })
+}
+
+fn agent(id: u64, polygon: &[[f64; 2]], start: [f64; 3], path: &Value) -> Value {
+    json!({ "id": id, "footprint": outline(polygon), "v_max": 1.0, "a_max": 0.7, "path": path,
+        "start": { "x": start[0], "y": start[1], "heading": start[2] } })
+}
+
+fn line(length: f64) -> Value {
+    json!({ "kind": "line", "length": length })
+}
+
+fn arc(radius: f64, sweep: f64) -> Value {
+    json!({ "kind": "arc", "radius": radius, "sweep": sweep })
+}
+
+fn read(agents: &[Value]) -> Scenario {
+    Scenario::from_json(&json!({ "name": "outlines", "agents": agents }).to_string()).unwrap()
+}
+
+/// The polygon of a vehicle in a pose.
+fn placed(polygon: &[Point], pose: pcr_core::Pose<f64>) -> Polygon {
+    let (sin, cos) = pose.heading.0.sin_cos();
+    let at = |[ahead, left]: &Point| {
+        [pose.position.x + ahead * cos - left * sin, pose.position.y + ahead * sin + left * cos]
+    };
+    polygon.iter().map(at).collect()
+}
+
+fn from_side(p: Point, a: Point, b: Point) -> f64 {
+    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+    let share = (((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+    (a[0] + share * dx - p[0]).hypot(a[1] + share * dy - p[1])
+}
+
+fn sides(polygon: &Polygon) -> impl Iterator<Item = (Point, Point)> {
+    polygon.iter().copied().zip(polygon.iter().copied().cycle().skip(1))
+}
+
+/// Whether a convex polygon, its corners to the left about, holds a point.
+fn holds(polygon: &Polygon, p: Point) -> bool {
+    sides(polygon).all(|(a, b)| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0)
+}
+
+/// Distance of two convex polygons: 0 where they overlap. Two that cross without a corner inside have sides that cross.
+fn apart(a: &Polygon, b: &Polygon) -> f64 {
+    let cross = |(p, q): (Point, Point), (r, s): (Point, Point)| {
+        let side = |a: Point, b: Point, c: Point| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0
+    };
+    let inside = a.iter().any(|p| holds(b, *p)) || b.iter().any(|p| holds(a, *p));
+    if inside || sides(a).any(|own| sides(b).any(|other| cross(own, other))) {
+        return 0.0;
+    }
+    let corners = |own: &Polygon, other: &Polygon| {
+        let distances = own.iter().flat_map(|p| sides(other).map(|(a, b)| from_side(*p, a, b)).collect::<Vec<_>>());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    corners(a, b).min(corners(b, a))
+}
+
+/// The reference points alone.
+fn references(scenario: &Scenario) -> Fleet<f64> {
+    Fleet::new(scenario).unwrap()
+}
+
+fn within([lo, hi]: [f64; 2], x: f64) -> bool {
+    lo <= x && x <= hi
+}
+
+/// Compares the regions at their slices, and the conflicts, with the polygons at many lengths; returns the numbers of
+/// points inside and outside.
+fn compare(agents: &[Value], polygons: [&[Point]; 2]) -> [usize; 2] {
+    const SLICES: usize = 12;
+    const LENGTHS: usize = 120;
+    let scenario = read(agents);
+    let overhang: f64 = scenario.agents.iter().filter_map(|agent| Some(agent.footprint.as_ref()?.overhang())).sum();
+    let fleet = references(&scenario);
+    let motions = fleet.motions();
+    let answer = Answer::of::<f64>(&scenario, Request { agent: None, slices: Some(SLICES) }).unwrap();
+    let mut counts = [0, 0];
+    for (own, other) in [(0, 1), (1, 0)] {
+        let (ego, them): (&Motion<'_, f64>, &Motion<'_, f64>) = (&motions[own], &motions[other]);
+        let id = scenario.agents[own].id;
+        let regions: Vec<Region> = answer.regions.iter().filter(|region| region.i == id).cloned().collect();
+        // At the times of the slices of each region, that of all regions then.
+        for region in &regions {
+            for slice in region.slices.iter().flatten() {
+                let far = placed(polygons[other], them.path().pose_at(them.length_at(slice.t)));
+                for step in 0..=LENGTHS {
+                    let length = ego.path().length() * step as f64 / LENGTHS as f64;
+                    let near = placed(polygons[own], ego.path().pose_at(length));
+                    let distance = apart(&near, &far);
+                    let covered = slice.l.iter().any(|lengths| within(*lengths, length));
+                    assert!(!covered || distance <= overhang + SLACK, "t {} l {length}: {distance}", slice.t);
+                    // What no other region may hold is in this one.
+                    let others = regions.iter().filter(|other| *other != region);
+                    let alone = others.clone().all(|other| !within(other.t, slice.t) || !within(other.l, length));
+                    assert!(covered || distance > 0.0 || !alone, "t {} l {length}: not covered", slice.t);
+                    counts[usize::from(distance > 0.0)] += 1;
+                }
+            }
+        }
+        // Everywhere in time: where the polygons overlap a region is there.
+        let time = them.time();
+        for step in 0..=200 {
+            let t = time.lo + (time.hi - time.lo) * f64::from(step) / 200.0;
+            let far = placed(polygons[other], them.path().pose_at(them.length_at(t)));
+            for step in 0..=LENGTHS {
+                let length = ego.path().length() * step as f64 / LENGTHS as f64;
+                if apart(&placed(polygons[own], ego.path().pose_at(length)), &far) == 0.0 {
+                    let inside = regions.iter().any(|region| within(region.t, t) && within(region.l, length));
+                    assert!(inside, "t {t} l {length}: no region");
+                }
+            }
+        }
+    }
+    conflicts(&scenario, &motions, polygons, overhang);
+    counts
+}
+
+/// Where the polygons overlap there is a conflict, and in a conflict they are near somewhere.
+fn conflicts(scenario: &Scenario, motions: &[Motion<'_, f64>], polygons: [&[Point]; 2], overhang: f64) {
+    let verdict = Verdict::of::<f64>(scenario, true).unwrap();
+    let between = |t: f64| {
+        let [a, b] = [0, 1].map(|k| placed(polygons[k], motions[k].path().pose_at(motions[k].length_at(t))));
+        apart(&a, &b)
+    };
+    let end = motions.iter().map(|motion| motion.time().hi).fold(0.0, f64::max);
+    for step in 0..=2000 {
+        let t = end * f64::from(step) / 2000.0;
+        let there = verdict.conflicts.iter().any(|conflict| within(conflict.t, t));
+        let distance = between(t);
+        assert!(there || distance > 0.0, "t {t}: no conflict");
+        assert!(!there || distance <= overhang + SLACK, "t {t}: a conflict at {distance}");
+        // What is said to be nearest is.
+        let closest = verdict.closest.as_ref().unwrap()[0];
+        assert!(closest.clearance <= distance + 1e-9, "t {t}: {} {distance}", closest.clearance);
+    }
+}
+
+#[test]
+fn crossing_vehicles() {
+    let agents = [
+        agent(1, &TRUCK, [-4.0, 0.0, 0.0], &json!([line(3.0), arc(1.5, FRAC_PI_2), line(3.0)])),
+        agent(2, &SQUARE, [0.5, -4.0, FRAC_PI_2], &json!([line(8.0)])),
+    ];
+    let [inside, outside] = compare(&agents, [&TRUCK, &SQUARE]);
+    assert!(inside > 100 && outside > 100, "{inside} {outside}");
+}
+
+#[test]
+fn a_vehicle_that_turns_in_place_sweeps_what_is_beside_it() {
+    // It comes, turns back on the spot, and goes; the other one passes within reach of its nose only.
+    let turn = json!([line(2.0), arc(1e-9, PI), line(2.0)]);
+    let profile = json!({ "v0": 0.0, "pieces": [
+        { "duration": 2.0, "accel": 0.5 }, { "duration": 2.0, "accel": -0.5 },
+        { "duration": 2.0, "accel": 1e-9 * PI / 4.0 }, { "duration": 2.0, "accel": -1e-9 * PI / 4.0 },
+        { "duration": 2.0, "accel": 0.5 }, { "duration": 2.0, "accel": -0.5 } ] });
+    let mut turning = agent(1, &TRUCK, [0.0, 0.0, 0.0], &turn);
+    turning["profile"] = profile;
+    let agents = [turning, agent(2, &SQUARE, [-2.0, 0.95, 0.0], &json!([line(6.0)]))];
+    let [inside, outside] = compare(&agents, [&TRUCK, &SQUARE]);
+    assert!(inside > 100 && outside > 100, "{inside} {outside}");
+    // The discs of its turn: while the reference point stands.
+    let scenario = read(&agents);
+    let regions = Answer::of::<f64>(&scenario, Request { agent: Some(1), slices: None }).unwrap().regions;
+    assert!(regions.iter().any(|region| region.pieces.iter().any(|piece| piece.i_segment == Some(2))));
+}
+
+#[test]
+fn the_pivot_of_an_arc_may_be_inside_a_disc() {
+    let agents = [
+        agent(1, &TRUCK, [-2.0, 0.0, 0.0], &json!([line(2.0), arc(0.2, -1.4 * PI), line(1.0)])),
+        agent(2, &TRUCK, [2.5, -0.2, PI], &json!([line(1.0), arc(0.6, 1.0), line(2.0)])),
+    ];
+    let [inside, outside] = compare(&agents, [&TRUCK, &TRUCK]);
+    assert!(inside > 100 && outside > 100, "{inside} {outside}");
+}
+
+#[test]
+fn random_vehicles() {
+    const PAIRS: u64 = if cfg!(debug_assertions) { 5 } else { 300 };
+    let mut met = 0;
+    for seed in 0..PAIRS {
+        let mut dice = Dice::seeded(seed);
+        let mut path = || {
+            let legs = (0..3).map(|_| match dice.chance(0.5) {
+                true => line(dice.range(0.5, 3.0)),
+                false => arc(dice.range(0.3, 2.0), dice.range(-2.5, 2.5)),
+            });
+            legs.collect::<Vec<_>>()
+        };
+        let paths = [path(), path()].map(Value::from);
+        let place = |dice: &mut Dice| [dice.range(-1.0, 1.0), dice.range(-1.0, 1.0), dice.range(-PI, PI)];
+        let agents = [agent(1, &TRUCK, place(&mut dice), &paths[0]), agent(2, &SQUARE, place(&mut dice), &paths[1])];
+        met += usize::from(compare(&agents, [&TRUCK, &SQUARE])[0] > 0);
+    }
+    assert!(met > 2, "{met}");
+}
+
+#[test]
+fn a_disc_is_what_it_was_and_other_formats_are_refused() {
+    let disc = json!({ "id": 7, "radius": 0.3, "v_max": 1.0, "a_max": 0.5, "path": [line(4.0)],
+        "start": { "x": 0.0, "y": 0.0, "heading": 0.0 } });
+    let scenario = read(&[disc.clone(), agent(2, &SQUARE, [2.0, -3.0, FRAC_PI_2], &json!([line(6.0)]))]);
+    let answer = Answer::of::<f64>(&scenario, Request::default()).unwrap();
+    assert!(!answer.regions.is_empty());
+    let [cover] = answer.footprints.as_slice() else { panic!("one cover") };
+    assert_eq!((cover.id, cover.discs.len()), (2, 4));
+    // Four squares of 0.25 m: from their corners to their sides.
+    assert!((cover.overhang - 0.125 * (2.0_f64.sqrt() - 1.0)).abs() < 1e-9);
+    let refused = Answer::of::<f32>(&scenario, Request::default()).unwrap_err().to_string();
+    assert!(refused.contains("agent 2") && refused.contains("footprint"), "{refused}");
+    let both = json!({ "agents": [{ "id": 1, "radius": 0.1, "footprint": outline(&SQUARE), "path": [],
+        "v_max": 1.0, "a_max": 1.0, "start": { "x": 0.0, "y": 0.0, "heading": 0.0 } }] });
+    assert!(Scenario::from_json(&both.to_string()).unwrap_err().to_string().contains("not both"));
+}
