@@ -12,12 +12,26 @@ if ! command -v cargo-fuzz >/dev/null; then
   cargo install --quiet --locked cargo-fuzz --version 0.13.2
 fi
 jobs=("$@")
-if [ $# -eq 0 ]; then jobs=(scenario=60000 pair=3000); fi
+importers=(nav2 lif vda5050 rmf opendrive opentcs ccbs path)
+if [ $# -eq 0 ]; then jobs=(scenario=60000 pair=3000 "${importers[@]/%/=3000}"); fi
 for run in "${jobs[@]}"; do
   target=${run%%=*} runs=${run##*=}
   if [ "$runs" = "$target" ]; then runs=100000; fi
   corpus=fuzz/corpus/$target
   mkdir -p "$corpus"
-  if [ "$target" = scenario ]; then cp tests/data/paper12.json tests/data/table6-5.json "$corpus"; fi
-  cargo +nightly fuzz run "$target" "$corpus" -- -runs="$runs" -seed=1 -timeout=20 -max_len=4096
+  real=tests/data/real small=tests/data/small
+  case $target in
+    scenario) seeds=(tests/data/paper12.json tests/data/table6-5.json) ;;
+    nav2) seeds=("$real/nav2/sample_graph.geojson") ;;
+    lif) seeds=("$real"/lif/example_0[1-6].lif.json "$real/lif/example_17.lif.json") ;;
+    vda5050) seeds=("$real"/vda5050/*.json "$small/state.json") ;;
+    rmf) seeds=("$real/rmf/triple_H.building.yaml") ;;
+    opendrive) seeds=("$small/track.xodr") ;;
+    opentcs) seeds=("$small/plant.xml") ;;
+    ccbs) seeds=("$real/ccbs/example_grid_task_log.xml" "$small/roadmap.xml") ;;
+    path) seeds=("$small/points.path") ;;
+    *) seeds=() ;;
+  esac
+  if [ ${#seeds[@]} -gt 0 ]; then cp "${seeds[@]}" "$corpus"; fi
+  cargo +nightly fuzz run "$target" "$corpus" -- -runs="$runs" -seed=1 -timeout=20 -max_len=10000
 done

@@ -12,38 +12,14 @@ const FILES: [(Format, &str); 12] = [
     (Format::Lif, include_str!("../data/real/lif/example_17.lif.json")),
     (Format::Lif, include_str!("../data/real/lif/example_10.lif.json")),
     (Format::Vda5050, include_str!("../data/real/vda5050/order_v2_flywei.json")),
-    (Format::Vda5050, STATE),
+    (Format::Vda5050, include_str!("../data/small/state.json")),
     (Format::Ccbs, include_str!("../data/real/ccbs/example_grid_task_log.xml")),
-    (Format::Ccbs, ROADMAP),
-    (Format::OpenDrive, TRACK),
-    (Format::OpenTcs, PLANT),
-    (Format::Path, "0 0\n1 0\n2 0.1\n3 0.3\n4,0.6\n\n5 5 # stands\n\n1 1\n1 2\n3 2\n"),
+    (Format::Ccbs, include_str!("../data/small/roadmap.xml")),
+    (Format::OpenDrive, include_str!("../data/small/track.xodr")),
+    (Format::OpenTcs, include_str!("../data/small/plant.xml")),
+    (Format::Path, include_str!("../data/small/points.path")),
     (Format::Rmf, include_str!("../data/real/rmf/triple_H.building.yaml")),
 ];
-
-/// A state with both kinds of paths.
-const STATE: &str = r#"{ "timestamp": "2026-11-21T08:00:00.000Z", "serialNumber": "r7", "orderId": "o", "nodeStates": [],
-    "mobileRobotPosition": { "x": 4.0, "y": 0.0, "theta": 0.0, "mapId": "m" },
-    "intermediatePath": { "polyline": [ { "x": 6.0, "y": 0.0, "eta": "2026-11-21T08:00:02Z" },
-        { "x": 6.0, "y": 3.0, "eta": "2026-11-21T08:00:05+00:00" } ] },
-    "plannedPath": { "trajectory": { "degree": 3, "knotVector": [0, 0, 0, 0, 0.5, 1, 1, 1, 1], "controlPoints": [
-        { "x": 0, "y": 0 }, { "x": 1, "y": 2, "weight": 2 }, { "x": 3, "y": -1 }, { "x": 4, "y": 0 }, { "x": 9, "y": 1 } ] } } }"#;
-
-const ROADMAP: &str = r#"<?xml version="1.0"?><graphml><graph id="G"><node id="n0"><data key="key0">70,182</data></node>
-    <node id="n1"><data key="key0">68,55</data></node><node id="n2"><data key="key0">6,5.5</data></node>
-    <edge id="e0" source="n0" target="n1"/><edge id="e1" source="n1" target="n2"/></graph></graphml>"#;
-
-const TRACK: &str = r#"<OpenDRIVE><header name="t"/>
-    <road id="1"><link><successor elementType="road" elementId="2" contactPoint="start"/></link>
-    <planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/></geometry>
-    <geometry s="5" x="5" y="0" hdg="0" length="3"><arc curvature="0.25"/></geometry></planView></road>
-    <road id="2"><link><predecessor elementType="road" elementId="1" contactPoint="end"/></link><type><speed max="25" unit="mph"/></type>
-    <planView><geometry s="0" x="7.7265" y="1.0732" hdg="0.75" length="4"><line/></geometry></planView></road></OpenDRIVE>"#;
-
-const PLANT: &str = r#"<model name="p"><point name="A" positionX="0" positionY="0"/><point name="B" positionX="4000" positionY="0"/>
-    <path name="A-B" sourcePoint="A" destinationPoint="B" length="4000" maxVelocity="1000" maxReverseVelocity="500">
-    <pathLayout connectionType="BEZIER"><controlPoint x="20" y="-40"/><controlPoint x="60" y="-40"/></pathLayout></path>
-    <path name="B-A" sourcePoint="B" destinationPoint="A" length="1"/></model>"#;
 
 /// Reads the text in every way. What it becomes has to be fit for use.
 fn read(format: Format, text: &str) {
