@@ -8,6 +8,7 @@ mod number;
 mod overview;
 mod plan;
 mod regions;
+mod simulate;
 mod traffic;
 mod work;
 
@@ -41,7 +42,8 @@ Examples:
   pcr regions fleet.json --format json     the same for programs
   pcr map fleet.json -o pictures           the same as pictures
   pcr check fleet.json                     whether the agents collide, moving as the file says
-  pcr plan fleet.json -o plan.json         later starts, so that they do not";
+  pcr plan fleet.json -o plan.json         later starts, so that they do not
+  pcr simulate -o replay.html              robots in closed loop, with noise and delays, and a page to watch them";
 
 /// Exact collision regions of discs on line/arc paths.
 ///
@@ -60,6 +62,7 @@ enum Command {
     Regions(regions::Arguments),
     Check(check::Arguments),
     Plan(plan::Arguments),
+    Simulate(Box<simulate::Arguments>),
     Map(map::Arguments),
     Locks(locks::Arguments),
     Traffic(traffic::Arguments),
@@ -74,6 +77,7 @@ impl Arguments {
             Some(Command::Regions(arguments)) => arguments.run(),
             Some(Command::Check(arguments)) => arguments.run(),
             Some(Command::Plan(arguments)) => arguments.run(),
+            Some(Command::Simulate(arguments)) => arguments.run(),
             Some(Command::Map(arguments)) => arguments.run(),
             Some(Command::Locks(arguments)) => arguments.run(),
             Some(Command::Traffic(arguments)) => arguments.run(),

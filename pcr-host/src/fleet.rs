@@ -3,7 +3,7 @@
 mod fixed;
 #[cfg(feature = "micromath")]
 mod micro;
-mod speed;
+pub(crate) mod speed;
 #[cfg(test)]
 mod tests;
 
@@ -249,9 +249,27 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 /// # Errors
 /// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 65535 pieces.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
-    let (mut regions, mut pieces) = (8 * motions.len() + 16, 16 * motions.len() + 16);
+    grown(motions.len(), |regions, pieces| Ecm::build(regions, pieces, motions))
+}
+
+/// The same with the regions of one agent with all others only.
+///
+/// # Errors
+/// As [`build_ecm`].
+pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
+    grown(motions.len(), |regions, pieces| {
+        let mut ecm = Ecm::new(regions, pieces);
+        ecm.insert(motions, agent).map(|()| ecm)
+    })
+}
+
+fn grown<S: Scalar>(
+    agents: usize,
+    build: impl Fn(Vec<Region>, Vec<Piece<S>>) -> Result<HostEcm<S>, Full>,
+) -> Result<HostEcm<S>, Full> {
+    let (mut regions, mut pieces) = (8 * agents + 16, 16 * agents + 16);
     loop {
-        match Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions) {
+        match build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]) {
             Err(Full::Regions) => regions *= 2,
             Err(Full::Pieces) => pieces *= 2,
             done => return done,

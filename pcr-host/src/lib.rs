@@ -9,6 +9,7 @@
 //! locks      which edges of a layout exclude one another        Locks
 //! plan       delays without conflicts                           Plan
 //! traffic    random missions on a layout, and their plan             Traffic
+//! simulate   plans in closed loop, with noise and delays        run, Task
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
 //! import     layouts, orders and plans in the formats of others Format, Layout
@@ -31,4 +32,5 @@ pub mod progress;
 pub mod regions;
 pub mod report;
 pub mod scenario;
+pub mod simulate;
 pub mod traffic;

@@ -16,16 +16,16 @@
 //! ```
 
 mod axis;
-mod contour;
+pub(crate) mod contour;
 mod labels;
 mod locks;
 mod map;
 mod overview;
 mod page;
-mod palette;
+pub(crate) mod palette;
 mod raster;
 mod scene;
-mod svg;
+pub(crate) mod svg;
 mod workspace;
 
 use crate::fleet::{Fleet, build_ecm};

@@ -5,6 +5,7 @@ mod conflicts;
 mod locks;
 mod overview;
 mod plans;
+mod simulation;
 mod table;
 mod traffic;
 
@@ -12,6 +13,7 @@ pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use locks::{LOCKS_HEADER, locks_csv, locks_json, locks_table};
 pub use overview::overview;
 pub use plans::{PLAN_CSV_HEADER, plan_csv, plan_table};
+pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;
 pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 

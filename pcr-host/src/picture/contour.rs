@@ -10,8 +10,9 @@
 mod events;
 mod outline;
 
+pub(crate) use outline::Outline;
+pub(super) use outline::is_thin;
 use outline::{Column, correspond, outline, scaled};
-pub(super) use outline::{Outline, is_thin};
 use pcr_core::{Interval, Motion, RegionRef, excess};
 use std::f64::consts::PI;
 
@@ -28,7 +29,7 @@ const HALVINGS: u32 = 26;
 const MOST_COLUMNS: usize = 20_000;
 
 /// The outline of a region while the other agent is on its way; `pixel` is the size of a pixel \[s\], \[m\].
-pub(super) fn trace(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2]) -> Outline {
+pub(crate) fn trace(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2]) -> Outline {
     let other = region.other_motion();
     let radius = ego.radius() + other.radius() + 0.5 * excess(ego, other);
     let mut tracer = Tracer { region, pixel, columns: Vec::new() };

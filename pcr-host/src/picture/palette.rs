@@ -10,7 +10,7 @@ use std::fmt;
 
 /// A colour of the sRGB space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Colour(pub(super) [u8; 3]);
+pub(crate) struct Colour(pub(super) [u8; 3]);
 
 const FIRST: [Colour; 12] = [
     Colour([0x20, 0x78, 0xbf]),
@@ -37,7 +37,7 @@ const SHADES: [(f64, f64); 3] = [(0.45, 0.13), (0.62, 0.14), (0.71, 0.12)];
 const INK_LUMINANCE: f64 = 1.05 / 5.5 - 0.05;
 
 /// The colour of the agent at this place of a scenario.
-pub(super) fn colour(place: usize) -> Colour {
+pub(crate) fn colour(place: usize) -> Colour {
     FIRST.get(place).copied().unwrap_or_else(|| {
         let number = place - FIRST.len();
         let (lightness, chroma) = SHADES[number % SHADES.len()];

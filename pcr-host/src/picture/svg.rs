@@ -9,7 +9,7 @@ const DECIMALS: usize = 2;
 pub(super) const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// A text as XML writes it. Characters that XML 1.0 does not know become U+FFFD.
-pub(super) struct Escaped<'a>(pub(super) &'a str);
+pub(crate) struct Escaped<'a>(pub(crate) &'a str);
 
 impl Display for Escaped<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -10,4 +10,5 @@ mod margins;
 mod output;
 mod plan;
 mod refusals;
+mod simulate;
 mod streams;

@@ -5,7 +5,7 @@ use pcr_core::Interval;
 
 /// Closed outlines, region to the left: counter-clockwise about the region, clockwise about its holes.
 /// Points are (time \[s\], length \[m\]).
-pub(in super::super) type Outline = Vec<Vec<[f64; 2]>>;
+pub(crate) type Outline = Vec<Vec<[f64; 2]>>;
 
 /// The slice of a region at one time.
 #[derive(Clone, Debug)]

@@ -1,0 +1,81 @@
+//! Simulated runs as text.
+
+use super::columns::Columns;
+use super::{heading, quoted};
+use crate::simulate::{Run, Simulation};
+use std::io::{self, Write};
+
+/// A line a mission: numbers that read back exactly; no end where it was not done.
+///
+/// # Errors
+/// Those of the writer.
+pub fn simulation_csv(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
+    let name = quoted(&simulation.name);
+    writeln!(out, "name,controller,id,begin,end,unimpeded,waiting")?;
+    for run in &simulation.runs {
+        for mission in &run.missions {
+            let end = mission.end.map(|end| end.to_string()).unwrap_or_default();
+            let (controller, unimpeded, waiting) = (run.controller.name(), mission.unimpeded, mission.waiting);
+            writeln!(out, "{name},{controller},{},{},{end},{unimpeded},{waiting}", mission.id, mission.begin)?;
+        }
+    }
+    Ok(())
+}
+
+/// The runs for reading: a line a controller.
+///
+/// # Errors
+/// Those of the writer.
+pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
+    let Simulation { seed, noise, drift, slip, delay, replan, .. } = simulation;
+    let name = heading(&simulation.name);
+    writeln!(
+        out,
+        "{name}: seed {seed}, positions seen within {noise} m, paths kept within {drift} m, slip up to {slip},"
+    )?;
+    writeln!(
+        out,
+        "held up for up to {delay} s about every 10 s, a plan every {replan} s; times are means of a mission"
+    )?;
+    let mut columns = Columns::new(&[
+        "<controller",
+        "missions",
+        "not done",
+        "travel [s]",
+        "unimpeded [s]",
+        "waiting [s]",
+        "all done [s]",
+        "collisions",
+        "deepest [m]",
+        "clearance [m]",
+    ]);
+    for run in &simulation.runs {
+        let deepest = run.collisions.iter().map(|collision| collision.depth).reduce(f64::max);
+        let metres = |length: Option<f64>| length.map(|length| format!("{length:.3}")).unwrap_or_default();
+        columns.row(vec![
+            run.controller.name().to_owned(),
+            run.done.to_string(),
+            run.not_done.to_string(),
+            format!("{:.1}", run.travel),
+            format!("{:.1}", run.unimpeded),
+            format!("{:.1}", run.waiting),
+            format!("{:.1}", run.duration),
+            run.collisions.len().to_string(),
+            metres(deepest),
+            metres(run.clearance),
+        ]);
+    }
+    columns.write(out)?;
+    simulation.runs.iter().try_for_each(|run| planning(run, out))
+}
+
+fn planning(run: &Run, out: &mut impl Write) -> io::Result<()> {
+    let Some(planning) = run.planning else { return Ok(()) };
+    let (count, kept) = (planning.count, planning.kept);
+    let (mean, longest) = (planning.mean_ms, planning.longest_ms);
+    let name = run.controller.name();
+    writeln!(
+        out,
+        "{name}: planned {count} times ({kept} times the old orders stayed), {mean:.2} ms each, at most {longest:.2} ms"
+    )
+}

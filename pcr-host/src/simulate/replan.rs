@@ -1,0 +1,190 @@
+//! Plans for robots on the way: each goes on from where it is, at the speed it has, and waits at most once.
+//!
+//! Robots are planned one after the other in an order of priority, each against the motions of those before it and of
+//! what stands. A robot goes through if it can. Otherwise it stops, waits, and goes on from rest: as early as it can brake, or
+//! just before one of the regions on its way; [`earliest_start`] says how long it has to wait there. The place with the
+//! earliest arrival counts.
+
+use super::braking::to_rest;
+use super::course::{Course, Drive};
+use crate::fleet::{HostEcm, build_ecm_of};
+use pcr_core::{Encounter, Limits, Motion, earliest_start};
+
+/// What a robot keeps from a region before which it waits, along its path \[m\].
+const BEFORE: f64 = 1e-4;
+
+/// Orders of priority in which everybody comes first once are tried for so many robots.
+const FIRST: usize = 8;
+
+/// A robot as it is now.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    /// The rest of its path.
+    pub(super) rest: Course,
+    /// \[m/s\]
+    pub(super) speed: f64,
+    pub(super) limits: Limits<f64>,
+    /// With its margin \[m\].
+    pub(super) radius: f64,
+}
+
+/// A motion of every robot.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub(super) drives: Vec<Drive>,
+    /// The robots by priority.
+    pub(super) order: Vec<usize>,
+    /// Sum of the times until arrival \[s\].
+    pub(super) cost: f64,
+}
+
+/// What a plan is for.
+#[derive(Debug)]
+pub(super) struct Problem<'a> {
+    /// \[s\]
+    pub(super) now: f64,
+    pub(super) robots: &'a [State],
+    /// What stands for good, with its radius \[m\].
+    pub(super) obstacles: &'a [(Drive, f64)],
+}
+
+impl Problem<'_> {
+    /// Plans for several orders of priority, the best first; none where none was found.
+    pub(super) fn plans(&self, last_order: &[usize]) -> Vec<Plan> {
+        let alone = |robot: &State| self.through(robot).and_then(|drive| Some(drive.motion(1.0)?.time().length()));
+        let times: Vec<f64> = self.robots.iter().map(|robot| alone(robot).unwrap_or(0.0)).collect();
+        let least: f64 = times.iter().sum();
+        let mut plans: Vec<Plan> = Vec::new();
+        for order in self.orders(&times, last_order) {
+            plans.extend(self.plan(order));
+            if plans.last().is_some_and(|plan| plan.cost <= least * (1.0 + 1e-12)) {
+                break;
+            }
+        }
+        plans.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        plans
+    }
+
+    /// The order of the last plan, those who have least or most before them first, and the first few of them first once.
+    fn orders(&self, times: &[f64], last: &[usize]) -> Vec<Vec<usize>> {
+        let mut rising: Vec<usize> = (0..times.len()).collect();
+        rising.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
+        let falling: Vec<usize> = rising.iter().rev().copied().collect();
+        let mut orders = vec![last.to_vec(), rising.clone(), falling];
+        orders.extend(rising.iter().take(FIRST).map(|&robot| first(&rising, robot)));
+        let mut different: Vec<Vec<usize>> = Vec::new();
+        for order in orders {
+            if order.len() == times.len() && !different.contains(&order) {
+                different.push(order);
+            }
+        }
+        different
+    }
+
+    /// The plan for an order; a robot for which there is no motion is moved to the front, once each.
+    fn plan(&self, mut order: Vec<usize>) -> Option<Plan> {
+        for _ in 0..=order.len() {
+            match self.in_order(&order) {
+                Ok(drives) => {
+                    let end = |drive: &Drive| drive.motion(1.0).map_or(0.0, |motion| motion.time().hi);
+                    let cost = drives.iter().map(|drive| end(drive) - self.now).sum();
+                    return Some(Plan { drives, order, cost });
+                }
+                Err(robot) if order.first() == Some(&robot) => return None,
+                Err(robot) => order = first(&order, robot),
+            }
+        }
+        None
+    }
+
+    /// A motion for each robot, or the first robot for which there is none.
+    fn in_order(&self, order: &[usize]) -> Result<Vec<Drive>, usize> {
+        let mut drives: Vec<Option<Drive>> = vec![None; self.robots.len()];
+        for &place in order {
+            let robot = self.robots.get(place).ok_or(place)?;
+            let planned =
+                drives.iter().zip(self.robots).filter_map(|(drive, robot)| drive.as_ref()?.motion(robot.radius));
+            let standing = self.obstacles.iter().filter_map(|(drive, radius)| drive.motion(*radius));
+            let others: Vec<Motion<'_, f64>> = planned.chain(standing).collect();
+            let drive = self.best(robot, &others).ok_or(place)?;
+            drives[place] = Some(drive);
+        }
+        drives.into_iter().enumerate().map(|(place, drive)| drive.ok_or(place)).collect()
+    }
+
+    /// The motion without any wait.
+    fn through(&self, robot: &State) -> Option<Drive> {
+        let (length, speed) = (robot.rest.length(), speed_that_stops(robot));
+        if length <= 0.0 {
+            return Drive::standing(robot.rest.clone(), self.now);
+        }
+        Drive::new(robot.rest.clone(), speed, &to_rest(speed, length, robot.limits)?, self.now)
+    }
+
+    /// The motion that arrives first among those considered.
+    fn best(&self, robot: &State, others: &[Motion<'_, f64>]) -> Option<Drive> {
+        let through = self.through(robot)?;
+        let motion = through.motion(robot.radius)?;
+        if is_clear(&motion, others) {
+            return Some(through);
+        }
+        let brakes = speed_that_stops(robot).powi(2) / (2.0 * robot.limits.acceleration);
+        let (fleet, ecm) = row(motion, others)?;
+        let entries = ecm.row(&fleet, 0).map(|region| region.length().lo - BEFORE);
+        let mut stops: Vec<f64> = entries.filter(|&length| length > brakes).chain([brakes]).collect();
+        stops.sort_by(f64::total_cmp);
+        stops.dedup();
+        let drives = stops.into_iter().filter_map(|stop| self.with_stop(robot, stop, others));
+        let end = |drive: &Drive| drive.motion(1.0).map_or(f64::INFINITY, |motion| motion.time().hi);
+        drives.min_by(|a, b| end(a).total_cmp(&end(b)))
+    }
+
+    /// The motion that stops at a length \[m\] for as long as it has to.
+    fn with_stop(&self, robot: &State, stop: f64, others: &[Motion<'_, f64>]) -> Option<Drive> {
+        let length = robot.rest.length();
+        let speed = speed_that_stops(robot);
+        if stop >= length {
+            return None;
+        }
+        let mut pieces = to_rest(speed, stop, robot.limits)?;
+        let stops_at = self.now + pieces.iter().map(|(duration, _)| duration).sum::<f64>();
+        let onward = robot.rest.from(stop).ok()?;
+        let further = to_rest(0.0, onward.length(), robot.limits)?;
+        let onward = Drive::new(onward, 0.0, &further, stops_at)?;
+        let (fleet, ecm) = row(onward.motion(robot.radius)?, others)?;
+        let wait = earliest_start(ecm.row(&fleet, 0), 0.0)?;
+        pieces.push((wait, 0.0));
+        pieces.extend(further);
+        pieces.retain(|(duration, _)| *duration > 0.0);
+        let drive = Drive::new(robot.rest.clone(), speed, &pieces, self.now)?;
+        let clear = is_clear(&drive.motion(robot.radius)?, others);
+        clear.then_some(drive)
+    }
+}
+
+/// Its speed, as far as the rest of its path lets it stop.
+fn speed_that_stops(robot: &State) -> f64 {
+    /// Rounding must not make the way to stop longer than the rest of the path.
+    const LESS: f64 = 1.0 - 1e-12;
+    robot.speed.min((2.0 * robot.limits.acceleration * robot.rest.length()).sqrt() * LESS)
+}
+
+/// The order with this robot moved to its front.
+fn first(order: &[usize], robot: usize) -> Vec<usize> {
+    let others = order.iter().copied().filter(|&other| other != robot);
+    [robot].into_iter().chain(others).collect()
+}
+
+fn is_clear(motion: &Motion<'_, f64>, others: &[Motion<'_, f64>]) -> bool {
+    others.iter().all(|other| {
+        let encounter = Encounter::new(motion, other);
+        encounter.contacts(encounter.time()).next().is_none()
+    })
+}
+
+/// The regions of a motion with others, of which it is the first.
+fn row<'a>(motion: Motion<'a, f64>, others: &[Motion<'a, f64>]) -> Option<(Vec<Motion<'a, f64>>, HostEcm<f64>)> {
+    let fleet: Vec<Motion<'a, f64>> = [motion].into_iter().chain(others.iter().copied()).collect();
+    let ecm = build_ecm_of(&fleet, 0).ok()?;
+    Some((fleet, ecm))
+}

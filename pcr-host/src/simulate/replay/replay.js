@@ -1,0 +1,203 @@
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const $ = (id) => document.getElementById(id);
+const { robots, obstacles, frame, unit } = data;
+let run, frames, now = 0, playing = true, before = 0;
+
+function option(select, text, value) {
+  const option = document.createElement("option");
+  option.textContent = text;
+  option.value = value;
+  select.append(option);
+}
+data.runs.forEach((run, k) => option($("run"), run.controller, k));
+robots.forEach((robot, k) => option($("ego"), robot.id, k));
+
+const bounds = (() => {
+  const box = [Infinity, -Infinity, Infinity, -Infinity];
+  const grow = (x, y, r) => {
+    box[0] = Math.min(box[0], x - r); box[1] = Math.max(box[1], x + r);
+    box[2] = Math.min(box[2], y - r); box[3] = Math.max(box[3], y + r);
+  };
+  obstacles.forEach(([x, y, r]) => grow(x, y, r));
+  data.runs.forEach((run) => run.tracks.forEach((track, k) => {
+    for (let i = 0; i < track.length; i += 2) grow(track[i] * unit, track[i + 1] * unit, robots[k].radius);
+  }));
+  if (!(box[0] <= box[1])) return [-1, 1, -1, 1];
+  const pad = 0.04 * Math.max(box[1] - box[0], box[3] - box[2]);
+  return [box[0] - pad, box[1] + pad, box[2] - pad, box[3] + pad];
+})();
+
+function choose() {
+  run = data.runs[$("run").value];
+  frames = run ? Math.max(1, ...run.tracks.map((track) => track.length / 2)) - 1 : 0;
+  $("time").max = frames;
+  now = Math.min(now, frames);
+}
+
+/** A canvas in CSS pixels, sharp on any screen. */
+function surface(id) {
+  const canvas = $(id), ratio = window.devicePixelRatio || 1;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  if (canvas.width !== Math.round(width * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return [context, width, height];
+}
+
+/** Between two frames a robot moves uniformly. */
+function position(robot, at) {
+  const track = run.tracks[robot], last = track.length / 2 - 1;
+  const k = Math.min(Math.floor(at), last), next = Math.min(k + 1, last), part = Math.min(at - k, 1);
+  return [0, 1].map((axis) => unit * (track[2 * k + axis] * (1 - part) + track[2 * next + axis] * part));
+}
+
+function colliding(id, time) {
+  return run.collisions.some(([i, j, t]) => (i === id || j === id) && t[0] <= time && time <= t[1]);
+}
+
+function drawWorld() {
+  const [c, width, height] = surface("world");
+  const scale = Math.min(width / (bounds[1] - bounds[0]), height / (bounds[3] - bounds[2]));
+  const x = (value) => width / 2 + (value - (bounds[0] + bounds[1]) / 2) * scale;
+  const y = (value) => height / 2 - (value - (bounds[2] + bounds[3]) / 2) * scale;
+  const disc = (px, py, r) => { c.beginPath(); c.arc(x(px), y(py), r * scale, 0, 7); };
+  c.fillStyle = "#b9bec5";
+  obstacles.forEach(([px, py, r]) => { disc(px, py, r); c.fill(); });
+  for (const journey of run.journeys) {
+    if (journey.begin > now || (journey.end ?? Infinity) < now) continue;
+    c.strokeStyle = robots[journey.robot].colour;
+    c.lineWidth = 1.3;
+    c.beginPath();
+    for (let i = 0; i < journey.path.length; i += 2) c.lineTo(x(journey.path[i] * unit), y(journey.path[i + 1] * unit));
+    c.stroke();
+    c.setLineDash([4, 3]);
+    disc(journey.path.at(-2) * unit, journey.path.at(-1) * unit, robots[journey.robot].radius);
+    c.stroke();
+    c.setLineDash([]);
+  }
+  c.textAlign = "center";
+  c.textBaseline = "middle";
+  c.font = "bold 14px sans-serif";
+  robots.forEach((robot, k) => {
+    const [px, py] = position(k, now), hit = colliding(robot.id, now * frame);
+    disc(px, py, robot.radius);
+    c.fillStyle = hit ? "#d40000" : robot.colour;
+    c.globalAlpha = hit ? 0.8 : 0.5;
+    c.fill();
+    c.globalAlpha = 1;
+    c.lineWidth = k === Number($("ego").value) ? 3 : 1.5;
+    c.strokeStyle = hit ? "#d40000" : robot.colour;
+    c.stroke();
+    c.fillStyle = "#000";
+    c.fillText(robot.id, x(px), y(py));
+  });
+}
+
+/** Lines at round values. */
+function ticks(lo, hi) {
+  const raw = (hi - lo) / 6, power = 10 ** Math.floor(Math.log10(raw)), step = power * [1, 2, 5, 10].find((m) => m * power >= raw);
+  const values = [];
+  for (let k = Math.ceil(lo / step); k * step <= hi; k++) values.push(k * step);
+  return values;
+}
+
+function drawMap() {
+  const ego = Number($("ego").value), time = now * frame;
+  const plan = run.plans.findLast((plan) => plan.time <= time + 1e-9), map = plan && plan.maps[ego];
+  const [c, width, height] = surface("map");
+  if (!map || !(map.to > map.from)) {
+    $("caption").textContent = run.plans.length ? "This robot stands, without a path to plan." : "This controller makes no plans: there is no collision map.";
+    return;
+  }
+  const [left, top, right, bottom] = [52, 12, width - 12, height - 40];
+  const [t0, t1] = [plan.time, Math.max(plan.end, plan.time + 1)];
+  const pad = 0.03 * (map.to - map.from), [l0, l1] = [map.from - pad, map.to + pad];
+  const x = (t) => left + (t - t0) / (t1 - t0) * (right - left), y = (l) => bottom - (l - l0) / (l1 - l0) * (bottom - top);
+  c.font = "13px sans-serif";
+  c.fillStyle = "#1d2125";
+  c.strokeStyle = "#e1e4e8";
+  c.lineWidth = 1;
+  c.textAlign = "center";
+  for (const t of ticks(t0, t1)) { c.beginPath(); c.moveTo(x(t), top); c.lineTo(x(t), bottom); c.stroke(); c.fillText(+t.toFixed(3), x(t), bottom + 16); }
+  c.textAlign = "right";
+  for (const l of ticks(l0, l1)) { c.beginPath(); c.moveTo(left, y(l)); c.lineTo(right, y(l)); c.stroke(); c.fillText(+l.toFixed(3), left - 6, y(l) + 4); }
+  c.textAlign = "center";
+  c.fillText("time [s]", (left + right) / 2, bottom + 33);
+  c.save();
+  c.translate(12, (top + bottom) / 2);
+  c.rotate(-Math.PI / 2);
+  c.fillText("length along the path [m]", 0, 0);
+  c.restore();
+  c.save();
+  c.beginPath();
+  c.rect(left, top, right - left, bottom - top);
+  c.clip();
+  for (const region of map.regions) {
+    c.fillStyle = c.strokeStyle = robots[region.other].colour;
+    c.beginPath();
+    for (const contour of region.outline) { contour.forEach(([t, l], k) => (k ? c.lineTo(x(t), y(l)) : c.moveTo(x(t), y(l)))); c.closePath(); }
+    c.globalAlpha = 0.3;
+    c.fill("evenodd");
+    for (const [a, b, lo, hi] of region.strips) c.fillRect(x(a), y(hi), x(b) - x(a), y(lo) - y(hi));
+    c.globalAlpha = 1;
+    c.stroke();
+  }
+  c.strokeStyle = "#111";
+  c.lineWidth = 1.5;
+  c.setLineDash([6, 4]);
+  c.beginPath();
+  map.curve.forEach(([t, l]) => c.lineTo(x(t), y(l)));
+  c.stroke();
+  c.setLineDash([]);
+  c.lineWidth = 2.5;
+  c.beginPath();
+  const travelled = run.travelled[ego];
+  for (let k = Math.round(plan.time / frame); k <= now && k < travelled.length; k++) c.lineTo(x(k * frame), y(travelled[k] * unit));
+  c.stroke();
+  c.strokeStyle = "#0b57d0";
+  c.lineWidth = 1.3;
+  c.beginPath();
+  c.moveTo(x(time), top);
+  c.lineTo(x(time), bottom);
+  c.stroke();
+  c.restore();
+  $("caption").textContent = `What robot ${robots[ego].id} keeps out of, with margins, in the plan of ${plan.time.toFixed(2)} s. Dashed: the plan; solid: what it did.`;
+}
+
+function draw() {
+  if (!run) return;
+  $("time").value = now;
+  $("clock").textContent = `${(now * frame).toFixed(2)} s`;
+  const done = run.journeys.filter((journey) => (journey.end ?? Infinity) <= now).length;
+  const hits = run.collisions.filter(([, , t]) => t[0] <= now * frame).length;
+  $("summary").textContent = `${done} of ${run.journeys.length} missions done; collisions so far: ${hits}. Mean time of a mission in this run: ${run.travel.toFixed(1)} s.`;
+  drawWorld();
+  drawMap();
+}
+
+function tick(stamp) {
+  if (playing && before) {
+    now += (stamp - before) / 1000 / frame * Number($("pace").value);
+    if (now >= frames) { now = frames; playing = false; $("play").textContent = "Play"; }
+    draw();
+  }
+  before = stamp;
+  requestAnimationFrame(tick);
+}
+
+$("play").onclick = () => {
+  playing = !playing;
+  if (playing && now >= frames) now = 0;
+  $("play").textContent = playing ? "Pause" : "Play";
+};
+$("time").oninput = () => { now = Number($("time").value); draw(); };
+$("run").onchange = () => { choose(); draw(); };
+$("ego").onchange = draw;
+window.onresize = draw;
+// A link may say where to begin: #40 is 40 s.
+choose();
+if (location.hash) { now = Math.min(frames, Number(location.hash.slice(1)) / frame || 0); playing = false; $("play").textContent = "Play"; }
+draw();
+requestAnimationFrame(tick);

@@ -1,0 +1,64 @@
+//! What the reactive controllers have in common: a robot that heads for a target.
+
+use super::FRAME;
+use super::course::Course;
+use super::task::Task;
+use super::vector::{Vector, norm, scale, sub};
+use pcr_core::Limits;
+
+/// How far ahead of a robot its target is, in radii.
+const AHEAD: f64 = 2.0;
+
+/// How near its goal a robot has arrived, in radii.
+const ARRIVED: f64 = 0.5;
+
+/// A robot that steers by itself.
+#[derive(Clone, Debug)]
+pub(super) struct Steered {
+    pub(super) radius: f64,
+    pub(super) limits: Limits<f64>,
+    course: Option<Course>,
+    /// The target as a length of the course \[m\].
+    target: f64,
+}
+
+/// The robots of a task.
+pub(super) fn steered(task: &Task) -> Vec<Steered> {
+    let robot =
+        |robot: &super::task::Robot| Steered { radius: robot.radius, limits: robot.limits, course: None, target: 0.0 };
+    task.robots.iter().map(robot).collect()
+}
+
+/// How near its goal a robot of this task has arrived \[m\].
+pub(super) fn reach(task: &Task) -> f64 {
+    ARRIVED * task.robots.iter().map(|robot| robot.radius).fold(f64::INFINITY, f64::min)
+}
+
+impl Steered {
+    pub(super) fn assign(&mut self, course: &Course) {
+        self.course = Some(course.clone());
+        self.target = 0.0;
+    }
+
+    /// The velocity towards the goal from where the robot was seen, slower near it \[m/s\].
+    pub(super) fn towards_goal(&mut self, seen: Vector) -> Vector {
+        self.target = self.course.as_ref().map_or(0.0, Course::length);
+        self.along_path(seen)
+    }
+
+    /// The velocity towards a point of the path a little ahead from where the robot was seen, slower near the goal \[m/s\].
+    pub(super) fn along_path(&mut self, seen: Vector) -> Vector {
+        let Some(course) = &self.course else { return [0.0; 2] };
+        let (end, ahead) = (course.length(), AHEAD * self.radius);
+        let step = self.limits.speed * FRAME;
+        while self.target < end && norm(sub(course.point_at(self.target), seen)) < ahead {
+            self.target = (self.target + step).min(end);
+        }
+        let way = sub(course.point_at(self.target), seen);
+        let distance = norm(way);
+        // As fast as it can stop at the goal.
+        let stops = (2.0 * self.limits.acceleration * distance).sqrt();
+        let speed = if self.target < end { self.limits.speed } else { self.limits.speed.min(stops) };
+        if distance > 0.0 { scale(way, speed / distance) } else { [0.0; 2] }
+    }
+}

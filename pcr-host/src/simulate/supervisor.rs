@@ -1,0 +1,285 @@
+//! The supervisor: sees the robots at every frame, plans every few seconds, and keeps the passing orders in between.
+//!
+//! ```text
+//! camera ──> observer: where each robot can be ──┬──> guard: how far it may go ──┐
+//!                                                └──> replan: how it should go ──┴──> speed of each robot
+//! ```
+//!
+//! Plans keep a margin for what the camera and the robots may be off ([`Errors`]). A robot that is late is no danger:
+//! the guard holds those that pass after it. Where no new plan is found the old orders stay.
+
+use super::braking::{speed_within, stopping_length};
+use super::course::{Course, Drive};
+use super::guard::Guard;
+use super::observer::narrowed;
+use super::replan::{Plan, Problem, State};
+use super::task::{Robot, Task};
+use super::{Command, Control, FRAME, Frame, Snapshot};
+use crate::regions::Failure;
+use pcr_core::{Interval, Limits, Point, Pose, Radians};
+use std::time::Instant;
+
+/// What is known of the errors of camera and robots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Errors {
+    /// Of an observed position \[m\].
+    pub(super) noise: f64,
+    /// Of a robot from its path \[m\].
+    pub(super) drift: f64,
+}
+
+/// How fast a robot that is ahead of its plan falls back to it \[1/s\].
+const FALLING_BACK: f64 = 2.0;
+
+/// One robot as the supervisor knows it.
+#[derive(Debug)]
+struct Agent {
+    limits: Limits<f64>,
+    /// Radius, with the margins for passing orders and for plans \[m\].
+    radius: f64,
+    margins: [f64; 2],
+    /// The path that it is on, and where on it.
+    course: Course,
+    at: Interval<f64>,
+    /// What it was told for the last frame \[m/s\].
+    speed: f64,
+    /// A mission that no plan takes up yet.
+    next: Option<Course>,
+}
+
+impl Agent {
+    /// `None` for a robot without missions.
+    fn new(robot: &Robot, errors: Errors) -> Option<Self> {
+        let course = robot.missions.first()?.course.beginning();
+        let limits = robot.limits;
+        // A robot goes straight during a frame, not along the arc.
+        let way = limits.speed * FRAME;
+        let least = robot.missions.iter().map(|mission| mission.course.least_radius()).fold(f64::INFINITY, f64::min);
+        let off = errors.drift + way * way / (8.0 * least);
+        Some(Self {
+            limits,
+            radius: robot.radius,
+            margins: [robot.margin + off, robot.margin + off + errors.drift + errors.noise],
+            course,
+            at: Interval::new(0.0, 0.0),
+            speed: 0.0,
+            next: None,
+        })
+    }
+
+    /// The path that a plan is for, and where the robot is on it.
+    fn to_plan(&self) -> (&Course, Interval<f64>, f64) {
+        match &self.next {
+            Some(next) => (next, Interval::new(0.0, 0.0), 0.0),
+            None => (&self.course, self.at, self.speed),
+        }
+    }
+}
+
+/// The controller that plans with collision regions.
+#[derive(Debug)]
+pub(super) struct Supervisor {
+    agents: Vec<Agent>,
+    obstacles: Vec<(Drive, f64)>,
+    errors: Errors,
+    guard: Guard,
+    plan: Option<Current>,
+    period: f64,
+    next_plan: f64,
+    statistics: Statistics,
+    snapshots: Vec<Snapshot>,
+}
+
+/// A plan, and how long each robot's course was before it began.
+#[derive(Debug)]
+struct Current {
+    plan: Plan,
+    offsets: Vec<f64>,
+}
+
+/// What planning took.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Statistics {
+    /// Time of each planning \[s\].
+    pub(super) times: Vec<f64>,
+    /// How often no plan was found.
+    pub(super) kept: usize,
+    /// How often a robot could not brake in time; it never should.
+    pub(super) breaches: usize,
+}
+
+impl Current {
+    fn length_at(&self, agent: usize, time: f64) -> f64 {
+        let drive = self.plan.drives.get(agent).and_then(|drive| drive.motion(1.0));
+        self.offset(agent) + drive.map_or(0.0, |motion| motion.length_at(time))
+    }
+
+    fn speed_at(&self, agent: usize, time: f64) -> f64 {
+        self.plan.drives.get(agent).and_then(|drive| drive.motion(1.0)).map_or(0.0, |motion| motion.speed_at(time))
+    }
+
+    fn reached(&self, agent: usize, length: f64) -> f64 {
+        let motion = self.plan.drives.get(agent).and_then(|drive| drive.motion(1.0));
+        motion.map_or(0.0, |motion| {
+            motion.time().lo + motion.profile().first_time_at((length - self.offset(agent)).max(0.0))
+        })
+    }
+
+    fn offset(&self, agent: usize) -> f64 {
+        self.offsets.get(agent).copied().unwrap_or(0.0)
+    }
+}
+
+impl Supervisor {
+    pub(super) fn new(task: &Task, errors: Errors, period: f64) -> Result<Self, Failure> {
+        let agents = task.robots.iter().filter_map(|robot| Agent::new(robot, errors)).collect::<Vec<_>>();
+        let standing = |centre: [f64; 2]| {
+            let position = Point::new(centre[0], centre[1]);
+            let course = Course::standing(Pose { position, heading: Radians(0.0) }).ok()?;
+            Drive::standing(course, 0.0)
+        };
+        let obstacles = task.obstacles.iter();
+        let obstacles = obstacles.filter_map(|obstacle| Some((standing(obstacle.centre)?, obstacle.radius))).collect();
+        let guard = guard(&agents)?;
+        let (statistics, snapshots) = (Statistics::default(), Vec::new());
+        Ok(Self { agents, obstacles, errors, guard, plan: None, period, next_plan: 0.0, statistics, snapshots })
+    }
+
+    pub(super) fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// Narrows down where the robots are.
+    fn observe(&mut self, frame: &Frame<'_>) {
+        let error = self.errors.noise + self.errors.drift;
+        for ((agent, &seen), &speed) in self.agents.iter_mut().zip(frame.seen).zip(frame.speeds) {
+            // A robot tells what its wheels do: at its end less than it was told.
+            agent.speed = speed;
+            agent.at = narrowed(agent.at, speed * FRAME, seen, error, &agent.course);
+        }
+    }
+
+    /// Looks for a better plan, and keeps the old one where there is none.
+    fn replan(&mut self, now: f64) {
+        let begin = Instant::now();
+        let last: Vec<usize> = match &self.plan {
+            Some(current) => current.plan.order.clone(),
+            None => (0..self.agents.len()).collect(),
+        };
+        // With the margins of a plan, or if robots are too near each other for that, with those of passing orders.
+        let found = [1, 0].into_iter().find_map(|margin| {
+            let robots = self.agents.iter().map(|agent| agent.state(margin)).collect::<Option<Vec<State>>>()?;
+            let problem = Problem { now, robots: &robots, obstacles: &self.obstacles };
+            problem
+                .plans(&last)
+                .into_iter()
+                .find_map(|plan| self.accepted(plan).map(|accepted| (accepted, robots.clone())))
+        });
+        self.statistics.times.push(begin.elapsed().as_secs_f64());
+        let Some(((current, guard), robots)) = found else {
+            self.statistics.kept += 1;
+            return;
+        };
+        for agent in &mut self.agents {
+            if let Some(next) = agent.next.take() {
+                agent.course = next;
+                agent.at = Interval::new(0.0, 0.0);
+                agent.speed = 0.0;
+            }
+        }
+        self.guard = guard;
+        self.snapshots.push(Snapshot {
+            time: now,
+            drives: current.plan.drives.clone(),
+            offsets: current.offsets.clone(),
+            radii: robots.iter().map(|robot| robot.radius).collect(),
+        });
+        self.plan = Some(current);
+    }
+
+    /// The plan with its passing orders, if every robot can still keep them.
+    fn accepted(&self, plan: Plan) -> Option<(Current, Guard)> {
+        let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.to_plan().1).collect();
+        let offsets = places.iter().map(|at| at.middle()).collect();
+        let current = Current { plan, offsets };
+        let courses: Vec<Course> = self.agents.iter().map(|agent| agent.to_plan().0.clone()).collect();
+        let radii: Vec<f64> = self.agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
+        let mut guard = Guard::new(&courses, &radii).ok()?;
+        guard.take_orders(
+            &places,
+            |agent, length| current.reached(agent, length),
+            |agent, time| current.length_at(agent, time),
+        );
+        let holds = guard.holds(&places);
+        let can_stop = self.agents.iter().zip(holds).all(|(agent, hold)| {
+            let (_, at, speed) = agent.to_plan();
+            let slower = (speed - agent.limits.acceleration * FRAME).max(0.0);
+            at.hi + stopping_length(slower, agent.limits.acceleration, FRAME) <= hold
+        });
+        can_stop.then_some((current, guard))
+    }
+
+    /// The speed of a robot for the next frame.
+    fn speed(&mut self, place: usize, time: f64, hold: f64) -> f64 {
+        let (Some(agent), Some(current)) = (self.agents.get(place), &self.plan) else { return 0.0 };
+        if agent.next.is_some() {
+            return 0.0;
+        }
+        let Limits { speed: top, acceleration } = agent.limits;
+        let change = acceleration * FRAME;
+        let late = current.length_at(place, time + FRAME) - agent.at.middle();
+        let catching_up = if late > 0.0 { speed_within(late, acceleration, FRAME) } else { late * FALLING_BACK };
+        let wanted = (current.speed_at(place, time + FRAME) + catching_up).clamp(0.0, top);
+        let slower = (agent.speed - change).max(0.0);
+        let possible = wanted.clamp(slower, agent.speed + change);
+        let allowed = if hold.is_finite() { speed_within(hold - agent.at.hi, acceleration, FRAME) } else { top };
+        if allowed < slower - 1e-9 {
+            self.statistics.breaches += 1;
+        }
+        possible.min(allowed).max(slower)
+    }
+}
+
+impl Agent {
+    /// As a plan takes it, with one of its margins.
+    fn state(&self, margin: usize) -> Option<State> {
+        let (course, at, speed) = self.to_plan();
+        let radius = self.radius + self.margins.get(margin)?;
+        Some(State { rest: course.from(at.middle()).ok()?, speed, limits: self.limits, radius })
+    }
+}
+
+fn guard(agents: &[Agent]) -> Result<Guard, Failure> {
+    let courses: Vec<Course> = agents.iter().map(|agent| agent.course.clone()).collect();
+    let radii: Vec<f64> = agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
+    Guard::new(&courses, &radii).map_err(Failure::Full)
+}
+
+impl Control for Supervisor {
+    fn assign(&mut self, robot: usize, course: &Course) {
+        if let Some(agent) = self.agents.get_mut(robot) {
+            agent.at = Interval::new(agent.course.length(), agent.course.length());
+            agent.next = Some(course.clone());
+        }
+        self.next_plan = f64::NEG_INFINITY;
+    }
+
+    fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command> {
+        self.observe(frame);
+        if frame.time >= self.next_plan {
+            self.replan(frame.time);
+            self.next_plan = frame.time + self.period;
+        }
+        let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.at).collect();
+        let holds = self.guard.holds(&places);
+        holds.iter().enumerate().map(|(place, &hold)| Command::Along(self.speed(place, frame.time, hold))).collect()
+    }
+
+    fn take_snapshots(&mut self) -> Vec<Snapshot> {
+        std::mem::take(&mut self.snapshots)
+    }
+
+    fn planning(&self) -> Option<&Statistics> {
+        Some(self.statistics())
+    }
+}

@@ -1,0 +1,87 @@
+//! The true world, frame by frame: robots, their missions, and a record of everything.
+
+use super::body::Body;
+use super::course::Course;
+use super::outcome::{Journey, Trace};
+use super::task::{Robot, Task};
+use super::vector::Vector;
+use super::{Control, FRAME, Frame, Settings, unimpeded};
+
+/// A robot with its missions.
+struct Agent<'a> {
+    robot: &'a Robot,
+    body: Body,
+    /// The mission that it is on, or the last one.
+    course: Option<&'a Course>,
+    /// Missions begun.
+    begun: usize,
+    travels: bool,
+}
+
+pub(super) struct World<'a> {
+    agents: Vec<Agent<'a>>,
+    pub(super) trace: Trace,
+}
+
+impl<'a> World<'a> {
+    pub(super) fn new(task: &'a Task, settings: Settings) -> Self {
+        let agent = |(place, robot): (usize, &'a Robot)| {
+            let body = Body::new(robot, place, settings.seed, settings.disturbance);
+            Agent { robot, body, course: None, begun: 0, travels: false }
+        };
+        let agents: Vec<Agent<'a>> = task.robots.iter().enumerate().map(agent).collect();
+        let positions = agents.iter().map(|agent| vec![agent.body.position()]).collect();
+        let travelled = vec![vec![0.0]; agents.len()];
+        Self { agents, trace: Trace { positions, travelled, journeys: Vec::new() } }
+    }
+
+    /// Ends and begins missions at a frame.
+    pub(super) fn missions(&mut self, frame: usize, control: &mut dyn Control) {
+        let time = frame as f64 * FRAME;
+        for (place, agent) in self.agents.iter_mut().enumerate() {
+            let Some(end) = agent.course.filter(|_| agent.travels) else { continue };
+            if agent.body.has_arrived(end, control.reach()) {
+                agent.travels = false;
+                let of = |journey: &&mut Journey| journey.robot == place && journey.end.is_none();
+                if let Some(journey) = self.trace.journeys.iter_mut().find(of) {
+                    journey.end = Some(frame);
+                }
+            }
+        }
+        for (place, agent) in self.agents.iter_mut().enumerate().filter(|(_, agent)| !agent.travels) {
+            let Some(next) = agent.robot.missions.get(agent.begun).filter(|next| next.release <= time) else {
+                continue;
+            };
+            agent.body.begin();
+            agent.course = Some(&next.course);
+            (agent.travels, agent.begun) = (true, agent.begun + 1);
+            control.assign(place, &next.course);
+            self.trace.journeys.push(Journey {
+                robot: place,
+                begin: frame,
+                end: None,
+                goal: next.course.point_at(next.course.length()),
+                unimpeded: unimpeded(&next.course, agent.robot.limits),
+            });
+        }
+    }
+
+    /// Whether all missions are done.
+    pub(super) fn is_done(&self) -> bool {
+        self.agents.iter().all(|agent| !agent.travels && agent.begun == agent.robot.missions.len())
+    }
+
+    /// From a frame to the next one.
+    pub(super) fn step(&mut self, frame: usize, control: &mut dyn Control) {
+        let time = frame as f64 * FRAME;
+        let seen: Vec<Vector> = self.agents.iter_mut().map(|agent| agent.body.observed()).collect();
+        let speeds: Vec<f64> = self.agents.iter().map(|agent| agent.body.speed()).collect();
+        let commands = control.commands(&Frame { time, seen: &seen, speeds: &speeds });
+        let tracks = self.trace.positions.iter_mut().zip(&mut self.trace.travelled);
+        for ((agent, command), (track, travelled)) in self.agents.iter_mut().zip(commands).zip(tracks) {
+            agent.body.step(time, command, agent.course);
+            track.push(agent.body.position());
+            travelled.push(agent.body.travelled());
+        }
+    }
+}

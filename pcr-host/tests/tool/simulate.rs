@@ -1,0 +1,72 @@
+//! `pcr simulate`: outputs, the page, refusals.
+
+use crate::fixture::{crossing, directory, file, run};
+use serde_json::json;
+
+#[test]
+fn a_crossing_is_simulated_under_every_controller() {
+    let name = file("simulate", "crossing.json", crossing().to_string());
+    let page = directory("simulate").join("replay.html");
+    let arguments = ["simulate", &name, "--seed", "5", "--format", "json", "-o", page.to_str().unwrap()];
+    let result = run(&arguments);
+    assert_eq!((result.status, result.err.as_str()), (0, ""));
+    let simulation = result.json();
+    assert_eq!((&simulation["name"], &simulation["seed"]), (&json!("crossing"), &json!(5)));
+    let runs = simulation["runs"].as_array().unwrap();
+    let controllers: Vec<&str> = runs.iter().filter_map(|run| run["controller"].as_str()).collect();
+    assert_eq!(controllers, ["pcr", "potential", "orca"]);
+    let pcr = &runs[0];
+    assert_eq!((&pcr["done"], &pcr["not_done"], &pcr["collisions"]), (&json!(2), &json!(0), &json!([])));
+
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("default-src 'none'"));
+    for request in ["src=", "href=", "@import", "url(", "fetch(", "import(", "http:", "https:"] {
+        assert!(!page.contains(request), "{request}");
+    }
+    let (_, data) = page.split_once(r#"<script type="application/json" id="data">"#).unwrap();
+    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let track = data["runs"][0]["tracks"][0].as_array().unwrap();
+    assert_eq!(track[..2], [json!(-20000), json!(0)]);
+    assert!(data["runs"][0]["plans"][0]["maps"][0]["regions"][0]["outline"][0].as_array().unwrap().len() > 10);
+}
+
+#[test]
+fn one_controller_as_table_and_as_csv() {
+    let name = file("simulate", "one.json", crossing().to_string());
+    let table = run(&["simulate", &name, "--controller", "pcr"]).ok();
+    assert!(table.starts_with("crossing: seed 1,") && table.contains("\n  pcr ") && !table.contains("orca"), "{table}");
+    let csv = run(&["simulate", &name, "--controller", "orca", "--format", "csv"]).ok();
+    assert!(csv.starts_with("name,controller,id,begin,end,unimpeded,waiting\ncrossing,orca,1,0,"), "{csv}");
+    assert_eq!(csv.lines().count(), 3);
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    for (option, value, allowed) in [
+        ("--noise", "-0.1", "0 to 10"),
+        ("--noise", "nan", "0 to 10"),
+        ("--replan", "0", "0.05 to 3600"),
+        ("--slip", "0.91", "0 to 0.9"),
+        ("--delay", "inf", "0 to 3600"),
+        ("--drift", "11", "0 to 10"),
+    ] {
+        let refused = run(&["simulate", &format!("{option}={value}")]);
+        assert_eq!((refused.status, refused.out.as_str()), (2, ""));
+        let expected = format!("error: invalid value '{value}' for '{option} ");
+        assert!(refused.err.starts_with(&expected), "{}", refused.err);
+        assert!(refused.err.contains(&format!(": allowed is {allowed}\n")), "{}", refused.err);
+    }
+    for (option, value) in [("--trips", "0"), ("--noise", "much"), ("--seed", "-1"), ("--controller", "none")] {
+        let refused = run(&["simulate", &format!("{option}={value}")]);
+        assert!(refused.status == 2 && refused.err.contains(option), "{}", refused.err);
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_scenario_is_said_as_elsewhere() {
+    let mut scenario = crossing();
+    scenario["agents"][1]["radius"] = json!(-1);
+    let name = file("simulate", "wrong.json", scenario.to_string());
+    let expected = format!("pcr: {name}:1: agent 2, radius: -1 is out of range; allowed is above 0, up to 1e10\n");
+    assert_eq!(run(&["simulate", &name]).failed(2), expected);
+}

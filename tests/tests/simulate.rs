@@ -1,0 +1,240 @@
+//! Simulated runs: no collision under the supervisor, by an oracle on the true positions; the figures of a run follow from
+//! its record; the same seed gives the same run.
+
+use pcr_host::scenario::Scenario;
+use pcr_host::simulate::{
+    Controller, Disturbance, FRAME, Outcome, Run, Settings, Simulation, Task, Trace, forage, run,
+};
+use std::f64::consts::{PI, TAU};
+
+const SEEDS: u64 = if cfg!(debug_assertions) { 3 } else { 100 };
+
+/// Overlaps up to this depth \[m\] are rounding.
+const ROUNDING: f64 = 1e-9;
+
+const USUAL: Disturbance = Disturbance { noise: 0.015, slip: 0.05, delay: 1.0, drift: 0.005 };
+
+fn settings(seed: u64, disturbance: Disturbance) -> Settings {
+    Settings { seed, replan: 2.0, disturbance }
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Whether two discs that move uniformly for a frame come nearer than `reach`: the time is halved until the way that they
+/// travel decides.
+fn meet(a: [[f64; 2]; 2], b: [[f64; 2]; 2], reach: f64) -> bool {
+    let middle = |way: [[f64; 2]; 2]| [0, 1].map(|axis| 0.5 * (way[0][axis] + way[1][axis]));
+    let apart = distance(middle(a), middle(b));
+    if apart < reach {
+        return true;
+    }
+    let half = 0.5 * (distance(a[0], a[1]) + distance(b[0], b[1]));
+    if apart - half >= reach || half < 1e-12 {
+        return false;
+    }
+    [0, 1].iter().any(|&end| meet([a[end], middle(a)], [b[end], middle(b)], reach))
+}
+
+/// Frames in which two tracks overlap by more than a depth.
+fn overlaps(a: &[[f64; 2]], b: &[[f64; 2]], radius: f64, depth: f64) -> Vec<usize> {
+    let ways = a.windows(2).zip(b.windows(2)).enumerate();
+    let meets = |(a, b): (&[[f64; 2]], &[[f64; 2]])| meet([a[0], a[1]], [b[0], b[1]], radius - depth);
+    ways.filter(|(_, ways)| meets(*ways)).map(|(frame, _)| frame).collect()
+}
+
+/// Every pair with a robot: numbers, tracks and the sum of the radii.
+type Track = Vec<[f64; 2]>;
+fn pairs(task: &Task, trace: &Trace) -> Vec<([Option<u64>; 2], [Track; 2], f64)> {
+    let robots: Vec<_> = task.robots.iter().zip(&trace.positions).collect();
+    let mut pairs = Vec::new();
+    for (place, (robot, track)) in robots.iter().enumerate() {
+        for (other, second) in robots.iter().skip(place + 1) {
+            let tracks = [track.to_vec(), second.to_vec()];
+            pairs.push(([Some(robot.id), Some(other.id)], tracks, robot.radius + other.radius));
+        }
+        for obstacle in &task.obstacles {
+            let stands = vec![obstacle.centre; track.len()];
+            pairs.push(([Some(robot.id), obstacle.id], [track.to_vec(), stands], robot.radius + obstacle.radius));
+        }
+    }
+    pairs
+}
+
+/// No disc meets another one, everything is done, and the run says so.
+#[track_caller]
+fn assert_safe(task: &Task, outcome: &Outcome, case: &str) {
+    for (ids, [a, b], radius) in pairs(task, &outcome.trace) {
+        assert_eq!(overlaps(&a, &b, radius, ROUNDING), [0_usize; 0], "{case}: {ids:?}");
+    }
+    let Run { done, not_done, collisions, planning, .. } = &outcome.run;
+    let missions: usize = task.robots.iter().map(|robot| robot.missions.len()).sum();
+    assert_eq!((*done, *not_done, collisions.len()), (missions, 0, 0), "{case}");
+    assert_eq!(planning.expect("a supervisor plans").breaches, 0, "{case}");
+}
+
+#[test]
+fn foraging_robots_do_not_collide_under_the_supervisor() {
+    for seed in 0..SEEDS {
+        let task = forage::task(seed, 2);
+        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        assert_safe(&task, &outcome, &format!("seed {seed}"));
+    }
+}
+
+#[test]
+fn late_and_lost_robots_do_not_collide_under_the_supervisor() {
+    for seed in 0..SEEDS {
+        // Up to twice the noise of the paper, robots that lose up to half of their way and are held up for up to 6 s.
+        let part = (seed % 7) as f64 / 6.0;
+        let disturbance = Disturbance { noise: 0.03 * (1.0 - part), slip: 0.5 * part, delay: 6.0, drift: 0.01 };
+        let task = forage::task(seed, 1);
+        let settings = Settings { seed, replan: 0.5 + 4.0 * part, disturbance };
+        let outcome = run(&task, Controller::Pcr, settings).expect("a run");
+        assert_safe(&task, &outcome, &format!("seed {seed}"));
+    }
+}
+
+/// Robots around a circle whose paths all lead over its middle, on lines or arcs, to between those on the other side.
+fn star(seed: u64) -> Scenario {
+    let robots = 3 + 2 * (seed as usize % 2);
+    let agents: Vec<String> = (0..robots)
+        .map(|k| {
+            let from = TAU * k as f64 / robots as f64;
+            let (x, y) = (1.5 * from.cos(), 1.5 * from.sin());
+            let speed = 0.3 + 0.05 * ((seed + k as u64) % 5) as f64;
+            // An arc of 3 m whose chord leads through the middle.
+            let sweep = if (seed / 2 + k as u64).is_multiple_of(2) { 0.3 } else { -0.3 };
+            let heading = from + PI - sweep / 2.0;
+            format!(
+                r#"{{ "id": {k}, "radius": 0.1, "v_max": {speed}, "a_max": 0.3, "t_start": {},
+                     "start": {{ "x": {x}, "y": {y}, "heading": {heading} }},
+                     "path": [ {{ "kind": "arc", "radius": {}, "sweep": {sweep} }} ] }}"#,
+                0.7 * ((seed * 3 + k as u64) % 4) as f64,
+                3.0 / sweep.abs(),
+            )
+        })
+        .collect();
+    Scenario::from_json(&format!(r#"{{ "agents": [{}] }}"#, agents.join(","))).expect("a scenario")
+}
+
+#[test]
+fn robots_that_all_want_to_the_middle_get_past_one_another() {
+    for seed in 0..SEEDS {
+        let task = Task::of(&star(seed)).expect("a task");
+        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        assert_safe(&task, &outcome, &format!("seed {seed}"));
+    }
+}
+
+#[test]
+fn nothing_is_lost_without_disturbances_and_without_others() {
+    let nothing = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
+    let mut task = forage::task(5, 1);
+    task.robots.truncate(1);
+    let outcome = run(&task, Controller::Pcr, settings(5, nothing)).expect("a run");
+    assert_safe(&task, &outcome, "alone");
+    // A few frames: commands are a frame late, and speeds change from frame to frame.
+    assert!(outcome.run.travel - outcome.run.unimpeded < 10.0 * FRAME, "{:?}", outcome.run);
+}
+
+#[test]
+fn the_figures_follow_from_the_record() {
+    for controller in Controller::ALL {
+        let task = forage::task(2, 1);
+        let outcome = run(&task, controller, settings(2, USUAL)).expect("a run");
+        let Outcome { run, trace, .. } = &outcome;
+        let frames = trace.positions[0].len();
+        assert_eq!(run.missions.len(), trace.journeys.len());
+        let (mut travel, mut waiting) = (0.0, 0.0);
+        for (mission, journey) in run.missions.iter().zip(&trace.journeys) {
+            let robot = &task.robots[journey.robot];
+            let track = &trace.positions[journey.robot];
+            let end = journey.end.expect("it arrives");
+            assert!(distance(track[end], journey.goal) < robot.radius, "{controller:?}");
+            assert_eq!((mission.id, mission.begin), (robot.id, journey.begin as f64 * FRAME));
+            travel += (end - journey.begin) as f64 * FRAME;
+            let slow = |k: &usize| distance(track[*k], track[k + 1]) / FRAME < 0.1 * robot.limits.speed;
+            waiting += (journey.begin..end).filter(slow).count() as f64 * FRAME;
+            // A mission takes no less than the fastest motion on the straight line.
+            let straight = distance(track[journey.begin], track[end]) / robot.limits.speed;
+            assert!((end - journey.begin) as f64 * FRAME > straight - 2.0 * FRAME, "{controller:?}");
+        }
+        let missions = run.missions.len() as f64;
+        assert!((run.travel - travel / missions).abs() < 1e-9 && (run.waiting - waiting / missions).abs() < 1e-9);
+        assert!((run.duration - (frames - 1) as f64 * FRAME).abs() < 1e-9);
+        // No robot jumps: its speed, and a tenth of the drift a frame.
+        for (robot, track) in task.robots.iter().zip(&trace.positions) {
+            let most = robot.limits.speed * FRAME + 0.1 * USUAL.drift + 1e-3 + 1e-12;
+            assert!(track.windows(2).all(|pair| distance(pair[0], pair[1]) <= most), "{controller:?}");
+        }
+        // The least clearance: met when the discs are larger by a little more than it, not by a little less.
+        let least = run.clearance.expect("there are several robots");
+        let met = |grown: f64| {
+            pairs(&task, trace).iter().any(|(_, [a, b], radius)| !overlaps(a, b, radius + grown, 0.0).is_empty())
+        };
+        assert!(met(least + 1e-9) && !met(least - 1e-9), "{controller:?}");
+    }
+}
+
+/// Two robots head-on, on one line.
+fn head_on() -> Task {
+    let agent = |id: u64, x: f64, heading: f64| {
+        format!(
+            r#"{{ "id": {id}, "radius": 0.2, "v_max": 0.5, "a_max": 1.0, "start": {{ "x": {x}, "y": 0, "heading": {heading} }},
+                 "path": [ {{ "kind": "line", "length": 4.0 }} ] }}"#
+        )
+    };
+    let text = format!(r#"{{ "agents": [{}, {}] }}"#, agent(4, -2.0, 0.0), agent(9, 2.0, PI));
+    Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task")
+}
+
+#[test]
+fn collisions_are_found_and_reported() {
+    // A camera that errs by more than the robots are large.
+    let disturbance = Disturbance { noise: 0.6, ..USUAL };
+    let task = head_on();
+    let mut found = 0;
+    for seed in 0..4 {
+        let outcome = run(&task, Controller::Potential, settings(seed, disturbance)).expect("a run");
+        let [a, b] = [0, 1].map(|robot| &outcome.trace.positions[robot][..]);
+        let frames = overlaps(a, b, 0.4, ROUNDING);
+        let reported = outcome.run.collisions.iter().flat_map(|collision| {
+            assert_eq!((collision.i, collision.j), (4, Some(9)));
+            assert!(!overlaps(a, b, 0.4, collision.depth - 1e-9).is_empty());
+            assert!(overlaps(a, b, 0.4, collision.depth + 1e-9).len() < frames.len());
+            let [begin, end] = collision.t.map(|time| (time / FRAME).round() as usize);
+            begin..end
+        });
+        assert_eq!(frames, reported.collect::<Vec<_>>());
+        found += outcome.run.collisions.len();
+    }
+    assert!(found > 0);
+}
+
+#[test]
+fn who_cannot_get_past_stays_where_it_is() {
+    let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
+    assert_eq!((outcome.run.done, outcome.run.not_done, outcome.run.collisions.len()), (0, 2, 0));
+    assert!(outcome.trace.positions.iter().all(|track| track.iter().all(|&at| at == track[0])));
+    let simulation = Simulation::of(&head_on(), settings(1, USUAL), &[outcome]);
+    assert!(!simulation.is_as_promised());
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run() {
+    let once = |seed, controller| run(&forage::task(3, 1), controller, settings(seed, USUAL)).expect("a run");
+    for controller in Controller::ALL {
+        let (first, second, other) = (once(3, controller), once(3, controller), once(4, controller));
+        assert_eq!(first.trace, second.trace, "{controller:?}");
+        let without_times = |mut run: Run| {
+            if let Some(planning) = &mut run.planning {
+                (planning.mean_ms, planning.longest_ms) = (0.0, 0.0);
+            }
+            run
+        };
+        assert_eq!(without_times(first.run), without_times(second.run));
+        assert_ne!(first.trace, other.trace, "{controller:?}");
+    }
+}
