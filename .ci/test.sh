@@ -55,6 +55,19 @@ features() {
     done
     cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
   done
+  step "defmt::Format on all public types"
+  local source name missing=""
+  for source in pcr-core/src pcr-fixed/src; do
+    # Types whose attributes do not derive it, and that have no `impl` of it either.
+    for name in $(find $source -name '*.rs' -exec awk '/^#\[/ { attributes = attributes $0 } /^pub (struct|enum) / {
+        if (attributes !~ /defmt::Format/) { sub(/[<({;].*/, "", $3); print $3 } } !/^(#|    |\)|\/\/\/)/ { attributes = "" }' {} +); do
+      grep -rqE "defmt::Format for $name\b" $source || missing+=" $name"
+    done
+  done
+  if [ -n "$missing" ]; then
+    echo "without defmt::Format:$missing" >&2
+    return 1
+  fi
   step "what pcr-core depends on"
   local tree
   tree=$(cargo tree -p pcr-core --locked --all-features -e normal,build --prefix none)

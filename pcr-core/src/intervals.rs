@@ -30,6 +30,13 @@ pub struct Union<S, I> {
     after: Option<S>,
 }
 
+#[cfg(feature = "defmt")]
+impl<S: defmt::Format, I> defmt::Format for Union<S, I> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "disjoint intervals after {}", self.after);
+    }
+}
+
 impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I> {
     type Item = Interval<S>;
 
@@ -55,6 +62,13 @@ pub struct Gaps<S, I> {
     intervals: I,
     /// What has not been looked at yet.
     rest: Option<Interval<S>>,
+}
+
+#[cfg(feature = "defmt")]
+impl<S: defmt::Format, I> defmt::Format for Gaps<S, I> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "gaps in {}", self.rest);
+    }
 }
 
 impl<S: Scalar, I: Iterator<Item = Interval<S>>> Iterator for Gaps<S, I> {

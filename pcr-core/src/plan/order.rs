@@ -66,9 +66,12 @@ pub(super) fn in_order(
                 let (Some(to), Some(left)) = (to, moves.checked_sub(1)) else {
                     return Err(Unsolved::Priorities([agent, by]));
                 };
-                if let Some(moved) = order.get_mut(to..=place) {
-                    moved.rotate_right(1);
-                }
+                let mut moved = agent;
+                order
+                    .iter_mut()
+                    .take(place.wrapping_add(1))
+                    .skip(to)
+                    .for_each(|place| core::mem::swap(place, &mut moved));
                 (place, moves) = (to, left);
             }
         }

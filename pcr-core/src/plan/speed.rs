@@ -34,6 +34,13 @@ pub struct Station<S> {
     pub(super) leaves: S,
 }
 
+#[cfg(feature = "defmt")]
+impl<S: Scalar + defmt::Format> defmt::Format for Station<S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "station at {} m, left at {} s", self.length, self.leaves);
+    }
+}
+
 impl<S: Scalar> Station<S> {
     /// A free place.
     pub const EMPTY: Self =

@@ -95,13 +95,15 @@ impl<S: Scalar> Times<S> {
 
     /// Takes out what meets an interval, and returns the hull.
     fn absorb(&mut self, mut interval: Interval<S>) -> Interval<S> {
-        self.intervals.retain(|other| {
-            let meets = other.meets(interval);
-            if meets {
-                interval = interval.hull(*other);
+        // `Vec::retain` cannot be proved not to panic.
+        let before = core::mem::replace(&mut self.intervals, Vec::new());
+        for &other in &before {
+            if other.meets(interval) {
+                interval = interval.hull(other);
+            } else {
+                let _ = self.intervals.push(other);
             }
-            !meets
-        });
+        }
         interval
     }
 

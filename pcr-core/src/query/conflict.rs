@@ -33,6 +33,13 @@ pub struct Conflicts<'a, S: Scalar> {
     contacts: Contacts<'a, S>,
 }
 
+#[cfg(feature = "defmt")]
+impl<S: Scalar + defmt::Format> defmt::Format for Conflicts<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "conflicts from {}", self.contacts);
+    }
+}
+
 impl<'a, S: Scalar> Encounter<'a, S> {
     /// The contacts during an interval of time \[s\], with where they are and how deep. Cost: that of
     /// [`Encounter::contacts`], and of [`Encounter::closest`] for each.

@@ -191,6 +191,13 @@ pub struct Contacts<'a, S: Scalar> {
     steps: u32,
 }
 
+#[cfg(feature = "defmt")]
+impl<S: Scalar + defmt::Format> defmt::Format for Contacts<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "contacts within {} m during {} s, {} steps so far", self.radius, self.during, self.steps);
+    }
+}
+
 /// How far a window is searched.
 #[derive(Clone, Copy, Debug)]
 struct Scan<'a, S: Scalar> {

@@ -11,9 +11,10 @@ use core::hint::black_box as any;
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Unit, Wide};
 use pcr_core::{
-    Bounds, Conflict, Crossing, Curve, Direction, Ecm, Encounter, Full, Interval, Invalid, Limits, Motion, Path,
-    PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region, RegionRef, Scalar, Segment,
-    Turn, Vector, crossings, earliest_start, excess, gaps, plan_delays, safe_intervals, safe_lengths, union,
+    Bounds, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid, Limits,
+    Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region, RegionRef,
+    Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_start, excess, first_conflict, gaps,
+    plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -88,7 +89,16 @@ fn arithmetic<S: Scalar>() {
     let (v, w) = (wide::<S>(), wide::<S>());
     any((v + w, v - w, -v, v < w, Wide::sqrt(v), Wide::narrow(v), Wide::half(v), Wide::double(v)));
     let (u, t) = (unit::<S>(), unit::<S>());
-    any((u + t, u - t, -u, u < t, Unit::times(u, t), Unit::abs(u), any(S::Unit::ONE)));
+    any((
+        u + t,
+        u - t,
+        -u,
+        u < t,
+        Unit::times(u, t),
+        S::Unit::combine(u, t, unit::<S>(), t),
+        Unit::abs(u),
+        any(S::Unit::ONE),
+    ));
     let (p, q) = (angle::<S>(), angle::<S>());
     any((p + q, p - q, -p, p < q, Angle::is_finite(p), Angle::sin_cos(p), Angle::arc_length(p, a)));
     any((Angle::subtended_rest(p, a, b), Angle::sum(p, q)));
@@ -137,6 +147,7 @@ fn constructors<S: Scalar>() -> Result<(), Invalid> {
     any(Profile::as_profile(&profile));
     any((Phase::acceleration(&phase), ProfileRef::top_speed(profile.as_profile())));
     any(ProfileRef::<S>::new(any(&[])).is_ok());
+    any(Profile::<S, 1>::standing());
     Ok(())
 }
 
@@ -153,6 +164,7 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any((ProfileRef::first_time_at(profile, number()), ProfileRef::last_time_at(profile, number())));
         any(Motion::new(path, profile, number(), number()).is_ok());
         any(Motion::delayed(*motion, number()).is_ok());
+        any(Motion::with_profile(*motion, profile, number()).is_ok());
         any((Motion::time_excess(motion), excess(motion, motion)));
         any((Motion::radius(motion), Motion::time(motion), Motion::bounds(motion), Motion::extent(motion)));
         any((Motion::length_at(motion, number()), Motion::speed_at(motion, number())));
@@ -173,7 +185,7 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
         let pair: Encounter<'_, S> = Encounter::new(ego, other);
         any((Encounter::time(&pair), Encounter::radius(&pair), Encounter::tolerance(&pair)));
         let mut contacts = Encounter::contacts(&pair, interval());
-        any((contacts.next(), contacts.steps(), Encounter::closest(&pair, interval())));
+        any((contacts.next(), Contacts::steps(&contacts), Encounter::closest(&pair, interval())));
         let conflict: Option<Conflict<S>> = Encounter::conflicts(&pair, interval()).last();
         any(conflict);
         any(Encounter::blocked(&pair, interval(), interval()).last());
@@ -193,12 +205,29 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
         if let Some(&motion) = any(fleet.first()) {
             any(Ecm::replace(&mut ecm, fleet, agent, motion).is_ok());
         }
-        any(plan_delays(&ecm, fleet, any(&mut [][..]), any(&mut [][..])).is_ok());
+        plans(&ecm, fleet, agent);
         any((Ecm::len(&ecm), Ecm::is_empty(&ecm), Ecm::pieces(&ecm)));
         Ecm::regions(&ecm, fleet).for_each(|region| regions(&region));
         Ecm::row(&ecm, fleet, agent).for_each(|region| regions(&region));
         Ecm::pair(&ecm, fleet, agent, any(agent)).for_each(|region| regions(&region));
     }
+}
+
+#[inline(never)]
+fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_, S>], agent: usize) {
+    let row = Ecm::row(ecm, fleet, agent);
+    let Some(motion) = any(fleet.first()) else { return };
+    any(first_conflict(motion, row.clone(), interval()));
+    let limits = Limits { speed: number(), acceleration: number() };
+    let drive = Drive { start: number(), goal: number(), ..Drive::rest_to_rest(limits) };
+    any((drive, Drive::of(motion)));
+    let stations: &mut [Station<S>] = any(&mut [][..]);
+    if let Ok(plan) = any(plan_speed::<S, 8>(motion, any(drive), row, stations)) {
+        any((SpeedPlan::end(&plan), plan));
+    }
+    any(plan_delays(ecm, fleet, any(&mut [][..]), any(&mut [][..])).is_ok());
+    let profiles: &mut [Profile<S, 8>] = any(&mut [][..]);
+    any(plan_speeds(ecm, fleet, any(&mut [][..]), any(&mut [][..]), profiles, stations).is_ok());
 }
 
 #[inline(never)]
@@ -208,6 +237,7 @@ fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
     any(RegionRef::excess(region));
     any((RegionRef::contains(region, number(), number()), RegionRef::other_motion(region)));
     any((RegionRef::ego_motion(region), RegionRef::forbidden_delays(region)));
+    any(RegionRef::blocked(region, interval(), interval()).last());
     any(earliest_start(core::iter::once(region.clone()), number()));
     any(RegionRef::slice_at(region, number()).last());
     for piece in RegionRef::pieces(region) {
@@ -222,8 +252,8 @@ fn fixed() {
     type Product = <Number as Scalar>::Wide;
     type Sine = <Number as Scalar>::Unit;
     type Turns = <Number as Scalar>::Angle;
-    any((Number::from_bits(any(0)).to_bits(), Product::from_bits(any(0)).to_bits()));
-    any((Sine::from_bits(any(0)).to_bits(), Turns::from_bits(any(0)).to_bits()));
+    any((Number::to_bits(Number::from_bits(any(0))), Product::to_bits(Product::from_bits(any(0)))));
+    any((Sine::to_bits(Sine::from_bits(any(0))), Turns::to_bits(Turns::from_bits(any(0)))));
     any(write!(Nowhere, "{}", number::<Number>()).is_ok());
 }
 
