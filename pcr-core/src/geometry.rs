@@ -179,6 +179,11 @@ impl<S: Scalar> Interval<S> {
         self.lo + (self.hi - self.lo).half()
     }
 
+    /// What it shares with one that it meets.
+    pub(crate) fn common(self, other: Self) -> Self {
+        Self { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
+    }
+
     /// Both ends moved apart by `by`, but not out of `[lo, hi]` of `within`.
     pub(crate) fn widen(self, by: S, within: Self) -> Self {
         Self { lo: (self.lo - by).clamp(within.lo, within.hi), hi: (self.hi + by).clamp(within.lo, within.hi) }

@@ -215,18 +215,52 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 
     /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
-    fn intervals(&self, at: S) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let (pair, transposed, range) = (self.pair, self.transposed, self.length());
-        let slices = move |piece| {
-            if transposed { pair.slices_of_second(piece, at) } else { pair.slices_of_first(piece, at) }
-        };
-        // Both are rounded outward; what they share is the better bound.
-        self.pieces
-            .clone()
-            .flat_map(slices)
-            .flatten()
-            .filter(move |slice| slice.meets(range))
-            .map(move |slice| slice.widen(S::ZERO, range))
+    fn intervals(&self, at: S) -> Slices<'a, S> {
+        let Self { pair, ref pieces, transposed, .. } = *self;
+        Slices { pair, pieces: pieces.clone(), transposed, at, range: self.length(), rest: None }
+    }
+}
+
+/// Iterator of [`RegionRef::intervals`].
+#[derive(Clone, Debug)]
+struct Slices<'a, S: Scalar> {
+    pair: Pair<'a, S>,
+    pieces: List<'a, S>,
+    transposed: bool,
+    at: S,
+    /// Length range of the region.
+    range: Interval<S>,
+    /// The second interval of the last piece.
+    rest: Option<Interval<S>>,
+}
+
+impl<S: Scalar> Iterator for Slices<'_, S> {
+    type Item = Interval<S>;
+
+    // Adaptors make many copies of what they inline, and this is large.
+    #[inline(never)]
+    fn next(&mut self) -> Option<Interval<S>> {
+        loop {
+            let slice = match self.rest.take() {
+                Some(slice) => slice,
+                None => {
+                    let (piece, at) = (self.pieces.next()?, self.at);
+                    let slices = if self.transposed {
+                        self.pair.slices_of_second(piece, at)
+                    } else {
+                        self.pair.slices_of_first(piece, at)
+                    };
+                    let [first, second] = slices;
+                    self.rest = second;
+                    let Some(first) = first else { continue };
+                    first
+                }
+            };
+            // Both are rounded outward; what they share is the better bound.
+            if slice.meets(self.range) {
+                return Some(slice.common(self.range));
+            }
+        }
     }
 }
 

@@ -144,8 +144,8 @@ impl<S: Scalar> Reach<S> {
             (Reach::Around { .. }, Lap::Previous | Lap::Next) if segment.curve == Curve::Line => None,
             (Reach::Around { foot, half }, Lap::Previous | Lap::Same | Lap::Next) => {
                 let foot = shift(foot, segment, lap);
-                let (lo, hi) = (foot - half, foot + half);
-                (lo <= all.hi && hi >= all.lo).then(|| Interval::new(lo, hi).widen(S::ZERO, all))
+                let covered = Interval::new(foot - half, foot + half);
+                covered.meets(all).then(|| covered.common(all))
             }
             _ => None,
         }

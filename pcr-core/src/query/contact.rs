@@ -134,7 +134,7 @@ impl<'a, S: Scalar> Iterator for Windows<'a, S> {
         let [Some(a), Some(b)] = self.current else {
             return None;
         };
-        let time = Interval::new(a.time.lo.max(b.time.lo), a.time.hi.min(b.time.hi));
+        let time = a.time.common(b.time);
         for ((current, legs), ends) in self.current.iter_mut().zip(&mut self.legs).zip([a.time.hi, b.time.hi]) {
             if ends <= time.hi {
                 *current = legs.next();
