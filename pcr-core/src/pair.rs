@@ -7,6 +7,7 @@
 pub(crate) mod cells;
 pub(crate) mod events;
 pub(crate) mod footprint;
+mod laps;
 pub(crate) mod offset;
 
 use crate::error::Full;
@@ -59,7 +60,14 @@ impl<'a, S: Scalar> Pair<'a, S> {
             let around = other.bounds.expanded(reach);
             for (i, own) in (0..u16::MAX).zip(self.first.path().segments()) {
                 if around.meets(own.bounds) && own.near(other, reach) {
-                    SegmentPair::new(own, other, [i, j], self.radius, self.slack).find(pieces)?;
+                    let pair = SegmentPair {
+                        first: own,
+                        second: other,
+                        indices: [i, j],
+                        radius: self.radius,
+                        slack: self.slack,
+                    };
+                    pair.find(pieces)?;
                 }
             }
         }

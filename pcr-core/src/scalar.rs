@@ -130,9 +130,15 @@ pub trait Scalar:
     /// Both roots of `u² + 2 b u + g = 0`, `None` if they are not real. A double root where an error of `doubt` in `g`
     /// would make one.
     fn quadratic_roots(b: Self, g: Self::Wide, doubt: Self::Wide) -> Option<[Self; 2]>;
-    /// Both angles `2 atan τ` in `[-π, π]` with `a τ² + 2 b τ + g = 0`, `None` if they are not real. A double root where
-    /// an error of `doubt` in both `a` and `g` would make one.
-    fn half_tangent_roots(a: Self::Wide, b: Self::Wide, g: Self::Wide, doubt: Self::Wide) -> Option<[Self::Angle; 2]>;
+    /// Both angles `2 atan τ` in `[-π, π]` with `a τ² + 2 b τ + g = 0`, `None` if they are not real. One root where only
+    /// an error of `doubt` in both `a` and `g` would make it real. Angles outside of the sector may be left out.
+    fn half_tangent_roots(
+        a: Self::Wide,
+        b: Self::Wide,
+        g: Self::Wide,
+        doubt: Self::Wide,
+        sector: Sector<Self::Unit>,
+    ) -> Option<[Option<Self::Angle>; 2]>;
     /// The vector from the start of an arc to its point after twice the angle `half`, `2ϱ sin(h) e(ϑ ± h)`: `direction` is
     /// `(cos ϑ, sin ϑ)` at the start. Fixed point rounds once.
     fn chord(radius: Self, half: Self::Angle, right: bool, direction: [Self::Unit; 2]) -> [Self; 2] {
@@ -187,6 +193,26 @@ pub struct Ramp<S> {
     pub length: S,
 }
 
+/// The angles whose cosine to a direction is `least` or more: where on its circle an arc lies. It tells without an
+/// arctangent which angles need one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Sector<U> {
+    /// Cosine of its middle.
+    pub cos: U,
+    /// Sine of its middle.
+    pub sin: U,
+    /// Cosine of half its width, less [`Unit::COARSE`] or more.
+    pub least: U,
+}
+
+impl<U: Unit> Sector<U> {
+    /// All angles.
+    pub fn all() -> Self {
+        Self { cos: U::ONE, sin: U::ZERO, least: -U::ONE - U::COARSE }
+    }
+}
+
 /// Product of two [`Scalar`]s.
 pub trait Wide<S>: Copy + PartialOrd + Debug + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> {
     /// Zero.
@@ -210,6 +236,8 @@ pub trait Unit: Copy + PartialOrd + Debug + Add<Output = Self> + Sub<Output = Se
     const ZERO: Self;
     /// One.
     const ONE: Self;
+    /// More than what a sector is off when it is compared with an angle.
+    const COARSE: Self;
     /// `self · rhs`, rounded to nearest.
     fn times(self, rhs: Self) -> Self;
     /// `a u + b v`, as [`Scalar::combine`].

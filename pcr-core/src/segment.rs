@@ -11,7 +11,7 @@
 
 use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
-use crate::scalar::{Angle, Scalar, Unit};
+use crate::scalar::{Angle, Scalar, Sector, Unit};
 
 /// Side to which an arc bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +53,8 @@ pub struct Segment<S: Scalar> {
     /// Length of the whole circle of an arc \[m\].
     pub(crate) circumference: S,
     pub(crate) length: S,
+    /// Direction of the middle of an arc as seen from its centre, from that of its start; to the left.
+    half_turn: Direction<S>,
     /// Length of the path before this segment and up to its end \[m\].
     pub(crate) from: S,
     pub(crate) to: S,
@@ -98,6 +100,7 @@ impl<S: Scalar> Segment<S> {
             curve: Curve::Line,
             circumference: S::ZERO,
             length: S::ZERO,
+            half_turn: Direction::X,
             from: S::ZERO,
             to: S::ZERO,
             rest: Rest::NOTHING,
@@ -170,6 +173,7 @@ impl<S: Scalar> Segment<S> {
             curve,
             circumference,
             length,
+            half_turn: Direction::X,
             from: self.to,
             to,
             rest: Rest { length: rest, ..self.rest },
@@ -185,6 +189,7 @@ impl<S: Scalar> Segment<S> {
             Curve::Line => (self.length, self.direction),
             Curve::Arc { radius, .. } => {
                 let (sin, cos) = S::Angle::half_subtended(self.length, radius).sin_cos();
+                self.half_turn = Direction { cos, sin };
                 (
                     radius.double().scale(sin),
                     self.direction.plus(Direction { cos, sin: if self.mirrored() { -sin } else { sin } }),
@@ -250,6 +255,17 @@ impl<S: Scalar> Segment<S> {
     /// Whether it bends to the right: coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
         matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })
+    }
+
+    /// Direction at the end of an arc from that at its start; to the left.
+    pub(crate) fn turn_at_end(&self) -> Direction<S> {
+        self.half_turn.plus(self.half_turn)
+    }
+
+    /// Where an arc lies as seen from its centre, from the angle of the (mirrored) direction `from`.
+    pub(crate) fn sector(&self, from: Direction<S>) -> Sector<S::Unit> {
+        let least = self.half_turn.cos - S::Unit::COARSE;
+        Sector { cos: from.dot(self.half_turn), sin: from.cross(self.half_turn), least }
     }
 
     /// Vector from the start to the point after `u` metres.

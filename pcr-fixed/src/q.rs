@@ -7,7 +7,7 @@ use crate::turns::Turns;
 use crate::{ramp, roots};
 use core::ops::{Add, Neg, Sub};
 use pcr_core::Scalar;
-use pcr_core::scalar::{Angle, Ramp, Unit, Wide};
+use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 
 /// Fixed-point number of 32 bits, `F` of them after the binary point: a length \[m\], time \[s\], speed \[m/s\] or
 /// acceleration \[m/s²\]. `F` is 8 to 24.
@@ -145,8 +145,14 @@ impl<const F: u32> Scalar for Q<F> {
         let root = discriminant.sqrt();
         Some([-b - root, -b + root])
     }
-    fn half_tangent_roots(a: Product<F>, b: Product<F>, g: Product<F>, doubt: Product<F>) -> Option<[Turns; 2]> {
-        roots::half_tangent(a.to_bits(), b.to_bits(), g.to_bits(), doubt.to_bits())
+    fn half_tangent_roots(
+        a: Product<F>,
+        b: Product<F>,
+        g: Product<F>,
+        doubt: Product<F>,
+        sector: Sector<Sine>,
+    ) -> Option<[Option<Turns>; 2]> {
+        roots::half_tangent(a.to_bits(), b.to_bits(), g.to_bits(), doubt.to_bits(), sector)
     }
     fn chord(radius: Self, half: Turns, right: bool, direction: [Sine; 2]) -> [Self; 2] {
         let (sin, cos) = Angle::<Self>::sin_cos(half);

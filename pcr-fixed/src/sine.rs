@@ -80,6 +80,8 @@ impl Neg for Sine {
 impl Unit for Sine {
     const ZERO: Self = Self(0);
     const ONE: Self = Self(1 << Self::FRACTION_BITS);
+    /// Sectors are compared in 12 bits at least.
+    const COARSE: Self = Self(1 << (Self::FRACTION_BITS - 9));
 
     fn times(self, rhs: Self) -> Self {
         Self(self.of(rhs.0))

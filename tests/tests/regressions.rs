@@ -552,7 +552,34 @@ fn through_centre_34628() {
         start: [3.01025390625, -2.4921875, -1.7802315440523486],
         legs: vec![Line(0.8232421875), Right { radius: 1.364990234375, length: 0.33349609375 }],
     };
+    audited_in_q12(&ego, &other);
+}
+
+fn audited_in_q12(ego: &Disc, other: &Disc) {
     let (ego, other) = (ego.rounded::<Q12>(), other.rounded::<Q12>());
     let audit = Audit::<Q12>::new(&ego, &other).and_then(|audit| audit.all(EFFORT, SAMPLES, &mut Seen::default()));
     assert_eq!(audit, Ok::<(), Violation>(()), "in Q12");
+}
+
+/// In fixed point: a turning point just beyond the start of a segment, which itself is just out of reach.
+#[test]
+fn spiral_521795() {
+    let ego = Disc {
+        radius: 0.039794921875,
+        start: [0.475341796875, -0.97314453125, 2.1170197224832448],
+        legs: vec![
+            Left { radius: 0.964111328125, length: 3.551513671875 },
+            Left { radius: 1.44775390625, length: 4.422607421875 },
+            Left { radius: 1.44775390625, length: 0.910400390625 },
+        ],
+    };
+    let other = Disc {
+        radius: 0.052001953125,
+        start: [0.366943359375, 0.32373046875, 2.711891345616964],
+        legs: vec![
+            Right { radius: 0.639404296875, length: 3.51416015625 },
+            Right { radius: 0.596435546875, length: 3.277099609375 },
+        ],
+    };
+    audited_in_q12(&ego, &other);
 }

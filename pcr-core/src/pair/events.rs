@@ -25,27 +25,27 @@ use heapless::Vec;
 /// changes of lap.
 const MAX_EVENTS: usize = 14;
 
-/// Events of a pair of segments, in order.
+/// Events of a pair of segments.
 pub(crate) struct Events<S> {
-    lengths: Vec<S, MAX_EVENTS>,
-    /// Those at which the start and the end of the first segment are in contact.
-    pub(crate) ends: [[Option<S>; 2]; 2],
+    in_order: Vec<S, MAX_EVENTS>,
+    /// The ends of the first segment, seen from the second one.
+    ends: [Footprint<S>; 2],
 }
 
 impl<S: Scalar> Events<S> {
     /// The events along `second`, for discs whose radii add up to `radius`, distances right within `slack`.
     pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> Self {
-        let mut events = Self { lengths: Vec::new(), ends: [[None; 2]; 2] };
+        let ends = [first.start, first.end].map(|end| Footprint::of(end, second));
+        let mut events = Self { in_order: Vec::new(), ends };
         events.add(S::ZERO);
         events.add(second.length);
-
-        let start = Footprint::of(first.start, second);
-        events.ends[0] = events.add_ends(&start, second, radius, slack);
+        let [start, end] = ends;
+        events.add_ends(&start, second, radius, slack);
         if first.length > S::ZERO {
-            events.ends[1] = events.add_ends(&Footprint::of(first.end, second), second, radius, slack);
+            events.add_ends(&end, second, radius, slack);
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
-        normal.lengths_at(&[radius, -radius], S::ZERO, slack, |s| events.add(s));
+        normal.lengths_at(&[radius, -radius], S::ZERO, slack.half(), |s| events.add(s));
         if let Curve::Arc { radius: own, .. } = first.curve {
             let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
             if wraps || ring.is_some() {
@@ -65,14 +65,14 @@ impl<S: Scalar> Events<S> {
 
     /// The events in increasing order, the ends of the segment among them.
     pub(crate) fn in_order(&self) -> &[S] {
-        &self.lengths
+        &self.in_order
     }
 
     /// Inserts an event at its place.
     fn add(&mut self, s: S) {
         // The capacity is the most that `of` can add.
-        if self.lengths.push(s).is_ok() {
-            let mut events = self.lengths.iter_mut().rev();
+        if self.in_order.push(s).is_ok() {
+            let mut events = self.in_order.iter_mut().rev();
             let Some(mut place) = events.next() else {
                 return;
             };
@@ -86,31 +86,35 @@ impl<S: Scalar> Events<S> {
         }
     }
 
-    /// Adds where the point of a footprint is in contact, and returns that if it is not for the slack alone.
-    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
-        let ends = ends(footprint, second, radius, slack);
-        ends.into_iter().flatten().for_each(|s| self.add(s));
-        if footprint.offset.abs() <= radius { ends } else { [None; 2] }
+    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S, slack: S) {
+        ends(footprint, second, radius, slack).into_iter().flatten().for_each(|s| self.add(s));
     }
 }
 
 /// Where a contact with `first` is normal to `second`, as lengths along the two. Contacts from beyond the centre of
-/// `second` are left out: there an interval is shortest.
+/// `second` are left out: there an interval is shortest. The ends of `first` that touch it are among
+/// them: rounding may have taken a contact just beyond one of them.
 pub(crate) fn turning_points<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
+    events: &Events<S>,
     radius: S,
     slack: S,
     mut found: impl FnMut(S, S),
 ) {
-    let mut add = |l: S| {
-        let footprint = Footprint::of(first.point_at(l), second);
+    let mut contact = |l: S, footprint: Footprint<S>| {
         let s = on_first_lap(footprint.foot(second), second, S::ZERO);
         // Rounding makes roots where there are none; what is no contact is no end of an interval either.
         if S::ZERO <= s && s <= second.length && footprint.offset.abs() <= radius + slack {
             found(l, s);
         }
     };
+    for (l, end) in [S::ZERO, first.length].into_iter().zip(events.ends) {
+        if end.offset.abs() >= radius - slack {
+            contact(l, end);
+        }
+    }
+    let mut add = |l: S| contact(l, Footprint::of(first.point_at(l), second));
     let start = Footprint::of(second.start, first);
     Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, S::ZERO, &mut add);
     if let Curve::Arc { radius: own, .. } = second.curve

@@ -17,7 +17,7 @@
 
 use super::footprint::Footprint;
 use crate::geometry::{Direction, Point};
-use crate::scalar::{Angle, Scalar, Wide};
+use crate::scalar::{Angle, Scalar, Sector, Wide};
 use crate::segment::{Curve, Segment, Turn};
 
 /// An infinite line or a full circle: start, direction there, shape.
@@ -40,17 +40,13 @@ pub(crate) struct Relative<'a, S: Scalar> {
     segment: &'a Segment<S>,
     /// The carrier's start.
     start: &'a Footprint<S>,
-    /// Angle from the carrier to the segment at the foot of its start.
+    /// Direction of the segment at the foot of the carrier's start, in the (mirrored) frame of its start.
+    base: Direction<S>,
+    /// Angle from the carrier to the segment there.
     cos: S::Unit,
     sin: S::Unit,
     /// Signed radius of the carrier, left positive; `None` for a line.
     bend: Option<S>,
-}
-
-/// Roots as they come out of the equation: lengths from the base on a line, angles on an arc.
-enum Roots<S: Scalar> {
-    Lengths([S; 2]),
-    Angles([S::Angle; 2], S),
 }
 
 impl<'a, S: Scalar> Relative<'a, S> {
@@ -64,63 +60,62 @@ impl<'a, S: Scalar> Relative<'a, S> {
             Curve::Line => None,
             Curve::Arc { radius, turn } => Some(if mirror == (turn == Turn::Right) { radius } else { -radius }),
         };
-        Self { segment, start, cos: towards.dot(base), sin: towards.cross(base), bend }
+        Self { segment, start, base, cos: towards.dot(base), sin: towards.cross(base), bend }
     }
 
     /// The lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
     /// the carrier.
     ///
-    /// Where the segment only just misses an offset, by half of `slack`, this may be rounding. Then the lengths are found
-    /// at an offset that it reaches: nearer to 0 if it stays on this side, further out if it stays beyond. A slab that
-    /// would be judged by its middle alone, by rounding, is cut there.
-    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, slack: S, mut found: impl FnMut(S)) {
+    /// Where the segment only just misses an offset, by `doubt`, this may be rounding: then the length is found at which it
+    /// comes nearest to it. A slab that would be judged by its middle alone, by rounding, is cut there.
+    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, doubt: S, mut found: impl FnMut(S)) {
         let mut foot = None;
-        let graze = slack.half();
+        // What rounding does to a distance whatever the extent: it may take a contact from P3 that P1 has not, and then
+        // nobody would tell of it. An event too many is harmless.
+        let doubt = doubt + S::slack(S::ZERO);
         for &c in offsets {
-            let near = if c < S::ZERO { -graze } else { graze };
-            let roots = self
-                .roots(c)
-                .or_else(|| if graze > S::ZERO { self.roots(c - near).or_else(|| self.roots(c + near)) } else { None });
-            let Some(roots) = roots else {
+            let Some(roots) = self.roots(c, margin, doubt) else {
                 continue;
             };
-            let foot = *foot.get_or_insert_with(|| self.start.foot(self.segment));
-            let lengths = match roots {
-                Roots::Lengths(lengths) => lengths.map(|u| foot + u),
-                Roots::Angles(angles, radius) => {
-                    angles.map(|angle| on_first_lap(foot + angle.arc_length(radius), self.segment, margin))
+            for root in roots {
+                let Some(u) = root else {
+                    continue;
+                };
+                let foot = *foot.get_or_insert_with(|| self.start.foot(self.segment));
+                let u = on_first_lap(foot + u, self.segment, margin);
+                if -margin <= u && u <= self.segment.length + margin {
+                    found(u);
                 }
-            };
-            let on_segment = |&u: &S| -margin <= u && u <= self.segment.length + margin;
-            lengths.into_iter().filter(on_segment).for_each(&mut found);
+            }
         }
     }
 
-    fn roots(&self, c: S) -> Option<Roots<S>> {
+    /// The lengths of the segment's carrier, from the base, at which it has the offset `c`; on an arc those on the segment
+    /// and some more.
+    fn roots(&self, c: S, margin: S, doubt: S) -> Option<[Option<S>; 2]> {
         let Self { cos, sin, bend, .. } = *self;
         let n = self.start.offset;
         let lateral = c + n.scale(cos);
-        // What rounding does to a distance whatever the extent: it may take a contact from P3 that P1 has not, and then
-        // nobody would tell of it. An event too many is harmless.
-        let doubt = S::slack(S::ZERO);
         let Curve::Arc { radius: r, .. } = self.segment.curve else {
             // J is a line: 2 T = u.
-            return Some(Roots::Lengths(match bend {
+            return match bend {
                 // SS: (c + n cos α) / sin α, the one division by a sine.
-                None => [lateral.quotient_unit(sin)?; 2],
+                None => Some([Some(lateral.quotient_unit(sin)?), None]),
                 // I is an arc: u² - 2 ϱ sin α u + ϱ G = 0.
                 Some(bend) => {
                     let doubt = (bend.abs() + c.abs()).times(doubt).double();
-                    S::quadratic_roots(-bend.scale(sin), Self::constant(bend, lateral, n, c), doubt)?
+                    let g = Self::constant(bend, lateral, n, c);
+                    S::quadratic_roots(-bend.scale(sin), g, doubt).map(|roots| roots.map(Some))
                 }
-            }));
+            };
         };
         // J is an arc: T = r τ.
+        let sector = if margin > S::ZERO { Sector::all() } else { self.segment.sector(self.base) };
         let angles = match bend {
             // I is a line, equation times r / 2: G = 2 lateral.
             None => {
                 let far = lateral - r.scale(cos).double();
-                S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral), r.times(doubt))?
+                S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral), r.times(doubt), sector)?
             }
             // Both are arcs, equation times ϱ (κ_I = 1/ϱ).
             Some(bend) => {
@@ -128,10 +123,10 @@ impl<'a, S: Scalar> Relative<'a, S> {
                 let centre = n + bend.scale(cos) - r;
                 let a = g - r.double().times(centre.double());
                 let doubt = (bend.abs() + c.abs()).times(doubt).double();
-                S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g, doubt)?
+                S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g, doubt, sector)?
             }
         };
-        Some(Roots::Angles(angles, r))
+        Some(angles.map(|angle| angle.map(|angle| angle.arc_length(r))))
     }
 
     /// `ϱ G = 2 ϱ (c + n cos α) + n² - c²`.

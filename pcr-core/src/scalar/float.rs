@@ -4,7 +4,7 @@
 //! the FPU of a Cortex-M only replace the square root, which is correctly rounded everywhere. `f32` never computes in
 //! `f64`.
 
-use super::{Angle, Ramp, Scalar, Unit, Wide, trig};
+use super::{Angle, Ramp, Scalar, Sector, Unit, Wide, trig};
 use core::ops::{Add, Neg, Sub};
 
 /// Angle in radians.
@@ -88,28 +88,41 @@ macro_rules! impl_float {
             fn difference(a: Self, b: Self, squares: $t) -> Self {
                 if a + b > 0.0 { squares / (a + b) } else { 0.0 }
             }
-            // Both without doubt: what is nearly a double root has the relative precision of its coefficients.
-            fn quadratic_roots(b: Self, g: $t, _: $t) -> Option<[Self; 2]> {
+            fn quadratic_roots(b: Self, g: $t, doubt: $t) -> Option<[Self; 2]> {
                 // -b ∓ √(b² - g) with the sign that adds magnitudes; the other root from their product g.
                 let discriminant = b * b - g;
                 if discriminant < 0.0 {
-                    return None;
+                    return (discriminant + doubt >= 0.0).then_some([-b; 2]);
                 }
                 let q = -(b + $sqrt(discriminant).copysign(b));
                 Some([q, if q == 0.0 { 0.0 } else { g / q }])
             }
-            fn half_tangent_roots(a: $t, b: $t, g: $t, _: $t) -> Option<[Radians<$t>; 2]> {
+            fn half_tangent_roots(
+                a: $t,
+                b: $t,
+                g: $t,
+                doubt: $t,
+                sector: Sector<$t>,
+            ) -> Option<[Option<Radians<$t>>; 2]> {
                 let discriminant = b * b - a * g;
-                if discriminant < 0.0 {
+                if discriminant < 0.0 && discriminant + doubt * (a + g).abs() < 0.0 {
                     return None;
                 }
                 // τ = q/a and τ = g/q, left as fractions: a = 0 is the far end of the diameter (τ = ∞).
-                let q = -(b + $sqrt(discriminant).copysign(b));
+                let q = -(b + Wide::<$t>::sqrt(discriminant).copysign(b));
                 let angle = |n: $t, m: $t| {
                     let (n, m) = if m < 0.0 { (-n, -m) } else { (n, m) };
-                    Radians(2.0 * $atan2(n, m))
+                    // The cosine and sine of 2 atan(n/m), and their common denominator.
+                    let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
+                    let inside = cos * sector.cos + sin * sector.sin >= norm * sector.least;
+                    inside.then(|| Radians(2.0 * $atan2(n, m)))
                 };
-                Some([angle(q, a), angle(g, q)])
+                // By doubt alone they are one: -b/a = -g/b, by the larger one of what is in doubt.
+                match discriminant < 0.0 {
+                    false => Some([angle(q, a), angle(g, q)]),
+                    true if a.abs() > g.abs() => Some([angle(q, a), None]),
+                    true => Some([angle(g, q), None]),
+                }
             }
             fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed
@@ -150,6 +163,7 @@ macro_rules! impl_float {
         impl Unit for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
+            const COARSE: Self = 1024.0 * $t::EPSILON;
             fn times(self, rhs: Self) -> Self {
                 self * rhs
             }
@@ -241,10 +255,11 @@ mod tests {
     #[test]
     fn half_tangent_roots_reach_the_far_end_of_the_diameter() {
         // τ² - 1 = 0: ± a quarter turn; a = 0: τ = ∞ is half a turn.
+        let half_tangents = |a, b, g| f64::half_tangent_roots(a, b, g, 0.0, Sector::all()).unwrap().map(Option::unwrap);
         let quarter = core::f64::consts::FRAC_PI_2;
-        let [r, s] = f64::half_tangent_roots(1.0, 0.0, -1.0, 0.0).unwrap();
+        let [r, s] = half_tangents(1.0, 0.0, -1.0);
         assert!((r.0.abs() - quarter).abs() < 1e-15 && (r.0 + s.0).abs() < 1e-15);
-        let [r, s] = f64::half_tangent_roots(0.0, 1.0, 0.0, 0.0).unwrap();
+        let [r, s] = half_tangents(0.0, 1.0, 0.0);
         assert!((r.0.abs() - 2.0 * quarter).abs() < 1e-15 && s.0 == 0.0);
     }
 

@@ -9,7 +9,7 @@
 //! arctangent one polynomial; `docs/firmware.md` has the figures. This type is for those who use micromath already
 //! and want what its functions can be made to guarantee.
 
-use super::{Angle, Radians, Ramp, Scalar, Wide, trig};
+use super::{Angle, Radians, Ramp, Scalar, Sector, Wide, trig};
 use core::ops::{Add, Neg, Sub};
 use micromath::F32Ext;
 
@@ -85,26 +85,37 @@ impl Scalar for Micro {
     fn difference(a: Self, b: Self, squares: Self) -> Self {
         Self(f32::difference(a.0, b.0, squares.0))
     }
-    // Without doubt, as in f32.
-    fn quadratic_roots(b: Self, g: Self, _: Self) -> Option<[Self; 2]> {
+    fn quadratic_roots(b: Self, g: Self, doubt: Self) -> Option<[Self; 2]> {
         let discriminant = b.0 * b.0 - g.0;
         if discriminant < 0.0 {
-            return None;
+            return (discriminant + doubt.0 >= 0.0).then_some([-b; 2]);
         }
         let q = -(b.0 + sqrt(discriminant).copysign(b.0));
         Some([Self(q), Self(if q == 0.0 { 0.0 } else { g.0 / q })])
     }
-    fn half_tangent_roots(a: Self, b: Self, g: Self, _: Self) -> Option<[Radians<Self>; 2]> {
+    fn half_tangent_roots(
+        a: Self,
+        b: Self,
+        g: Self,
+        doubt: Self,
+        sector: Sector<f32>,
+    ) -> Option<[Option<Radians<Self>>; 2]> {
         let discriminant = b.0 * b.0 - a.0 * g.0;
-        if discriminant < 0.0 {
+        if discriminant < 0.0 && discriminant + doubt.0 * (a.0 + g.0).abs() < 0.0 {
             return None;
         }
-        let q = -(b.0 + sqrt(discriminant).copysign(b.0));
+        let q = -(b.0 + sqrt(discriminant.max(0.0)).copysign(b.0));
         let angle = |n: f32, m: f32| {
             let (n, m) = if m < 0.0 { (-n, -m) } else { (n, m) };
-            Radians(Self(2.0 * atan2(n, m)))
+            let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
+            let inside = cos * sector.cos + sin * sector.sin >= norm * sector.least;
+            inside.then(|| Radians(Self(2.0 * atan2(n, m))))
         };
-        Some([angle(q, a.0), angle(g.0, q)])
+        match discriminant < 0.0 {
+            false => Some([angle(q, a.0), angle(g.0, q)]),
+            true if a.0.abs() > g.0.abs() => Some([angle(q, a.0), None]),
+            true => Some([angle(g.0, q), None]),
+        }
     }
     fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
         Self((ramp.slow.0 + 0.5 * ramp.acceleration.0 * elapsed.0) * elapsed.0)

@@ -1,0 +1,174 @@
+//! From events to pieces where two laps of the first segment can be covered at once: an arc of half a turn or more, or one
+//! that the disc can hold.
+//!
+//! In a slab, every lap that the disc covers is a cell; cells of neighbouring slabs with the same lap are parts of one
+//! piece. Cells of different laps can only meet where the disc covers the whole circle.
+
+use super::cells::SegmentPair;
+use super::footprint::{Footprint, Lap, Reach, Share, shift};
+use crate::error::Full;
+use crate::geometry::Interval;
+use crate::pieces::{NONE, Piece, Pieces};
+use crate::scalar::Scalar;
+use crate::segment::Segment;
+
+/// What the disc covers of the first segment at one length of the second.
+#[derive(Clone, Copy)]
+struct Section<S> {
+    footprint: Footprint<S>,
+    reach: Reach<S>,
+}
+
+/// A slab as its neighbours see it.
+#[derive(Clone, Copy)]
+struct Slab<S> {
+    /// Whether anything of the segment is covered.
+    covered: bool,
+    /// The foot in its middle.
+    foot: S,
+}
+
+/// The piece that is open in each lap, by [`Lap`], or [`NONE`].
+type Open = [u32; Lap::ALL.len()];
+
+impl<S: Scalar> SegmentPair<'_, S> {
+    /// The pieces of the slabs, joined where they are connected.
+    pub(super) fn find_laps<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
+        &self,
+        slabs: impl Iterator<Item = Interval<S>>,
+        pieces: &mut Pieces<S, P>,
+    ) -> Result<(), Full> {
+        let mut open = [NONE; Lap::ALL.len()];
+        let mut before = Slab { covered: false, foot: S::ZERO };
+        for range in slabs {
+            let middle = self.section(range.middle());
+            let slab = Slab { covered: middle.reach != Reach::Nothing, foot: middle.foot(self.first) };
+            if before.covered || slab.covered {
+                let edge = self.section(range.lo);
+                self.limit_open(pieces, &open, &edge, before);
+                if slab.covered {
+                    let laps_lost = self.laps_lost(before, slab, &edge);
+                    self.extend(pieces, range, &middle, &edge, &mut open, laps_lost)?;
+                } else {
+                    open = [NONE; Lap::ALL.len()];
+                }
+            }
+            before = slab;
+        }
+        if before.covered {
+            self.limit_open(pieces, &open, &self.section(self.second.length), before);
+        }
+        Ok(())
+    }
+
+    /// What is covered of the first segment at the length `s` of the second one.
+    pub(super) fn slices(&self, s: S) -> [Option<Interval<S>>; 2] {
+        self.section(s).reach.intervals(self.first)
+    }
+
+    fn section(&self, s: S) -> Section<S> {
+        let footprint = Footprint::of(self.second.point_at(s), self.first);
+        Section { footprint, reach: footprint.reach(self.first, self.radius) }
+    }
+
+    /// Adds the slice at the end of their slab to the pieces that are open in it.
+    fn limit_open<P>(&self, pieces: &mut Pieces<S, P>, open: &Open, end: &Section<S>, slab: Slab<S>)
+    where
+        P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
+    {
+        for lap in Lap::ALL {
+            if let Some(piece) = pieces.get_mut(open[lap as usize]) {
+                piece.first = piece.first.hull(self.limit(end, slab.foot, lap));
+            }
+        }
+    }
+
+    /// Adds the cells of one slab to the pieces that are open at its beginning; then those open at its end are.
+    fn extend<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
+        &self,
+        pieces: &mut Pieces<S, P>,
+        range: Interval<S>,
+        middle: &Section<S>,
+        begin: &Section<S>,
+        open: &mut Open,
+        laps_lost: i8,
+    ) -> Result<(), Full> {
+        let before = core::mem::replace(open, [NONE; Lap::ALL.len()]);
+        let several = middle.reach.intervals(self.first)[1].is_some();
+        let mut share = if several { Share::Start } else { Share::Only };
+        for lap in Lap::ALL {
+            let Some(covered) = middle.reach.on(self.first, lap) else {
+                continue;
+            };
+            let covered = covered.hull(self.limit(begin, middle.foot(self.first), lap));
+            let ongoing = lap.less(laps_lost).map_or(NONE, |lap| before[lap as usize]);
+            let index = match pieces.get_mut(ongoing) {
+                Some(piece) if piece.lap == lap && piece.share == share => {
+                    piece.first = piece.first.hull(covered);
+                    piece.second.hi = range.hi;
+                    ongoing
+                }
+                _ => {
+                    let index = pieces.push(Piece::new(self.indices, lap, share, covered, range))?;
+                    pieces.join(ongoing, index);
+                    index
+                }
+            };
+            open[lap as usize] = index;
+            if several {
+                share = Share::End;
+            }
+        }
+        // Where the whole circle is covered every lap meets.
+        for (whole, laps) in [(open[Lap::Whole as usize], before), (before[Lap::Whole as usize], *open)] {
+            laps.into_iter().for_each(|lap| pieces.join(whole, lap));
+        }
+        Ok(())
+    }
+
+    /// The slice of a cell at an end of its slab, whose middle has this foot. There it may have shrunk to a point, or
+    /// grown to the whole circle, and rounding may have taken it a little beyond.
+    fn limit(&self, end: &Section<S>, middle: S, lap: Lap) -> Interval<S> {
+        let all = Interval::new(S::ZERO, self.first.length);
+        let (mut foot, half) = match (end.reach, lap) {
+            (_, Lap::Whole) => return all,
+            (Reach::Around { foot, half }, _) => (foot, half),
+            (Reach::Nothing, _) => (end.foot(self.first), S::ZERO),
+            (Reach::Whole, _) => (end.foot(self.first), self.first.circumference.half()),
+        };
+        if self.changes_lap(middle, foot, foot) {
+            let lap = self.first.circumference;
+            foot = if middle > foot { foot + lap } else { foot - lap };
+        }
+        foot = shift(foot, self.first, lap);
+        Interval::new(foot - half, foot + half).widen(S::ZERO, all)
+    }
+
+    /// How many laps the foot has lost between two slabs: it passes from the end of the lap to its beginning.
+    fn laps_lost(&self, before: Slab<S>, after: Slab<S>, between: &Section<S>) -> i8 {
+        if !before.covered || !self.changes_lap(before.foot, after.foot, between.foot(self.first)) {
+            0
+        } else if before.foot > after.foot {
+            1
+        } else {
+            -1
+        }
+    }
+
+    /// Whether two feet lie on different sides of the middle of the segment because the foot left its lap, at `between`,
+    /// on the far half of the circle.
+    fn changes_lap(&self, a: S, b: S, between: S) -> bool {
+        let middle = self.first.length.half();
+        let quarter = self.first.circumference.half().half();
+        (a > middle) != (b > middle) && (between - middle).abs() > quarter
+    }
+}
+
+impl<S: Scalar> Section<S> {
+    fn foot(&self, segment: &Segment<S>) -> S {
+        match self.reach {
+            Reach::Around { foot, .. } => foot,
+            Reach::Nothing | Reach::Whole => self.footprint.foot(segment),
+        }
+    }
+}
