@@ -10,7 +10,9 @@
 //! map         paper Fig. 11: the extended collision map of an agent
 //! overview    both side by side
 //! page        the same in a browser, with a time slider
-//! locks       a layout whose edges show what they block
+//! layout      the corridors on the edges of a layout
+//! locks       a page in which the edges of a layout show what they block
+//! template    pages with everything in them
 //! svg         the writer of SVG files
 //! raster      SVG to PNG
 //! ```
@@ -18,6 +20,7 @@
 mod axis;
 pub(crate) mod contour;
 mod labels;
+mod layout;
 mod locks;
 mod map;
 mod overview;
@@ -26,12 +29,14 @@ pub(crate) mod palette;
 mod raster;
 mod scene;
 pub(crate) mod svg;
+pub(crate) mod template;
 mod workspace;
 
 use crate::fleet::{Fleet, build_ecm};
 use crate::import::Imported;
 use crate::locks::Locks;
 use crate::scenario::Scenario;
+pub use layout::Ground;
 use raster::Raster;
 use scene::Scene;
 use std::path::{Path, PathBuf};
@@ -46,7 +51,7 @@ use std::{fs, io, thread};
 /// - `workspace`: the paths, with the discs at their starts and ends,
 /// - `ecm-<id>` for every agent: its extended collision map with its trajectory,
 ///
-/// all but the first as `.svg` and `.png`.
+/// all but the first as `.svg` and `.png`. The workspace is drawn on the `ground`, if there is one.
 ///
 /// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
 /// in a fixed order. The same scenario gives the same bytes in every run.
@@ -56,6 +61,7 @@ use std::{fs, io, thread};
 /// those of writing files.
 pub fn write(
     scenario: &Scenario,
+    ground: Option<Ground<'_>>,
     directory: &Path,
     progress: &mut dyn FnMut(usize, usize),
 ) -> io::Result<Vec<PathBuf>> {
@@ -63,7 +69,7 @@ pub fn write(
     let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
-    let scene = Scene { scenario, motions: &motions, ecm: &ecm };
+    let scene = Scene { scenario, motions: &motions, ecm: &ecm, ground };
     fs::create_dir_all(directory)?;
     let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
     pictures.extend((0..motions.len()).map(Picture::Map));
@@ -93,7 +99,7 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
     let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
     let raster = Raster::new();
     for level in 0..imported.layout.levels.len() {
-        let svg = locks::picture(imported, locks, level);
+        let svg = Ground { layout: &imported.layout, level, radius: locks.vehicle.radius }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
         let png = raster.png(&svg)?;
         files.extend([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)]);
@@ -174,7 +180,7 @@ mod tests {
         let scenario = Scenario::from_json(&scenario.to_string()).unwrap();
         let directory = std::env::temp_dir().join(format!("pcr-pictures-{test}-{}", std::process::id()));
         let mut calls = Vec::new();
-        let files = write(&scenario, &directory, &mut |done, total| calls.push((done, total))).unwrap();
+        let files = write(&scenario, None, &directory, &mut |done, total| calls.push((done, total))).unwrap();
         let total = scenario.agents.len() + 3;
         assert_eq!(calls, (0..=total).map(|done| (done, total)).collect::<Vec<_>>());
         assert_eq!(files.len(), 2 * total - 1);
@@ -284,7 +290,7 @@ mod tests {
         let scenario = Scenario::from_json(r#"{ "agents": [] }"#).unwrap();
         let file = std::env::temp_dir().join(format!("pcr-pictures-file-{}", std::process::id()));
         fs::write(&file, "").unwrap();
-        assert!(write(&scenario, &file.join("below"), &mut |_, _| {}).is_err());
+        assert!(write(&scenario, None, &file.join("below"), &mut |_, _| {}).is_err());
         fs::remove_file(file).unwrap();
     }
 }

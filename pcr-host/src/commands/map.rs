@@ -4,7 +4,7 @@ use super::{STATUSES, Stop, scenario};
 use clap::Args;
 use pcr_host::fleet::Fleet;
 use pcr_host::import::Options;
-use pcr_host::picture;
+use pcr_host::picture::{self, Ground};
 use pcr_host::progress::Progress;
 use pcr_host::regions::{self, Failure};
 use pcr_host::scenario::Scenario;
@@ -38,15 +38,20 @@ impl Arguments {
         let named = |failure: Failure| Stop::wrong(file, failure);
         let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
         regions::table(&scenario, &fleet.motions()).map_err(named)?;
-        draw(&scenario, &self.output, &mut io::stdout().lock())?;
+        draw(&scenario, None, &self.output, &mut io::stdout().lock())?;
         Ok(ExitCode::SUCCESS)
     }
 }
 
-/// Draws a scenario to a directory.
-pub(super) fn draw(scenario: &Scenario, directory: &Path, out: &mut impl Write) -> Result<(), Stop> {
+/// Draws a scenario, on a layout if there is one, to a directory.
+pub(super) fn draw(
+    scenario: &Scenario,
+    ground: Option<Ground<'_>>,
+    directory: &Path,
+    out: &mut impl Write,
+) -> Result<(), Stop> {
     let progress = Progress::new("pictures");
-    let files = picture::write(scenario, directory, &mut |done, total| progress.set(done, total));
+    let files = picture::write(scenario, ground, directory, &mut |done, total| progress.set(done, total));
     drop(progress);
     let files = files.map_err(|error| Stop::not_written(directory, &error))?;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));

@@ -23,6 +23,6 @@ pub(super) fn run() -> Result<ExitCode, Stop> {
     let answer = Answer::of::<f64>(&scenario, Request::default())?;
     let mut out = io::stdout().lock();
     report::overview(&scenario, &answer, took, &mut out)?;
-    draw(&scenario, Path::new(DIRECTORY), &mut out)?;
+    draw(&scenario, None, Path::new(DIRECTORY), &mut out)?;
     Ok(ExitCode::SUCCESS)
 }

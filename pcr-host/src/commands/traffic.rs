@@ -3,6 +3,7 @@
 use super::{Form, STATUSES, Stop, WRONG_INPUT, map, warn, write_to};
 use clap::Args;
 use pcr_host::import::Options;
+use pcr_host::picture::Ground;
 use pcr_host::traffic::{Request, Traffic};
 use pcr_host::{input, report};
 use std::io::{self, BufWriter, Write};
@@ -57,7 +58,9 @@ impl Arguments {
         }
         out.flush()?;
         if let Some(directory) = &self.output {
-            map::draw(&plan, directory, &mut io::stderr())?;
+            let layout = &imported.layout;
+            let ground = Ground { layout, level: layout.largest_level(), radius: imported.vehicle.radius };
+            map::draw(&plan, Some(ground), directory, &mut io::stderr())?;
             write_to(&directory.join("missions.json"), &missions)?;
             write_to(&directory.join("plan.json"), &plan)?;
         }

@@ -159,6 +159,12 @@ impl Layout {
         (trace.start, path, trace.deviation + edge.deviation)
     }
 
+    /// The level that has most nodes; among equals the first.
+    pub fn largest_level(&self) -> usize {
+        let count = |level: usize| self.nodes.iter().filter(|node| node.level == level).count();
+        (0..self.levels.len()).rev().max_by_key(|&level| count(level)).unwrap_or(0)
+    }
+
     /// Level of an edge: that of the node where it begins.
     pub fn level(&self, edge: &Edge) -> usize {
         self.nodes.get(edge.ends[0]).map_or(0, |node| node.level)

@@ -7,7 +7,7 @@ use super::axis::Frame;
 use super::contour::{Outline, is_thin};
 use super::map::{THIN, places, spans};
 use super::scene::{Scene, Shape};
-use super::svg::Escaped;
+use super::template;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -27,22 +27,8 @@ const LABEL_SIZE: f64 = 14.0;
 
 /// The page.
 pub(super) fn page(scene: &Scene<'_>) -> String {
-    let data = data(scene).to_string();
     let name = if scene.scenario.name.is_empty() { "Collision regions" } else { &scene.scenario.name };
-    let mut page = String::with_capacity(TEMPLATE.len() + STYLE.len() + SCRIPT.len() + data.len());
-    for part in TEMPLATE.split("{{") {
-        let (key, text) = part.split_once("}}").unwrap_or(("", part));
-        match key {
-            "title" => page.push_str(&Escaped(name).to_string()),
-            "style" => page.push_str(STYLE),
-            "script" => page.push_str(SCRIPT),
-            // A text in the data cannot end the element that holds it.
-            "data" => page.push_str(&data.replace('<', "\\u003c")),
-            _ => {}
-        }
-        page.push_str(text);
-    }
-    page
+    template::fill([TEMPLATE, STYLE, SCRIPT], name, &data(scene))
 }
 
 fn data(scene: &Scene<'_>) -> Value {
@@ -177,7 +163,7 @@ mod tests {
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).unwrap();
-        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm })
+        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm, ground: None })
     }
 
     fn data_of(page: &str) -> Value {

@@ -1,6 +1,7 @@
 //! What all pictures of a scenario share: motions, regions with their outlines, colours and spans.
 
 use super::contour::{Outline, trace};
+use super::layout::Ground;
 use super::palette::{Colour, colour};
 use crate::fleet::HostEcm;
 use crate::scenario::Scenario;
@@ -11,6 +12,8 @@ pub(super) struct Scene<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) motions: &'a [Motion<'a, f64>],
     pub(super) ecm: &'a HostEcm<f64>,
+    /// What the agents travel on.
+    pub(super) ground: Option<Ground<'a>>,
 }
 
 /// A region as the pictures show it.
@@ -57,14 +60,15 @@ impl Scene<'_> {
         times.reduce(Interval::hull).unwrap_or(Interval::new(0.0, 1.0))
     }
 
-    /// Box around all discs on all paths \[m\].
+    /// Box around all discs on all paths, and around the ground \[m\].
     pub(super) fn bounds(&self) -> Bounds<f64> {
         let grown = self.motions.iter().map(|motion| {
             let (Bounds { x, y }, r) = (motion.bounds(), motion.radius());
             Bounds { x: Interval::new(x.lo - r, x.hi + r), y: Interval::new(y.lo - r, y.hi + r) }
         });
         let unit = Interval::new(-1.0, 1.0);
-        grown.reduce(Bounds::hull).unwrap_or(Bounds { x: unit, y: unit })
+        let ground = self.ground.iter().map(Ground::bounds).map(|[x, y]| Bounds { x, y });
+        grown.chain(ground).reduce(Bounds::hull).unwrap_or(Bounds { x: unit, y: unit })
     }
 
     /// Number of regions of an ego.

@@ -68,6 +68,9 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
     let size = Pixels(AXIS_SIZE + 0.5);
     svg.label([(left + right) / 2.0, top - 9.0], "middle", &[("font-size", &size)], &title(scene));
     frame.draw(svg, ["x [m]", "y [m]"]);
+    if let Some(ground) = &scene.ground {
+        ground.draw(svg, frame, false);
+    }
     for (place, motion) in scene.motions.iter().enumerate() {
         let colour = scene.colour(place);
         svg.start("g", &[("fill", &"none"), ("stroke", &colour), ("stroke-width", &"1.2")]);

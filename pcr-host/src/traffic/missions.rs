@@ -44,10 +44,8 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// no two agents overlap at their starts or at their ends. Fewer where there is no such pair of nodes with a way between them.
 pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Vec<Mission> {
     let Imported { layout, vehicle } = imported;
-    let on = |level: usize| (0..layout.nodes.len()).filter(move |&node| layout.nodes[node].level == level);
-    // Among equals the first.
-    let level = (0..layout.levels.len()).rev().max_by_key(|&level| on(level).count()).unwrap_or(0);
-    let there: Vec<usize> = on(level).collect();
+    let level = layout.largest_level();
+    let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
     let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
     let mut choices = Choices(seed);
     let mut missions: Vec<Mission> = Vec::new();

@@ -26,10 +26,20 @@ for (const [a, b, own, other] of data.locks) {
   blocks[b].push([a, other, own]);
 }
 
+// Edges that lie on the same line, in either direction: the pointer reaches the last of them only.
+const lines_of = new Map();
+const line_of = data.edges.map((edge, k) => {
+  const key = edge.level + [edge.path, edge.back].sort().join();
+  if (!lines_of.has(key)) lines_of.set(key, []);
+  lines_of.get(key).push(k);
+  return lines_of.get(key);
+});
+
 svg.setAttribute("viewBox", data.bounds.join(" "));
 // Metres to steps of a millimetre; y points up.
 const STEPS = 1000;
 const world = make(svg, "g", { transform: "scale(1 -1)" });
+const corridors = make(world, "g", { class: "corridors" });
 const lines = make(world, "g", {});
 const overlay = make(world, "g", { "pointer-events": "none" });
 const targets = make(world, "g", {});
@@ -44,7 +54,7 @@ function show(k) {
   about.replaceChildren();
   choice.value = k === null ? "" : String(k);
   if (k === null) {
-    text(about, "p", "Point at an edge to see its corridor and what it blocks; click to keep it. Edges may lie on one another: the list above has all of them.");
+    text(about, "p", "Point at an edge to see its corridor (blue) and what it blocks (red); click to keep it, again for the next edge on the same line.");
     return;
   }
   const edge = data.edges[k];
@@ -62,8 +72,24 @@ function show(k) {
     }
     make(overlay, "path", mark);
   }
-  make(overlay, "path", { d: edge.path, class: "chosen" });
+  const chosen = make(overlay, "path", { d: edge.path, class: "chosen" });
+  const end = chosen.getTotalLength();
+  if (end > 0) {
+    // The direction of travel, at its end.
+    const [tip, from] = [chosen.getPointAtLength(end), chosen.getPointAtLength(end * 0.99)];
+    const turn = Math.atan2(tip.y - from.y, tip.x - from.x) * 180 / Math.PI;
+    const size = STEPS * edge.radius;
+    make(overlay, "path", { d: "M0 0l-1 .6v-1.2z", class: "arrow", transform: `translate(${tip.x} ${tip.y}) rotate(${turn}) scale(${size})` });
+  }
   text(about, "h2", "Edge " + edge.id);
+  const same = line_of[k].filter((other) => other !== k);
+  if (same.length > 0) {
+    const list = text(about, "p", "On the same line: ");
+    same.forEach((other) => {
+      const button = text(list, "button", data.edges[other].id);
+      button.addEventListener("click", () => { pinned = other; show(other); });
+    });
+  }
   text(about, "p", "From node " + edge.ends[0] + " to node " + edge.ends[1] + ", " + edge.length.toFixed(3) + " m. Blocks " +
     new Set(blocks[k].map(([other]) => other)).size + " edges:");
   const table = text(about, "table", "");
@@ -81,6 +107,7 @@ function show(k) {
 
 function draw() {
   const at = Number(level.value);
+  corridors.replaceChildren();
   lines.replaceChildren();
   targets.replaceChildren();
   choice.replaceChildren();
@@ -89,14 +116,20 @@ function draw() {
     if (edge.level !== at) return;
     text(choice, "option", edge.id).value = String(k);
     if (edge.path === "") return;
+    make(corridors, "path", { d: edge.path, "stroke-width": 2 * STEPS * edge.radius });
     make(lines, "path", { d: edge.path, class: "edge" });
     const target = make(targets, "path", { d: edge.path, class: "target" });
     target.addEventListener("pointerenter", () => { if (pinned === null) show(k); });
     target.addEventListener("pointerleave", () => { if (pinned === null) show(null); });
-    target.addEventListener("click", (event) => { event.stopPropagation(); pinned = k; show(k); });
+    target.addEventListener("click", (event) => {
+      event.stopPropagation();
+      const same = line_of[k];
+      pinned = same.includes(pinned) ? same[(same.indexOf(pinned) + 1) % same.length] : k;
+      show(pinned);
+    });
   });
   for (const node of data.nodes) {
-    if (node.level === at) make(lines, "circle", { cx: node.x, cy: node.y, r: 0.15 * STEPS * data.radius, class: "node" });
+    if (node.level === at) make(lines, "circle", { cx: node.x, cy: node.y, r: 0.2 * STEPS * data.radius, class: "node" });
   }
   pinned = null;
   show(null);
