@@ -28,7 +28,7 @@ mod page;
 pub(crate) mod palette;
 mod raster;
 mod scene;
-pub(crate) mod svg;
+mod svg;
 pub(crate) mod template;
 mod workspace;
 

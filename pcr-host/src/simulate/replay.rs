@@ -10,7 +10,7 @@ use super::{Controller, FRAME, Snapshot};
 use crate::fleet::build_ecm;
 use crate::picture::contour::trace;
 use crate::picture::palette::colour;
-use crate::picture::svg::Escaped;
+use crate::picture::template;
 use pcr_core::{Motion, RegionRef};
 use serde_json::{Value, json};
 
@@ -29,22 +29,8 @@ const PIXELS: f64 = 500.0;
 
 /// The page for some runs of a task.
 pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
-    let data = data(task, outcomes).to_string();
     let name = if task.name.is_empty() { "Simulation" } else { &task.name };
-    let mut page = String::new();
-    for part in TEMPLATE.split("{{") {
-        let (key, text) = part.split_once("}}").unwrap_or(("", part));
-        match key {
-            "title" => page.push_str(&Escaped(name).to_string()),
-            "style" => page.push_str(STYLE),
-            "script" => page.push_str(SCRIPT),
-            // A text in the data cannot end the element that holds it.
-            "data" => page.push_str(&data.replace('<', "\\u003c")),
-            _ => {}
-        }
-        page.push_str(text);
-    }
-    page
+    template::fill([TEMPLATE, STYLE, SCRIPT], name, &data(task, outcomes))
 }
 
 fn rounded(length: f64) -> i64 {
