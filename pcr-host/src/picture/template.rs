@@ -4,7 +4,7 @@ use super::svg::Escaped;
 use serde_json::Value;
 
 /// The page of a template, its style and its script: `{{title}}`, `{{style}}`, `{{script}}` and `{{data}}` take their places.
-pub(super) fn fill([template, style, script]: [&str; 3], title: &str, data: &Value) -> String {
+pub(crate) fn fill([template, style, script]: [&str; 3], title: &str, data: &Value) -> String {
     // A text in the data cannot end the element that holds it.
     let data = data.to_string().replace('<', "\\u003c");
     let mut page = String::with_capacity(template.len() + style.len() + script.len() + data.len());
