@@ -1,6 +1,7 @@
 //! The commands of the tool, a file each: their arguments, what they do with them, and how that may end.
 
 mod check;
+mod compare;
 mod import;
 mod locks;
 mod map;
@@ -63,6 +64,7 @@ enum Command {
     Check(check::Arguments),
     Plan(plan::Arguments),
     Simulate(Box<simulate::Arguments>),
+    Compare(compare::Arguments),
     Map(map::Arguments),
     Locks(locks::Arguments),
     Traffic(traffic::Arguments),
@@ -78,6 +80,7 @@ impl Arguments {
             Some(Command::Check(arguments)) => arguments.run(),
             Some(Command::Plan(arguments)) => arguments.run(),
             Some(Command::Simulate(arguments)) => arguments.run(),
+            Some(Command::Compare(arguments)) => arguments.run(),
             Some(Command::Map(arguments)) => arguments.run(),
             Some(Command::Locks(arguments)) => arguments.run(),
             Some(Command::Traffic(arguments)) => arguments.run(),

@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// A number format that scenario files can be read into.
-pub trait Format: Scalar {
+pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
     const NAME: &'static str;
     /// The nearest number of the format.
@@ -249,7 +249,7 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 /// # Errors
 /// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 65535 pieces.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
-    grown(motions.len(), |regions, pieces| Ecm::build(regions, pieces, motions))
+    grown(storage(motions.len()), |regions, pieces| Ecm::build(regions, pieces, motions))
 }
 
 /// The same with the regions of one agent with all others only.
@@ -257,21 +257,37 @@ pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
 /// # Errors
 /// As [`build_ecm`].
 pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
-    grown(motions.len(), |regions, pieces| {
+    table_of(motions, agent, storage(motions.len()))
+}
+
+/// The same, with storage for so many regions and pieces at first.
+///
+/// # Errors
+/// As [`build_ecm`].
+pub(crate) fn table_of<S: Scalar>(
+    motions: &[Motion<'_, S>],
+    agent: usize,
+    storage: [usize; 2],
+) -> Result<HostEcm<S>, Full> {
+    grown(storage, |regions, pieces| {
         let mut ecm = Ecm::new(regions, pieces);
         ecm.insert(motions, agent).map(|()| ecm)
     })
 }
 
+/// Regions and pieces that a fleet of so many agents may have.
+fn storage(agents: usize) -> [usize; 2] {
+    [8 * agents + 16, 16 * agents + 16]
+}
+
 fn grown<S: Scalar>(
-    agents: usize,
+    [mut regions, mut pieces]: [usize; 2],
     build: impl Fn(Vec<Region>, Vec<Piece<S>>) -> Result<HostEcm<S>, Full>,
 ) -> Result<HostEcm<S>, Full> {
-    let (mut regions, mut pieces) = (8 * agents + 16, 16 * agents + 16);
     loop {
         match build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]) {
-            Err(Full::Regions) => regions *= 2,
-            Err(Full::Pieces) => pieces *= 2,
+            Err(Full::Regions) => regions = 2 * regions + 1,
+            Err(Full::Pieces) => pieces = 2 * pieces + 1,
             done => return done,
         }
     }

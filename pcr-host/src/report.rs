@@ -1,6 +1,7 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
 mod columns;
+mod comparison;
 mod conflicts;
 mod locks;
 mod overview;
@@ -9,6 +10,7 @@ mod simulation;
 mod table;
 mod traffic;
 
+pub use comparison::{COMPARISON_CSV_HEADER, comparison_csv, comparison_table};
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use locks::{LOCKS_HEADER, locks_csv, locks_json, locks_table};
 pub use overview::overview;

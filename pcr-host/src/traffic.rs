@@ -3,7 +3,6 @@
 //! Every agent has one mission, the shortest way between two random nodes. All would set off at once; the plan delays them.
 //! Agents for which there is no delay, because they meet others whenever they start, are left out and counted.
 
-mod choices;
 mod missions;
 mod schedule;
 

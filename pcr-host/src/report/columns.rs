@@ -35,4 +35,16 @@ impl Columns {
         }
         Ok(())
     }
+
+    /// The same as a table of Markdown.
+    pub(super) fn write_markdown(&self, out: &mut impl Write) -> io::Result<()> {
+        for (k, row) in self.rows.iter().enumerate() {
+            writeln!(out, "| {} |", row.join(" | "))?;
+            if k == 0 {
+                let rules: Vec<&str> = self.left.iter().map(|&left| if left { "---" } else { "---:" }).collect();
+                writeln!(out, "|{}|", rules.join("|"))?;
+            }
+        }
+        Ok(())
+    }
 }

@@ -1,7 +1,7 @@
 //! Random missions: pairs of nodes with a way between them.
 
-use super::choices::Choices;
 use crate::import::{Imported, Placed, mission};
+use crate::random::Random;
 use crate::scenario::Agent;
 
 /// How many times the sum of their radii and margins agents keep that wait at their starts or stand at their ends: more than
@@ -47,14 +47,14 @@ pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Vec<Mission>
     let level = layout.largest_level();
     let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
     let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
-    let mut choices = Choices(seed);
+    let mut random = Random(seed);
     let mut missions: Vec<Mission> = Vec::new();
     for id in (1..).take(count) {
         let free = &|end: usize, node: usize| {
             let apart = |mission: &Mission| distance(layout.nodes[mission.ends[end]].at, layout.nodes[node].at) > reach;
             missions.iter().all(apart)
         };
-        let (starts, ends) = (choices.shuffled(&there), choices.shuffled(&there));
+        let (starts, ends) = (random.shuffled(&there), random.shuffled(&there));
         let pairs = starts.iter().filter(|&&from| free(0, from)).flat_map(|&from| {
             let ends = ends.iter().filter(move |&&to| to != from && free(1, to));
             ends.map(move |&to| [from, to])

@@ -6,8 +6,8 @@
 //!
 //! Agents that cannot start because of others go first in the next order that is tried.
 
-use super::choices::Choices;
 use crate::fleet::HostEcm;
+use crate::random::Random;
 use pcr_core::{Motion, Scalar};
 
 /// Orders from which the search sets out at random, beside that of the fleet and the longest motion first.
@@ -63,8 +63,8 @@ impl Forbidden {
     /// The schedule of the most agents, and of those the one with the least sum of delays, of all orders that are tried.
     pub(super) fn schedule(&self, longest_first: Vec<usize>, seed: u64) -> Schedule {
         let file: Vec<usize> = (0..self.0.len()).collect();
-        let mut choices = Choices(seed);
-        let random: Vec<_> = (0..RANDOM).map(|_| choices.shuffled(&file)).collect();
+        let mut orders = Random(seed);
+        let random: Vec<_> = (0..RANDOM).map(|_| orders.shuffled(&file)).collect();
         let tried = [file, longest_first].into_iter().chain(random).flat_map(|order| {
             let first = self.in_order(order);
             std::iter::successors(Some(first), |before| self.again(before)).take(ROUNDS)

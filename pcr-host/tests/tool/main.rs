@@ -1,6 +1,7 @@
 //! The binary `pcr`, end to end: arguments and standard input in; output, messages and exit status out.
 
 mod check;
+mod compare;
 mod fixture;
 mod formats;
 mod import;

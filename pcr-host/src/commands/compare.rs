@@ -1,0 +1,87 @@
+//! `pcr compare`.
+
+use super::{STATUSES, Stop, scenario};
+use clap::{Args, ValueEnum};
+use pcr_host::compare::{Comparison, Effort};
+use pcr_host::import::Options;
+use pcr_host::progress::Progress;
+use pcr_host::regions::Failure;
+use pcr_host::report;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr compare                                        every method on the paper's 12 agents
+  pcr compare fleet.json --method polyline           pcr, and methods whose names hold a word
+  pcr compare small.json large.json --format csv     a line a method and a scenario";
+
+/// Run this and other methods side by side: time, memory, and errors against the definition
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+pub(super) struct Arguments {
+    /// Scenarios (JSON); the paper's 12 agents if left out
+    files: Vec<PathBuf>,
+    /// Only methods whose names hold this
+    #[arg(long = "method", value_name = "WORD")]
+    methods: Vec<String>,
+    /// Rounds in which all methods are run, 1 to 1000; slow methods take part in fewer
+    #[arg(long, value_name = "N", default_value_t = 51, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    rounds: u16,
+    /// Form of the output
+    #[arg(long, value_enum, default_value_t = Output::Table)]
+    format: Output,
+    #[command(flatten)]
+    import: Options,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Output {
+    /// For reading
+    Table,
+    /// The same in Markdown
+    Markdown,
+    /// One object a scenario
+    Json,
+    /// One line a method
+    Csv,
+}
+
+/// Time that a method gets in all rounds \[s\].
+const BUDGET: f64 = 0.5;
+
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        let files: Vec<Option<&Path>> = match &self.files[..] {
+            [] => vec![None],
+            files => files.iter().map(|file| Some(&**file)).collect(),
+        };
+        let mut out = BufWriter::new(io::stdout().lock());
+        if self.format == Output::Csv {
+            out.write_all(report::COMPARISON_CSV_HEADER.as_bytes())?;
+        }
+        let effort = Effort { rounds: self.rounds.into(), budget: BUDGET };
+        for (place, &file) in files.iter().enumerate() {
+            let scenario = scenario(file, &self.import)?;
+            let progress = Progress::new("methods");
+            let refused = |refused| Stop::wrong(file, Failure::Refused(refused));
+            let comparison =
+                Comparison::new(&scenario, effort, &self.methods, &mut |done, total| progress.set(done, total))
+                    .map_err(refused)?;
+            drop(progress);
+            match self.format {
+                Output::Table | Output::Markdown if place > 0 => writeln!(out)?,
+                _ => {}
+            }
+            match self.format {
+                Output::Table => report::comparison_table(&comparison, false, &mut out)?,
+                Output::Markdown => report::comparison_table(&comparison, true, &mut out)?,
+                Output::Json => report::json(&comparison, &mut out)?,
+                Output::Csv => report::comparison_csv(&comparison, &mut out)?,
+            }
+            out.flush()?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

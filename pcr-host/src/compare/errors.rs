@@ -1,0 +1,138 @@
+//! An answer against the reference.
+
+use super::reference::{self, Contact};
+use super::track::near;
+use super::{Answer, Field, Found, Regions};
+use serde::Serialize;
+
+/// How far an answer is off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Errors {
+    /// Of conflicts.
+    Conflicts {
+        /// In the reference, and deeper than 1e-10 m.
+        conflicts: usize,
+        /// Of these, not found.
+        missed: usize,
+        /// Found where there are none.
+        invented: usize,
+        /// Largest difference of a begin or end \[s\].
+        time: f64,
+    },
+    /// Of regions.
+    Regions {
+        /// Of all regions \[m s\].
+        area: f64,
+        /// Of the symmetric difference to the reference \[m s\].
+        difference: f64,
+    },
+}
+
+/// The conflicts of a fleet by the definition.
+#[derive(Clone, Debug)]
+pub(super) struct Truth {
+    /// By the agents, then by the begin.
+    contacts: Vec<([usize; 2], Vec<Contact>)>,
+}
+
+impl Truth {
+    pub(super) fn new(field: &Field<'_>) -> Self {
+        let mut contacts = Vec::new();
+        for (first, a) in field.tracks.iter().enumerate() {
+            for (second, b) in field.tracks.iter().enumerate().skip(first + 1) {
+                let found = reference::contacts(a, b, field.horizon);
+                if !found.is_empty() {
+                    contacts.push(([first, second], found));
+                }
+            }
+        }
+        Self { contacts }
+    }
+
+    fn of(&self, agents: [usize; 2]) -> &[Contact] {
+        let place = self.contacts.binary_search_by_key(&agents, |(agents, _)| *agents);
+        place.map_or(&[], |place| &self.contacts[place].1)
+    }
+
+    fn conflicts(&self, found: &[Found]) -> Errors {
+        let first_only = found.iter().any(|found| found.end.is_none());
+        let (mut conflicts, mut missed, mut time) = (0, 0, 0.0_f64);
+        for (agents, contacts) in &self.contacts {
+            let of_pair: Vec<&Found> = found.iter().filter(|found| found.agents == *agents).collect();
+            let asked = if first_only { &contacts[..1] } else { &contacts[..] };
+            for contact in asked {
+                conflicts += usize::from(contact.certain);
+                match of_pair.iter().find(|found| meets(found, contact)) {
+                    Some(found) => time = time.max(off(found, contact)),
+                    None => missed += usize::from(contact.certain),
+                }
+            }
+        }
+        let invented = found.iter().filter(|found| !self.of(found.agents).iter().any(|contact| meets(found, contact)));
+        Errors::Conflicts { conflicts, missed, invented: invented.count(), time }
+    }
+}
+
+/// Whether they have any time in common; who tells the begin only is taken at their word.
+fn meets(found: &Found, contact: &Contact) -> bool {
+    let [begin, end] = contact.time;
+    found.end.is_none_or(|found_end| found.begin <= end && begin <= found_end)
+}
+
+fn off(found: &Found, contact: &Contact) -> f64 {
+    let [begin, end] = contact.time;
+    let late = found.end.map_or(0.0, |found_end| (found_end - end).abs());
+    late.max((found.begin - begin).abs())
+}
+
+/// Times at which each ordered pair is looked at, at least and at most.
+const TIMES: [usize; 2] = [4, 200];
+
+/// Slices of a fleet, about.
+const SLICES: usize = 20_000;
+
+fn regions(field: &Field<'_>, regions: &dyn Regions) -> Errors {
+    let bounds: Vec<[f64; 4]> = field.tracks.iter().map(|track| track.bounds()).collect();
+    let mut pairs = Vec::new();
+    for ego in 0..bounds.len() {
+        let reach = |other: usize| field.tracks[ego].radius + field.tracks[other].radius;
+        let others = (0..bounds.len()).filter(|&other| other != ego);
+        pairs.extend(others.filter(|&other| near(bounds[ego], bounds[other], reach(other))).map(|other| [ego, other]));
+    }
+    let times = (SLICES / pairs.len().max(1)).clamp(TIMES[0], TIMES[1]);
+    let (mut area, mut difference) = (0.0, 0.0);
+    for [ego, other] in pairs {
+        let (own, their) = (&field.tracks[ego], &field.tracks[other]);
+        let step = (their.time[1] - their.time[0]) / times as f64;
+        for k in 0..times {
+            let time = their.time[0] + step * (k as f64 + 0.5);
+            let exact = reference::slice(own, their.position(time), own.radius + their.radius);
+            let given = regions.slice(ego, other, time);
+            area += step * measure(&exact);
+            difference += step * apart(&exact, &given);
+        }
+    }
+    Errors::Regions { area, difference }
+}
+
+fn measure(parts: &[[f64; 2]]) -> f64 {
+    parts.iter().map(|[from, to]| to - from).sum()
+}
+
+/// Length of what belongs to one of two sets only, by their borders.
+fn apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    let mut borders: Vec<f64> = a.iter().chain(b).flatten().copied().collect();
+    borders.sort_by(f64::total_cmp);
+    let holds = |set: &[[f64; 2]], at: f64| set.iter().any(|[from, to]| *from <= at && at <= *to);
+    let parts = borders.windows(2).map(|pair| (pair[1] - pair[0], 0.5 * (pair[0] + pair[1])));
+    parts.filter(|(_, middle)| holds(a, *middle) != holds(b, *middle)).map(|(length, _)| length).sum()
+}
+
+/// How far an answer is off.
+pub(super) fn errors(field: &Field<'_>, truth: &Truth, answer: &Answer<'_>) -> Errors {
+    match answer {
+        Answer::Regions(given) => regions(field, given.as_ref()),
+        Answer::Conflicts(found) => truth.conflicts(found),
+    }
+}

@@ -1,0 +1,154 @@
+//! This library.
+
+use super::{Answer, Field, Found, Method, Number, Question, Regions};
+use crate::fleet::{HostEcm, build_ecm};
+use crate::rows::{Row, rows};
+use pcr_core::{Encounter, Interval, Motion, Piece, Region, RegionRef};
+use pcr_fixed::Q16;
+use rayon::prelude::*;
+use std::marker::PhantomData;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Cores {
+    One,
+    All,
+}
+
+impl Cores {
+    fn suffix(self) -> &'static str {
+        match self {
+            Self::One => "",
+            Self::All => ", all cores",
+        }
+    }
+}
+
+/// Collision regions in the format `S`.
+struct Map<S>(Cores, PhantomData<S>);
+
+/// Conflicts in the format `S`.
+struct Conflicts<S>(Cores, PhantomData<S>);
+
+pub(super) fn regions() -> Vec<Box<dyn Method>> {
+    vec![
+        Box::new(Map::<f64>(Cores::One, PhantomData)),
+        Box::new(Map::<f64>(Cores::All, PhantomData)),
+        Box::new(Map::<f32>(Cores::One, PhantomData)),
+        Box::new(Map::<Q16>(Cores::One, PhantomData)),
+    ]
+}
+
+pub(super) fn conflicts() -> Vec<Box<dyn Method>> {
+    vec![
+        Box::new(Conflicts::<f64>(Cores::One, PhantomData)),
+        Box::new(Conflicts::<f64>(Cores::All, PhantomData)),
+        Box::new(Conflicts::<f32>(Cores::One, PhantomData)),
+        Box::new(Conflicts::<Q16>(Cores::One, PhantomData)),
+    ]
+}
+
+impl<S: Number> Method for Map<S> {
+    fn name(&self) -> String {
+        format!("pcr {}{}", S::NAME, self.0.suffix())
+    }
+
+    fn question(&self) -> Question {
+        Question::Regions
+    }
+
+    fn tells(&self) -> &'static str {
+        "regions, rounded outward"
+    }
+
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+        let motions = S::motions(field)?;
+        Some(Answer::Regions(match self.0 {
+            Cores::One => Box::new(Whole { motions, table: build_ecm(motions).ok()? }),
+            Cores::All => Box::new(Rows(rows(motions).ok()?)),
+        }))
+    }
+}
+
+/// One table.
+struct Whole<'f, 'a, S: Number> {
+    motions: &'f [Motion<'a, S>],
+    table: HostEcm<S>,
+}
+
+/// A table an agent, of its regions with those after it.
+struct Rows<'f, S: Number>(Vec<Row<'f, S>>);
+
+fn bytes<S: Number>(table: &HostEcm<S>) -> usize {
+    table.len() * size_of::<Region>() + table.pieces() * size_of::<Piece<S>>()
+}
+
+fn slice<'a, S: Number>(regions: impl Iterator<Item = RegionRef<'a, S>>, time: f64) -> Vec<[f64; 2]> {
+    let time = S::from_f64(time);
+    let slices = regions.flat_map(|region| region.slice_at(time).collect::<Vec<_>>());
+    slices.map(|slice| [slice.lo.to_f64(), slice.hi.to_f64()]).collect()
+}
+
+impl<S: Number> Regions for Whole<'_, '_, S> {
+    fn count(&self) -> usize {
+        2 * self.table.len()
+    }
+
+    fn bytes(&self) -> usize {
+        bytes(&self.table)
+    }
+
+    fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]> {
+        slice(self.table.pair(self.motions, ego, other), time)
+    }
+}
+
+impl<S: Number> Regions for Rows<'_, S> {
+    fn count(&self) -> usize {
+        self.0.iter().map(|row| 2 * row.table().len()).sum()
+    }
+
+    fn bytes(&self) -> usize {
+        self.0.iter().map(|row| bytes(row.table())).sum()
+    }
+
+    fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]> {
+        let row = self.0.get(ego.min(other));
+        row.map_or(Vec::new(), |row| slice(row.pair(ego, other), time))
+    }
+}
+
+impl<S: Number> Method for Conflicts<S> {
+    fn name(&self) -> String {
+        format!("pcr {}{}", S::NAME, self.0.suffix())
+    }
+
+    fn question(&self) -> Question {
+        Question::Conflicts
+    }
+
+    fn tells(&self) -> &'static str {
+        "intervals, certified"
+    }
+
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+        let motions = S::motions(field)?;
+        let during = field.horizon.map(S::from_f64);
+        let during = Interval::new(during[0], during[1]);
+        let of =
+            |first: usize| (first + 1..motions.len()).flat_map(move |second| pair(motions, [first, second], during));
+        Some(Answer::Conflicts(match self.0 {
+            Cores::One => (0..motions.len()).flat_map(of).collect(),
+            Cores::All => (0..motions.len()).into_par_iter().flat_map_iter(of).collect(),
+        }))
+    }
+}
+
+fn pair<'f, S: Number>(
+    motions: &'f [Motion<'_, S>],
+    agents: [usize; 2],
+    during: Interval<S>,
+) -> impl Iterator<Item = Found> + 'f {
+    let encounter = Encounter::new(&motions[agents[0]], &motions[agents[1]]);
+    let contacts = encounter.contacts(during);
+    contacts.map(move |time| Found { agents, begin: time.lo.to_f64(), end: Some(time.hi.to_f64()) })
+}

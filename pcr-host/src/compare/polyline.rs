@@ -1,0 +1,140 @@
+//! Conservative polylines: paths flattened and speeds made constant piece by piece, so that no position is off by more than
+//! a tolerance, and discs grown by it; then two discs on two lines, in closed form. That is what planners for many
+//! agents do that know lines only.
+
+use super::track::{Point, Track, near};
+use super::{Answer, Field, Found, Method, Question};
+
+/// With the largest distance from the path \[m\].
+struct Polyline {
+    tolerance: f64,
+}
+
+pub(super) fn methods() -> Vec<Box<dyn Method>> {
+    [1e-3, 1e-2].into_iter().map(|tolerance| Box::new(Polyline { tolerance }) as Box<dyn Method>).collect()
+}
+
+impl Method for Polyline {
+    fn name(&self) -> String {
+        format!("polyline {} mm", 1e3 * self.tolerance)
+    }
+
+    fn question(&self) -> Question {
+        Question::Conflicts
+    }
+
+    fn tells(&self) -> &'static str {
+        "intervals, conservative"
+    }
+
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+        let knots: Vec<Vec<Knot>> =
+            field.tracks.iter().map(|track| knots(track, self.tolerance, field.horizon)).collect();
+        let bounds: Vec<[f64; 4]> = field.tracks.iter().map(Track::bounds).collect();
+        let mut found = Vec::new();
+        for (first, a) in field.tracks.iter().enumerate() {
+            for (second, b) in field.tracks.iter().enumerate().skip(first + 1) {
+                let reach = a.radius + b.radius + 2.0 * self.tolerance;
+                if near(bounds[first], bounds[second], reach) {
+                    contacts(&knots[first], &knots[second], reach, |begin, end| {
+                        found.push(Found { agents: [first, second], begin, end: Some(end) });
+                    });
+                }
+            }
+        }
+        Some(Answer::Conflicts(found))
+    }
+}
+
+/// From here on with constant velocity.
+#[derive(Clone, Copy, Debug)]
+struct Knot {
+    time: f64,
+    at: Point,
+    velocity: Point,
+}
+
+/// The times at which a track is cut: where segments and phases begin, and between them so often that on none of the parts
+/// acceleration and curvature (with `weight` 1, otherwise less) lead it away from its chord by more than the tolerance.
+pub(super) fn cuts(track: &Track, tolerance: f64, weight: f64) -> Vec<f64> {
+    let mut borders: Vec<f64> = track.phases().iter().map(|phase| phase.begin).collect();
+    borders.extend(track.ways().iter().map(|way| track.time_at(way.from)));
+    borders.extend(track.time);
+    borders.sort_by(f64::total_cmp);
+    borders.dedup();
+    let mut cuts = Vec::new();
+    for pair in borders.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let middle = 0.5 * (from + to);
+        let curvature = track.way_at(track.length_at(middle)).curvature.abs();
+        let phase = track.phases().iter().rev().find(|phase| phase.begin <= middle);
+        let (acceleration, speed) = phase.map_or((0.0, 0.0), |phase| (phase.acceleration.abs(), phase.top_speed()));
+        let bend = acceleration + weight * curvature * speed * speed;
+        let parts = ((to - from) * (bend / (8.0 * tolerance)).sqrt()).ceil().max(1.0);
+        cuts.extend((0..parts as usize).map(|k| from + (to - from) * (k as f64 / parts)));
+    }
+    cuts.push(track.time[1]);
+    cuts
+}
+
+fn knots(track: &Track, tolerance: f64, horizon: [f64; 2]) -> Vec<Knot> {
+    let mut times = vec![horizon[0]];
+    times.extend(cuts(track, tolerance, 1.0));
+    times.push(horizon[1]);
+    times.dedup();
+    let points: Vec<Point> = times.iter().map(|&time| track.position(time)).collect();
+    let velocity = |k: usize| match (times.get(k + 1), points.get(k + 1)) {
+        (Some(next), Some(to)) => [0, 1].map(|axis| (to[axis] - points[k][axis]) / (next - times[k])),
+        _ => [0.0; 2],
+    };
+    (0..times.len()).map(|k| Knot { time: times[k], at: points[k], velocity: velocity(k) }).collect()
+}
+
+/// Hands over each contact, from begin to end.
+fn contacts(a: &[Knot], b: &[Knot], reach: f64, mut take: impl FnMut(f64, f64)) {
+    let mut open: Option<[f64; 2]> = None;
+    let (mut i, mut j) = (0, 0);
+    while i + 1 < a.len() && j + 1 < b.len() {
+        let (from, to) = (a[i].time.max(b[j].time), a[i + 1].time.min(b[j + 1].time));
+        if let Some([begin, end]) = within(&a[i], &b[j], from, to, reach) {
+            match &mut open {
+                Some(last) if last[1] >= begin => last[1] = end,
+                _ => {
+                    if let Some([begin, end]) = open.replace([begin, end]) {
+                        take(begin, end);
+                    }
+                }
+            }
+        }
+        if a[i + 1].time <= to {
+            i += 1;
+        }
+        if b[j + 1].time <= to {
+            j += 1;
+        }
+    }
+    if let Some([begin, end]) = open {
+        take(begin, end);
+    }
+}
+
+/// When two points on lines are within reach, between two times.
+fn within(a: &Knot, b: &Knot, from: f64, to: f64, reach: f64) -> Option<[f64; 2]> {
+    let place = |knot: &Knot, axis: usize| knot.at[axis] + knot.velocity[axis] * (from - knot.time);
+    let apart = [0, 1].map(|axis| place(a, axis) - place(b, axis));
+    let speed = [0, 1].map(|axis| a.velocity[axis] - b.velocity[axis]);
+    let dot = |p: Point, q: Point| p[0] * q[0] + p[1] * q[1];
+    let (square, toward) = (dot(speed, speed), dot(apart, speed));
+    let short = dot(apart, apart) - reach * reach;
+    if square <= 0.0 {
+        return (short <= 0.0).then_some([from, to]);
+    }
+    let discriminant = toward * toward - square * short;
+    if discriminant < 0.0 {
+        return None;
+    }
+    let root = discriminant.sqrt();
+    let (begin, end) = (from + (-toward - root) / square, from + (-toward + root) / square);
+    let (begin, end) = (begin.max(from), end.min(to));
+    (begin <= end).then_some([begin, end])
+}

@@ -1,0 +1,113 @@
+//! Comparisons as text.
+
+use super::columns::Columns;
+use super::{heading, quoted};
+use crate::compare::{Comparison, Errors, Question, Row};
+use std::io::{self, Write};
+
+/// The header line of [`comparison_csv`].
+pub const COMPARISON_CSV_HEADER: &str =
+    "name,agents,method,question,ms,ratio,rounds,count,bytes,conflicts,missed,invented,time,area,difference\n";
+
+/// A line a method.
+///
+/// # Errors
+/// Those of the writer.
+pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
+    let (name, agents) = (quoted(&comparison.name), comparison.agents);
+    for row in &comparison.rows {
+        let Row { method, ms, ratio, rounds, count, bytes, .. } = row;
+        let question = match row.question {
+            Question::Regions => "regions",
+            Question::Conflicts => "conflicts",
+        };
+        let errors = match row.errors {
+            Errors::Conflicts { conflicts, missed, invented, time } => {
+                format!("{conflicts},{missed},{invented},{time},,")
+            }
+            Errors::Regions { area, difference } => format!(",,,,{area},{difference}"),
+        };
+        let method = quoted(method);
+        writeln!(out, "{name},{agents},{method},{question},{ms},{ratio},{rounds},{count},{bytes},{errors}")?;
+    }
+    Ok(())
+}
+
+/// A heading and a table for each question, as text or in Markdown.
+///
+/// # Errors
+/// Those of the writer.
+pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl Write) -> io::Result<()> {
+    let Comparison { agents, rows, .. } = comparison;
+    if !markdown {
+        writeln!(out, "{}: {agents} agents", heading(&comparison.name))?;
+    }
+    for question in [Question::Regions, Question::Conflicts] {
+        let titles = match question {
+            Question::Regions => ["pairs or regions", "kept", "area off"].as_slice(),
+            Question::Conflicts => &["found", "missed", "invented", "time off"],
+        };
+        let mut all = vec!["<method", "<tells", "time", "of pcr's"];
+        all.extend(titles);
+        let mut columns = Columns::new(&all);
+        for row in rows.iter().filter(|row| row.question == question) {
+            columns.row(cells(row));
+        }
+        writeln!(out)?;
+        if markdown { columns.write_markdown(out)? } else { columns.write(out)? }
+    }
+    Ok(())
+}
+
+fn cells(row: &Row) -> Vec<String> {
+    let mut cells = vec![row.method.clone(), row.tells.to_owned(), time(row.ms), times(row.ratio)];
+    match row.errors {
+        Errors::Regions { area, difference } => {
+            cells.extend([row.count.to_string(), bytes(row.bytes), share(difference / area)]);
+        }
+        Errors::Conflicts { conflicts, missed, invented, time } => cells.extend([
+            format!("{} of {conflicts}", conflicts - missed),
+            missed.to_string(),
+            invented.to_string(),
+            seconds(time),
+        ]),
+    }
+    cells
+}
+
+/// Three digits.
+fn digits(value: f64) -> String {
+    let before = value.abs().log10().floor().max(0.0);
+    let decimals = if value.abs() < 1.0 { 3.0 } else { (2.0 - before).max(0.0) };
+    format!("{value:.*}", decimals as usize)
+}
+
+/// A time in milliseconds.
+pub(super) fn time(ms: f64) -> String {
+    format!("{} ms", digits(ms))
+}
+
+/// How many times something.
+pub(super) fn times(ratio: f64) -> String {
+    format!("{} ×", if ratio < 1.0 { format!("{ratio:.2}") } else { digits(ratio) })
+}
+
+/// A number of bytes.
+pub(super) fn bytes(count: usize) -> String {
+    let count = count as f64;
+    match count {
+        0.0..1e3 => format!("{count} B"),
+        1e3..1e6 => format!("{} kB", digits(count / 1e3)),
+        _ => format!("{} MB", digits(count / 1e6)),
+    }
+}
+
+/// An error in seconds.
+pub(super) fn seconds(time: f64) -> String {
+    if time < 1e-3 { format!("{time:.0e} s") } else { format!("{} ms", digits(1e3 * time)) }
+}
+
+/// A share in per cent.
+pub(super) fn share(part: f64) -> String {
+    if part < 1e-4 { format!("{part:.0e}") } else { format!("{} %", digits(100.0 * part)) }
+}

@@ -1,0 +1,97 @@
+//! Which boxes meet: an even grid, each box in all cells that it covers. Cells are as large as the boxes are on average, so
+//! that a box of a fleet of constant density has a constant number of neighbours, wherever it is.
+
+/// Cells for each box at most: long boxes cannot fill the memory.
+const CELLS: f64 = 4.0;
+
+/// Left, bottom, right, top.
+type Box = [f64; 4];
+
+/// An index of boxes.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    boxes: Vec<Box>,
+    origin: [f64; 2],
+    cell: f64,
+    size: [usize; 2],
+    /// Where the boxes of each cell begin in `members`, and after the last one its end.
+    begins: Vec<u32>,
+    members: Vec<u32>,
+}
+
+fn meet(a: &Box, b: &Box) -> bool {
+    a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3]
+}
+
+impl Grid {
+    /// The index of some boxes. O(boxes) if they are of about the same size, O(boxes^1.5) at worst.
+    pub fn new(boxes: Vec<Box>) -> Self {
+        let all = boxes.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]);
+        let all = all.unwrap_or([0.0; 4]);
+        let (width, height) = (all[2] - all[0], all[3] - all[1]);
+        let count = boxes.len().max(1) as f64;
+        let mean = boxes.iter().map(|b| 0.5 * (b[2] - b[0] + b[3] - b[1])).sum::<f64>() / count;
+        let smallest = (width * height / (CELLS * count)).sqrt().max(width.max(height) / (CELLS * count));
+        let cell = mean.max(smallest).max(f64::MIN_POSITIVE);
+        let size = [width, height].map(|side| (side / cell) as usize + 1);
+        let mut grid = Self { boxes, origin: [all[0], all[1]], cell, size, begins: Vec::new(), members: Vec::new() };
+        grid.fill();
+        grid
+    }
+
+    /// Sorts the boxes by their cells, in two passes.
+    fn fill(&mut self) {
+        let mut begins = vec![0_u32; self.size[0] * self.size[1] + 1];
+        for b in &self.boxes {
+            self.cells(b).for_each(|cell| begins[cell + 1] += 1);
+        }
+        for cell in 1..begins.len() {
+            begins[cell] += begins[cell - 1];
+        }
+        let mut next = begins.clone();
+        let mut members = vec![0; begins.last().map_or(0, |&end| end as usize)];
+        for (k, b) in self.boxes.iter().enumerate() {
+            for cell in self.cells(b) {
+                members[next[cell] as usize] = k as u32;
+                next[cell] += 1;
+            }
+        }
+        (self.begins, self.members) = (begins, members);
+    }
+
+    fn place(&self, axis: usize, value: f64) -> usize {
+        // A cast saturates: what is left of the grid is in its first cell, what is right of it in the last one.
+        (((value - self.origin[axis]) / self.cell) as usize).min(self.size[axis] - 1)
+    }
+
+    /// The cells that a box covers.
+    fn cells(&self, b: &Box) -> impl Iterator<Item = usize> + use<> {
+        let columns = self.place(0, b[0])..=self.place(0, b[2]);
+        let rows = self.place(1, b[1])..=self.place(1, b[3]);
+        let width = self.size[0];
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// The boxes that meet one, in increasing order. O(boxes in the cells that it covers).
+    pub fn near(&self, b: &Box) -> Vec<u32> {
+        let mut near = Vec::new();
+        for cell in self.cells(b) {
+            let members = &self.members[self.begins[cell] as usize..self.begins[cell + 1] as usize];
+            let meets = |other: &Box| {
+                // Two boxes may share many cells; the one with the lower left corner of what they share counts.
+                let corner = [b[0].max(other[0]), b[1].max(other[1])];
+                meet(b, other) && self.place(1, corner[1]) * self.size[0] + self.place(0, corner[0]) == cell
+            };
+            near.extend(members.iter().copied().filter(|&member| meets(&self.boxes[member as usize])));
+        }
+        near.sort_unstable();
+        near
+    }
+
+    /// The boxes after this one that meet it, in increasing order.
+    pub fn after(&self, place: usize) -> Vec<u32> {
+        let mut near = self.boxes.get(place).map_or(Vec::new(), |b| self.near(b));
+        near.retain(|&other| other as usize > place);
+        near
+    }
+}

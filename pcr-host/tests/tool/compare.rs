@@ -1,0 +1,34 @@
+//! `pcr compare`: its forms.
+
+use crate::fixture::{crossing, file, run};
+
+#[test]
+fn two_scenarios_in_every_form() {
+    let names = ["one", "two"].map(|name| file("compare", &format!("{name}.json"), crossing().to_string()));
+    let of = |format: &str| {
+        run(&["compare", &names[0], &names[1], "--method", "polyline", "--rounds", "1", "--format", format]).ok()
+    };
+    let table = of("table");
+    assert_eq!(table.matches("crossing: 2 agents").count(), 2, "{table}");
+    assert!(table.contains("\n  polyline 1 mm ") && !table.contains("sampled"), "{table}");
+    let csv = of("csv");
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines.len(), 1 + 2 * 4, "{csv}");
+    assert!(lines.iter().all(|line| line.split(',').count() == 15), "{csv}");
+    assert!(of("markdown").contains("\n| polyline 1 mm | intervals, conservative | "));
+    for line in of("json").lines() {
+        let value: serde_json::Value = serde_json::from_str(line).unwrap();
+        let rows = value["rows"].as_array().unwrap();
+        assert_eq!((rows.len(), &rows[0]["method"]), (4, &serde_json::json!("pcr f64")));
+        assert!(rows.iter().all(|row| row["ms"].as_f64().unwrap() > 0.0));
+    }
+}
+
+#[test]
+fn a_scenario_that_is_refused_is_named() {
+    let mut scenario = crossing();
+    scenario["agents"][0]["radius"] = serde_json::json!(0);
+    let name = file("compare", "wrong.json", scenario.to_string());
+    let expected = format!("pcr: {name}:1: agent 1, radius: 0 is out of range; allowed is above 0, up to 1e10\n");
+    assert_eq!(run(&["compare", &name]).failed(2), expected);
+}
