@@ -33,6 +33,8 @@ release() {
   cargo test --workspace --release --locked
   step "benchmarks, one pass each"
   cargo bench --workspace --locked -- --test
+  step "instructions of the library's jobs"
+  benches/instructions.sh
 }
 
 # The features of a crate, and all sets of them, a line each.

@@ -1,16 +1,46 @@
-//! Builds the table of a fleet again and again, for profilers: `work FLEET TIMES`, a name in `tests/data` and a count.
+//! Does one job again and again, for profilers: `work JOB FLEET TIMES`.
+//!
+//! The jobs are `table` (all regions of the fleet), `exchange` (those of its first agent) and `conflicts` (when the
+//! agents of each pair are in contact). Fleets are `scattered`, 100 agents that cannot meet, and the files of
+//! `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
 
-use pcr_benches::{Storage, fleet};
+use pcr_benches::{Storage, fleet, scattered};
+use pcr_core::{Encounter, Interval, Motion};
 use std::hint::black_box;
+use std::process::ExitCode;
 
-fn main() {
-    let mut arguments = std::env::args().skip(1);
-    let name = arguments.next().unwrap_or_else(|| "paper12".into());
-    let times: u32 = arguments.next().and_then(|times| times.parse().ok()).unwrap_or(1);
-    let fleet = fleet::<f64>(&name);
-    let motions = fleet.motions();
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (job, name, times) = match arguments.as_slice() {
+        [job, name, times] => (job.as_str(), name.as_str(), times.parse()),
+        _ => ("", "", "".parse()),
+    };
+    let (Ok(times), "table" | "exchange" | "conflicts"): (Result<u32, _>, _) = (times, job) else {
+        eprintln!("work table|exchange|conflicts FLEET TIMES");
+        return ExitCode::from(2);
+    };
+    let fleet = if name == "scattered" { scattered::<f64>(10) } else { fleet::<f64>(name) };
+    let mut motions = fleet.motions();
+    let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
     let mut storage = Storage::of(&motions);
+    println!("{} {}", motions.len() * (motions.len() - 1) / 2, 2 * storage.pieces.len());
+    let mut table = storage.table(&motions);
+    let first = motions[0];
     for _ in 0..times {
-        black_box(storage.table(black_box(&motions)).len());
+        let found = match job {
+            "table" => {
+                drop(table);
+                table = storage.table(black_box(&motions));
+                table.len()
+            }
+            "exchange" => usize::from(table.replace(&mut motions, 0, black_box(first)).is_ok()),
+            _ => {
+                let fleet = black_box(&motions);
+                let pairs = (0..fleet.len()).flat_map(|i| (i + 1..fleet.len()).map(move |j| (&fleet[i], &fleet[j])));
+                pairs.map(|(a, b)| Encounter::new(a, b).contacts(time).count()).sum()
+            }
+        };
+        black_box(found);
     }
+    ExitCode::SUCCESS
 }

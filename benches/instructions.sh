@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Counts the instructions that jobs of the library take on the host, and compares them with instructions.txt.
+#   instructions.sh            fails if a figure differs from that file by more than 3 %
+#   UPDATE=1 instructions.sh   writes the file
+# Counts repeat to the digit on one machine; another C library or toolchain moves them a little.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+if ! command -v valgrind >/dev/null; then
+  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "no valgrind: install it" >&2; exit 1; }
+  echo "installing valgrind"
+  apt-get update -qq && apt-get install -qq -y --no-install-recommends valgrind >/dev/null
+fi
+cargo build --quiet --locked --profile bench -p pcr-benches --example work
+work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release/examples/work
+
+counted() { valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work" "$@" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'; }
+
+# figure JOB FLEET WHAT: two runs, whose difference is five times the job.
+figure() {
+  local job=$1 fleet=$2 what=$3 once pairs pieces
+  once=$((($(counted "$job" "$fleet" 6) - $(counted "$job" "$fleet" 1)) / 5))
+  read -r pairs pieces < <("$work" "$job" "$fleet" 0)
+  printf '%9d  %s: %s\n' "$once" "$fleet" "$what"
+  case $job:$pieces in
+    conflicts:*) printf '%9d  ... per pair of agents\n' $((once / pairs)) ;;
+    table:0) printf '%9d  ... per pair of agents that cannot meet\n' $((once / pairs)) ;;
+    table:*) printf '%9d  ... per piece of either direction\n' $((once / pieces)) ;;
+  esac
+}
+
+{
+  echo "# instructions, f64, $(rustc -V), $(uname -m)"
+  for fleet in paper12 table6-100 scattered; do
+    figure table $fleet "all regions, both directions"
+    figure conflicts $fleet "when the agents of each pair are in contact"
+  done
+  figure exchange table6-100 "exchange of one agent"
+} | tee /dev/stderr >instructions.new
+
+if [ "${UPDATE:-}" = 1 ]; then
+  mv instructions.new instructions.txt
+else
+  paste -d '|' instructions.txt instructions.new | awk -F '|' '
+    NR > 1 { split($1, old, "  +"); split($2, new, "  +"); a = $1 + 0; b = $2 + 0
+      if (substr($1, 10) != substr($2, 10) || b > 1.03 * a + 1 || b < 0.97 * a - 1) { print "was " $1 ", is " $2; bad = 1 } }
+    END { exit bad }' >&2 || { echo "the figures differ: UPDATE=1 $0 writes them anew" >&2; rm instructions.new; exit 1; }
+  rm instructions.new
+fi
