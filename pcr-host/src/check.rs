@@ -81,6 +81,11 @@ impl Verdict {
             let mut found: Vec<Conflict> = Vec::new();
             let mut closest_of: Option<Closest> = None;
             for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
+                let [own_time, their_time] = [own, other].map(|(disc, motion)| disc.time(motion, time));
+                let time = Interval { lo: own_time.lo.max(their_time.lo), hi: own_time.hi.min(their_time.hi) };
+                if time.lo > time.hi {
+                    continue;
+                }
                 let encounter = Encounter::new(own.1, other.1);
                 found.extend(encounter.conflicts(time).map(|conflict| Conflict {
                     i: *i,
@@ -117,6 +122,9 @@ impl Verdict {
 /// A disc of an agent, and its motion.
 type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
 
+/// Times that are one but for rounding \[s\].
+const NEAR: f64 = 1e-9;
+
 /// The conflicts of two agents by those of their discs: what lasts on is one.
 fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
     conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
@@ -124,7 +132,7 @@ fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
     let mut joined: Vec<Conflict> = Vec::new();
     for next in conflicts {
         match joined.last_mut() {
-            Some(last) if next.t[0] <= last.t[1] => {
+            Some(last) if next.t[0] <= last.t[1] + NEAR => {
                 (last.t, last.depth) = (hull(last.t, next.t), last.depth.max(next.depth));
                 (last.l_i, last.l_j) = (hull(last.l_i, next.l_i), hull(last.l_j, next.l_j));
                 last.touching &= next.touching;

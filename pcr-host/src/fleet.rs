@@ -7,6 +7,7 @@ pub(crate) mod speed;
 #[cfg(test)]
 mod tests;
 
+use crate::import::TURN;
 use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
@@ -168,7 +169,7 @@ impl<S: Format> Parts<S> {
         let (segments, sources) = place(agent)?;
         let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
         let phases = phases(agent, path.length())?;
-        let radius = number("radius", agent.radius).map_err(of_agent)?;
+        let radius = number("radius", agent.reach()).map_err(of_agent)?;
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
         let margin = number("margin", agent.margin).map_err(of_agent)?;
         let parts = Self { segments, sources, phases, radius, margin, start };
@@ -189,10 +190,15 @@ fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Faul
     let [x, y, heading] = agent.start;
     let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
     let pose = Pose { position, heading: S::angle(heading) };
-    let origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
+    let mut origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
     let (mut segments, mut sources) = (Vec::<Segment<S>>::new(), Vec::new());
     for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
         let at = |problem| (Some(("segment", source)), problem);
+        if let Some(sweep) = turn_in_place::<S>(segment) {
+            let last = segments.last_mut().unwrap_or(&mut origin);
+            *last = last.turned(S::angle(sweep)).map_err(|reason| at(derived::<S>(reason)))?;
+            continue;
+        }
         let turns = segment.turns();
         let curve = match *segment {
             PathSegment::Line { .. } => None,
@@ -217,6 +223,14 @@ fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Faul
     Ok((segments, sources))
 }
 
+/// The angle of a turn in place \[rad\], in a format that has no lengths as small as its radius.
+fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
+    match *segment {
+        PathSegment::Arc { radius: TURN, sweep } if S::from_f64(TURN) == S::ZERO => Some(sweep),
+        _ => None,
+    }
+}
+
 /// The phases of the motion over a path of this length.
 fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
     let duration = agent.duration();
@@ -226,7 +240,12 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
         let duration = figure(duration);
         return Err(of_agent(format!("the motion takes {duration} s; allowed is below {limit:e} s")));
     }
-    match &agent.motion {
+    let motion = if agent.path.iter().any(|segment| turn_in_place::<S>(segment).is_some()) {
+        &waiting::<S>(agent)
+    } else {
+        &agent.motion
+    };
+    match motion {
         MotionSpec::RestToRest { v_max, a_max } => {
             let speed = number("v_max", *v_max).map_err(of_agent)?;
             let acceleration = number("a_max", *a_max).map_err(of_agent)?;
@@ -239,6 +258,26 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
             (part, problem)
         }),
     }
+}
+
+/// The motion of an agent that waits while it turns in place. What is less than the last digit of time and of speed is left
+/// out.
+fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
+    let parts = agent.parts();
+    let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
+    let (mut speed, mut pieces) = (v0, Vec::new());
+    for (segment, parts) in agent.path.iter().zip(parts) {
+        let turns = turn_in_place::<S>(segment).is_some();
+        for part in parts {
+            let after = if turns { 0.0 } else { part.after };
+            let lost = |value: f64| S::from_f64(value) == S::ZERO;
+            if !lost(part.duration) || !lost(after - speed) {
+                pieces.push((part.duration, if part.duration > 0.0 { (after - speed) / part.duration } else { 0.0 }));
+                speed = after;
+            }
+        }
+    }
+    MotionSpec::Profile { v0, pieces }
 }
 
 /// A table on the heap.

@@ -87,6 +87,7 @@ impl Place<'_> {
             id: number as u64,
             radius: radius + deviation,
             footprint: None,
+            loads: Vec::new(),
             margin: 0.0,
             t_start: 0.0,
             start,

@@ -36,6 +36,9 @@ pub struct Answer {
 pub struct Cover {
     /// Number of the agent.
     pub id: u64,
+    /// First and last segment of its path with this outline, counted from 1; none where it is the same on all of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segments: Option<[usize; 2]>,
     /// No point of a disc is farther than this from the polygon \[m\].
     pub overhang: f64,
     /// The discs.
@@ -201,7 +204,7 @@ impl Answer {
         if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
             return Err(Failure::NoSuchAgent(asked, ids));
         }
-        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
         let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
         let motions = fleet.motions();
         let regions = |motions: &[Motion<'_, S>]| -> Result<Vec<Region>, Failure> {
@@ -227,7 +230,7 @@ impl Answer {
             scalar: S::NAME,
             regions: regions(&motions)?,
             margin_regions,
-            footprints: scenario.agents.iter().filter_map(Cover::of).collect(),
+            footprints: scenario.agents.iter().flat_map(Cover::of).collect(),
             error: None,
         })
     }
@@ -246,9 +249,15 @@ impl Answer {
 }
 
 impl Cover {
-    fn of(agent: &Agent) -> Option<Self> {
-        let footprint = agent.footprint.as_ref()?;
-        Some(Self { id: agent.id, overhang: footprint.overhang(), discs: footprint.discs().to_vec() })
+    /// Those of an agent, for each stretch of its path with another outline.
+    fn of(agent: &Agent) -> Vec<Self> {
+        let covers = agent.outlines().into_iter().filter_map(|outline| {
+            let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
+            let footprint = outline.footprint?;
+            let (overhang, discs) = (footprint.overhang(), footprint.discs().to_vec());
+            Some(Self { id: agent.id, segments, overhang, discs })
+        });
+        covers.collect()
     }
 }
 

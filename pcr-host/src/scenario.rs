@@ -23,6 +23,10 @@
 //! - `name` and `t_start` may be left out, and with a profile `v_max` and `a_max`. An unknown key is refused.
 //! - `"footprint": { "polygon": [ { "ahead": 0.8, "left": 0.4 }, ... ], "overhang": 0.1 }` instead of `radius` is the outline of
 //!   the vehicle around the point that travels the path; see [`Footprint`].
+//! - `"loads": [ { "segments": [2, 3], "radius": 0.6 } ]`: another radius, or a `footprint`, from segment 2 to segment 3 (counted
+//!   from 1): what the vehicle carries there.
+//! - `{ "kind": "turn", "sweep": 1.57 }` in a path is a turn in place, an arc of 1 nm radius. With `v_max` and `a_max` it needs
+//!   `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\], and the vehicle comes to rest before and after it.
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
@@ -31,12 +35,18 @@
 mod decode;
 mod encode;
 mod fields;
+mod load;
+mod outline;
+mod parts;
+mod turns;
 
 use crate::footprint::Footprint;
 pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::speed_after;
 pub(crate) use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
+pub use load::Load;
+pub(crate) use parts::Part;
 use std::f64::consts::TAU;
 
 #[cfg(test)]
@@ -60,6 +70,8 @@ pub struct Agent {
     pub radius: f64,
     /// Its outline, if it is no disc.
     pub footprint: Option<Footprint>,
+    /// Other outlines on some of its segments, in their order.
+    pub loads: Vec<Load>,
     /// Margin to be kept around the disc \[m\].
     pub margin: f64,
     /// When it sets off \[s\].

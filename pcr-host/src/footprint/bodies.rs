@@ -1,9 +1,13 @@
-//! The agents of a scenario as discs: those of their footprints, or the one that they are.
+//! The agents of a scenario as discs: those of their footprints, or the one that they are; with loads one for each stretch of
+//! the path on which the outline is the same.
 
-use super::Disc;
 use super::offset::Offset;
 use crate::fleet::{Fleet, Format, Refused};
-use crate::scenario::Scenario;
+use crate::scenario::{Agent, Scenario};
+use pcr_core::{Interval, Motion};
+
+/// Rounding of lengths along a path, relative.
+const ROUNDING: f64 = 1e-12;
 
 /// A scenario whose agents are the discs of another one's.
 pub(crate) struct Bodies<S: Format> {
@@ -21,17 +25,56 @@ pub(crate) struct Disced {
     pub(crate) agent: usize,
     /// None where the agent is the disc.
     offset: Option<Offset>,
+    stretch: Stretch,
+}
+
+/// Where on the path of its agent a disc is there.
+#[derive(Clone, Copy)]
+struct Stretch {
+    /// Length before it \[m\].
+    from: f64,
+    /// Length of the whole path \[m\].
+    length: f64,
+    /// Its first segment (from 0).
+    first: usize,
+    /// Whether it is at the start and at the end of the path.
+    ends: [bool; 2],
 }
 
 impl Disced {
     /// Lengths on the path of the agent, outward, of lengths on that of the disc.
     pub(crate) fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
-        self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths))
+        let [lo, hi] = self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths));
+        let Stretch { from, length, ends, .. } = self.stretch;
+        if ends == [true, true] {
+            return [lo, hi];
+        }
+        // The rounding of the sums.
+        let slack = ROUNDING * (1.0 + length);
+        [(lo + from - slack).max(0.0), (hi + from + slack).min(length)]
     }
 
     /// Segment in the scenario (from 0) of a segment of the disc.
     pub(crate) fn segment(&self, segment: usize) -> Option<usize> {
-        self.offset.as_ref().map_or(Some(segment), |offset| offset.source(segment))
+        let segment = self.offset.as_ref().map_or(Some(segment), |offset| offset.source(segment))?;
+        segment.checked_add(self.stretch.first)
+    }
+
+    /// Whether it is there before the agent sets off.
+    pub(crate) fn is_at_start(&self) -> bool {
+        self.stretch.ends[0]
+    }
+
+    /// Whether it is there after the arrival of the agent.
+    pub(crate) fn is_at_end(&self) -> bool {
+        self.stretch.ends[1]
+    }
+
+    /// When it is there, in a time that holds all motions \[s\].
+    pub(crate) fn time<S: Format>(&self, motion: &Motion<'_, S>, all: Interval<S>) -> Interval<S> {
+        let own = motion.time();
+        let [start, end] = self.stretch.ends;
+        Interval { lo: if start { all.lo } else { own.lo }, hi: if end { all.hi } else { own.hi } }
     }
 }
 
@@ -41,25 +84,41 @@ impl<S: Format> Bodies<S> {
     /// # Errors
     /// [`Refused`] where a value does not fit the number format, and for footprints in another one than `f64`.
     pub(crate) fn new(scenario: &Scenario) -> Result<Self, Refused> {
-        let mut discs = Vec::new();
-        let mut agents = Vec::new();
+        let mut bodies = (Vec::new(), Vec::new());
         for (place, agent) in scenario.agents.iter().enumerate() {
-            let Some(footprint) = &agent.footprint else {
-                discs.push(Disced { agent: place, offset: None });
-                agents.push(agent.clone());
-                continue;
-            };
-            if S::NAME != f64::NAME {
-                return Err(Refused::of::<S>(agent.id, "footprint: computed with in f64 only"));
-            }
-            // Their number is that of the agent, by which errors name them.
-            let offsets = footprint.discs().iter().map(|disc: &Disc| Offset::of(agent, disc, agent.id));
-            for offset in offsets {
-                agents.push(offset.agent.clone());
-                discs.push(Disced { agent: place, offset: Some(offset) });
-            }
+            discs::<S>(agent, place, &mut bodies)?;
         }
+        let (agents, discs) = bodies;
         let scenario = Scenario { name: scenario.name.clone(), agents };
         Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
     }
+}
+
+/// Adds the discs of an agent.
+fn discs<S: Format>(
+    agent: &Agent,
+    place: usize,
+    (agents, discs): &mut (Vec<Agent>, Vec<Disced>),
+) -> Result<(), Refused> {
+    let outlines = agent.outlines();
+    for outline in &outlines {
+        let [first, last] = outline.segments;
+        let (part, from) = if outlines.len() > 1 { agent.stretch(first, last) } else { (agent.clone(), 0.0) };
+        let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
+        let stretch = Stretch { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
+        let Some(footprint) = outline.footprint else {
+            discs.push(Disced { agent: place, offset: None, stretch });
+            agents.push(part);
+            continue;
+        };
+        if S::NAME != f64::NAME {
+            return Err(Refused::of::<S>(agent.id, "footprint: computed with in f64 only"));
+        }
+        // Their number is that of the agent, by which errors name them.
+        for offset in footprint.discs().iter().map(|disc| Offset::of(&part, disc, agent.id)) {
+            agents.push(offset.agent.clone());
+            discs.push(Disced { agent: place, offset: Some(offset), stretch });
+        }
+    }
+    Ok(())
 }

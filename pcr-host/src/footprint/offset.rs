@@ -8,7 +8,7 @@
 
 use super::Disc;
 use crate::import::{Placed, TURN};
-use crate::scenario::{Agent, MotionSpec, PathSegment};
+use crate::scenario::{Agent, MotionSpec, Part, PathSegment};
 use std::f64::consts::{PI, TAU};
 
 /// How long a change of speed takes, for each m/s of it \[s\].
@@ -31,9 +31,6 @@ pub(super) struct Offset {
     sources: Vec<usize>,
 }
 
-/// A part of a motion on one segment: duration, speed before and after.
-type Part = [f64; 3];
-
 impl Offset {
     /// The disc of the vehicle, as an agent of this number.
     pub(super) fn of(vehicle: &Agent, disc: &Disc, id: u64) -> Self {
@@ -44,7 +41,7 @@ impl Offset {
         let mut tracer = Tracer::new(radius + NOTHING * (1.0 + x.abs() + y.abs()));
         let mut reference = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
         let length = vehicle.length();
-        for (source, (&shape, parts)) in vehicle.path.iter().zip(parts(vehicle)).enumerate() {
+        for (source, (&shape, parts)) in vehicle.path.iter().zip(vehicle.parts()).enumerate() {
             reference = Placed { at: [0.0; 2], heading: reference.heading_at_end(), shape };
             let curvature = match shape {
                 PathSegment::Line { .. } => 0.0,
@@ -127,7 +124,7 @@ impl Tracer {
     fn add(&mut self, shape: PathSegment, heading: f64, [scale, length]: [f64; 2], parts: &[Part], source: usize) {
         let own = shape.length();
         let [mut at, reference] = self.marks.last().copied().unwrap_or_default();
-        let duration: f64 = parts.iter().map(|part| part[0]).sum();
+        let duration: f64 = parts.iter().map(|part| part.duration).sum();
         let quick = own > duration * QUICK;
         if own <= NOTHING || quick {
             // It stands, or is at the end at once; the next segments lie beside where it would have taken the disc.
@@ -156,7 +153,7 @@ impl Tracer {
             PathSegment::Line { .. } => heading,
             PathSegment::Arc { sweep, .. } => heading + sweep,
         };
-        for &[duration, before, after] in parts.iter().filter(|part| part[0] > 0.0) {
+        for &Part { duration, before, after } in parts.iter().filter(|part| part.duration > 0.0) {
             self.reach(scale * before);
             self.pieces.push((duration, scale * (after - before) / duration));
             self.speed = scale * after;
@@ -184,7 +181,7 @@ impl Tracer {
         let heading = self.start.unwrap_or(vehicle.start[2]);
         let motion = MotionSpec::Profile { v0: self.first.unwrap_or(0.0), pieces: self.pieces };
         let start = [x, y, heading];
-        let agent = Agent { id, radius, start, path: self.path, motion, footprint: None, ..vehicle.clone() };
+        let agent = Agent { id, radius, start, path: self.path, motion, ..vehicle.clone() };
         Offset { agent, marks: self.marks, sources: self.sources }
     }
 }
@@ -193,40 +190,4 @@ impl Tracer {
 fn within_half_turn(angle: f64) -> f64 {
     let rest = angle.rem_euclid(TAU);
     if rest > PI { rest - TAU } else { rest }
-}
-
-/// The motion on each segment of the path.
-fn parts(vehicle: &Agent) -> Vec<Vec<Part>> {
-    let (v0, pieces) = vehicle.motion.pieces(vehicle.length());
-    let mut parts = vec![Vec::new(); vehicle.path.len()];
-    let lengths: Vec<f64> = vehicle.path.iter().map(PathSegment::length).collect();
-    let near = NOTHING * (1.0 + vehicle.length());
-    let (mut place, mut left, mut speed) = (0, lengths.first().copied().unwrap_or(0.0), v0);
-    let last = lengths.len().saturating_sub(1);
-    for (mut duration, acceleration) in pieces {
-        let end = (speed + acceleration * duration).max(0.0);
-        // Up to the borders of segments within the piece.
-        while place < last {
-            let square = speed * speed + 2.0 * acceleration * left;
-            let time = if left > 0.0 { 2.0 * left / (speed + square.max(0.0).sqrt()) } else { 0.0 };
-            if square < 0.0 || time.is_nan() || time > duration {
-                break;
-            }
-            let after = square.max(0.0).sqrt();
-            parts[place].push([time, speed, after]);
-            (duration, speed, place) = (duration - time, after, place + 1);
-            left = lengths[place];
-        }
-        if let Some(parts) = parts.get_mut(place) {
-            parts.push([duration, speed, end]);
-        }
-        left -= 0.5 * (speed + end) * duration;
-        speed = end;
-        // A stop at a border is one.
-        if place < last && left < near.min(1e-3 * lengths[place]) {
-            place += 1;
-            left = lengths[place];
-        }
-    }
-    parts
 }

@@ -232,6 +232,7 @@ pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> 
         id,
         radius: vehicle.radius + trace.deviation,
         footprint: None,
+        loads: Vec::new(),
         margin: vehicle.margin,
         t_start,
         start: trace.start,

@@ -47,6 +47,7 @@ pub(super) fn agent(id: u64, radius: f64, stops: &[Stop]) -> Result<Agent, Impor
         id,
         radius: radius + trace.deviation,
         footprint: None,
+        loads: Vec::new(),
         margin: 0.0,
         t_start,
         start: trace.start,

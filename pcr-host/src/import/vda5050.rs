@@ -189,6 +189,7 @@ impl Reader<'_> {
             id,
             radius: self.vehicle.radius,
             footprint: None,
+            loads: Vec::new(),
             margin: self.vehicle.margin,
             t_start: 0.0,
             start: [x, y, 0.0],

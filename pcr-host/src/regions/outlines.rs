@@ -13,11 +13,16 @@ use std::collections::BTreeMap;
 /// over most of their extent.
 const LOOKS: u32 = 64;
 
+/// Times and lengths that are one but for rounding \[s\], \[m\]: where one outline gives way to another.
+const NEAR: f64 = 1e-9;
+
 /// A region of two discs.
 struct Part<'a, S: Format> {
     region: RegionRef<'a, S>,
     /// Places of the discs.
     discs: [usize; 2],
+    /// Whether it goes on before and after the motion of the other agent.
+    open: [bool; 2],
     time: [f64; 2],
     length: [f64; 2],
     own: &'a Disced,
@@ -25,16 +30,26 @@ struct Part<'a, S: Format> {
 
 impl<S: Format> Part<'_, S> {
     fn slice(&self, time: f64) -> Vec<[f64; 2]> {
-        slice(&self.region, S::from_f64(time)).l.into_iter().map(|lengths| self.own.on_agent(lengths)).collect()
+        if time < self.time[0] - NEAR || time > self.time[1] + NEAR {
+            return Vec::new();
+        }
+        let within = self.region.time();
+        slice(&self.region, S::from_f64(time).clamp(within.lo, within.hi))
+            .l
+            .into_iter()
+            .map(|lengths| self.own.on_agent(lengths))
+            .collect()
     }
 
     /// Whether a point of both was found.
     fn meets(&self, other: &Self) -> bool {
         let [lo, hi] = common(self.time, other.time);
         let [from, to] = common(self.length, other.length);
+        // What is nearer than rounding may have parted is one.
+        let (hi, to) = (if hi < lo { hi + NEAR } else { hi }, to + NEAR);
         let overlap = |time: f64| {
             let own = self.slice(time);
-            other.slice(time).iter().any(|b| own.iter().any(|a| a[0] <= b[1] && b[0] <= a[1]))
+            other.slice(time).iter().any(|b| own.iter().any(|a| a[0] <= b[1] + NEAR && b[0] <= a[1] + NEAR))
         };
         lo <= hi && from <= to && (0..=LOOKS).any(|k| overlap(lo + (hi - lo) * f64::from(k) / f64::from(LOOKS)))
     }
@@ -58,6 +73,7 @@ pub(super) fn regions<S: Format>(work: &Work<'_, S>, discs: &[Disced], asked: Op
             let (time, length) = (region.time(), region.length());
             let part = Part {
                 discs: [place, region.other()],
+                open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
                 time: [time.lo.to_f64(), time.hi.to_f64()],
                 length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
                 own,
@@ -100,8 +116,8 @@ fn union<S: Format>(work: &Work<'_, S>, discs: &[Disced], [i, j]: [u64; 2], part
         j,
         t,
         l,
-        open_start: parts.iter().any(|part| part.region.is_open_at_start()),
-        open_end: parts.iter().any(|part| part.region.is_open_at_end()),
+        open_start: parts.iter().any(|part| part.open[0]),
+        open_end: parts.iter().any(|part| part.open[1]),
         pieces: pieces(work, discs, parts),
         slices,
     }
@@ -113,7 +129,7 @@ fn merged(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut merged: Vec<[f64; 2]> = Vec::new();
     for next in intervals {
         match merged.last_mut() {
-            Some(last) if next[0] <= last[1] => last[1] = last[1].max(next[1]),
+            Some(last) if next[0] <= last[1] + NEAR => last[1] = last[1].max(next[1]),
             _ => merged.push(next),
         }
     }

@@ -34,7 +34,7 @@ fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out
             paper,
             answer.regions.iter().filter(|region| region.i == agent.id).count(),
         ];
-        let mut row = vec![agent.id.to_string(), format!("{:.2}", agent.radius), agent.structure()];
+        let mut row = vec![agent.id.to_string(), format!("{:.2}", agent.reach()), agent.structure()];
         row.extend([agent.length(), agent.duration()].map(|number| format!("{number:.2}")));
         row.extend(counts.map(|count| count.to_string()));
         columns.row(row);

@@ -64,7 +64,9 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{name}: {regions} collision regions, {number} crossings ({})", answer.scalar)?;
     for cover in &answer.footprints {
         let discs = cover.discs.len();
-        writeln!(out, "agent {}: a footprint of {discs} discs that reach {:.3} m out of it", cover.id, cover.overhang)?;
+        let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
+        let (id, overhang) = (cover.id, cover.overhang);
+        writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang:.3} m out of it")?;
     }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;

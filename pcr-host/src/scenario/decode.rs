@@ -1,8 +1,10 @@
 //! From JSON to a scenario: what each field means, and what holds between fields.
 
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
+use super::outline::{loads, outline};
+use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario};
-use crate::footprint::Footprint;
+use crate::import::TURN;
 use crate::json::{self, Data, Json};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -88,8 +90,21 @@ impl Scenario {
 
 impl Agent {
     fn decode(json: &Json, index: usize) -> Result<Self, ScenarioError> {
-        const KNOWN: [&str; 10] =
-            ["id", "radius", "footprint", "margin", "v_max", "a_max", "t_start", "start", "path", "profile"];
+        const KNOWN: [&str; 13] = [
+            "id",
+            "radius",
+            "footprint",
+            "loads",
+            "margin",
+            "v_max",
+            "a_max",
+            "turn_v_max",
+            "turn_a_max",
+            "t_start",
+            "start",
+            "path",
+            "profile",
+        ];
         let given = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "id").map(|(_, id)| id),
             _ => None,
@@ -106,11 +121,7 @@ impl Agent {
         let fields = place.fields(json, &KNOWN)?;
         let given = fields.required("id")?;
         let id = id.ok_or_else(|| fields.unexpected("id", given, "a whole number from 0"))?;
-        let footprint = fields.get("footprint").map(|_| footprint(&fields)).transpose()?;
-        let radius = match &footprint {
-            None => fields.number("radius", Range::Positive)?,
-            Some(footprint) => footprint.reach(),
-        };
+        let (radius, footprint) = outline(&fields, &place)?;
         let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
         let start = fields.object("start", "start.", &["x", "y", "heading"])?;
@@ -137,11 +148,19 @@ impl Agent {
             None if !moves => Ok(None),
             _ => fields.number(field, Range::Positive).map(Some),
         };
+        let turns = moves && fields.array("path")?.iter().any(turns::is_given);
+        let of_turns = |field| match fields.get(field) {
+            None if !turns => Ok(0.0),
+            _ => fields.number(field, Range::Positive),
+        };
+        let of_turns = [of_turns("turn_v_max")?, of_turns("turn_a_max")?];
         let motion = match (limit("v_max")?, limit("a_max")?) {
+            (Some(v_max), Some(a_max)) if turns => turns::motion(&path, [v_max, a_max], of_turns),
             (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
             _ => MotionSpec::decode(&fields, length)?,
         };
-        let agent = Self { id, radius, footprint, margin, t_start, start, path, motion };
+        let loads = loads(&fields, path.len())?;
+        let agent = Self { id, radius, footprint, loads, margin, t_start, start, path, motion };
         let duration = agent.duration();
         if duration > LIMIT || (t_start + duration).abs() > LIMIT {
             let field = if !moves {
@@ -162,21 +181,6 @@ impl Agent {
     }
 }
 
-/// The footprint of an agent, which has no radius then.
-fn footprint(agent: &Fields<'_>) -> Result<Footprint, ScenarioError> {
-    if let Some(radius) = agent.get("radius") {
-        return Err(agent.error(radius.line, "radius", "an agent has a radius or a footprint, not both"));
-    }
-    let fields = agent.object("footprint", "footprint.", &["polygon", "overhang"])?;
-    let corners = fields.array("polygon")?.iter().enumerate().map(|(index, json)| {
-        let corner = agent.place.part("corner", index).fields(json, &["ahead", "left"])?;
-        Ok([corner.number("ahead", Range::Any)?, corner.number("left", Range::Any)?])
-    });
-    let corners = corners.collect::<Result<_, ScenarioError>>()?;
-    let overhang = fields.get("overhang").map(|_| fields.number("overhang", Range::Positive)).transpose()?;
-    Footprint::new(corners, overhang).map_err(|problem| agent.error(fields.line, "footprint", problem))
-}
-
 impl PathSegment {
     fn decode(json: &Json, place: &Place) -> Result<Self, ScenarioError> {
         let kind = match &json.data {
@@ -193,10 +197,18 @@ impl PathSegment {
                 let radius = fields.number("radius", Range::Positive)?;
                 Ok(Self::Arc { radius, sweep: fields.number("sweep", Range::Any)? })
             }
+            Some(Data::Text(kind)) if kind == "turn" => {
+                let fields = place.fields(json, &["kind", "sweep"])?;
+                Ok(Self::Arc { radius: TURN, sweep: fields.number("sweep", Range::Any)? })
+            }
             _ => {
                 let fields = place.fields(json, &["kind", "length", "radius", "sweep"])?;
                 let kind = fields.required("kind")?;
-                Err(fields.error(kind.line, "kind", format!("{}; allowed is \"line\" or \"arc\"", brief(kind))))
+                Err(fields.error(
+                    kind.line,
+                    "kind",
+                    format!("{}; allowed is \"line\", \"arc\" or \"turn\"", brief(kind)),
+                ))
             }
         }
     }

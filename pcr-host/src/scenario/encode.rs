@@ -1,6 +1,8 @@
 //! From a scenario to its file.
 
-use super::{Agent, MotionSpec, PathSegment, Scenario};
+use super::{Agent, Load, MotionSpec, PathSegment, Scenario};
+use crate::footprint::Footprint;
+use crate::import::TURN;
 use serde_json::Value;
 use std::fmt::{self, Display};
 
@@ -19,19 +21,15 @@ struct Json<T>(T);
 
 impl Display for Json<&Agent> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Agent { id, radius, footprint, margin, t_start, start: [x, y, heading], path, motion } = self.0;
+        let Agent { id, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } = self.0;
         write!(f, "{{ \"id\": {id}, ")?;
-        match footprint {
-            None => write!(f, "\"radius\": {radius:?}, ")?,
-            Some(footprint) => {
-                let corners = footprint.polygon().iter();
-                let corners = corners.map(|[ahead, left]| format!("{{ \"ahead\": {ahead:?}, \"left\": {left:?} }}"));
-                write!(f, "\"footprint\": {{ \"polygon\": [ {} ]", corners.collect::<Vec<_>>().join(", "))?;
-                if let Some(overhang) = footprint.allowed() {
-                    write!(f, ", \"overhang\": {overhang:?}")?;
-                }
-                f.write_str(" }, ")?;
-            }
+        write!(f, "{}, ", Json((*radius, footprint.as_ref())))?;
+        if !loads.is_empty() {
+            let loads = loads.iter().map(|Load { segments: [first, last], radius, footprint }| {
+                let outline = Json((*radius, footprint.as_ref()));
+                format!("{{ \"segments\": [{}, {}], {outline} }}", first + 1, last + 1)
+            });
+            write!(f, "\"loads\": [ {} ], ", loads.collect::<Vec<_>>().join(", "))?;
         }
         if *margin > 0.0 {
             write!(f, "\"margin\": {margin:?}, ")?;
@@ -42,6 +40,9 @@ impl Display for Json<&Agent> {
             let comma = if k > 0 { "," } else { "" };
             match segment {
                 PathSegment::Line { length } => write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?} }}")?,
+                PathSegment::Arc { radius: TURN, sweep } if matches!(motion, MotionSpec::Profile { .. }) => {
+                    write!(f, "{comma} {{ \"kind\": \"turn\", \"sweep\": {sweep:?} }}")?;
+                }
                 PathSegment::Arc { radius, sweep } => {
                     write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?} }}")?;
                 }
@@ -62,10 +63,26 @@ impl Display for Json<&Agent> {
     }
 }
 
+/// An outline: the radius of a disc, or a footprint.
+impl Display for Json<(f64, Option<&Footprint>)> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (radius, footprint) = self.0;
+        let Some(footprint) = footprint else {
+            return write!(f, "\"radius\": {radius:?}");
+        };
+        let corners = footprint.polygon().iter();
+        let corners = corners.map(|[ahead, left]| format!("{{ \"ahead\": {ahead:?}, \"left\": {left:?} }}"));
+        write!(f, "\"footprint\": {{ \"polygon\": [ {} ]", corners.collect::<Vec<_>>().join(", "))?;
+        if let Some(overhang) = footprint.allowed() {
+            write!(f, ", \"overhang\": {overhang:?}")?;
+        }
+        f.write_str(" }")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::footprint::Footprint;
 
     #[test]
     fn what_is_written_is_read_again() {
@@ -73,6 +90,7 @@ mod tests {
             id: u64::MAX,
             radius: 1.0 / 3.0,
             footprint: None,
+            loads: vec![Load { segments: [0, 1], radius: 0.7, footprint: None }],
             margin: 0.1,
             t_start: -1e9,
             start: [1e-300, -7.0, 0.1 + 0.2],
@@ -80,7 +98,7 @@ mod tests {
             motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
         };
         let length = agent.length();
-        let stands = Agent { id: 0, margin: 0.0, path: Vec::new(), ..agent.clone() };
+        let stands = Agent { id: 0, margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
         let moves = Agent {
             id: 1,
             motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },

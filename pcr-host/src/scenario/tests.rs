@@ -60,7 +60,7 @@ fn unknown_keys_are_refused_with_those_that_are_known() {
     refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading");
     refused(
         &with("/speed", &json!(1)),
-        "agent 7, speed: unknown key; known are id, radius, footprint, margin, v_max, a_max, t_start, start, path, profile",
+        "agent 7, speed: unknown key; known are id, radius, footprint, loads, margin, v_max, a_max, turn_v_max, turn_a_max, t_start, start, path, profile",
     );
     refused(&json!({ "agents": [], "units": "m" }), "units: unknown key; known are name, agents");
 }
@@ -107,7 +107,7 @@ fn values_of_the_wrong_type_are_quoted() {
     refused(&with("/path/0", &json!(2.0)), "agent 7, segment 1: 2.0 where an object is expected");
     refused(
         &with("/path/0/kind", &json!("spline")),
-        "agent 7, segment 1, kind: \"spline\"; allowed is \"line\" or \"arc\"",
+        "agent 7, segment 1, kind: \"spline\"; allowed is \"line\", \"arc\" or \"turn\"",
     );
     refused(&json!({ "agents": [agent(1), 5] }), "agent at place 2: 5 where an object is expected");
     refused(&json!({ "agents": 5 }), "agents: 5 where an array is expected");

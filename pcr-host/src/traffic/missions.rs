@@ -30,7 +30,7 @@ impl Mission {
 
     /// Whether its agent and another one can stand at their starts at the same time, and at their ends.
     fn is_clear_of(&self, other: &Self) -> bool {
-        let reach = [self, other].map(|mission| mission.agent.radius + mission.agent.margin).iter().sum::<f64>();
+        let reach = [self, other].map(|mission| mission.agent.reach() + mission.agent.margin).iter().sum::<f64>();
         let pairs = self.stands().into_iter().zip(other.stands());
         pairs.into_iter().all(|(own, other)| distance(own, other) > reach * CLEAR)
     }

@@ -41,7 +41,7 @@ fn values_of_the_wrong_kind() {
     refused(
         "/agents/1/path/0/kind",
         json!("spiral"),
-        "agent 2, segment 1, kind: \"spiral\"; allowed is \"line\" or \"arc\"",
+        "agent 2, segment 1, kind: \"spiral\"; allowed is \"line\", \"arc\" or \"turn\"",
     );
     refused("/agents/1/path", json!(null), "agent 2, path: null where an array is expected");
     refused("/agents", json!("all"), "agents: \"all\" where an array is expected");

@@ -1,0 +1,67 @@
+//! Outlines in scenario files: radius or footprint, and loads.
+
+use super::Load;
+use super::fields::{Fields, Place, Range, ScenarioError, brief, figure};
+use crate::footprint::Footprint;
+use crate::json::{Data, Json};
+
+/// The radius and the footprint of what has either.
+pub(super) fn outline(fields: &Fields<'_>, place: &Place) -> Result<(f64, Option<Footprint>), ScenarioError> {
+    if fields.get("footprint").is_none() {
+        return Ok((fields.number("radius", Range::Positive)?, None));
+    }
+    if let Some(radius) = fields.get("radius") {
+        return Err(fields.error(radius.line, "radius", "there is a radius or a footprint, not both"));
+    }
+    let footprint = footprint(fields, place)?;
+    Ok((footprint.reach(), Some(footprint)))
+}
+
+fn footprint(outer: &Fields<'_>, place: &Place) -> Result<Footprint, ScenarioError> {
+    let fields = outer.object("footprint", "footprint.", &["polygon", "overhang"])?;
+    let corners = fields.array("polygon")?.iter().enumerate().map(|(index, json)| {
+        let corner = place.part("corner", index).fields(json, &["ahead", "left"])?;
+        Ok([corner.number("ahead", Range::Any)?, corner.number("left", Range::Any)?])
+    });
+    let corners = corners.collect::<Result<_, ScenarioError>>()?;
+    let overhang = fields.get("overhang").map(|_| fields.number("overhang", Range::Positive)).transpose()?;
+    Footprint::new(corners, overhang).map_err(|problem| outer.error(fields.line, "footprint", problem))
+}
+
+/// The loads of an agent with this many segments.
+pub(super) fn loads(agent: &Fields<'_>, segments: usize) -> Result<Vec<Load>, ScenarioError> {
+    if agent.get("loads").is_none() {
+        return Ok(Vec::new());
+    }
+    let mut loads: Vec<Load> = Vec::new();
+    for (index, json) in agent.array("loads")?.iter().enumerate() {
+        let place = agent.place.part("load", index);
+        let fields = place.fields(json, &["segments", "radius", "footprint"])?;
+        let (radius, footprint) = outline(&fields, &place)?;
+        let range = fields.array("segments")?;
+        let ends: Vec<usize> = range.iter().map(|end| segment(&fields, end, segments)).collect::<Result<_, _>>()?;
+        let line = fields.required("segments")?.line;
+        let &[first, last] = ends.as_slice() else {
+            let problem = format!("{} numbers; allowed are the first and the last segment", ends.len());
+            return Err(fields.error(line, "segments", problem));
+        };
+        if last < first || loads.last().is_some_and(|before| first <= before.segments[1]) {
+            let problem = format!("{} to {}; allowed are segments after one another", first + 1, last + 1);
+            return Err(fields.error(line, "segments", problem));
+        }
+        loads.push(Load { segments: [first, last], radius, footprint });
+    }
+    Ok(loads)
+}
+
+/// The place of a segment by its number, which counts from 1.
+fn segment(fields: &Fields<'_>, json: &Json, segments: usize) -> Result<usize, ScenarioError> {
+    let number = match &json.data {
+        Data::Number(text) => text.parse::<usize>().ok(),
+        _ => None,
+    };
+    number.and_then(|number| number.checked_sub(1)).filter(|place| *place < segments).ok_or_else(|| {
+        let problem = format!("{} where a segment from 1 to {} is expected", brief(json), figure(segments as f64));
+        fields.error(json.line, "segments", problem)
+    })
+}

@@ -1,0 +1,28 @@
+//! Motions with turns in place: an arc of [`TURN`] radius, before and after which the vehicle is at rest. Its motion over an
+//! angle θ(t) is the length [`TURN`] θ(t).
+
+use super::{MotionSpec, PathSegment};
+use crate::import::TURN;
+use crate::json::{Data, Json};
+
+/// Whether a segment in a file is one.
+pub(super) fn is_given(segment: &Json) -> bool {
+    let Data::Object(members) = &segment.data else { return false };
+    members.iter().any(|(key, value)| key == "kind" && matches!(&value.data, Data::Text(kind) if kind == "turn"))
+}
+
+/// Whether a segment is a turn in place.
+fn is_turn(segment: &PathSegment) -> bool {
+    matches!(segment, PathSegment::Arc { radius: TURN, .. })
+}
+
+/// From rest to rest in the least time under limits of speed and acceleration, of turns as well.
+pub(super) fn motion(path: &[PathSegment], [v_max, a_max]: [f64; 2], turns: [f64; 2]) -> MotionSpec {
+    let mut pieces = Vec::new();
+    for run in path.chunk_by(|a, b| !is_turn(a) && !is_turn(b)) {
+        let length = run.iter().map(PathSegment::length).sum();
+        let [v_max, a_max] = if run.iter().any(is_turn) { turns.map(|limit| limit * TURN) } else { [v_max, a_max] };
+        pieces.extend(MotionSpec::RestToRest { v_max, a_max }.pieces(length).1);
+    }
+    MotionSpec::Profile { v0: 0.0, pieces }
+}
