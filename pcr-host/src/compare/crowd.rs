@@ -20,6 +20,7 @@ pub fn crowd(agents: usize, seed: u64) -> Scenario {
             id: id as u64 + 1,
             radius: random.within(0.11, 0.22),
             footprint: None,
+            loads: Vec::new(),
             margin: 0.0,
             t_start: 0.0,
             start,
