@@ -12,7 +12,7 @@ if ! command -v cargo-fuzz >/dev/null; then
   cargo install --quiet --locked cargo-fuzz --version 0.13.2
 fi
 jobs=("$@")
-importers=(nav2 lif vda5050 rmf opendrive opentcs ccbs path)
+importers=(nav2 lif vda5050 rmf opendrive opentcs ccbs path fleet)
 if [ $# -eq 0 ]; then jobs=(scenario=60000 pair=3000 "${importers[@]/%/=3000}"); fi
 for run in "${jobs[@]}"; do
   target=${run%%=*} runs=${run##*=}
@@ -29,6 +29,7 @@ for run in "${jobs[@]}"; do
     opendrive) seeds=("$small/track.xodr") ;;
     opentcs) seeds=("$small/plant.xml") ;;
     ccbs) seeds=("$real/ccbs/example_grid_task_log.xml" "$small/roadmap.xml") ;;
+    fleet) seeds=("$small/factsheet.json" "$real"/rmf/config/*.yaml) ;;
     path) seeds=("$small/points.path") ;;
     *) seeds=() ;;
   esac

@@ -1,7 +1,7 @@
 //! What the targets of the importers share.
 
 use pcr_host::fleet::Fleet;
-use pcr_host::import::{Format, Imported, Options, Warnings, layout, scenario};
+use pcr_host::import::{Format, Imported, Options, Warnings, layout, scenario, vehicle};
 use pcr_host::locks::Locks;
 use pcr_host::scenario::Scenario;
 
@@ -47,4 +47,18 @@ pub fn import(format: Format, bytes: &[u8]) {
         Err(error) => assert!(!error.to_string().is_empty()),
     }
     assert!(warnings.lines().iter().all(|line| !line.is_empty()));
+}
+
+/// Any bytes as what describes a vehicle: refused with a message, or discs that cover it.
+pub fn fleet(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match vehicle(text, &Options::default(), &mut Warnings::default()) {
+        Ok(vehicle) => {
+            assert!(vehicle.radius > 0.0 && vehicle.speed > 0.0 && vehicle.acceleration > 0.0);
+            if let Some(footprint) = &vehicle.footprint {
+                assert!(footprint.overhang() >= 0.0 && footprint.reach() == vehicle.radius);
+            }
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
 }

@@ -39,6 +39,7 @@ pub struct Disc {
 pub struct Footprint {
     polygon: Vec<[f64; 2]>,
     allowed: Option<f64>,
+    growth: f64,
     discs: Vec<Disc>,
     overhang: f64,
 }
@@ -68,7 +69,7 @@ impl Footprint {
             let out = |disc: &Disc| disc.radius - depth(&polygon, [disc.ahead, disc.left]);
             let overhang = discs.iter().map(out).fold(0.0, f64::max);
             if overhang <= limit {
-                return Ok(Self { polygon, allowed, discs, overhang });
+                return Ok(Self { polygon, allowed, growth: 0.0, discs, overhang });
             }
             cell *= SMALLER;
         }
@@ -89,9 +90,21 @@ impl Footprint {
         &self.discs
     }
 
-    /// No point of a disc is farther than this from the polygon \[m\].
+    /// No point of a disc is farther than this from the outline \[m\].
     pub fn overhang(&self) -> f64 {
         self.overhang
+    }
+
+    /// The same outline, larger by a distance all around \[m\].
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        let discs = self.discs.iter().map(|disc| Disc { radius: disc.radius + by, ..*disc });
+        Self { growth: self.growth + by, discs: discs.collect(), ..self.clone() }
+    }
+
+    /// How much larger than the polygon the outline is all around \[m\].
+    pub fn growth(&self) -> f64 {
+        self.growth
     }
 
     /// Radius of the disc around the reference point that holds all discs \[m\].

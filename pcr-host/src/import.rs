@@ -4,6 +4,7 @@
 //! nav2        route graphs of the nav2 route server (GeoJSON)
 //! lif         layouts of the VDMA (JSON)
 //! vda5050     orders and states (JSON)
+//! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
 //! opendrive   reference lines of roads (XML)
 //! opentcs     plant models (XML)
@@ -26,6 +27,7 @@
 
 mod biarc;
 mod ccbs;
+mod factsheet;
 mod layout;
 mod lif;
 mod nav2;
@@ -186,7 +188,7 @@ fn imported(
     moves: bool,
     warnings: &mut Warnings,
 ) -> Result<Imported, ImportError> {
-    let given = given(options)?;
+    let given = given(options, warnings)?;
     let vehicle = options.vehicle(&given, moves, warnings);
     let layout = match format {
         Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings)?,
@@ -201,13 +203,30 @@ fn imported(
     Ok(Imported { layout, vehicle })
 }
 
-/// What the configuration of the fleet says about the vehicle.
-fn given(options: &Options) -> Result<Given, ImportError> {
+/// What the configuration of a fleet or a factsheet says.
+fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
+    // JSON is YAML, too, but says better what is wrong with it.
+    let json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    let value = if json { value::parse(text) } else { rmf::yaml(text) }?;
+    if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
+}
+
+/// Reads the vehicle of a fleet: the configuration of Open-RMF, or a factsheet of VDA 5050.
+///
+/// # Errors
+/// [`ImportError`] where the text is neither.
+pub fn vehicle(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
+    let given = of_fleet(text, warnings)?;
+    Ok(options.vehicle(&given, true, warnings))
+}
+
+/// What the fleet says about the vehicle, if one is given.
+fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportError> {
     let mut given = Given::default();
     if let Some(file) = &options.fleet {
         let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
         let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
-        given = rmf::fleet(&text).map_err(|error| failed(&error))?;
+        given = of_fleet(&text, warnings).map_err(|error| failed(&error))?;
     }
     if options.vehicle.is_some() {
         given.name.clone_from(&options.vehicle);
@@ -231,9 +250,9 @@ pub fn scenario(
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
             route::scenario(&layout, &vehicle, options, warnings)?
         }
-        Format::Path => samples::read(text, options, &options.vehicle(&given(options)?, true, warnings))?,
+        Format::Path => samples::read(text, options, &options.vehicle(&given(options, warnings)?, true, warnings))?,
         Format::Vda5050 => {
-            let vehicle = options.vehicle(&given(options)?, true, warnings);
+            let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
             vda5050::read(text, options, &vehicle, warnings)?
         }
     };
@@ -242,9 +261,10 @@ pub fn scenario(
 
 /// The plan in a log of Continuous-CBS, which gives no radius.
 fn plan(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Scenario, ImportError> {
-    let given = Given { radius: Some(ccbs::RADIUS), ..Given::default() };
-    if options.radius.is_none() {
+    let mut given = given(options, warnings)?;
+    if options.radius.is_none() && given.radius.is_none() && given.footprint.is_none() {
         warnings.add("radius", "not in the file; the default of the program, √2/4, is taken");
+        given.radius = Some(ccbs::RADIUS);
     }
     ccbs::log(text, &options.vehicle(&given, false, warnings))
 }

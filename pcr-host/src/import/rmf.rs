@@ -14,7 +14,7 @@ use std::collections::{BTreeSet, HashMap};
 /// Relative spread of the scales of a level that goes without a warning.
 const SPREAD: f64 = 0.01;
 
-fn yaml(text: &str) -> Result<Value, ImportError> {
+pub(super) fn yaml(text: &str) -> Result<Value, ImportError> {
     serde_saphyr::from_str(text).map_err(|error| {
         let error = error.to_string();
         ImportError::new(format!("not YAML: {}", error.lines().next().unwrap_or_default()))
@@ -22,9 +22,8 @@ fn yaml(text: &str) -> Result<Value, ImportError> {
 }
 
 /// What the configuration of a fleet says about its vehicles: the footprint is the radius, and the vicinity beyond it the margin.
-pub(super) fn fleet(text: &str) -> Result<Given, ImportError> {
-    let value = yaml(text)?;
-    let root = Object::new("fleet", &value)?;
+pub(super) fn fleet(value: &Value) -> Result<Given, ImportError> {
+    let root = Object::new("fleet", value)?;
     let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
     let mut given = Given { name: fleet.text("name")?.map(str::to_owned), ..Given::default() };
     if let Some(profile) = fleet.object("profile")? {

@@ -231,7 +231,7 @@ pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> 
     Agent {
         id,
         radius: vehicle.radius + trace.deviation,
-        footprint: None,
+        footprint: vehicle.footprint.as_ref().map(|footprint| footprint.grown(trace.deviation)),
         loads: Vec::new(),
         margin: vehicle.margin,
         t_start,

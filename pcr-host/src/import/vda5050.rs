@@ -167,6 +167,7 @@ impl Reader<'_> {
     fn state(&mut self, id: u64, state: &Object<'_>) -> Result<Agent, ImportError> {
         let pose =
             state.object("mobileRobotPosition")?.map_or_else(|| state.object("agvPosition"), |pose| Ok(Some(pose)))?;
+        let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?.unwrap_or(0.0);
         let at = pose.map(|pose| pose.point()).transpose()?;
         if let Some(path) = state.object("intermediatePath")? {
             return self.timed(id, state, &path, at);
@@ -188,11 +189,11 @@ impl Reader<'_> {
         Ok(Agent {
             id,
             radius: self.vehicle.radius,
-            footprint: None,
+            footprint: self.vehicle.footprint.clone(),
             loads: Vec::new(),
             margin: self.vehicle.margin,
             t_start: 0.0,
-            start: [x, y, 0.0],
+            start: [x, y, heading],
             path: Vec::new(),
             motion,
         })

@@ -1,6 +1,7 @@
 //! The vehicle that travels a layout, and what the command line says about it and its routes.
 
 use super::{Format, ImportError, Warnings};
+use crate::footprint::Footprint;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -9,8 +10,10 @@ use std::path::PathBuf;
 pub struct Vehicle {
     /// Name or type, where it has one.
     pub name: Option<String>,
-    /// Radius of its disc \[m\].
+    /// Radius of its disc \[m\]; with a footprint that of the disc around all of it.
     pub radius: f64,
+    /// Its outline, if it is no disc.
+    pub footprint: Option<Footprint>,
     /// Margin to be kept around it \[m\].
     pub margin: f64,
     /// \[m/s\]
@@ -28,6 +31,7 @@ pub struct Vehicle {
 pub(super) struct Given {
     pub(super) name: Option<String>,
     pub(super) radius: Option<f64>,
+    pub(super) footprint: Option<Footprint>,
     pub(super) margin: Option<f64>,
     pub(super) speed: Option<f64>,
     pub(super) acceleration: Option<f64>,
@@ -71,7 +75,7 @@ pub struct Options {
     /// Type of the vehicle, where a layout has several (LIF)
     #[arg(long, value_name = "TYPE")]
     pub vehicle: Option<String>,
-    /// Configuration of the fleet (Open-RMF), with speeds and radii
+    /// Configuration of the fleet (Open-RMF), with speeds and radii, or factsheet of the vehicle (VDA 5050), with its contour
     #[arg(long, value_name = "FILE")]
     pub fleet: Option<PathBuf>,
     /// Radius of corners (nav2: 1 if left out)
@@ -134,10 +138,14 @@ impl Options {
                 default
             })
         };
-        let radius = choose(self.radius, given.radius, 0.5, "radius [m]");
+        // A radius that is asked for is that of a disc.
+        let footprint = given.footprint.clone().filter(|_| self.radius.is_none());
+        let reach = footprint.as_ref().map(Footprint::reach);
+        let radius = choose(self.radius, reach.or(given.radius), 0.5, "radius [m]");
         let vehicle = Vehicle {
             name: given.name.clone(),
             radius,
+            footprint,
             margin: self.margin.or(given.margin).unwrap_or(0.0),
             speed: choose(self.speed, given.speed, 1.0, "speed [m/s]"),
             acceleration: choose(self.acceleration, given.acceleration, 0.5, "acceleration [m/s²]"),

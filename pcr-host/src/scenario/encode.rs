@@ -76,6 +76,9 @@ impl Display for Json<(f64, Option<&Footprint>)> {
         if let Some(overhang) = footprint.allowed() {
             write!(f, ", \"overhang\": {overhang:?}")?;
         }
+        if footprint.growth() > 0.0 {
+            write!(f, ", \"growth\": {:?}", footprint.growth())?;
+        }
         f.write_str(" }")
     }
 }
@@ -104,7 +107,8 @@ mod tests {
             motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
             ..agent.clone()
         };
-        let outline = Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap();
+        let outline =
+            Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().grown(0.01);
         let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
         let scenario = Scenario { name: "a \"name\"\n\\".into(), agents: vec![agent, stands, moves, outlined] };
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));

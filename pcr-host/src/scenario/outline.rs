@@ -18,14 +18,16 @@ pub(super) fn outline(fields: &Fields<'_>, place: &Place) -> Result<(f64, Option
 }
 
 fn footprint(outer: &Fields<'_>, place: &Place) -> Result<Footprint, ScenarioError> {
-    let fields = outer.object("footprint", "footprint.", &["polygon", "overhang"])?;
+    let fields = outer.object("footprint", "footprint.", &["polygon", "overhang", "growth"])?;
     let corners = fields.array("polygon")?.iter().enumerate().map(|(index, json)| {
         let corner = place.part("corner", index).fields(json, &["ahead", "left"])?;
         Ok([corner.number("ahead", Range::Any)?, corner.number("left", Range::Any)?])
     });
     let corners = corners.collect::<Result<_, ScenarioError>>()?;
     let overhang = fields.get("overhang").map(|_| fields.number("overhang", Range::Positive)).transpose()?;
-    Footprint::new(corners, overhang).map_err(|problem| outer.error(fields.line, "footprint", problem))
+    let growth = fields.get("growth").map_or(Ok(0.0), |_| fields.number("growth", Range::NotNegative))?;
+    let footprint = Footprint::new(corners, overhang);
+    footprint.map(|it| it.grown(growth)).map_err(|problem| outer.error(fields.line, "footprint", problem))
 }
 
 /// The loads of an agent with this many segments.

@@ -1,0 +1,78 @@
+//! Factsheets of VDA 5050 (2.x and 3.0): the contour of a vehicle and its limits.
+
+use super::value::Object;
+use super::vehicle::Given;
+use super::{ImportError, Warnings};
+use crate::footprint::Footprint;
+use serde_json::Value;
+
+/// Names of a member in versions 3 and 2.
+type Names = [&'static str; 2];
+
+/// Whether a JSON value looks like one.
+pub(super) fn is_factsheet(root: &Value) -> bool {
+    ["physicalParameters", "mobileRobotGeometry", "agvGeometry"].iter().any(|member| root.get(member).is_some())
+}
+
+/// Reads one: the first contour in it or, if there is none, the rectangle of length and width around the reference point.
+pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
+    let root = Object::new("factsheet", value)?;
+    let mut given = Given::default();
+    if let Some(kind) = root.object("typeSpecification")? {
+        given.name = kind.text("seriesName")?.map(str::to_owned);
+    }
+    let physical = root.object("physicalParameters")?;
+    if let Some(physical) = &physical {
+        given.speed = either(physical, ["maximumSpeed", "speedMax"])?;
+        let braking = either(physical, ["maximumDeceleration", "decelerationMax"])?;
+        let speeding = either(physical, ["maximumAcceleration", "accelerationMax"])?;
+        given.acceleration = [speeding, braking].into_iter().flatten().reduce(f64::min);
+        given.rotation = either(physical, ["maximumAngularSpeed", "angularSpeedMax"])?;
+    }
+    let geometry = root.object("mobileRobotGeometry")?.map_or_else(|| root.object("agvGeometry"), |it| Ok(Some(it)))?;
+    let envelopes = geometry.as_ref().map_or(Ok(&[][..]), |geometry| geometry.list("envelopes2d"))?;
+    let polygon = match (envelopes.first(), &physical) {
+        (Some(first), _) => {
+            if envelopes.len() > 1 {
+                warnings.add("envelopes2d", format!("the first of {} is taken", envelopes.len()));
+            }
+            Some(polygon(first)?)
+        }
+        (None, Some(physical)) => rectangle(physical, warnings)?,
+        (None, None) => None,
+    };
+    if let Some(polygon) = polygon {
+        let footprint = Footprint::new(polygon, None);
+        given.footprint =
+            Some(footprint.map_err(|problem| ImportError::new(format!("factsheet, envelopes2d: {problem}")))?);
+    }
+    Ok(given)
+}
+
+/// A number above zero by either of its names; 0 is what senders write that do not know it.
+fn either(object: &Object<'_>, names: Names) -> Result<Option<f64>, ImportError> {
+    for name in names {
+        match object.number(name)? {
+            Some(0.0) | None => {}
+            Some(_) => return object.positive(name),
+        }
+    }
+    Ok(None)
+}
+
+fn polygon(envelope: &Value) -> Result<Vec<[f64; 2]>, ImportError> {
+    let envelope = Object::new("factsheet, envelopes2d", envelope)?;
+    let points = match envelope.list("vertices")? {
+        [] => envelope.list("polygonPoints")?,
+        vertices => vertices,
+    };
+    let corner = |(k, point)| Object::new(format!("{}, point {}", envelope.name, k + 1), point)?.point();
+    points.iter().enumerate().map(corner).collect()
+}
+
+fn rectangle(physical: &Object<'_>, warnings: &mut Warnings) -> Result<Option<Vec<[f64; 2]>>, ImportError> {
+    let Some((length, width)) = physical.positive("length")?.zip(physical.positive("width")?) else { return Ok(None) };
+    warnings.add("contour", "not in the file; its length and width are taken around the reference point");
+    let (ahead, left) = (0.5 * length, 0.5 * width);
+    Ok(Some(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]]))
+}

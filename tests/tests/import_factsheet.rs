@@ -1,0 +1,102 @@
+//! Factsheets of VDA 5050: contours and limits, and what they become on layouts.
+
+use pcr_host::import::{Format, Options, Warnings, scenario, vehicle};
+use pcr_host::regions::{Answer, Request};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+const SHEET: &str = include_str!("../data/small/factsheet.json");
+const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+const CURVES: &str = include_str!("../data/small/plant.xml");
+
+fn options(routes: &[&str]) -> Options {
+    let fleet = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json"));
+    Options {
+        fleet: Some(fleet),
+        routes: routes.iter().map(|route| (*route).to_owned()).collect(),
+        ..Options::default()
+    }
+}
+
+fn lines(sheet: &Value) -> (Result<pcr_host::import::Vehicle, String>, String) {
+    let mut warnings = Warnings::default();
+    let read = vehicle(&sheet.to_string(), &Options::default(), &mut warnings);
+    (read.map_err(|error| error.to_string()), warnings.lines().join("\n"))
+}
+
+#[test]
+fn a_factsheet_gives_contour_and_limits() {
+    let sheet: Value = serde_json::from_str(SHEET).unwrap();
+    let fork = lines(&sheet).0.unwrap();
+    assert_eq!((fork.name.as_deref(), fork.speed, fork.acceleration), (Some("Fork"), 1.5, 0.4));
+    let footprint = fork.footprint.unwrap();
+    assert_eq!(footprint.polygon(), [[1.3, 0.4], [-0.6, 0.4], [-0.6, -0.4], [1.3, -0.4]]);
+    // All corners are within reach, and no disc is farther out than the overhang.
+    assert!(fork.radius >= 1.3_f64.hypot(0.4) && fork.radius <= 1.3_f64.hypot(0.4) + footprint.overhang());
+    assert!(footprint.overhang() <= 0.1);
+    // Version 3 has other names.
+    let sheet = json!({ "typeSpecification": { "seriesName": "Fork" },
+        "physicalParameters": { "maximumSpeed": 1.5, "maximumAcceleration": 0.6, "maximumDeceleration": 0.4, "maximumAngularSpeed": 0.7 },
+        "mobileRobotGeometry": { "envelopes2d": [ { "envelope2dId": "a", "vertices": [
+            { "x": 1.3, "y": 0.4 }, { "x": -0.6, "y": 0.4 }, { "x": -0.6, "y": -0.4 }, { "x": 1.3, "y": -0.4 } ] },
+            { "envelope2dId": "b", "vertices": [] } ] } });
+    let (third, warned) = lines(&sheet);
+    let third = third.unwrap();
+    assert_eq!((third.speed, third.acceleration, third.rotation), (1.5, 0.4, 0.7));
+    assert_eq!(third.footprint, Some(footprint));
+    assert!(warned.contains("envelopes2d: the first of 2 is taken"), "{warned}");
+}
+
+#[test]
+fn without_a_contour_length_and_width_are_taken() {
+    let mut sheet: Value = serde_json::from_str(SHEET).unwrap();
+    sheet["agvGeometry"] = Value::Null;
+    let (fork, warned) = lines(&sheet);
+    let polygon = fork.unwrap().footprint.unwrap().polygon().to_vec();
+    assert_eq!(polygon, [[0.95, 0.4], [-0.95, 0.4], [-0.95, -0.4], [0.95, -0.4]]);
+    assert!(warned.contains("contour: not in the file"), "{warned}");
+    sheet["physicalParameters"]["width"] = Value::Null;
+    let fork = lines(&sheet).0.unwrap();
+    assert_eq!((fork.footprint, fork.radius), (None, 0.5));
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let wrong = |pointer: &str, value: Value| {
+        let mut sheet: Value = serde_json::from_str(SHEET).unwrap();
+        *sheet.pointer_mut(pointer).unwrap() = value;
+        lines(&sheet).0.unwrap_err()
+    };
+    let points = "/agvGeometry/envelopes2d/0/polygonPoints";
+    assert!(wrong(points, json!([])).contains("envelopes2d: 0 corners"));
+    assert!(wrong(&format!("{points}/1/x"), json!("1")).contains("envelopes2d, point 2, x: a text"));
+    assert!(wrong("/physicalParameters/speedMax", json!(-1)).contains("physicalParameters, speedMax: -1"));
+    assert!(wrong("/agvGeometry", json!([])).contains("agvGeometry: a list where an object"));
+    let neither = vehicle("{}", &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    assert!(neither.contains("rmf_fleet: missing"), "{neither}");
+}
+
+#[test]
+fn agents_on_routes_have_the_contour() {
+    let mut warnings = Warnings::default();
+    let fleet = scenario(Format::Nav2, WAREHOUSE, &options(&["0:3", "3:0"]), &mut warnings).unwrap();
+    assert!(fleet.agents.iter().all(|agent| agent.footprint.as_ref().unwrap().polygon().len() == 4));
+    let answer = Answer::of::<f64>(&fleet, Request::default()).unwrap();
+    assert!(!answer.regions.is_empty());
+    assert_eq!(answer.footprints.len(), 2);
+    // With a radius it is a disc.
+    let disc = Options { radius: Some(0.4), ..options(&["0:50"]) };
+    let disc = scenario(Format::Nav2, WAREHOUSE, &disc, &mut warnings).unwrap();
+    assert_eq!((disc.agents[0].footprint.as_ref(), disc.agents[0].radius), (None, 0.4));
+}
+
+#[test]
+fn contours_grow_by_what_curves_are_off() {
+    let mut warnings = Warnings::default();
+    let coarse = Options { tolerance: Some(0.02), ..options(&["A:B"]) };
+    let fleet = scenario(Format::OpenTcs, CURVES, &coarse, &mut warnings).unwrap();
+    let footprint = fleet.agents[0].footprint.as_ref().unwrap();
+    assert!(footprint.growth() > 1e-3 && footprint.growth() <= 0.02 + 1e-6, "{}", footprint.growth());
+    let bare = footprint.grown(-footprint.growth());
+    assert!(footprint.discs().iter().zip(bare.discs()).all(|(own, bare)| own.radius > bare.radius));
+}
