@@ -62,7 +62,7 @@ use vehicle::Given;
 /// Formats of files that are not scenarios.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// Route graph of the nav2 route server (.geojson)
+    /// Route graph of the nav2 route server (.geojson, or by its content)
     Nav2,
     /// Layout Interchange Format of the VDMA (.lif.json, or by its content)
     Lif,
@@ -140,6 +140,9 @@ impl Format {
         if name.ends_with(".path") || name.ends_with(".csv") {
             return Some(Self::Path);
         }
+        if name.ends_with(".xodr") {
+            return Some(Self::OpenDrive);
+        }
         match xml::root_of(text) {
             Some("OpenDRIVE") => return Some(Self::OpenDrive),
             Some("model") => return Some(Self::OpenTcs),
@@ -151,8 +154,17 @@ impl Format {
             return None;
         }
         let root = serde_json::Deserializer::from_str(text).into_iter::<Value>().next()?.ok()?;
-        if lif::is_layout(&root) { Some(Self::Lif) } else { vda5050::is_message(&root).then_some(Self::Vda5050) }
+        match () {
+            () if lif::is_layout(&root) => Some(Self::Lif),
+            () if nav2::is_graph(&root) => Some(Self::Nav2),
+            () => vda5050::is_message(&root).then_some(Self::Vda5050),
+        }
     }
+}
+
+/// Whether there is nothing in a text but blanks.
+pub(crate) fn is_empty(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim().is_empty()
 }
 
 /// Reads a layout.
@@ -188,6 +200,9 @@ fn imported(
     moves: bool,
     warnings: &mut Warnings,
 ) -> Result<Imported, ImportError> {
+    if is_empty(text) {
+        return Err(ImportError::new("empty"));
+    }
     let given = given(options, warnings)?;
     let vehicle = options.vehicle(&given, moves, warnings);
     let layout = match format {
@@ -244,6 +259,9 @@ pub fn scenario(
     options: &Options,
     warnings: &mut Warnings,
 ) -> Result<Scenario, ImportError> {
+    if is_empty(text) {
+        return Err(ImportError::new("empty"));
+    }
     let scenario = match format {
         Format::Ccbs if xml::root_of(text) != Some("graphml") => plan(text, options, warnings)?,
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {

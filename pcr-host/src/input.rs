@@ -19,8 +19,8 @@ pub enum InputError {
     Refused(Option<PathBuf>, ScenarioError),
     /// It is not of the format that it is read in.
     Foreign(Option<PathBuf>, Format, ImportError),
-    /// It has to be a layout, and is a scenario.
-    NoLayout(Option<PathBuf>),
+    /// It has to be a layout, and is none that is known, or (`true`) empty.
+    NoLayout(Option<PathBuf>, bool),
     /// It is a scenario, which has routes and vehicles of its own.
     HasAgents(Option<PathBuf>),
 }
@@ -35,7 +35,10 @@ impl fmt::Display for InputError {
             Self::NotText(file) => write!(f, "{}: not text in UTF-8", name(file)),
             Self::Refused(file, error) => write!(f, "{}:{}: {error}", name(file), error.line()),
             Self::Foreign(file, format, error) => write!(f, "{}: {error} (read as {format})", name(file)),
-            Self::NoLayout(file) => write!(f, "{}: not a layout; say what it is with --from", name(file)),
+            Self::NoLayout(file, true) => write!(f, "{}: empty; a layout is expected", name(file)),
+            Self::NoLayout(file, false) => {
+                write!(f, "{}: not known as a layout by its name or content; say what it is with --from", name(file))
+            }
             Self::HasAgents(file) => {
                 write!(
                     f,
@@ -96,7 +99,7 @@ pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Impor
     let (name, text) = text(file)?;
     let mut warnings = Warnings::default();
     let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
-        return Err(InputError::NoLayout(name));
+        return Err(InputError::NoLayout(name, import::is_empty(&text)));
     };
     let read = if moves { import::roads } else { import::layout };
     match read(format, &text, options, &mut warnings) {

@@ -13,6 +13,11 @@ use std::collections::{HashMap, HashSet};
 /// Largest distance between the drawn end of an edge and its node that goes without a warning \[m\].
 const DRAWN: f64 = 1e-3;
 
+/// Whether a JSON value looks like a graph.
+pub(super) fn is_graph(root: &Value) -> bool {
+    root.get("type").and_then(Value::as_str) == Some("FeatureCollection")
+}
+
 /// Reads a graph. `full_speed` is what fractions in `speed_limit` refer to \[m/s\].
 pub(super) fn read(
     text: &str,

@@ -83,3 +83,72 @@ fn what_is_something_else_is_said_to_be() {
     }
     assert!(message("regions", "README.md").contains("README.md:1: column 1: "));
 }
+
+/// All files in a directory and those below it.
+fn files(directory: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let mut entries: Vec<_> = std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    entries.into_iter().flat_map(|entry| if entry.is_dir() { files(&entry) } else { vec![entry] }).collect()
+}
+
+#[test]
+fn every_real_file_is_read_or_refused_by_name() {
+    let mut read = 0;
+    for path in files(std::path::Path::new(&real(""))) {
+        let name = path.to_str().unwrap();
+        let pictures = file("formats", "pictures", "");
+        for arguments in [
+            &["locks", name, "--radius", "0.3"][..],
+            &["regions", name],
+            &["check", name],
+            &["plan", name],
+            &["traffic", name, "--agents", "3"],
+            // A file where a directory has to be: what can be drawn is refused for that, status 3.
+            &["map", name, "-o", &pictures],
+        ] {
+            let run = run(arguments);
+            assert!((0..=3).contains(&run.status), "{arguments:?}: {}", run.err);
+            assert!(!run.err.contains("panicked"), "{arguments:?}: {}", run.err);
+            if run.status >= 2 && arguments[0] != "map" {
+                let last = run.err.lines().last().unwrap();
+                let why = last.strip_prefix(&format!("pcr: {name}:")).unwrap_or_else(|| panic!("{last}"));
+                assert!(why.len() > 10, "{arguments:?}: {last}");
+            }
+            read += usize::from(run.status <= 1);
+        }
+    }
+    // Locks and traffic of 22 layouts; regions, conflicts and a plan of 9 logs and an order.
+    assert_eq!(read, 2 * 22 + 3 * 10);
+}
+
+#[test]
+fn damaged_files_are_refused_by_name() {
+    let part = |name: &str, bytes: usize| std::fs::read_to_string(real(name)).unwrap()[..bytes].to_owned();
+    let cases = [
+        ("a.geojson", part("nav2/warehouse_graph.geojson", 3000), "not JSON: EOF while parsing"),
+        ("a.lif.json", part("lif/example_07.lif.json", 2000), "not JSON: EOF while parsing"),
+        ("a.building.yaml", part("rmf/office.building.yaml", 3000), "not YAML: error: line 44"),
+        ("a.xodr", part("opendrive/Town01.planview.xodr", 4000), "not XML: unexpected end of stream"),
+        ("a.xml", part("opentcs/Demo-01.xml", 5000), "not XML: unexpected end of stream"),
+        ("b.geojson", part("opentcs/Demo-01.xml", 5000), "not JSON: expected value"),
+        ("b.xodr", part("nav2/warehouse_graph.geojson", 3000), "not XML"),
+        ("b.building.yaml", "levels: 7".to_owned(), "building, levels: a number where an object is expected"),
+        ("c.geojson", "{\"features\": [{\"properties\": {\"id\": 1e400}}]}".to_owned(), "number out of range"),
+        ("empty.geojson", String::new(), "empty (read as nav2)"),
+        ("empty.building.yaml", " \n".to_owned(), "empty (read as rmf)"),
+        ("empty.json", "\u{feff}".to_owned(), "empty; a layout is expected"),
+        ("list.json", "[1, 2".to_owned(), "not known as a layout by its name or content"),
+    ];
+    for (name, content, expected) in cases {
+        let name = file("damaged", name, content);
+        let failed = run(&["locks", &name, "--radius", "0.4"]).failed(2);
+        assert!(failed.starts_with(&format!("pcr: {name}: ")) && failed.contains(expected), "{failed}");
+    }
+    let huge = file("damaged", "huge.path", "0 0\n1e308 0\n");
+    assert!(
+        run(&["regions", &huge, "--radius", "0.4"]).err.contains("line 2: two numbers x y up to 1e10 are expected")
+    );
+    // A graph is known by its content, too.
+    let graph = file("damaged", "graph.json", std::fs::read(real("nav2/aws_graph.geojson")).unwrap());
+    assert_eq!(run(&["locks", &graph, "--radius", "0.4"]).status, 0);
+}

@@ -68,5 +68,8 @@ fn pictures_are_written() {
 fn what_is_no_layout_is_refused() {
     let scenario = file("locks", "scenario.json", crate::fixture::crossing().to_string());
     let failed = run(&["locks", &scenario]).failed(2);
-    assert!(failed.ends_with("scenario.json: not a layout; say what it is with --from\n"), "{failed}");
+    assert!(
+        failed.ends_with("scenario.json: not known as a layout by its name or content; say what it is with --from\n"),
+        "{failed}"
+    );
 }
