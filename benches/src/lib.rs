@@ -10,9 +10,30 @@ use std::path::Path;
 /// # Panics
 /// If the file is not there or is refused.
 pub fn fleet<S: Format>(name: &str) -> Fleet<S> {
+    from_json(&text(name))
+}
+
+fn text(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name).with_extension("json");
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    from_json(&text)
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A fleet of the test data so many times, side by side and out of reach of each other.
+///
+/// # Panics
+/// If the file is not there or is refused.
+pub fn copies(name: &str, count: u32) -> Fleet<f64> {
+    let one = scenario(&text(name));
+    let mut all = Scenario { name: name.to_owned(), agents: Vec::new() };
+    for copy in 0..count {
+        for (id, agent) in (u64::from(copy) * one.agents.len() as u64..).zip(&one.agents) {
+            let mut agent = agent.clone();
+            agent.id = id;
+            agent.start[0] += 50.0 * f64::from(copy);
+            all.agents.push(agent);
+        }
+    }
+    Fleet::new(&all).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A fleet from a scenario.
@@ -20,8 +41,11 @@ pub fn fleet<S: Format>(name: &str) -> Fleet<S> {
 /// # Panics
 /// If it is refused.
 pub fn from_json<S: Format>(json: &str) -> Fleet<S> {
-    let scenario = Scenario::from_json(json).unwrap_or_else(|error| panic!("{error}"));
-    Fleet::new(&scenario).unwrap_or_else(|error| panic!("{error}"))
+    Fleet::new(&scenario(json)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn scenario(json: &str) -> Scenario {
+    Scenario::from_json(json).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// `columns` by `columns` agents on short lines so far apart that none can meet another.

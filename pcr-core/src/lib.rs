@@ -61,8 +61,8 @@ pub use pieces::Piece;
 pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
-    Approach, Conflict, Conflicts, Contacts, Encounter, Met, earliest_start, first_conflict, safe_intervals,
-    safe_lengths,
+    Approach, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start, first_conflict,
+    least_duration, safe_intervals, safe_lengths,
 };
 pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]

@@ -17,6 +17,7 @@ pub struct Motion<'a, S: Scalar> {
     radius: S,
     margin: S,
     start: S,
+    lateness: S,
     bounds: Bounds<S>,
     extent: S,
     drift: S,
@@ -44,7 +45,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let drift = S::drift(arcs, extent);
         let speeds = profile.phases().iter().flat_map(|phase| phase.speed());
         let lag = S::lag(speeds.fold(S::ZERO, S::max), profile.duration());
-        Ok(Self { path, profile, radius, margin: S::ZERO, start, bounds, extent, drift, lag })
+        Ok(Self { path, profile, radius, margin: S::ZERO, start, lateness: S::ZERO, bounds, extent, drift, lag })
     }
 
     /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
@@ -56,6 +57,23 @@ impl<'a, S: Scalar> Motion<'a, S> {
         not_negative(margin, "margin")?;
         in_range(self.radius + margin, "radius with its margin")?;
         Ok(Self { margin, ..self })
+    }
+
+    /// The same motion of an agent that may be late by up to so much \[s\]: at any time it is somewhere where by the motion it
+    /// has been during so long before. What is asked for plans takes it into account on both sides, of the ego and of
+    /// others: blocked windows and safe intervals, forbidden delays, durations and waits, speed plans. Regions, conflicts and
+    /// the closest approach are those of the motion as it is.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
+    pub fn with_lateness(self, lateness: S) -> Result<Self, Invalid> {
+        not_negative(lateness, "lateness")?;
+        Ok(Self { lateness, ..self })
+    }
+
+    /// By how much the agent may be late \[s\].
+    pub fn lateness(&self) -> S {
+        self.lateness
     }
 
     /// The same motion of a disc that is larger by the margin, without a margin of its own: a table of such motions
@@ -87,7 +105,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// # Errors
     /// As [`Motion::new`].
     pub fn with_profile(self, profile: ProfileRef<'a, S>, start: S) -> Result<Self, Invalid> {
-        Self::new(self.path, profile, self.radius, start)?.with_margin(self.margin)
+        Self::new(self.path, profile, self.radius, start)?.with_margin(self.margin)?.with_lateness(self.lateness)
     }
 
     /// The same motion, later by `delay` \[s\].

@@ -224,6 +224,30 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(Self { phases })
     }
 
+    /// The profile, slower or faster as a whole so that it takes `duration` \[s\]: with D its own duration, times are
+    /// `duration` / D as long, speeds D / `duration` as large, accelerations the square of that. Lengths stay.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for speeds and accelerations), [`Invalid::NonPositive`]
+    /// (duration), and [`Invalid::Full`] for more than `N` phases.
+    pub fn stretched(profile: ProfileRef<'_, S>, duration: S) -> Result<Self, Invalid> {
+        positive(duration, "duration")?;
+        let whole = profile.duration();
+        let speed = |speed: S| in_range(speed.times(whole).narrow().quotient(duration), "speed");
+        let mut phases: Vec<Phase<S>, N> = Vec::new();
+        let mut from = S::ZERO;
+        for phase in profile.phases() {
+            let to = if phase.time.hi < whole { duration.portion(phase.time.hi, whole) } else { duration };
+            let [before, after] = [speed(phase.speed[0])?, speed(phase.speed[1])?];
+            let acceleration = in_range((after - before).quotient(to - from), "acceleration")?;
+            let time = Interval::new(from, to);
+            let phase = Phase { time, length: phase.length, speed: [before, after], acceleration };
+            phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
+            from = to;
+        }
+        Ok(Self { phases })
+    }
+
     /// The profile of an agent that stands: no phases.
     pub const fn standing() -> Self {
         Self { phases: Vec::new() }

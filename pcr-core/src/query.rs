@@ -7,19 +7,27 @@
 //! clearance   how near they come                                 Approach
 //! conflict    both: from when to when, where, how deep           Conflict, Conflicts, first_conflict
 //! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
-//! delay       start delays that lead to a conflict               earliest_start
+//! bracket     the end of what is forbidden                        (internal)
+//! delay       delays that lead to a conflict                     earliest_start
+//! depart      waits on the way                                   earliest_departure
+//! stretch     speed scale factors                                least_duration
 //! ```
 
+mod bracket;
 mod chord;
 mod clearance;
 mod conflict;
 mod contact;
 mod delay;
+mod depart;
 mod legs;
 mod safe;
+mod stretch;
 
 pub use clearance::Approach;
 pub use conflict::{Conflict, Conflicts, Met, first_conflict};
 pub use contact::{Contacts, Encounter};
 pub use delay::earliest_start;
+pub use depart::earliest_departure;
 pub use safe::{safe_intervals, safe_lengths};
+pub use stretch::least_duration;

@@ -3,6 +3,8 @@
 //! The agents are planned one after the other in an order of priority, each to arrive as early as those before it allow: by
 //! a later start, or by its speed along the path. Every plan is checked as `pcr check` does before it is returned.
 
+mod circle;
+
 use crate::check::Verdict;
 use crate::fleet::Fleet;
 use crate::fleet::HostEcm;
@@ -129,6 +131,13 @@ impl Plan {
             if best.0.sum_of_costs >= cost {
                 break;
             }
+        }
+        if best.1.is_none()
+            && let Some(circle) = circle::circle(&ecm, &motions)
+        {
+            let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
+            let why = "each has to let the next one pass first, the last one the first, however they move".into();
+            best.0.unsolved = vec![Unsolved { ids, why }];
         }
         Ok(best)
     }

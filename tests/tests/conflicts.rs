@@ -1,10 +1,11 @@
 //! Conflicts of given motions: against an oracle that halves time until the way travelled decides, and known answers.
 
-use pcr_core::{Approach, Conflict, Encounter, Interval};
+use pcr_core::{Approach, Conflict, Encounter, Interval, Motion, first_conflict};
 use pcr_fixed::Q16;
-use pcr_host::fleet::Format;
+use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
-use pcr_tests::generators::driven_pairs;
+use pcr_tests::generators::{Dice, drive, driven_pairs, leg};
+use pcr_tests::oracle::contact::contacts;
 use pcr_tests::oracle::line::{below, nearest};
 use pcr_tests::oracle::{Pair, Travel};
 use pcr_tests::settings::settings;
@@ -303,4 +304,104 @@ fn the_closest_approach_of_many_pairs_is_that_of_dense_sampling() {
             "{k}: {closest:?}"
         );
     }
+}
+
+/// The earliest conflict of the first agent of random fleets with its row of the table is that of the definition.
+fn first_of_rows<S: Format>(cases: u64) {
+    let (mut met, mut free) = (0, 0);
+    for seed in 0..cases {
+        let dice = &mut Dice::seeded(seed);
+        let driven: Vec<Driven> = (0..5)
+            .map(|_| {
+                let start = [dice.range(-3.0, 3.0), dice.range(-3.0, 3.0), dice.range(-PI, PI)];
+                let legs = (0..1 + dice.below(3)).map(|_| leg(dice)).collect();
+                let disc = Disc { radius: dice.range(0.05, 0.3), start, legs };
+                let drive = drive(dice, disc.length());
+                (disc, drive, dice.range(0.0, 5.0))
+            })
+            .collect();
+        let Some(courses) = driven.iter().map(course::<S>).collect::<Option<Vec<_>>>() else { continue };
+        let fleet: Vec<Motion<'_, S>> = courses.iter().map(|(course, _)| course.motion()).collect();
+        let ecm = build_ecm(&fleet).expect("a small table");
+        // Another motion than the table was made for: a later start.
+        let ego = fleet[0].delayed(S::from_f64(1.0)).expect("a valid delay");
+        let all = fleet.iter().map(Motion::time).fold(ego.time(), Interval::hull);
+        let during = [all.lo.to_f64(), all.hi.to_f64()];
+        let first = first_conflict(&ego, ecm.row(&fleet, 0), all);
+        let tolerance = (1..5).map(|k| Encounter::new(&ego, &fleet[k]).tolerance().to_f64()).fold(0.0, f64::max);
+        let own = (courses[0].1.0.clone(), courses[0].1.1.clone(), ego.time().lo.to_f64());
+        let truth = |other: usize, margin: f64| {
+            let their = &courses[other].1;
+            contacts(&own, their, [own.2, their.2], during, margin)
+        };
+        let speed = |other: usize| own.1.top_speed() + courses[other].1.1.top_speed() + 1e-3;
+        match first {
+            None => {
+                free += 1;
+                let missed = (1..5).find(|&other| deep(&own, &courses[other].1, during, tolerance));
+                assert_eq!(missed, None, "seed {seed}");
+            }
+            Some(first) => {
+                met += 1;
+                let first_other = first.other;
+                let time = first.conflict.time.lo.to_f64();
+                let possible = truth(first.other, 2.0 * tolerance).outer;
+                let begin = possible.first().map_or(f64::INFINITY, |first| first.0 / speed(first_other));
+                assert!(begin <= time + 1e-6, "seed {seed}: {first:?}, not before {begin}");
+                let earlier = (1..5).find(|&other| {
+                    let before = [during[0], time - 1e-3];
+                    before[0] < before[1] && deep(&own, &courses[other].1, before, tolerance)
+                });
+                assert_eq!(earlier, None, "seed {seed}: before {first:?}");
+                let depth = first.conflict.depth.to_f64();
+                let clearance = Truth::new(&[own.clone(), courses[first.other].1.clone()])
+                    .clearance(first.conflict.deepest.time.to_f64());
+                assert!(
+                    (clearance + depth).abs() <= 2.0 * tolerance || first.conflict.touching,
+                    "seed {seed}: {first:?}"
+                );
+            }
+        }
+    }
+    assert!(met * 20 > cases && free * 20 > cases, "{met} met, {free} free");
+}
+
+/// Whether two discs overlap for sure, by more than the tolerance.
+fn deep(a: &Driven, b: &Driven, during: [f64; 2], tolerance: f64) -> bool {
+    let smaller = (a.0.grown(-2.0 * tolerance), a.1.clone(), a.2);
+    !contacts(&smaller, b, [a.2, b.2], during, 0.0).inner.is_empty()
+}
+
+#[test]
+fn the_first_conflict_with_a_row_is_that_of_the_definition() {
+    let cases = if cfg!(debug_assertions) { 100 } else { 2_000 };
+    first_of_rows::<f64>(cases);
+    first_of_rows::<f32>(cases);
+    first_of_rows::<Q16>(cases);
+}
+
+#[test]
+fn the_first_conflict_with_a_row_has_known_answers() {
+    let first = |courses: &[Course<f64>]| {
+        let fleet: Vec<Motion<'_, f64>> = courses.iter().map(Course::motion).collect();
+        let ecm = build_ecm(&fleet).expect("a small table");
+        first_conflict(&fleet[0], ecm.row(&fleet, 0), Interval::new(-1.0, 20.0)).map(|met| (met.other, met.conflict))
+    };
+    let ego = || line(0.25, [-4.0, 0.0, 0.0], 8.0, 0.0);
+    // Two cross at right angles, the later one listed first: √2 v |t - 4 ∓ ...| <= R around 4 s and 2 s.
+    let crossing = |x: f64, start: f64| line(0.25, [x, -2.0, FRAC_PI_2], 4.0, start);
+    let (other, conflict) = first(&[ego(), crossing(0.0, 2.0), crossing(-2.0, 0.0)]).expect("a conflict");
+    assert_eq!(other, 2);
+    let half = 0.5 / 2_f64.sqrt();
+    assert!(close(conflict.time.lo, 2.0 - half) && close(conflict.time.hi, 2.0 + half) && close(conflict.depth, 0.5));
+    // Head-on on one line: they meet at a relative speed of 2 m/s, R before the middle; and stay in contact until they part.
+    let (other, conflict) = first(&[ego(), line(0.25, [4.0, 0.0, PI], 8.0, 0.0)]).expect("a conflict");
+    assert!(other == 1 && close(conflict.time.lo, 3.75) && close(conflict.time.hi, 4.25), "{conflict:?}");
+    // Following by 0.6 m keeps 0.1 m of clearance, by 0.4 m it overlaps by 0.1 m all the way.
+    assert_eq!(first(&[ego(), line(0.25, [-3.4, 0.0, 0.0], 8.0, 0.0)]), None);
+    let (_, conflict) = first(&[ego(), line(0.25, [-3.6, 0.0, 0.0], 8.0, 0.0)]).expect("a conflict");
+    assert!(close(conflict.depth, 0.1) && !conflict.touching, "{conflict:?}");
+    // Passing at the distance of a contact.
+    let (_, conflict) = first(&[ego(), line(0.25, [4.0, 0.5, PI], 8.0, 0.0)]).expect("touching");
+    assert!(conflict.touching, "{conflict:?}");
 }

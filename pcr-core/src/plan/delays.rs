@@ -3,7 +3,7 @@
 use crate::ecm::{Ecm, Region};
 use crate::motion::Motion;
 use crate::pieces::Piece;
-use crate::plan::order::{Blocked, Unsolved, in_order, separated};
+use crate::plan::order::{Blocked, Unsolved, in_order, separated, verified};
 use crate::query::earliest_start;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -17,6 +17,8 @@ use crate::scalar::Scalar;
 /// radii do not even touch.
 ///
 /// Cost: for each agent that of [`earliest_start`] for its row, and again for those after one that is moved.
+///
+/// The plan is checked as a whole before it is returned: no overlap is deeper than the tolerance.
 ///
 /// # Errors
 /// [`Unsolved`] with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
@@ -42,7 +44,8 @@ where
             *planned = delayed;
         }
         Ok(())
-    })
+    })?;
+    verified(ecm, plan, order)
 }
 
 /// The motion as early as the regions allow.

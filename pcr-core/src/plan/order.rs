@@ -3,6 +3,10 @@
 //! An agent for which there is no plan because of one of higher priority (that parks on its way, or passes over its
 //! start) is moved up before it in the order, and the search goes on from there; a bounded number of times.
 
+use crate::ecm::{Ecm, Region};
+use crate::geometry::Interval;
+use crate::motion::Motion;
+use crate::pieces::Piece;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
@@ -20,6 +24,8 @@ pub enum Unsolved {
     Always([usize; 2]),
     /// There is no plan for the first with the priorities that were tried, because of the second.
     Priorities([usize; 2]),
+    /// The check of the plan found that these overlap.
+    Overlap([usize; 2]),
     /// There is no room for the plan of this agent: profiles, phases or stations; or its times are out of range.
     Full(usize),
     /// There is no such agent, or not as many plans as motions.
@@ -33,6 +39,7 @@ impl core::fmt::Display for Unsolved {
             Self::Ends([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap at the ends of their paths"),
             Self::Always([a, b]) => write!(f, "agents {a} and {b} of the fleet meet however they move"),
             Self::Priorities([a, b]) => write!(f, "agent {a} of the fleet cannot go because of agent {b}"),
+            Self::Overlap([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap by the plan"),
             Self::Full(agent) => write!(f, "there is no room for a plan of agent {agent} of the fleet"),
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
         }
@@ -74,6 +81,27 @@ pub(super) fn in_order(
                     .for_each(|place| core::mem::swap(place, &mut moved));
                 (place, moves) = (to, left);
             }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a plan in which an agent overlaps with one before it in the order, by more than a rounding.
+pub(super) fn verified<S, R, P>(ecm: &Ecm<S, R, P>, plan: &[Motion<'_, S>], order: &[usize]) -> Result<(), Unsolved>
+where
+    S: Scalar,
+    R: AsRef<[Region]>,
+    P: AsRef<[Piece<S>]>,
+{
+    let time = order.iter().filter_map(|&agent| plan.get(agent)).map(Motion::time).reduce(Interval::hull);
+    let time = time.unwrap_or_default();
+    // `enumerate` would check its counter for overflow.
+    for (place, &agent) in (0..order.len()).zip(order) {
+        let Some(motion) = plan.get(agent) else { continue };
+        let before = order.get(..place).unwrap_or_default();
+        let regions = ecm.row(plan, agent).filter(|region| before.contains(&region.other()));
+        if let Some(region) = regions.into_iter().find(|region| region.overlap(motion, time).is_some()) {
+            return Err(Unsolved::Overlap([agent, region.other()]));
         }
     }
     Ok(())

@@ -187,6 +187,9 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     search.trace(arrival, stations)?;
     let mut plan = search.profile(stations)?;
     search.check(ego, &plan)?;
-    search.tighten(ego, &mut plan)?;
+    // Contacts are those of agents in time.
+    if !search.regions.clone().any(|region| region.is_uncertain()) {
+        search.tighten(ego, &mut plan)?;
+    }
     Ok(plan)
 }

@@ -5,7 +5,7 @@ use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::plan::delays::earliest;
 use crate::plan::lattice::Drive;
-use crate::plan::order::{Blocked, Unsolved, in_order, separated};
+use crate::plan::order::{Blocked, Unsolved, in_order, separated, verified};
 use crate::plan::speed::{NoSpeedPlan, Station, plan_speed};
 use crate::profile::Profile;
 use crate::region::RegionRef;
@@ -21,6 +21,8 @@ use crate::scalar::Scalar;
 ///
 /// Cost: for each agent that of [`plan_speed`] and [`earliest_start`](crate::earliest_start), and again for those after
 /// one that is moved.
+///
+/// The plan is checked as a whole before it is returned: no overlap is deeper than the tolerance.
 ///
 /// # Errors
 /// [`Unsolved`] with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
@@ -62,7 +64,8 @@ where
             *planned = chosen;
         }
         Ok(())
-    })
+    })?;
+    verified(ecm, plan, order)
 }
 
 /// What is to be done about a reason.

@@ -22,10 +22,15 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
         from: S,
     ) -> Result<Option<Met<S>>, Invalid> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
-        let ends = self.regions.clone().map(|region| region.other_motion().time()).chain([motion.time()]);
+        Ok(first_conflict(&motion, self.regions.clone(), self.during(&motion, from)))
+    }
+
+    /// From a time on until everybody stands.
+    fn during(&self, ego: &Motion<'_, S>, from: S) -> Interval<S> {
+        let ends = self.regions.clone().map(|region| region.other_motion().time()).chain([ego.time()]);
         let all = ends.reduce(Interval::hull).unwrap_or_default();
-        let during = Interval::new(from.max(all.lo), all.hi);
-        Ok(first_conflict(&motion, self.regions.clone(), during))
+        let from = from.max(all.lo);
+        Interval::new(from, all.hi.max(from))
     }
 
     /// Refuses a plan with an overlap that is more than a rounding.
@@ -36,12 +41,13 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
     ) -> Result<(), NoSpeedPlan<S>> {
         let [start, _] = self.lattice.ends();
         let from = if start == 0 { -S::LIMIT } else { plan.start };
-        match self.met(ego, plan, from)? {
-            Some(met) if !met.conflict.touching => {
-                Err(NoSpeedPlan::Beyond { length: met.conflict.length.lo, other: met.other })
-            }
-            _ => Ok(()),
-        }
+        let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
+        let during = self.during(&motion, from);
+        let mut overlaps =
+            self.regions.clone().filter_map(|region| Some((region.other(), region.overlap(&motion, during)?)));
+        overlaps
+            .next()
+            .map_or(Ok(()), |(other, conflict)| Err(NoSpeedPlan::Beyond { length: conflict.length.lo, other }))
     }
 
     /// Shortens the waits, the first one first, as far as nobody is met.

@@ -27,16 +27,20 @@ impl<S: Scalar> Encounter<'_, S> {
     /// Cost: a comparison of boxes a leg and a few steps for those that come nearer than the legs before.
     pub fn closest(&self, during: Interval<S>) -> Approach<S> {
         let separation = (self.other.position_at(during.lo) - self.ego.position_at(during.lo)).norm_squared().sqrt();
+        // A bound that holds for the first windows as well.
+        let ends = Windows::new(self, during).map(|window| window.at(window.time.hi).separation());
+        let bound = ends.fold(separation, S::min) + self.tolerance().half();
         let mut best = Approach { time: during.lo, separation };
         for window in Windows::new(self, during) {
-            if window.near(best.separation) {
-                self.closest_in(&window, &mut best);
+            if window.near(best.separation.min(bound)) {
+                self.closest_in(&window, bound, &mut best);
             }
         }
         best
     }
 
-    fn closest_in(&self, window: &Window<'_, S>, best: &mut Approach<S>) {
+    /// Looks for what is nearer than the best and than the bound.
+    fn closest_in(&self, window: &Window<'_, S>, bound: S, best: &mut Approach<S>) {
         let fine = self.tolerance().half();
         let mut now = window.at(window.time.lo);
         let mut step = window.time.length();
@@ -47,11 +51,11 @@ impl<S: Scalar> Encounter<'_, S> {
             let chord = Chord::between(now.apart, ahead.apart);
             let error = window.deviation(&now, &ahead);
             let (x, distance) = chord.nearest();
-            let mut done = distance - error >= best.separation;
+            let mut done = distance - error >= best.separation.min(bound);
             if !done {
                 let elapsed = if x < chord.length { duration.portion(x, chord.length) } else { duration };
                 let time = now.time + elapsed;
-                let separation = window.at(time).apart.norm_squared().sqrt();
+                let separation = window.at(time).separation();
                 if separation < best.separation {
                     *best = Approach { time, separation };
                 }

@@ -153,6 +153,13 @@ pub(crate) struct Instant<S> {
     pub(crate) apart: Vector<S>,
 }
 
+impl<S: Scalar> Instant<S> {
+    /// Distance of the centres \[m\].
+    pub(crate) fn separation(&self) -> S {
+        self.apart.norm_squared().sqrt()
+    }
+}
+
 impl<S: Scalar> Window<'_, S> {
     pub(crate) fn at(&self, time: S) -> Instant<S> {
         let [a, b] = &self.legs;

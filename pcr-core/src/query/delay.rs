@@ -4,103 +4,111 @@
 //! delay of T_other(s) - T_ego(l); the image of a connected region is connected, hence every region forbids one
 //! interval of delays, whatever the profiles. It reaches to infinity where the ego is met standing at its start (later
 //! does not help), or the other standing at its end; and from minus infinity likewise. A finite end is bracketed: what
-//! the box of the region allows lies outside, a delay with a contact inside, and the bracket is halved by looking for
-//! contacts. The outer end is taken, at which there was none.
+//! the box of the region allows lies outside, a delay with a contact inside (`bracket`). The outer end is taken, at which
+//! there was none. Where agents may be late, the interval is longer by as much.
 
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::query::bracket::Bracket;
 use crate::query::contact::Encounter;
 use crate::query::safe::times;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Halvings of a bracket at most; fewer where the format has fewer digits.
-const HALVINGS: u32 = 64;
-
 impl<S: Scalar> RegionRef<'_, S> {
     /// The delays of the ego's start \[s\] at which it meets this region, rounded outward; negative ones are earlier
-    /// starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity.
+    /// starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity. With agents that may be late
+    /// ([`Motion::with_lateness`]) these are the delays at which they may meet.
     ///
     /// The ends are right within [`Scalar::tolerance`] of the latest time, and what [`Encounter::tolerance`] of distance
-    /// makes of them; a region in which the discs only touch
-    /// may forbid all that its ranges allow. Cost: for each finite end about 30 searches for contacts in `f64`, 15 in `f32`.
+    /// makes of them; a region in which the discs only touch may forbid all that its ranges allow. Cost: for each finite end
+    /// 10 to 30 searches for contacts.
     pub fn forbidden_delays(&self) -> Interval<S> {
         let when = |motion: &Motion<'_, S>, length| motion.time_in(Interval::new(length, length)).lo;
-        let delays = self
+        let mut delays = self
             .inner_points()
             .map(|[length, other_length]| when(self.other_motion(), other_length) - when(self.ego_motion(), length));
         let possible = self.possible_delays();
-        match delays.filter(|&delay| possible.contains(delay)).find(|&delay| self.is_met(delay)) {
-            Some(met) => Interval::new(self.end_of_delays(met, possible.lo), self.end_of_delays(met, possible.hi)),
-            None => possible,
-        }
+        let met = delays.find(|&delay| possible.contains(delay) && self.contact_after(delay).is_some());
+        let ends = [possible.lo, possible.hi].map(|beyond| met.map_or(beyond, |met| self.end_of_delays(met, beyond)));
+        self.with_lateness(Interval::new(ends[0], ends[1]))
     }
 
     /// The delays that the ranges of the region allow.
     fn possible_delays(&self) -> Interval<S> {
-        let ego = self.ego_motion();
         let length = self.length();
-        let (own, their) = (ego.time_in(length), self.time());
+        let Interval { lo, hi } = self.delays_on(length);
+        let never = length.hi >= self.ego_motion().path().length() || self.is_open_at_start();
+        let ever = length.lo <= S::ZERO || self.is_open_at_end();
+        Interval::new(if never { -S::LIMIT } else { lo }, if ever { S::LIMIT } else { hi })
+    }
+
+    /// The delays at which the ego is on a part of its path while the other is in the region.
+    pub(super) fn delays_on(&self, part: Interval<S>) -> Interval<S> {
+        let (own, their) = (self.ego_motion().time_in(part), self.time());
         // Differences of times have a rounding of their own.
         let slack = self.resolution();
-        let never = length.hi >= ego.path().length() || self.is_open_at_start();
-        let ever = length.lo <= S::ZERO || self.is_open_at_end();
-        Interval::new(
-            if never { -S::LIMIT } else { their.lo - own.hi - slack },
-            if ever { S::LIMIT } else { their.hi - own.lo + slack },
-        )
+        Interval::new(their.lo - own.hi - slack, their.hi - own.lo + slack)
+    }
+
+    /// Longer by how late the agents may be.
+    pub(super) fn with_lateness(&self, delays: Interval<S>) -> Interval<S> {
+        let (own, their) = (self.ego_motion().lateness(), self.other_motion().lateness());
+        let lo = if delays.lo > -S::LIMIT { delays.lo - own } else { delays.lo };
+        Interval::new(lo, if delays.hi < S::LIMIT { delays.hi + their } else { delays.hi })
+    }
+
+    /// Whether either agent may be late.
+    pub(crate) fn is_uncertain(&self) -> bool {
+        self.ego_motion().lateness() > S::ZERO || self.other_motion().lateness() > S::ZERO
     }
 
     /// Brackets are not narrower than this \[s\].
-    fn resolution(&self) -> S {
+    pub(super) fn resolution(&self) -> S {
         let latest = |interval: Interval<S>| interval.lo.abs().max(interval.hi.abs());
         S::tolerance(latest(self.ego_motion().time()).max(latest(self.other_motion().time())))
     }
 
     /// The end of the forbidden delays between one that is forbidden and one that is beyond it.
-    fn end_of_delays(&self, met: S, beyond: S) -> S {
-        if beyond.abs() >= S::LIMIT {
-            return beyond;
+    fn end_of_delays(&self, inside: S, outside: S) -> S {
+        if outside.abs() >= S::LIMIT {
+            return outside;
         }
-        let resolution = self.resolution();
-        let (mut inside, mut outside) = (met, beyond);
-        for _ in 0..HALVINGS {
-            if (outside - inside).abs() <= resolution {
-                break;
-            }
-            let middle = inside + (outside - inside).half();
-            if self.is_met(middle) {
-                inside = middle;
-            } else {
-                outside = middle;
-            }
-        }
-        outside
+        Bracket { inside, outside, resolution: self.resolution() }.shrunk(|delay| self.contact_after(delay))
     }
 
-    /// Whether the ego meets the region if it starts later by this delay.
-    fn is_met(&self, delay: S) -> bool {
-        let other = self.other_motion();
+    /// How long the ego meets the region if it starts later by this delay, if it does.
+    fn contact_after(&self, delay: S) -> Option<S> {
         // A start that the format does not hold is none to recommend.
-        let Ok(ego) = self.ego_motion().delayed(delay) else {
-            return true;
-        };
-        let encounter = Encounter::new(&ego, other);
+        self.ego_motion().delayed(delay).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, self.length()))
+    }
+
+    /// How long the ego, in another motion along its path, first meets the region on a part of it \[s\], if it does.
+    pub(super) fn contact_of(&self, ego: &Motion<'_, S>, part: Interval<S>) -> Option<S> {
+        let other = self.other_motion();
+        let encounter = Encounter::new(ego, other);
         let all = encounter.time();
-        let (Some(own), Some(their)) = (times(&ego, self.length(), all), times(other, self.other_length(), all)) else {
-            return false;
-        };
+        let (own, their) = (times(ego, part, all)?, times(other, self.other_length(), all)?);
         let during = Interval::new(own.lo.max(their.lo), own.hi.min(their.hi));
         // A contact is connected, hence part of one region; at a grazing one only its deepest point may be inside.
         let covers = |time: S| self.covers(ego.length_at(time), other.length_at(time));
-        let belongs = |contact: Interval<S>| covers(contact.middle()) || covers(encounter.closest(contact).time);
-        during.lo <= during.hi && encounter.contacts(during).any(belongs)
+        let belongs = |contact: &Interval<S>| covers(contact.middle()) || covers(encounter.closest(*contact).time);
+        let mut contacts = (during.lo <= during.hi).then(|| encounter.contacts(during)).into_iter().flatten();
+        contacts.find(belongs).map(Interval::length)
     }
 
     /// The least delay from `delay` on at which the ego does not meet this region.
     fn next_free(&self, delay: S) -> Option<S> {
         let possible = self.possible_delays();
-        if !possible.contains(delay) || !self.is_met(delay) {
+        if !self.with_lateness(possible).contains(delay) {
+            return Some(delay);
+        }
+        if self.is_uncertain() {
+            let forbidden = self.forbidden_delays();
+            let end = if forbidden.lo <= delay { forbidden.hi.max(delay) } else { delay };
+            return (end < S::LIMIT).then_some(end);
+        }
+        if self.contact_after(delay).is_none() {
             return Some(delay);
         }
         (possible.hi < S::LIMIT).then(|| self.end_of_delays(delay, possible.hi))
@@ -111,7 +119,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// the table, or of some of the others. `None` where no delay helps; [`RegionRef::forbidden_delays`] tells which regions
 /// forbid all late ones.
 ///
-/// Cost: a comparison of ranges a region, 15 to 30 searches for contacts for each that is met.
+/// Cost: a comparison of ranges a region, 10 to 30 searches for contacts for each that is met.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, earliest_start};
@@ -129,12 +137,21 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn earliest_start<'a, S: Scalar>(regions: impl Iterator<Item = RegionRef<'a, S>> + Clone, from: S) -> Option<S> {
+    settle(regions, from, RegionRef::next_free)
+}
+
+/// The least value from `from` on that is free for all regions.
+pub(super) fn settle<'a, S: Scalar>(
+    regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
+    from: S,
+    next_free: impl Fn(&RegionRef<'a, S>, S) -> Option<S>,
+) -> Option<S> {
     let mut delay = from;
     // A region that was left behind is not met again: one round for each, and one that finds nothing.
     for () in regions.clone().map(|_| ()).chain([()]) {
         let mut later = delay;
         for region in regions.clone() {
-            later = region.next_free(later)?;
+            later = next_free(&region, later)?;
         }
         if later <= delay {
             return Some(delay);

@@ -31,14 +31,15 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         length: Interval<S>,
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let other = self.other;
-        union(self.covered(self.ego, length, other)).filter_map(move |covered| times(other, covered, during))
+        let (ego, other) = (self.ego, self.other);
+        union(self.covered(ego, length, other).filter_map(move |covered| kept_from(ego, other, covered, during)))
     }
 
     /// Lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint, in
     /// increasing order, rounded outward. Cost as that of [`Encounter::blocked`].
     pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let lengths = [during.lo, during.hi].map(|time| self.other.length_at(time));
+        let times = [during.lo - self.other.lateness(), during.hi + self.ego.lateness()];
+        let lengths = times.map(|time| self.other.length_at(time));
         // The length that belongs to a time is right within what rounding does to a distance.
         let all = Interval::new(S::ZERO, self.other.path().length());
         let part = Interval::new(lengths[0], lengths[1]).widen(self.pad(), all);
@@ -87,7 +88,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         parts.flat_map(move |(own, their)| {
             let lengths = covered(&own, their, radius, slack).into_iter().flatten();
             let along = lengths.map(move |part| Interval::new(part.lo + their.from, part.hi + their.from));
-            along.filter_map(move |part| times(other, part.widen(slack, all), during))
+            along.filter_map(move |part| kept_from(ego, other, part.widen(slack, all), during))
         })
     }
 }
@@ -192,6 +193,20 @@ fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack:
         }
     }
     parts
+}
+
+/// The times of an interval at which the ego must not be meant to be where the other is on these lengths of its path:
+/// either may be late.
+fn kept_from<S: Scalar>(
+    ego: &Motion<'_, S>,
+    other: &Motion<'_, S>,
+    lengths: Interval<S>,
+    during: Interval<S>,
+) -> Option<Interval<S>> {
+    let (early, late) = (ego.lateness(), other.lateness());
+    let window = times(other, lengths, Interval::new(during.lo - late, during.hi + early))?;
+    let window = Interval::new((window.lo - early).max(during.lo), (window.hi + late).min(during.hi));
+    (window.lo <= window.hi).then_some(window)
 }
 
 /// The times of an interval at which an agent is on these lengths of its path, standing included.

@@ -95,3 +95,25 @@ fn what_is_refused() {
     assert!(message.starts_with(&format!("pcr: {blocked}: cannot be written: ")), "{message}");
     assert!(run(&["plan", "--help"]).ok().contains("  1  no plan\n"));
 }
+
+#[test]
+fn agents_that_wait_for_one_another_in_a_circle_are_named() {
+    // Each goes to the start of the next one, around a triangle of 0.5 m that is too small to go round in.
+    let side = |id: u64, turn: f64| {
+        let heading = std::f64::consts::TAU / 3.0 * turn;
+        let (sin, cos) = (heading - std::f64::consts::FRAC_PI_2 - std::f64::consts::FRAC_PI_3).sin_cos();
+        let radius = 0.5 / 3.0_f64.sqrt();
+        json!({ "id": id, "radius": 0.2, "v_max": 1.0, "a_max": 1.0,
+            "start": { "x": radius * cos, "y": radius * sin, "heading": heading },
+            "path": [{ "kind": "line", "length": 0.5 }] })
+    };
+    let agents = json!({ "agents": [side(1, 0.0), side(2, 1.0), side(3, 2.0)] });
+    for method in ["delay", "speed"] {
+        let (status, report, written) = plan(&format!("circle-{method}"), &agents, &["--method", method]);
+        assert_eq!((status, written, &report["unsolved"][0]["ids"]), (1, None, &json!([1, 2, 3])), "{report}");
+        assert!(report["unsolved"][0]["why"].as_str().unwrap().contains("the last one the first"), "{report}");
+    }
+    // Two of them are no circle.
+    let agents = json!({ "agents": [side(1, 0.0), side(2, 1.0)] });
+    assert_eq!(plan("no-circle", &agents, &[]).0, 0);
+}

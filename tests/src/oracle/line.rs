@@ -46,7 +46,20 @@ fn append(intervals: &mut Vec<(f64, f64)>, a: f64, b: f64) {
 /// Whether the function is at most `margin` anywhere in `[lo, hi]`, as far as steps of `tolerance` can tell: `false`
 /// is certain.
 pub fn reaches(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance: f64) -> bool {
-    !below(f, lo, hi, margin, tolerance).outer.is_empty()
+    let mut stack = vec![(lo, hi)];
+    let mut spent = 0;
+    while let Some((a, b)) = stack.pop() {
+        let half = 0.5 * (b - a);
+        let value = f(a + half);
+        spent += 1;
+        if value <= margin || value - half <= margin && (half <= tolerance || spent >= BUDGET) {
+            return true;
+        }
+        if value - half <= margin {
+            stack.extend([(a + half, b), (a, a + half)]);
+        }
+    }
+    false
 }
 
 /// About the least value in `[lo, hi]`: for messages, nothing is decided with it.

@@ -1,0 +1,81 @@
+//! Waits on the way: how long an agent has to stand at a length of its path so that it meets no region behind it.
+//!
+//! What comes after the length is a motion that is delayed by the wait, so that the forbidden waits are found as the
+//! forbidden delays are (`delay`); how long the agent may stand there is told by the windows in which its place is blocked.
+
+use crate::geometry::Interval;
+use crate::query::bracket::Bracket;
+use crate::query::delay::{earliest_start, settle};
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+impl<S: Scalar> RegionRef<'_, S> {
+    /// The least wait from `wait` on at a length of the path, after which the ego does not meet the rest of this region.
+    fn next_free_after(&self, at: S, wait: S) -> Option<S> {
+        let part = Interval::new(self.length().lo.max(at), self.length().hi);
+        if part.lo > part.hi {
+            return Some(wait);
+        }
+        // Standing at the end of the path is a part of the rest.
+        let ego = self.ego_motion();
+        let contact = |wait: S| ego.delayed(wait).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, part));
+        let possible = self.with_lateness(self.delays_on(part));
+        let parked = self.blocked(part, Interval::new(S::LIMIT, S::LIMIT)).next().is_some();
+        let stands = part.hi >= ego.path().length() || self.is_open_at_start();
+        let apart = wait >= possible.hi && !parked || wait < possible.lo && !stands;
+        // Of agents that may be late all that the ranges allow counts.
+        if apart || !self.is_uncertain() && contact(wait).is_none() {
+            return Some(wait);
+        }
+        if self.is_uncertain() || parked {
+            return (!parked).then_some(possible.hi);
+        }
+        Some(Bracket { inside: wait, outside: possible.hi, resolution: self.resolution() }.shrunk(contact))
+    }
+
+    /// How long the ego can stand at a length of its path, from when it leaves it by its motion on.
+    fn longest_wait(&self, at: S) -> S {
+        let ego = self.ego_motion();
+        let leaves = ego.time().lo + ego.profile().last_time_at(at);
+        let windows = self.blocked(Interval::new(at, at), Interval::new(leaves, S::LIMIT));
+        windows.map(|window| window.lo - leaves).fold(S::LIMIT, S::min)
+    }
+}
+
+/// The least further wait of the ego at a length of its path \[m\], from `from` \[s\] on, after which it goes on by its motion and
+/// meets none of the regions: those of its row in the table, or of some of the others. At the length 0 it is a delay of
+/// the start. `None` where no wait helps, or the agent is in someone's way before. Whether it can stop there is not asked: a
+/// motion that is at rest at this length can.
+///
+/// Where the length cuts a region in two, a wait that leads through between the parts may be missed; so may one that is
+/// shorter than all that the ranges of a region allow, if agents may be late. Cost: for each region
+/// that is met that of [`earliest_start`], and a few hundred operations a piece at this length.
+///
+/// ```
+/// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, earliest_departure};
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
+/// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+/// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
+/// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
+/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+///
+/// // 1 m from the start it waits as long as at the start; 0.4 m before the crossing the other would meet it standing.
+/// let wait = earliest_departure(ecm.row(&fleet, 0), 1.0, 0.0).unwrap();
+/// assert!((wait - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
+/// assert_eq!(earliest_departure(ecm.row(&fleet, 0), 1.6, 0.0), None);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn earliest_departure<'a, S: Scalar>(
+    regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
+    length: S,
+    from: S,
+) -> Option<S> {
+    if length <= S::ZERO {
+        return earliest_start(regions, from);
+    }
+    let wait = settle(regions.clone(), from, |region, wait| region.next_free_after(length, wait))?;
+    let longest = regions.map(|region| region.longest_wait(length)).fold(S::LIMIT, S::min);
+    (wait <= S::ZERO || wait <= longest).then_some(wait)
+}

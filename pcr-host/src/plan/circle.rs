@@ -1,0 +1,71 @@
+//! Circular waits: agents of which each has to let the next one pass first, all around, so that none of them can.
+//!
+//! A region that comes to the end of the ego's path, or to the start of the other's, is passed by the other first, however
+//! both move: the ego reaches the length l of any of its points (l, s) after the other has left s behind. These points
+//! are gates. From the start on every agent is let as far as the gates allow that are not open yet, again and again; who is
+//! stuck in the end can never arrive, and waits for another one that is stuck.
+
+use crate::fleet::HostEcm;
+use pcr_core::{Interval, Motion, RegionRef};
+
+/// Parts of a region, at whose borders its gates are.
+const PARTS: u32 = 32;
+
+/// The ego may reach the length only when the other is beyond.
+struct Gate {
+    ego: usize,
+    other: usize,
+    length: f64,
+    beyond: f64,
+}
+
+/// The agents of a circle, each of which waits for the next one and the last one for the first; nothing if there is none.
+/// With radii that are larger by what rounding adds it is a proof that no plan exists for the true ones but touching.
+pub(super) fn circle(ecm: &HostEcm<f64>, motions: &[Motion<'_, f64>]) -> Option<Vec<usize>> {
+    let gates: Vec<Gate> = ecm.regions(motions).filter(is_second).flat_map(|region| gates(&region)).collect();
+    let mut reach = vec![0.0; motions.len()];
+    loop {
+        let further: Vec<f64> = (0..motions.len())
+            .map(|agent| closed(&gates, &reach, agent).map_or(motions[agent].path().length(), |gate| gate.length))
+            .collect();
+        // It ends: every change opens a gate for good.
+        if further == reach {
+            break;
+        }
+        reach = further;
+    }
+    let mut waiting: Vec<usize> = vec![(0..motions.len()).find(|&agent| closed(&gates, &reach, agent).is_some())?];
+    loop {
+        let next = closed(&gates, &reach, *waiting.last()?)?.other;
+        if let Some(first) = waiting.iter().position(|&agent| agent == next) {
+            return Some(waiting.split_off(first));
+        }
+        waiting.push(next);
+    }
+}
+
+/// Whether the ego has to pass the region after the other, and can.
+fn is_second(region: &RegionRef<'_, f64>) -> bool {
+    let length = region.length();
+    let never_first = length.hi >= region.ego_motion().path().length() || region.is_open_at_start();
+    let never_second = length.lo <= 0.0 || region.is_open_at_end();
+    never_first && !never_second
+}
+
+fn gates(region: &RegionRef<'_, f64>) -> Vec<Gate> {
+    let (range, other) = (region.other_length(), region.other_motion());
+    let at = |k: u32| {
+        let length = range.lo + range.length() * f64::from(k) / f64::from(PARTS);
+        let time = other.time_in(Interval::new(length, length)).lo;
+        let slice = region.slice_at(time).next()?;
+        let beyond = other.length_at(time);
+        Some(Gate { ego: region.ego(), other: region.other(), length: slice.lo, beyond })
+    };
+    (0..=PARTS).filter_map(at).collect()
+}
+
+/// The first gate of an agent that is closed yet.
+fn closed<'a>(gates: &'a [Gate], reach: &[f64], agent: usize) -> Option<&'a Gate> {
+    let own = gates.iter().filter(|gate| gate.ego == agent && reach[gate.other] <= gate.beyond);
+    own.min_by(|a, b| a.length.total_cmp(&b.length))
+}
