@@ -115,9 +115,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return true;
         }
         let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
-        let shares = |piece: &Piece<S>| piece.share.of(slices, own, piece.first);
-        let after = shares(after);
-        shares(before).into_iter().flatten().any(|slice| after.contains(&Some(slice)))
+        let share = |piece: &Piece<S>| piece.share.one_of(slices, own, piece.first);
+        share(before).is_some_and(|slice| share(after) == Some(slice))
     }
 
     /// At a joint of the first path the pieces share intervals of the second segment: those within reach of
@@ -147,7 +146,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
             let slices = Footprint::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
             let near = |slice: Interval<S>| slice.lo - self.slack <= l && l <= slice.hi + self.slack;
-            piece.second.contains(s) && piece.share.of(slices, segment, piece.first).into_iter().flatten().any(near)
+            piece.second.contains(s) && piece.share.one_of(slices, segment, piece.first).is_some_and(near)
         };
         let shared = Footprint::of(own.end, other).reach(other, self.radius).intervals(other);
         shared.into_iter().flatten().any(|shared| {

@@ -116,6 +116,12 @@ fn an_interval_turns_back_at_an_end_of_the_segment() {
     case_holds::<Q12>(&[226_983]);
 }
 
+/// Contact from inside an arc beside its centre, which the squares of distances from the circle lose.
+#[test]
+fn a_turning_point_beside_a_centre_is_found_from_the_centre_alone() {
+    case_holds::<Q12>(&[7_044_395]);
+}
+
 #[test]
 fn what_a_disc_covers_beside_a_centre_is_in_the_region() {
     held_once::<f32>(&[8895]);

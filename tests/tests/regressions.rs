@@ -583,3 +583,30 @@ fn spiral_521795() {
     };
     audited_in_q12(&ego, &other);
 }
+
+/// In fixed point: at the end of an arc, rounding alone shows a second slice of a piece that has one, three steps wide.
+#[test]
+fn opposite_511412() {
+    let ego = Disc {
+        radius: 0.058349609375,
+        start: [-0.972900390625, 8.781005859375, -2.1005554908990565],
+        legs: vec![
+            Right { radius: 0.181640625, length: 0.902099609375 },
+            Line(3.89404296875),
+            Right { radius: 0.98828125, length: 3.104736328125 },
+            Line(1.086181640625),
+        ],
+    };
+    let other = Disc {
+        radius: 0.16259765625,
+        start: [-0.41845703125, 5.616943359375, -0.7870086226166818],
+        legs: vec![
+            Line(1.086181640625),
+            Left { radius: 0.98828125, length: 3.104736328125 },
+            Line(3.89404296875),
+            Left { radius: 0.181640625, length: 0.902099609375 },
+            Left { radius: 2.73095703125, length: 4.289794921875 },
+        ],
+    };
+    audited_in_q12(&ego, &other);
+}

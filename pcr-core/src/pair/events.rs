@@ -116,13 +116,18 @@ pub(crate) fn turning_points<S: Scalar>(
     }
     let mut add = |l: S| contact(l, Footprint::of(first.point_at(l), second));
     let start = Footprint::of(second.start, first);
-    Relative::new(first, Carrier::from(second), &start).lengths_at(&[radius, -radius], S::ZERO, S::ZERO, &mut add);
-    if let Curve::Arc { radius: own, .. } = second.curve
-        && let Some(ring) = inner_ring(own, radius)
-        && own >= radius
-    {
-        let centre = Footprint::of(middle_diameter(second, own).start, first);
-        ends(&centre, first, ring, S::ZERO).into_iter().flatten().for_each(add);
+    let relative = Relative::new(first, Carrier::from(second), &start);
+    let ring = match second.curve {
+        Curve::Arc { radius: own, .. } if own >= radius => inner_ring(own, radius).zip(Some(own)),
+        _ => None,
+    };
+    match ring {
+        None => relative.lengths_at(&[radius, -radius], S::ZERO, S::ZERO, add),
+        Some((ring, own)) => {
+            relative.lengths_at(&[relative.outward(radius)], S::ZERO, S::ZERO, &mut add);
+            let centre = Footprint::of(middle_diameter(second, own).start, first);
+            ends(&centre, first, ring, slack).into_iter().flatten().for_each(add);
+        }
     }
 }
 

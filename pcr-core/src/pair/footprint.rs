@@ -242,6 +242,17 @@ impl Share {
             })
         })
     }
+
+    /// The one of them that the piece is about: a second one that rounding alone has made is thin.
+    pub(crate) fn one_of<S: Scalar>(
+        self,
+        intervals: [Option<Interval<S>>; 2],
+        segment: &Segment<S>,
+        hull: Interval<S>,
+    ) -> Option<Interval<S>> {
+        let own = self.of(intervals, segment, hull).into_iter().flatten();
+        own.reduce(|a, b| if a.length() < b.length() { b } else { a })
+    }
 }
 
 pub(crate) fn shift<S: Scalar>(foot: S, segment: &Segment<S>, lap: Lap) -> S {

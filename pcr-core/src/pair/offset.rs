@@ -63,6 +63,14 @@ impl<'a, S: Scalar> Relative<'a, S> {
         Self { segment, start, base, cos: towards.dot(base), sin: towards.cross(base), bend }
     }
 
+    /// The offset of what is this far outside of the carrier's circle; on the right of a line.
+    pub(crate) fn outward(&self, distance: S) -> S {
+        match self.bend {
+            Some(bend) if bend < S::ZERO => distance,
+            _ => -distance,
+        }
+    }
+
     /// The lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
     /// the carrier.
     ///
