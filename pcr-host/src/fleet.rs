@@ -3,6 +3,7 @@
 mod fixed;
 #[cfg(feature = "micromath")]
 mod micro;
+mod rounding;
 pub(crate) mod speed;
 #[cfg(test)]
 mod tests;
@@ -13,6 +14,7 @@ use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
     Scalar, Segment, Turn,
 };
+pub(crate) use rounding::Rounding;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -83,13 +85,6 @@ impl fmt::Display for Refused {
 }
 
 impl std::error::Error for Refused {}
-
-impl Refused {
-    /// An agent that has no place in the format `S`.
-    pub(crate) fn of<S: Format>(agent: u64, problem: &str) -> Self {
-        Self { agent, part: None, format: S::NAME, problem: problem.to_owned() }
-    }
-}
 
 /// The number of the format for a field; what it would overflow or lose altogether is refused.
 fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
@@ -260,24 +255,30 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
     }
 }
 
-/// The motion of an agent that waits while it turns in place. What is less than the last digit of time and of speed is left
-/// out.
+/// The motion of an agent that waits while it turns in place. What is less than the last digit of time or speed is
+/// none.
 fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
     let parts = agent.parts();
     let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
-    let (mut speed, mut pieces) = (v0, Vec::new());
+    // Duration and speed after it.
+    let mut reached: Vec<(f64, f64)> = Vec::new();
     for (segment, parts) in agent.path.iter().zip(parts) {
         let turns = turn_in_place::<S>(segment).is_some();
         for part in parts {
-            let after = if turns { 0.0 } else { part.after };
             let lost = |value: f64| S::from_f64(value) == S::ZERO;
-            if !lost(part.duration) || !lost(after - speed) {
-                pieces.push((part.duration, if part.duration > 0.0 { (after - speed) / part.duration } else { 0.0 }));
-                speed = after;
+            let after = if lost(part.after) { 0.0 } else { part.after };
+            match reached.last_mut() {
+                Some(last) if lost(part.duration) => last.1 = after,
+                _ => reached.push((part.duration, if turns { 0.0 } else { after })),
             }
         }
     }
-    MotionSpec::Profile { v0, pieces }
+    let mut speed = v0;
+    let pieces = reached.into_iter().map(|(duration, after)| {
+        let gain = after - std::mem::replace(&mut speed, after);
+        (duration, if duration > 0.0 { gain / duration } else { 0.0 })
+    });
+    MotionSpec::Profile { v0, pieces: pieces.collect() }
 }
 
 /// A table on the heap.

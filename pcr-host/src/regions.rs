@@ -6,7 +6,7 @@
 mod outlines;
 
 use crate::fleet::{Fleet, Format, HostEcm, Refused, build_ecm};
-use crate::footprint::{Bodies, Disc};
+use crate::footprint::{Bodies, Disc, Disced};
 use crate::scenario::{Agent, Scenario};
 use pcr_core::{Crossing, Curve, Full, Motion, RegionRef, Turn, crossings};
 use serde::Serialize;
@@ -39,8 +39,11 @@ pub struct Cover {
     /// First and last segment of its path with this outline, counted from 1; none where it is the same on all of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segments: Option<[usize; 2]>,
-    /// No point of a disc is farther than this from the polygon \[m\].
+    /// No point of a disc is farther than this from the outline \[m\].
     pub overhang: f64,
+    /// How much larger the discs are in motion at most \[m\]: for turns, changes of speed, and digits that a number format does
+    /// not have.
+    pub growth: f64,
     /// The discs.
     pub discs: Vec<Disc>,
 }
@@ -230,7 +233,12 @@ impl Answer {
             scalar: S::NAME,
             regions: regions(&motions)?,
             margin_regions,
-            footprints: scenario.agents.iter().flat_map(Cover::of).collect(),
+            footprints: scenario
+                .agents
+                .iter()
+                .enumerate()
+                .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
+                .collect(),
             error: None,
         })
     }
@@ -249,13 +257,15 @@ impl Answer {
 }
 
 impl Cover {
-    /// Those of an agent, for each stretch of its path with another outline.
-    fn of(agent: &Agent) -> Vec<Self> {
+    /// Those of an agent, for each stretch of its path with another outline, and the discs that they became.
+    fn of(agent: &Agent, place: usize, owners: &[Disced]) -> Vec<Self> {
         let covers = agent.outlines().into_iter().filter_map(|outline| {
             let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
+            let own = owners.iter().filter(|disc| disc.agent == place && disc.first() == outline.segments[0]);
+            let growth = own.map(|disc| disc.growth).fold(0.0, f64::max);
             let footprint = outline.footprint?;
             let (overhang, discs) = (footprint.overhang(), footprint.discs().to_vec());
-            Some(Self { id: agent.id, segments, overhang, discs })
+            Some(Self { id: agent.id, segments, overhang, growth, discs })
         });
         covers.collect()
     }

@@ -9,18 +9,24 @@ use pcr_core::scalar::Wide;
 /// its rounding.
 const ROUNDS: usize = 3;
 
+/// Share of the longest way of a piece from which on it may be made longer or shorter.
+const SHARE: f64 = 0.125;
+
 /// Piece of the profile (from 0) where there is one, and what is wrong.
 type Fault = (Option<usize>, String);
 
 /// The phases of `pieces` (durations \[s\] and accelerations \[m/s²\]) from speed `v0` \[m/s\].
 ///
 /// Each phase aims at the speed that the piece reaches exactly, so that speeds do not drift and a stop is a stop. What
-/// rounding leaves of the difference to `length` \[m\] goes into the duration of the fastest piece, where it costs
-/// the least time.
+/// rounding leaves of the difference to `length` \[m\] goes into the duration of the fastest piece that is not short, where it
+/// costs the least time.
 pub(crate) fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
     let targets = targets(v0, pieces);
     let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));
-    let moving = (0..pieces.len()).filter(|&k| pieces.get(k).is_some_and(|(duration, _)| *duration > 0.0));
+    let way = |k: usize| pieces.get(k).map_or(0.0, |(duration, _)| duration * mean(k));
+    let longest = (0..pieces.len()).map(way).fold(0.0, f64::max);
+    // A short one may not have as much to give.
+    let moving = (0..pieces.len()).filter(|&k| way(k) > 0.0 && way(k) >= SHARE * longest);
     let fastest = moving.max_by(|&a, &b| mean(a).total_cmp(&mean(b)));
     let first = number::<S>("v0", v0).map_err(|problem| (None, problem))?;
     let mut correction = 0.0;
@@ -63,7 +69,11 @@ fn phase<S: Format>(last: Option<&Phase<S>>, before: S, after: f64, duration: f6
     let mut acceleration = S::ZERO;
     if duration > S::ZERO {
         let gain = number::<S>("speed", after)? - before;
-        acceleration = number("accel", gain.to_f64() / duration.to_f64())?;
+        let exact = gain.to_f64() / duration.to_f64();
+        // What rounding left of a change of speed may be too little for the format.
+        if gain.abs() > S::slack(before) || S::from_f64(exact) != S::ZERO {
+            acceleration = number("accel", exact)?;
+        }
     }
     // The core's own sum, so that both know the same speed.
     let reached = |acceleration: S| before + acceleration.times(duration).narrow();

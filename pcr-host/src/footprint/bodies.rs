@@ -1,8 +1,8 @@
 //! The agents of a scenario as discs: those of their footprints, or the one that they are; with loads one for each stretch of
 //! the path on which the outline is the same.
 
-use super::offset::Offset;
-use crate::fleet::{Fleet, Format, Refused};
+use super::offset::{Offset, Precision};
+use crate::fleet::{Fleet, Format, Refused, Rounding};
 use crate::scenario::{Agent, Scenario};
 use pcr_core::{Interval, Motion};
 
@@ -26,6 +26,8 @@ pub(crate) struct Disced {
     /// None where the agent is the disc.
     offset: Option<Offset>,
     stretch: Stretch,
+    /// How much larger than in the cover it is \[m\].
+    pub(crate) growth: f64,
 }
 
 /// Where on the path of its agent a disc is there.
@@ -52,6 +54,11 @@ impl Disced {
         // The rounding of the sums.
         let slack = ROUNDING * (1.0 + length);
         [(lo + from - slack).max(0.0), (hi + from + slack).min(length)]
+    }
+
+    /// Its first segment in the scenario (from 0).
+    pub(crate) fn first(&self) -> usize {
+        self.stretch.first
     }
 
     /// Segment in the scenario (from 0) of a segment of the disc.
@@ -82,7 +89,7 @@ impl<S: Format> Bodies<S> {
     /// The discs of a scenario.
     ///
     /// # Errors
-    /// [`Refused`] where a value does not fit the number format, and for footprints in another one than `f64`.
+    /// [`Refused`] where a value does not fit the number format.
     pub(crate) fn new(scenario: &Scenario) -> Result<Self, Refused> {
         let mut bodies = (Vec::new(), Vec::new());
         for (place, agent) in scenario.agents.iter().enumerate() {
@@ -107,18 +114,28 @@ fn discs<S: Format>(
         let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
         let stretch = Stretch { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
         let Some(footprint) = outline.footprint else {
-            discs.push(Disced { agent: place, offset: None, stretch });
+            discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
             agents.push(part);
             continue;
         };
-        if S::NAME != f64::NAME {
-            return Err(Refused::of::<S>(agent.id, "footprint: computed with in f64 only"));
-        }
-        // Their number is that of the agent, by which errors name them.
-        for offset in footprint.discs().iter().map(|disc| Offset::of(&part, disc, agent.id)) {
+        let precision = Precision::of::<S>(&part);
+        for disc in footprint.discs() {
+            // Their number is that of the agent, by which errors name them.
+            let offset = rounded::<S>(Offset::of(&part, disc, agent.id, precision))?;
+            let growth = offset.agent.radius - disc.radius;
             agents.push(offset.agent.clone());
-            discs.push(Disced { agent: place, offset: Some(offset), stretch });
+            discs.push(Disced { agent: place, offset: Some(offset), stretch, growth });
         }
     }
     Ok(())
+}
+
+/// The disc with a radius that makes up for the digits that the format does not have.
+fn rounded<S: Format>(offset: Offset) -> Result<Offset, Refused> {
+    if S::NAME == f64::NAME {
+        return Ok(offset);
+    }
+    let fleet = Fleet::<S>::new(&Scenario { name: String::new(), agents: vec![offset.agent.clone()] })?;
+    let rounding = fleet.motions().first().map(|motion| Rounding::of(&offset.agent, motion));
+    Ok(rounding.map_or(offset.clone(), |rounding| offset.rounded(rounding)))
 }

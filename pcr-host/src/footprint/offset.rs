@@ -3,20 +3,48 @@
 //! On a line it runs on the parallel line. On an arc of curvature κ it runs on the concentric arc with lengths scaled by
 //! g = √((κ a)² + (1 - κ b)²), in a heading that differs by atan2(κ a, 1 - κ b), where a is how far ahead and b how far left of the
 //! reference point it is. That its path is continuous but has corners where the curvature changes is met as in imported paths,
-//! by turns in place of [`TURN`] radius; that its speed jumps there from g v to g′ v by a change within a nanosecond. What these
+//! by turns in place of [`TURN`] radius; that its speed jumps there from g v to g′ v by a change within a nanosecond, in other formats than `f64` a
+//! millisecond. What these
 //! displace it by at most is added to its radius.
 
 use super::Disc;
+use crate::fleet::{Format, Rounding};
 use crate::import::{Placed, TURN};
 use crate::scenario::{Agent, MotionSpec, Part, PathSegment};
 use std::f64::consts::{PI, TAU};
 
-/// How long a change of speed takes, for each m/s of it \[s\].
-const JUMP: f64 = 1e-9;
-
 /// Speed above which a segment is taken as a jump from its start to its end \[m/s\]: what is left of an angle between two
 /// segments that is passed without stopping.
 const QUICK: f64 = 1e4;
+
+/// What a number format can tell apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Precision {
+    /// Length, angle and speed that are rounding and nothing else \[m, rad, m/s\].
+    nothing: f64,
+    /// Least time of a change of speed \[s\].
+    least: f64,
+    /// Largest acceleration \[m/s²\].
+    largest: f64,
+}
+
+impl Precision {
+    /// That of the format for a vehicle.
+    pub(super) fn of<S: Format>(vehicle: &Agent) -> Self {
+        if S::NAME == f64::NAME {
+            return Self { nothing: NOTHING, least: 1e-9, largest: 1e9 };
+        }
+        let [x, y, _] = vehicle.start;
+        let extent = S::from_f64(x.abs().max(y.abs()) + vehicle.length() + vehicle.reach());
+        let nothing = S::slack(extent.min(S::LIMIT)).to_f64();
+        Self { nothing, least: 1.0 / 1024.0, largest: 0.5 * S::LIMIT.to_f64() }
+    }
+
+    /// How long a change of speed takes.
+    fn jump(&self, change: f64) -> f64 {
+        self.least.max(change.abs() / self.largest)
+    }
+}
 
 /// Angle and speed that are rounding and nothing else \[rad, m/s\].
 const NOTHING: f64 = 1e-12;
@@ -29,16 +57,18 @@ pub(super) struct Offset {
     marks: Vec<[f64; 2]>,
     /// For each segment of the agent that of the vehicle.
     sources: Vec<usize>,
+    /// Rounding of own lengths \[m\].
+    slack: f64,
 }
 
 impl Offset {
     /// The disc of the vehicle, as an agent of this number.
-    pub(super) fn of(vehicle: &Agent, disc: &Disc, id: u64) -> Self {
+    pub(super) fn of(vehicle: &Agent, disc: &Disc, id: u64, precision: Precision) -> Self {
         let [x, y, heading] = vehicle.start;
         let (sin, cos) = heading.sin_cos();
         let Disc { ahead, left, radius } = *disc;
         let at = [x + ahead * cos - left * sin, y + ahead * sin + left * cos];
-        let mut tracer = Tracer::new(radius + NOTHING * (1.0 + x.abs() + y.abs()));
+        let mut tracer = Tracer::new(radius + NOTHING * (1.0 + x.abs() + y.abs()), precision);
         let mut reference = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
         let length = vehicle.length();
         for (source, (&shape, parts)) in vehicle.path.iter().zip(vehicle.parts()).enumerate() {
@@ -60,8 +90,16 @@ impl Offset {
         tracer.finish(vehicle, at, id)
     }
 
+    /// The disc with what a number format makes of its motion.
+    pub(super) fn rounded(mut self, Rounding { distance, length }: Rounding) -> Self {
+        self.agent.radius += distance;
+        self.slack = length;
+        self
+    }
+
     /// The lengths of the reference point that belong to own lengths, outward.
     pub(super) fn on_reference(&self, [lo, hi]: [f64; 2]) -> [f64; 2] {
+        let [lo, hi] = [lo - self.slack, hi + self.slack];
         let end = self.marks.last().map_or(0.0, |mark| mark[1]);
         let between = |[a, b]: [[f64; 2]; 2], length: f64| {
             let share = if b[0] > a[0] { ((length - a[0]) / (b[0] - a[0])).clamp(0.0, 1.0) } else { 0.0 };
@@ -90,6 +128,7 @@ impl Offset {
 
 /// A path and a motion in the making.
 struct Tracer {
+    precision: Precision,
     start: Option<f64>,
     heading: f64,
     path: Vec<PathSegment>,
@@ -104,8 +143,9 @@ struct Tracer {
 }
 
 impl Tracer {
-    fn new(growth: f64) -> Self {
+    fn new(growth: f64, precision: Precision) -> Self {
         Self {
+            precision,
             start: None,
             heading: 0.0,
             path: Vec::new(),
@@ -125,8 +165,8 @@ impl Tracer {
         let own = shape.length();
         let [mut at, reference] = self.marks.last().copied().unwrap_or_default();
         let duration: f64 = parts.iter().map(|part| part.duration).sum();
-        let quick = own > duration * QUICK;
-        if own <= NOTHING || quick {
+        let quick = own > duration * self.precision.largest.min(QUICK);
+        if own <= self.precision.nothing || quick {
             // It stands, or is at the end at once; the next segments lie beside where it would have taken the disc.
             self.growth += 2.0 * own;
             self.marks.push([at, reference + length]);
@@ -155,7 +195,7 @@ impl Tracer {
         };
         for &Part { duration, before, after } in parts.iter().filter(|part| part.duration > 0.0) {
             self.reach(scale * before);
-            self.pieces.push((duration, scale * (after - before) / duration));
+            self.pieces.push((duration, (scale * after - self.speed) / duration));
             self.speed = scale * after;
             self.fastest = self.fastest.max(self.speed);
         }
@@ -167,12 +207,13 @@ impl Tracer {
             (self.first, self.speed) = (Some(speed), speed);
         }
         let change = speed - self.speed;
-        if change.abs() > NOTHING {
-            let duration = JUMP * change.abs().max(1.0);
+        if change.abs() > self.precision.nothing || (speed == 0.0 && change != 0.0) {
+            let duration = self.precision.jump(change);
             self.pieces.push((duration, change / duration));
             self.lag += duration;
+            self.speed = speed;
         }
-        (self.speed, self.fastest) = (speed, self.fastest.max(speed));
+        self.fastest = self.fastest.max(speed);
     }
 
     fn finish(self, vehicle: &Agent, [x, y]: [f64; 2], id: u64) -> Offset {
@@ -182,7 +223,7 @@ impl Tracer {
         let motion = MotionSpec::Profile { v0: self.first.unwrap_or(0.0), pieces: self.pieces };
         let start = [x, y, heading];
         let agent = Agent { id, radius, start, path: self.path, motion, ..vehicle.clone() };
-        Offset { agent, marks: self.marks, sources: self.sources }
+        Offset { agent, marks: self.marks, sources: self.sources, slack: 0.0 }
     }
 }
 

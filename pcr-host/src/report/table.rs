@@ -65,7 +65,7 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     for cover in &answer.footprints {
         let discs = cover.discs.len();
         let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
-        let (id, overhang) = (cover.id, cover.overhang);
+        let (id, overhang) = (cover.id, cover.overhang + cover.growth);
         writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang:.3} m out of it")?;
     }
     if !all.is_empty() {
