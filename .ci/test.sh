@@ -2,7 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests release fuzz
+#   .ci/test.sh STEP...    some: style docs features peers no_std c firmware tests release fuzz
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -78,6 +78,13 @@ features() {
     echo "a test tool reached pcr-core" >&2
     return 1
   fi
+}
+
+peers() {
+  step "methods of other libraries in comparisons"
+  cargo clippy -p pcr-host -p pcr-tests --features pcr-tests/peers --all-targets --locked -- -D warnings
+  cargo test -p pcr-host --features peers --lib --locked compare::
+  cargo test -p pcr-tests --features peers --test compare --locked
 }
 
 no_std() {

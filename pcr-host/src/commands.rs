@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod evaluate;
 mod import;
 mod locks;
 mod map;
@@ -65,6 +66,7 @@ enum Command {
     Plan(plan::Arguments),
     Simulate(Box<simulate::Arguments>),
     Compare(compare::Arguments),
+    Evaluate(evaluate::Arguments),
     Map(map::Arguments),
     Locks(locks::Arguments),
     Traffic(traffic::Arguments),
@@ -81,6 +83,7 @@ impl Arguments {
             Some(Command::Plan(arguments)) => arguments.run(),
             Some(Command::Simulate(arguments)) => arguments.run(),
             Some(Command::Compare(arguments)) => arguments.run(),
+            Some(Command::Evaluate(arguments)) => arguments.run(),
             Some(Command::Map(arguments)) => arguments.run(),
             Some(Command::Locks(arguments)) => arguments.run(),
             Some(Command::Traffic(arguments)) => arguments.run(),

@@ -7,21 +7,29 @@
 //! pcr        this library, in every format, on one core and all
 //! sampled    the sampled collision map of the paper's reference [34]
 //! polyline   flattened paths, closed-form discs piece by piece
+//! casts      generic continuous collision detection     (feature `peers`)
+//! mesh       proximity of meshes, sample by sample      (feature `peers`)
 //! crowd      random fleets of any size
 //! errors     an answer against the reference
 //! measure    times, in rounds                               Comparison
+//! stopwatch  one core's time, also while others are at work
 //! ```
 //!
 //! All methods start from the same paths and motions, already placed; sampling, flattening and meshes are part of a
 //! method, and of its time.
 
+#[cfg(feature = "peers")]
+mod casts;
 mod crowd;
 mod errors;
-mod measure;
+pub(crate) mod measure;
+#[cfg(feature = "peers")]
+mod mesh;
 mod pcr;
 mod polyline;
 pub mod reference;
-mod sampled;
+pub(crate) mod sampled;
+pub(crate) mod stopwatch;
 mod track;
 
 pub use crowd::crowd;
@@ -127,6 +135,10 @@ pub(crate) trait Method: Sync {
     fn question(&self) -> Question;
     /// What it tells, in words.
     fn tells(&self) -> &'static str;
+    /// Whether it works on all cores.
+    fn is_parallel(&self) -> bool {
+        false
+    }
     /// The answer; `None` for a fleet beyond its limits.
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>>;
 }
@@ -137,6 +149,10 @@ pub(crate) fn methods() -> Vec<Box<dyn Method>> {
     methods.extend(sampled::methods());
     methods.extend(pcr::conflicts());
     methods.extend(polyline::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(casts::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(mesh::methods());
     methods
 }
 

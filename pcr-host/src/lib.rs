@@ -12,6 +12,7 @@
 //! traffic    random missions on a layout, and their plan             Traffic
 //! simulate   plans in closed loop, with noise and delays        run, Task
 //! compare    other methods beside this one                        Comparison
+//! evaluate   the paper's evaluation and more, as a document
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
 //! import     layouts, orders and plans in the formats of others Format, Layout
@@ -23,6 +24,7 @@
 
 pub mod check;
 pub mod compare;
+pub mod evaluate;
 pub mod fleet;
 pub mod footprint;
 pub mod import;

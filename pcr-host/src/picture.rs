@@ -23,9 +23,11 @@ mod labels;
 mod layout;
 mod locks;
 mod map;
+mod overlay;
 mod overview;
 mod page;
 pub(crate) mod palette;
+pub(crate) mod plot;
 mod raster;
 mod scene;
 mod svg;
@@ -37,6 +39,7 @@ use crate::import::Imported;
 use crate::locks::Locks;
 use crate::scenario::Scenario;
 pub use layout::Ground;
+pub(crate) use overlay::{Bar, Overlay};
 use raster::Raster;
 use scene::Scene;
 use std::path::{Path, PathBuf};
@@ -65,28 +68,25 @@ pub fn write(
     directory: &Path,
     progress: &mut dyn FnMut(usize, usize),
 ) -> io::Result<Vec<PathBuf>> {
-    let invalid = |why: String| io::Error::new(io::ErrorKind::InvalidInput, why);
-    let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
-    let motions = fleet.motions();
-    let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
-    let scene = Scene { scenario, motions: &motions, ecm: &ecm, ground };
-    fs::create_dir_all(directory)?;
-    let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
-    pictures.extend((0..motions.len()).map(Picture::Map));
-    let mut files = vec![Vec::new(); pictures.len()];
-    let mut done = 0;
-    progress(done, pictures.len());
-    draw_all(&scene, &pictures, &mut |place, drawn| {
-        for (name, content) in drawn? {
-            let file = directory.join(name);
-            fs::write(&file, content)?;
-            files[place].push(file);
-        }
-        done += 1;
+    with_scene(scenario, ground, |scene| {
+        fs::create_dir_all(directory)?;
+        let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
+        pictures.extend((0..scene.motions.len()).map(Picture::Map));
+        let mut files = vec![Vec::new(); pictures.len()];
+        let mut done = 0;
         progress(done, pictures.len());
-        Ok(())
-    })?;
-    Ok(files.concat())
+        draw_all(scene, &pictures, &mut |place, drawn| {
+            for (name, content) in drawn? {
+                let file = directory.join(name);
+                fs::write(&file, content)?;
+                files[place].push(file);
+            }
+            done += 1;
+            progress(done, pictures.len());
+            Ok(())
+        })?;
+        Ok(files.concat())
+    })
 }
 
 /// Writes the pictures of a layout and its locks into a directory, which is created where it does not exist: `locks.html`,
@@ -110,6 +110,31 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
         fs::write(&file, content).map(|()| file)
     };
     files.into_iter().map(write).collect()
+}
+
+/// The map of an agent, as SVG: by itself, or its outlines over bars.
+///
+/// # Errors
+/// As [`write`].
+pub(crate) fn map(scenario: &Scenario, ego: usize, over: Option<&Overlay<'_>>) -> io::Result<String> {
+    with_scene(scenario, None, |scene| {
+        Ok(match over {
+            None => map::picture(scene, ego),
+            Some(overlay) => overlay::picture(scene, ego, overlay),
+        })
+    })
+}
+
+fn with_scene<T>(
+    scenario: &Scenario,
+    ground: Option<Ground<'_>>,
+    draw: impl FnOnce(&Scene<'_>) -> io::Result<T>,
+) -> io::Result<T> {
+    let invalid = |why: String| io::Error::new(io::ErrorKind::InvalidInput, why);
+    let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
+    let motions = fleet.motions();
+    let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
+    draw(&Scene { scenario, motions: &motions, ecm: &ecm, ground })
 }
 
 /// One picture of a scenario.

@@ -182,6 +182,12 @@ impl From<Refused> for Failure {
     }
 }
 
+impl From<Full> for Failure {
+    fn from(full: Full) -> Self {
+        Self::Full(full)
+    }
+}
+
 /// The extended collision map of a scenario.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 mod columns;
 mod comparison;
 mod conflicts;
+pub(crate) mod figures;
 mod locks;
 mod overview;
 mod plans;

@@ -70,7 +70,9 @@ pub fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
 /// As [`Row::new`].
 pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(usize, Row<'a, S>) + Sync) -> Result<(), Full> {
     let grid = grid(motions);
-    (0..motions.len()).into_par_iter().try_for_each(|ego| {
+    // Neighbours one after the other: they are still in the cache.
+    grid.order().into_par_iter().try_for_each(|ego| {
+        let ego = ego as usize;
         take(ego, Row::new(motions, ego, &grid.after(ego))?);
         Ok(())
     })

@@ -10,7 +10,7 @@ use pcr_tests::oracle::contact::contacts;
 
 const FLEETS: u64 = if cfg!(debug_assertions) { 3 } else { 30 };
 
-const EFFORT: Effort = Effort { rounds: 2, budget: 0.01 };
+const EFFORT: Effort = Effort { rounds: 2, budget: 0.01, slices: 5_000 };
 
 fn compared(scenario: &Scenario, filters: &[&str]) -> Vec<Row> {
     let filters: Vec<String> = filters.iter().map(|filter| (*filter).to_owned()).collect();
@@ -129,11 +129,26 @@ fn the_grid_finds_the_boxes_that_meet() {
         let areas: Vec<[f64; 4]> = motions.iter().map(pcr_host::rows::area).collect();
         let grid = grid(&motions);
         let meet = |a: &[f64; 4], b: &[f64; 4]| a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
+        let mut order = grid.order();
+        order.sort_unstable();
+        assert_eq!(order, (0..300).collect::<Vec<u32>>());
         // Also boxes that are no members, and one around all of them.
         let far = [[-9.0, -9.0, -8.0, -8.0], [-99.0, -99.0, 99.0, 99.0]];
         for b in areas.iter().chain(&far) {
             let all = (0..300).filter(|&other| meet(b, &areas[other as usize]));
             assert_eq!(grid.near(b), all.collect::<Vec<u32>>());
+        }
+    }
+}
+
+#[cfg(feature = "peers")]
+#[test]
+fn other_libraries_find_what_is_no_graze() {
+    for seed in 0..FLEETS {
+        for row in compared(&crowd(12, seed), &["parry"]).iter().filter(|row| row.method.starts_with("parry")) {
+            let Errors::Conflicts { missed, invented, time, .. } = row.errors else { panic!("{}", row.method) };
+            assert_eq!((missed, invented), (0, 0), "seed {seed}, {}", row.method);
+            assert!(time < 0.1, "seed {seed}, {}: {time}", row.method);
         }
     }
 }

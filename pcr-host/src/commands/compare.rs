@@ -51,6 +51,9 @@ enum Output {
 /// Time that a method gets in all rounds \[s\].
 const BUDGET: f64 = 0.5;
 
+/// Slices of regions that are compared with the reference.
+const SLICES: usize = 20_000;
+
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let files: Vec<Option<&Path>> = match &self.files[..] {
@@ -61,7 +64,7 @@ impl Arguments {
         if self.format == Output::Csv {
             out.write_all(report::COMPARISON_CSV_HEADER.as_bytes())?;
         }
-        let effort = Effort { rounds: self.rounds.into(), budget: BUDGET };
+        let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
         for (place, &file) in files.iter().enumerate() {
             let scenario = scenario(file, &self.import)?;
             let progress = Progress::new("methods");

@@ -29,15 +29,26 @@ pub enum Errors {
     },
 }
 
-/// The conflicts of a fleet by the definition.
+/// The conflicts and regions of a fleet by the definition.
 #[derive(Clone, Debug)]
 pub(super) struct Truth {
     /// By the agents, then by the begin.
     contacts: Vec<([usize; 2], Vec<Contact>)>,
+    slices: Vec<Slice>,
+}
+
+/// What an agent blocks of another one's path at a time, for about `step` \[s\].
+#[derive(Clone, Debug)]
+struct Slice {
+    agents: [usize; 2],
+    time: f64,
+    step: f64,
+    parts: Vec<[f64; 2]>,
 }
 
 impl Truth {
-    pub(super) fn new(field: &Field<'_>) -> Self {
+    /// With about so many slices.
+    pub(super) fn new(field: &Field<'_>, count: usize) -> Self {
         let mut contacts = Vec::new();
         for (first, a) in field.tracks.iter().enumerate() {
             for (second, b) in field.tracks.iter().enumerate().skip(first + 1) {
@@ -47,7 +58,7 @@ impl Truth {
                 }
             }
         }
-        Self { contacts }
+        Self { contacts, slices: slices(field, count) }
     }
 
     fn of(&self, agents: [usize; 2]) -> &[Contact] {
@@ -89,10 +100,7 @@ fn off(found: &Found, contact: &Contact) -> f64 {
 /// Times at which each ordered pair is looked at, at least and at most.
 const TIMES: [usize; 2] = [4, 200];
 
-/// Slices of a fleet, about.
-const SLICES: usize = 20_000;
-
-fn regions(field: &Field<'_>, regions: &dyn Regions) -> Errors {
+fn slices(field: &Field<'_>, count: usize) -> Vec<Slice> {
     let bounds: Vec<[f64; 4]> = field.tracks.iter().map(|track| track.bounds()).collect();
     let mut pairs = Vec::new();
     for ego in 0..bounds.len() {
@@ -100,18 +108,24 @@ fn regions(field: &Field<'_>, regions: &dyn Regions) -> Errors {
         let others = (0..bounds.len()).filter(|&other| other != ego);
         pairs.extend(others.filter(|&other| near(bounds[ego], bounds[other], reach(other))).map(|other| [ego, other]));
     }
-    let times = (SLICES / pairs.len().max(1)).clamp(TIMES[0], TIMES[1]);
-    let (mut area, mut difference) = (0.0, 0.0);
-    for [ego, other] in pairs {
+    let times = (count / pairs.len().max(1)).clamp(TIMES[0], TIMES[1]);
+    let of_pair = |[ego, other]: [usize; 2]| {
         let (own, their) = (&field.tracks[ego], &field.tracks[other]);
         let step = (their.time[1] - their.time[0]) / times as f64;
-        for k in 0..times {
+        (0..times).map(move |k| {
             let time = their.time[0] + step * (k as f64 + 0.5);
-            let exact = reference::slice(own, their.position(time), own.radius + their.radius);
-            let given = regions.slice(ego, other, time);
-            area += step * measure(&exact);
-            difference += step * apart(&exact, &given);
-        }
+            let parts = reference::slice(own, their.position(time), own.radius + their.radius);
+            Slice { agents: [ego, other], time, step, parts }
+        })
+    };
+    pairs.into_iter().flat_map(of_pair).collect()
+}
+
+fn regions(slices: &[Slice], regions: &dyn Regions) -> Errors {
+    let (mut area, mut difference) = (0.0, 0.0);
+    for Slice { agents: [ego, other], time, step, parts } in slices {
+        area += step * measure(parts);
+        difference += step * apart(parts, &regions.slice(*ego, *other, *time));
     }
     Errors::Regions { area, difference }
 }
@@ -130,9 +144,9 @@ fn apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 }
 
 /// How far an answer is off.
-pub(super) fn errors(field: &Field<'_>, truth: &Truth, answer: &Answer<'_>) -> Errors {
+pub(super) fn errors(truth: &Truth, answer: &Answer<'_>) -> Errors {
     match answer {
-        Answer::Regions(given) => regions(field, given.as_ref()),
+        Answer::Regions(given) => regions(&truth.slices, given.as_ref()),
         Answer::Conflicts(found) => truth.conflicts(found),
     }
 }

@@ -2,12 +2,12 @@
 //! for a while slows all of them down. A ratio is the median of the ratios of the rounds.
 
 use super::errors::{Errors, Truth, errors};
+use super::stopwatch::Stopwatch;
 use super::{Answer, Field, Input, Method, Question, methods};
 use crate::fleet::Refused;
 use crate::scenario::Scenario;
 use serde::Serialize;
 use std::hint::black_box;
-use std::time::Instant;
 
 /// How much time a comparison may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Effort {
     pub rounds: usize,
     /// Time of a method in all its rounds, about \[s\]; there is always one round.
     pub budget: f64,
+    /// Slices of regions, about, by which they are compared with the reference.
+    pub slices: usize,
 }
 
 /// All methods on a scenario.
@@ -87,7 +89,7 @@ struct Course<'m> {
     /// Of each round \[s\], and of the baseline in the same round.
     times: Vec<[f64; 2]>,
     rounds: usize,
-    row: Option<Row>,
+    row: Row,
 }
 
 fn compare(
@@ -96,61 +98,66 @@ fn compare(
     effort: Effort,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Vec<Row> {
-    let truth = Truth::new(field);
+    let truth = Truth::new(field, effort.slices);
     let total = methods.len();
     progress(0, total);
     // The first round tells how many more there is time for, and how good the answers are.
-    let mut courses = Vec::new();
+    let mut courses: Vec<Course<'_>> = Vec::new();
+    let mut baseline = None;
     for (done, method) in methods.iter().enumerate() {
-        let begin = Instant::now();
-        let answer = method.answer(field);
-        let took = begin.elapsed().as_secs_f64();
+        let method = method.as_ref();
+        if baseline.is_none_or(|of: &dyn Method| of.question() != method.question()) {
+            baseline = Some(method);
+        }
+        let base = baseline.map_or(f64::NAN, |baseline| timed(baseline, field).0);
+        let (took, answer) = timed(method, field);
         let rounds = ((effort.budget / took) as usize).clamp(1, effort.rounds);
-        let row = answer.map(|answer| row(field, &truth, method.as_ref(), &answer));
-        courses.push(Course { method: method.as_ref(), times: Vec::new(), rounds, row });
+        if let Some(answer) = answer {
+            let row = row(&truth, method, &answer);
+            courses.push(Course { method, times: vec![[took, base]], rounds, row });
+        }
         progress(done + 1, total);
     }
-    courses.retain(|course| course.row.is_some());
     let rounds = courses.iter().map(|course| course.rounds).max().unwrap_or(0);
-    for round in 0..rounds {
+    for round in 1..rounds {
         let mut baseline: Option<(Question, f64)> = None;
         for course in &mut courses {
             let question = course.method.question();
-            let is_baseline = baseline.is_none_or(|(of, _)| of != question);
-            if !is_baseline && round >= course.rounds {
+            let known = baseline.filter(|(of, _)| *of == question);
+            if known.is_some() && round >= course.rounds {
                 continue;
             }
-            let begin = Instant::now();
-            black_box(course.method.answer(black_box(field)));
-            let took = begin.elapsed().as_secs_f64();
-            let base = match baseline {
-                Some((of, base)) if of == question => base,
-                _ => {
-                    baseline = Some((question, took));
-                    took
-                }
-            };
+            let took = timed(course.method, field).0;
+            let base = known.map_or(took, |(_, base)| base);
+            baseline = Some((question, base));
             course.times.push([took, base]);
         }
     }
-    courses.into_iter().filter_map(Course::finish).collect()
+    courses.into_iter().map(Course::finish).collect()
+}
+
+/// The time of a method \[s\], and its answer.
+fn timed<'f>(method: &dyn Method, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
+    let clock = Stopwatch::start();
+    let answer = black_box(method.answer(black_box(field)));
+    (if method.is_parallel() { clock.wall() } else { clock.elapsed() }, answer)
 }
 
 impl Course<'_> {
-    fn finish(self) -> Option<Row> {
+    fn finish(self) -> Row {
         let ms = 1e3 * median(self.times.iter().map(|[took, _]| *took).collect());
         let ratio = median(self.times.iter().map(|[took, base]| took / base).collect());
-        self.row.map(|row| Row { ms, ratio, rounds: self.times.len(), ..row })
+        Row { ms, ratio, rounds: self.times.len(), ..self.row }
     }
 }
 
-fn row(field: &Field<'_>, truth: &Truth, method: &dyn Method, answer: &Answer<'_>) -> Row {
+fn row(truth: &Truth, method: &dyn Method, answer: &Answer<'_>) -> Row {
     let (count, bytes) = match answer {
         Answer::Regions(regions) => (regions.count(), regions.bytes()),
         Answer::Conflicts(found) => (found.len(), size_of_val(&found[..])),
     };
     let (method_name, question, tells) = (method.name(), method.question(), method.tells());
-    let errors = errors(field, truth, answer);
+    let errors = errors(truth, answer);
     Row { method: method_name, question, tells, ms: 0.0, ratio: 1.0, rounds: 0, count, bytes, errors }
 }
 

@@ -60,6 +60,10 @@ impl<S: Number> Method for Map<S> {
         "regions, rounded outward"
     }
 
+    fn is_parallel(&self) -> bool {
+        self.0 == Cores::All
+    }
+
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
         let motions = S::motions(field)?;
         Some(Answer::Regions(match self.0 {
@@ -128,6 +132,10 @@ impl<S: Number> Method for Conflicts<S> {
 
     fn tells(&self) -> &'static str {
         "intervals, certified"
+    }
+
+    fn is_parallel(&self) -> bool {
+        self.0 == Cores::All
     }
 
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {

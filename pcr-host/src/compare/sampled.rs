@@ -4,6 +4,7 @@
 
 use super::track::{EMPTY, Track, hull, near};
 use super::{Answer, Field, Method, Question, Regions};
+use crate::picture::Bar;
 
 /// Distances that are computed together before any of them is looked at.
 const LANES: usize = 16;
@@ -33,6 +34,24 @@ impl Method for Sampled {
     }
 
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+        Some(Answer::Regions(Box::new(self.map(field))))
+    }
+}
+
+/// What the map of an agent says at all samples.
+pub(crate) fn bars(field: &Field<'_>, step: f64, ego: usize) -> Vec<Bar> {
+    let map = Sampled { step, boxes: true }.map(field);
+    let mut bars = Vec::new();
+    for (other, samples) in map.samples.iter().enumerate().filter(|(other, _)| *other != ego) {
+        for time in (0..samples.lengths.len()).map(|k| samples.begin + step * k as f64) {
+            bars.extend(map.slice(ego, other, time).into_iter().map(|part| Bar { other, time, part }));
+        }
+    }
+    bars
+}
+
+impl Sampled {
+    fn map(&self, field: &Field<'_>) -> Map {
         let samples: Vec<Samples> = field.tracks.iter().map(|track| Samples::new(track, self.step)).collect();
         let mut pairs = Vec::new();
         for (first, a) in samples.iter().enumerate() {
@@ -43,7 +62,7 @@ impl Method for Sampled {
                 }
             }
         }
-        Some(Answer::Regions(Box::new(Map { samples, pairs })))
+        Map { samples, pairs }
     }
 }
 

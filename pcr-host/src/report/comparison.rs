@@ -1,6 +1,7 @@
 //! Comparisons as text.
 
 use super::columns::Columns;
+use super::figures::{bytes, seconds, share, time, times};
 use super::{heading, quoted};
 use crate::compare::{Comparison, Errors, Question, Row};
 use std::io::{self, Write};
@@ -73,41 +74,4 @@ fn cells(row: &Row) -> Vec<String> {
         ]),
     }
     cells
-}
-
-/// Three digits.
-fn digits(value: f64) -> String {
-    let before = value.abs().log10().floor().max(0.0);
-    let decimals = if value.abs() < 1.0 { 3.0 } else { (2.0 - before).max(0.0) };
-    format!("{value:.*}", decimals as usize)
-}
-
-/// A time in milliseconds.
-pub(super) fn time(ms: f64) -> String {
-    format!("{} ms", digits(ms))
-}
-
-/// How many times something.
-pub(super) fn times(ratio: f64) -> String {
-    format!("{} ×", if ratio < 1.0 { format!("{ratio:.2}") } else { digits(ratio) })
-}
-
-/// A number of bytes.
-pub(super) fn bytes(count: usize) -> String {
-    let count = count as f64;
-    match count {
-        0.0..1e3 => format!("{count} B"),
-        1e3..1e6 => format!("{} kB", digits(count / 1e3)),
-        _ => format!("{} MB", digits(count / 1e6)),
-    }
-}
-
-/// An error in seconds.
-pub(super) fn seconds(time: f64) -> String {
-    if time < 1e-3 { format!("{time:.0e} s") } else { format!("{} ms", digits(1e3 * time)) }
-}
-
-/// A share in per cent.
-pub(super) fn share(part: f64) -> String {
-    if part < 1e-4 { format!("{part:.0e}") } else { format!("{} %", digits(100.0 * part)) }
 }

@@ -72,6 +72,17 @@ impl Grid {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
+    /// The boxes row by row of the grid: neighbours come soon after one another.
+    pub fn order(&self) -> Vec<u32> {
+        let cell = |&place: &u32| {
+            let b = &self.boxes[place as usize];
+            (self.place(1, b[1]), self.place(0, b[0]))
+        };
+        let mut order: Vec<u32> = (0..self.boxes.len() as u32).collect();
+        order.sort_by_cached_key(cell);
+        order
+    }
+
     /// The boxes that meet one, in increasing order. O(boxes in the cells that it covers).
     pub fn near(&self, b: &Box) -> Vec<u32> {
         let mut near = Vec::new();

@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod evaluate;
 mod fixture;
 mod formats;
 mod import;

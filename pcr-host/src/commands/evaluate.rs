@@ -1,0 +1,42 @@
+//! `pcr evaluate`.
+
+use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT};
+use clap::Args;
+use pcr_host::evaluate::{self, Extent, Problem};
+use pcr_host::progress::Progress;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Write docs/evaluation.md: the paper's evaluation and more, measured here and now
+#[derive(Args)]
+#[command(after_help = STATUSES)]
+pub(super) struct Arguments {
+    /// Directory for the document and its pictures
+    #[arg(short, long, value_name = "DIR", default_value = "docs")]
+    output: PathBuf,
+    /// Directory with the fleets of the paper's Table VI
+    #[arg(long, value_name = "DIR", default_value = "tests/data")]
+    data: PathBuf,
+    /// Small fleets only, without the slowest methods: to see that it works
+    #[arg(long)]
+    quick: bool,
+}
+
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        let extent = if self.quick { Extent::Quick } else { Extent::Full };
+        let progress = Progress::new("sections");
+        let files = evaluate::write(&self.data, &self.output, extent, &mut |done, total| progress.set(done, total));
+        drop(progress);
+        let files = files.map_err(|problem| match &problem {
+            Problem::File(path, _) if path.starts_with(&self.output) => Stop::Error(problem.to_string(), NOT_WRITTEN),
+            _ => Stop::Error(problem.to_string(), WRONG_INPUT),
+        })?;
+        let mut out = io::stdout().lock();
+        for file in files {
+            writeln!(out, "{}", file.display())?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

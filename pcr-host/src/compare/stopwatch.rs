@@ -1,0 +1,44 @@
+//! Time that work on one core takes. Long work is interrupted on a machine that does something else, too, short work is not:
+//! for a fair ratio, long work counts by the time that the processor spent on it, where the system tells.
+
+use std::fs;
+use std::time::Instant;
+
+/// Work from here on is long \[s\]: the system counts in ticks of 1 to 10 ms.
+const LONG: f64 = 0.04;
+
+/// A running clock of this thread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stopwatch {
+    begin: Instant,
+    spent: Option<f64>,
+}
+
+impl Stopwatch {
+    pub(crate) fn start() -> Self {
+        let spent = spent();
+        Self { begin: Instant::now(), spent }
+    }
+
+    /// \[s\]
+    pub(crate) fn elapsed(&self) -> f64 {
+        let elapsed = self.wall();
+        if elapsed < LONG {
+            return elapsed;
+        }
+        let busy = self.spent.and_then(|before| Some(spent()? - before));
+        busy.map_or(elapsed, |busy| busy.min(elapsed))
+    }
+
+    /// The same by the clock on the wall, for work of several threads \[s\].
+    pub(crate) fn wall(&self) -> f64 {
+        self.begin.elapsed().as_secs_f64()
+    }
+}
+
+/// Time that the processor has spent on this thread so far \[s\].
+fn spent() -> Option<f64> {
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
+}

@@ -1,0 +1,40 @@
+//! What the evaluation runs on.
+
+use super::Extent;
+use std::fs;
+use std::thread::available_parallelism;
+
+/// Title, command, machine and how to read the numbers.
+pub(super) fn preamble(extent: Extent) -> String {
+    let cores = available_parallelism().map_or(1, usize::from);
+    let cpu = line("/proc/cpuinfo", "model name").unwrap_or_else(|| "an unnamed processor".into());
+    let kilobytes = line("/proc/meminfo", "MemTotal").and_then(|total| total.split(' ').next()?.parse::<f64>().ok());
+    let memory =
+        kilobytes.map_or("an unknown amount".into(), |kilobytes| format!("{:.0} GiB", kilobytes / f64::from(1 << 20)));
+    let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().filter(|load| !load.is_empty()).unwrap_or("unknown");
+    let peers =
+        if cfg!(feature = "peers") { "" } else { " Built without the feature `peers`: other libraries are left out." };
+    let quick = match extent {
+        Extent::Full => "",
+        Extent::Quick => " Written with `--quick`: small fleets, without the slowest methods.",
+    };
+    let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
+    format!(
+        "# Evaluation\n\n\
+        Written by `cargo run --release --features peers -- evaluate`, the text with all numbers and pictures; nothing is \
+        edited by hand.{peers}{quick}\n\n\
+        **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} (of {cores} if \
+        nothing waits). Times are medians. What is claimed is *ratios*: in each round all methods run one after \
+        the other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; \
+        sampling, flattening and meshes are part of its time. Methods run on one core where nothing else is said, and work of more than \
+        40 ms counts by the time that the processor spent on it, so that other work on the machine does not count.\n"
+    )
+}
+
+/// The value of a line `key : value` of a file.
+pub(super) fn line(file: &str, key: &str) -> Option<String> {
+    let text = fs::read_to_string(file).ok()?;
+    let (_, value) = text.lines().find(|line| line.starts_with(key))?.split_once(':')?;
+    Some(value.trim().to_owned())
+}

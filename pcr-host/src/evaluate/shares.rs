@@ -1,0 +1,80 @@
+//! Fig. 12: time to find the pairs that come near, and to make their regions.
+
+use super::{Extent, Fleets, Problem, Section, picture};
+use crate::compare::measure::median;
+use crate::compare::stopwatch::Stopwatch;
+use crate::fleet::{Fleet, build_ecm};
+use crate::picture::plot::{Chart, Series};
+use crate::report::figures::{share, time};
+use pcr_core::{Motion, Scalar as _};
+use std::fmt::Write as _;
+use std::hint::black_box;
+
+/// A fleet: agents, regions, and times to find pairs and for all \[ms\].
+struct Point {
+    agents: usize,
+    regions: usize,
+    finding: f64,
+    all: f64,
+}
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let rounds = extent.effort().rounds;
+    let mut points = Vec::new();
+    for fleet in &fleets.0 {
+        let parts = Fleet::<f64>::new(&fleet.scenario)?;
+        let motions = parts.motions();
+        let regions = 2 * crate::regions::table(&fleet.scenario, &motions)?.len();
+        let [finding, all] = [find as fn(&[Motion<'_, f64>]) -> usize, build]
+            .map(|work| median((0..rounds).map(|_| timed(|| work(black_box(&motions)))).collect()));
+        points.push(Point { agents: motions.len(), regions, finding, all });
+    }
+    let mut text = String::from(
+        "## Fig. 12: finding pairs, making regions\n\nThe table compares the boxes of all pairs of agents before anything else, which is what \
+        grows with the square of the agents; the rest grows with the regions. Both directions of a pair count as regions.\n\n\
+        | agents | regions | finding pairs | regions | share of finding |\n|---:|---:|---:|---:|---:|\n",
+    );
+    for point in &points {
+        let Point { agents, regions, finding, all } = *point;
+        let rest = time((all - finding).max(0.0));
+        let _ = writeln!(text, "| {agents} | {regions} | {} | {rest} | {} |", time(finding), share(finding / all));
+    }
+    let _ = write!(text, "\n{}{}", picture("fig12a", "Time by agents"), picture("fig12b", "Time by regions"));
+    let chart = |title, axis, x: fn(&Point) -> f64| {
+        let series = |name: &str, y: fn(&Point) -> f64| {
+            let mut line: Vec<[f64; 2]> = points.iter().map(|point| [x(point), y(point)]).collect();
+            line.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            Series { name: name.into(), points: line, line: true }
+        };
+        let series = vec![series("finding pairs", |p| p.finding), series("all", |p| p.all)];
+        Chart { title, axes: [axis, "time [ms]"], series }.draw()
+    };
+    let pictures = vec![
+        ("fig12a", chart("Time by the number of agents", "agents", |point| point.agents as f64)),
+        ("fig12b", chart("Time by the number of regions", "regions", |point| point.regions as f64)),
+    ];
+    Ok(Section { text, pictures })
+}
+
+/// \[ms\]
+fn timed(work: impl FnOnce() -> usize) -> f64 {
+    let clock = Stopwatch::start();
+    black_box(work());
+    1e3 * clock.elapsed()
+}
+
+/// Pairs whose boxes come within the sum of their radii: what the table does first.
+fn find(motions: &[Motion<'_, f64>]) -> usize {
+    let mut found = 0;
+    for (place, first) in motions.iter().enumerate() {
+        for second in &motions[place + 1..] {
+            let reach = first.radius() + second.radius() + f64::slack(first.extent().max(second.extent()));
+            found += usize::from(first.bounds().expanded(reach).meets(second.bounds()));
+        }
+    }
+    found
+}
+
+fn build(motions: &[Motion<'_, f64>]) -> usize {
+    build_ecm(motions).map_or(0, |table| table.len())
+}

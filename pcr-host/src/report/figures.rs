@@ -1,0 +1,43 @@
+//! Numbers with three digits and their units.
+
+/// Three digits, and all of a number from 1000 on.
+pub(crate) fn digits(value: f64) -> String {
+    let before = value.abs().log10().floor();
+    let decimals = if before.is_finite() { (2.0 - before).clamp(0.0, 3.0) } else { 0.0 };
+    format!("{value:.*}", decimals as usize)
+}
+
+/// A time that is given in milliseconds.
+pub(crate) fn time(ms: f64) -> String {
+    match ms {
+        0.0..1e-3 => format!("{} ns", digits(1e6 * ms)),
+        1e-3..1.0 => format!("{} µs", digits(1e3 * ms)),
+        1.0..1e3 => format!("{} ms", digits(ms)),
+        _ => format!("{} s", digits(1e-3 * ms)),
+    }
+}
+
+/// How many times something.
+pub(crate) fn times(ratio: f64) -> String {
+    format!("{} ×", if ratio < 1.0 { format!("{ratio:.2}") } else { digits(ratio) })
+}
+
+/// A number of bytes.
+pub(crate) fn bytes(count: usize) -> String {
+    let count = count as f64;
+    match count {
+        0.0..1e3 => format!("{count} B"),
+        1e3..1e6 => format!("{} kB", digits(count / 1e3)),
+        _ => format!("{} MB", digits(count / 1e6)),
+    }
+}
+
+/// An error in seconds.
+pub(crate) fn seconds(time: f64) -> String {
+    if time < 1e-3 { format!("{time:.0e} s") } else { format!("{} ms", digits(1e3 * time)) }
+}
+
+/// A share in per cent.
+pub(crate) fn share(part: f64) -> String {
+    if part < 1e-4 { format!("{part:.0e}") } else { format!("{} %", digits(100.0 * part)) }
+}
