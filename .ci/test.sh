@@ -110,7 +110,7 @@ firmware() {
 }
 
 fuzz() {
-  step "fuzzing: scenario files and pairs"
+  step "fuzzing: scenario files, pairs and importers"
   fuzz/run.sh
 }
 

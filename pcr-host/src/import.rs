@@ -215,7 +215,28 @@ fn imported(
         Format::Path => return Err(ImportError::new("paths of agents are not a layout")),
         Format::Vda5050 => return Err(ImportError::new("an order or a state is not a layout")),
     };
+    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
+    report(&off, warnings);
     Ok(Imported { layout, vehicle })
+}
+
+/// Deviation that goes without saying \[m\].
+const UNSAID: f64 = 1e-6;
+
+/// Says how far lines and arcs are from what they stand for.
+fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
+    let most = deviations.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
+    for (name, _) in deviations.iter().filter(|(_, deviation)| *deviation > UNSAID) {
+        let problem =
+            format!("its lines and arcs are up to {most:.1e} m from its curve, by which its radius is larger");
+        warnings.add(name, problem);
+    }
+}
+
+/// The same for agents of a vehicle.
+fn report_agents(scenario: &Scenario, vehicle: &Vehicle, warnings: &mut Warnings) {
+    let off = scenario.agents.iter().map(|agent| (format!("agent {}", agent.id), agent.radius - vehicle.radius));
+    report(&off.collect::<Vec<_>>(), warnings);
 }
 
 /// What the configuration of a fleet or a factsheet says.
@@ -268,10 +289,14 @@ pub fn scenario(
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
             route::scenario(&layout, &vehicle, options, warnings)?
         }
-        Format::Path => samples::read(text, options, &options.vehicle(&given(options, warnings)?, true, warnings))?,
-        Format::Vda5050 => {
+        Format::Path | Format::Vda5050 => {
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
-            vda5050::read(text, options, &vehicle, warnings)?
+            let scenario = match format {
+                Format::Path => samples::read(text, options, &vehicle)?,
+                _ => vda5050::read(text, options, &vehicle, warnings)?,
+            };
+            report_agents(&scenario, &vehicle, warnings);
+            scenario
         }
     };
     checked(&scenario)
