@@ -31,6 +31,8 @@ tests() {
 release() {
   step "tests, release"
   cargo test --workspace --release --locked
+  step "plans of 100000 random fleets by either method, checked by the oracle"
+  cargo run --quiet --release --locked -p pcr-tests --example fleets -- 0 100000
   step "benchmarks, one pass each"
   cargo bench --workspace --locked -- --test
   step "instructions of the library's jobs"

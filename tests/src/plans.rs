@@ -29,6 +29,8 @@ pub struct Tally {
     pub never: u32,
     /// Without a plan for the priorities that were tried.
     pub not_found: u32,
+    /// Without a plan for want of room.
+    pub full: u32,
 }
 
 /// Discs that are a little larger, so that the true ones are certain not to touch after a few hundred steps of the
@@ -62,8 +64,8 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
     let ecm = build_ecm(&motions).expect("a small table");
     let (mut plan, mut order) = (motions.clone(), (0..motions.len()).collect::<Vec<_>>());
     let given = order.clone();
-    let mut profiles = vec![Profile::<f64, 48>::standing(); 40];
-    let mut stations = vec![Station::EMPTY; 80];
+    let mut profiles = vec![Profile::<f64, 64>::standing(); 40];
+    let mut stations = vec![Station::EMPTY; 160];
     let outcome = match method {
         Method::Delay => plan_delays(&ecm, &motions, &mut plan, &mut order),
         Method::Speed => plan_speeds(&ecm, &motions, &mut plan, &mut order, &mut profiles, &mut stations),
@@ -93,6 +95,7 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
             }
         }
         Err(Unsolved::Priorities(_)) => tally.not_found += 1,
+        Err(Unsolved::Full(_)) => tally.full += 1,
         Err(other) => panic!("seed {seed}: {other}"),
     }
 }
@@ -111,7 +114,14 @@ fn solved(seed: u64, driven: &[Driven], motions: &[Motion<'_, f64>], plan: &[Mot
         // The others have arrived; what is added is the rounding of the delay.
         let all_there = before.iter().map(|&other| plan[other].time().hi).fold(earliest, f64::max);
         let latest = all_there + motions[agent].time().length() + 1e-6;
-        assert!(earliest <= plan[agent].time().lo && plan[agent].time().hi <= latest, "seed {seed}, agent {agent}");
+        assert!(earliest <= plan[agent].time().lo, "seed {seed}, agent {agent}");
+        // Unless the agent cannot wait for them: another one passes over its start.
+        let waits = |other: usize| {
+            let starts = [all_there, planned[other].2];
+            !meet(&driven[agent], &planned[other], starts, [first, latest.max(last)], 2.0 * GROWTH + 1e-6)
+        };
+        let in_time = plan[agent].time().hi <= latest;
+        assert!(in_time || !before.iter().all(|&other| waits(other)), "seed {seed}, agent {agent}");
         for (given, planned) in limits(&motions[agent]).into_iter().zip(limits(&plan[agent])) {
             assert!(planned <= given * (1.0 + 1e-9), "seed {seed}, agent {agent}: {planned} above {given}");
         }

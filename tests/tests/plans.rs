@@ -13,8 +13,9 @@ fn audited(method: Method) -> Tally {
     let mut tally = Tally::default();
     (0..FLEETS).for_each(|seed| audit(seed, method, &mut tally));
     println!("{tally:?}");
-    let Tally { solved, moved, never, .. } = tally;
+    let Tally { solved, moved, never, full, .. } = tally;
     assert!(u64::from(solved) * 3 > FLEETS && moved > 0 && never > 0, "{tally:?}");
+    assert!(u64::from(full) * 1000 <= FLEETS, "{tally:?}");
     tally
 }
 

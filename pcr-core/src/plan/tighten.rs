@@ -59,6 +59,8 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
         let [start, _] = self.lattice.ends();
         if start == 0 {
             self.shorten(ego, plan, None, plan.start - ego.time().lo)?;
+            // Not earlier by a rounding.
+            plan.start = plan.start.max(ego.time().lo);
         }
         let mut place = 0_usize;
         while let Some(phase) = plan.profile.as_profile().phases().get(place) {

@@ -12,6 +12,9 @@ pub struct Intervals {
 /// Most evaluations that [`below`] spends: a function that is 0 throughout would take any number.
 const BUDGET: usize = 4_000;
 
+/// Most evaluations that [`reaches`] spends, which seldom takes many: a function that hovers a little above the margin.
+const SEARCH: usize = 1_000_000;
+
 /// Where in `[lo, hi]` a function of slope at most 1 is `<= 0`, ends known within `tolerance`. Points where it is at
 /// most `margin` count as possible: that much its evaluation, or the claim that is to be checked, may be off.
 pub fn below(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance: f64) -> Intervals {
@@ -52,7 +55,7 @@ pub fn reaches(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance:
         let half = 0.5 * (b - a);
         let value = f(a + half);
         spent += 1;
-        if value <= margin || value - half <= margin && (half <= tolerance || spent >= BUDGET) {
+        if value <= margin || value - half <= margin && (half <= tolerance || spent >= SEARCH) {
             return true;
         }
         if value - half <= margin {
