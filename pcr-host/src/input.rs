@@ -21,6 +21,8 @@ pub enum InputError {
     Foreign(Option<PathBuf>, Format, ImportError),
     /// It has to be a layout, and is none that is known, or (`true`) empty.
     NoLayout(Option<PathBuf>, bool),
+    /// It cannot be read together with others.
+    Single(Option<PathBuf>),
     /// It is a scenario, which has routes and vehicles of its own.
     HasAgents(Option<PathBuf>),
 }
@@ -38,6 +40,9 @@ impl fmt::Display for InputError {
             Self::NoLayout(file, true) => write!(f, "{}: empty; a layout is expected", name(file)),
             Self::NoLayout(file, false) => {
                 write!(f, "{}: not known as a layout by its name or content; say what it is with --from", name(file))
+            }
+            Self::Single(file) => {
+                write!(f, "{}: only orders and states of VDA 5050, or paths, may be several files", name(file))
             }
             Self::HasAgents(file) => {
                 write!(
@@ -87,6 +92,39 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
             Ok(scenario) => Ok((scenario, warnings)),
             Err(error) => Err(InputError::Refused(name, error)),
         },
+    }
+}
+
+/// The scenario in several files that have agents of their own, with the warnings about each: messages of VDA 5050, or paths by
+/// their points.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(PathBuf, Warnings)>), InputError> {
+    let (mut texts, mut warnings, mut read_as) = (Vec::new(), Vec::new(), None);
+    for file in files {
+        // Each by itself, so that what is wrong is said of the file in which it is.
+        let (name, text) = text(file)?;
+        let format = options.from.or_else(|| Format::of(file, &text));
+        let Some(format @ (Format::Vda5050 | Format::Path)) = format else {
+            return Err(InputError::Single(name));
+        };
+        let mut own = Warnings::default();
+        import::scenario(format, &text, options, &mut own)
+            .map_err(|error| InputError::Foreign(name.clone(), format, error))?;
+        if read_as.is_some_and(|before| before != format) {
+            return Err(InputError::Single(name));
+        }
+        read_as = Some(format);
+        texts.push(text.trim_start_matches('\u{feff}').to_owned());
+        warnings.push((file.clone(), own));
+    }
+    let name = files.first().cloned();
+    let Some(format) = read_as else { return Err(InputError::Single(name)) };
+    // An empty line parts paths, and means nothing between messages.
+    match import::scenario(format, &texts.join("\n\n"), options, &mut Warnings::default()) {
+        Ok(scenario) => Ok((scenario, warnings)),
+        Err(error) => Err(InputError::Foreign(name, format, error)),
     }
 }
 

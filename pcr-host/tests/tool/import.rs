@@ -1,7 +1,7 @@
 //! Files of other formats: by their extension or `--from`, with warnings on standard error.
 
 use crate::fixture::{file, run, run_with};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const WAREHOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
 const VEHICLE: [&str; 10] =
@@ -58,4 +58,32 @@ fn what_is_wrong_is_named() {
     let refused = run(&["regions", WAREHOUSE, "--radius=-1"]);
     assert_eq!(refused.status, 2);
     assert!(refused.err.contains("a number from 1e-6 to 1e6 is expected"), "{}", refused.err);
+}
+
+#[test]
+fn several_orders_or_paths_are_agents_of_one_scenario() {
+    let order = |id: &str, y: f64| {
+        let nodes = [0.0, 5.0].map(|x| {
+            json!({ "nodeId": format!("{id}{x}"), "sequenceId": if x > 0.0 { 2 } else { 0 },
+            "released": true, "actions": [], "nodePosition": { "x": x, "y": y, "mapId": "m" } })
+        });
+        let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });
+        file("several", &format!("{id}.json"), json!({ "orderId": id, "nodes": nodes, "edges": [edge] }).to_string())
+    };
+    let (a, b) = (order("a", 0.0), order("b", 0.5));
+    let read = |arguments: &[&str]| -> Value {
+        let run = run(arguments);
+        assert_eq!(run.status, 0, "{}", run.err);
+        serde_json::from_str(&run.out).unwrap()
+    };
+    let both = read(&["import", "vda5050", &a, &b, "--radius", "0.3"]);
+    let place = |k: usize| both["agents"][k]["start"]["y"].as_f64().unwrap();
+    assert_eq!((both["agents"].as_array().unwrap().len(), place(0), place(1)), (2, 0.0, 0.5));
+    let [one, two] = ["one.path", "two.path"].map(|name| file("several", name, "0 0\n3 0"));
+    assert_eq!(read(&["import", "path", &one, &two, "--radius", "0.3"])["agents"].as_array().unwrap().len(), 2);
+    let damaged = file("several", "c.json", "{ \"orderId\": \"c\", \"nodes\": [] }");
+    let failed = run(&["import", "vda5050", &a, &damaged, "--radius", "0.3"]).failed(2);
+    assert!(failed.contains("c.json: order c: 0 nodes"), "{failed}");
+    let layouts = run(&["import", "nav2", &a, &b, "--radius", "0.3"]).failed(2);
+    assert!(layouts.contains("a.json: only orders and states"), "{layouts}");
 }
