@@ -18,8 +18,8 @@
 //! pieces     their fixed-capacity store                     Piece
 //! region     connected regions in path-time space (t, l)    RegionRef
 //! ecm        all regions of a fleet                         Ecm
-//! query      conflicts, safe intervals, start delays        Encounter, safe_intervals, earliest_start
-//! plan       start delays of a fleet by priorities          plan_delays
+//! query      conflicts, safe intervals, delays, waits       Encounter, safe_intervals, earliest_start
+//! plan       start delays and speeds by priorities          plan_delays, plan_speed, plan_speeds
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
 //!
