@@ -4,7 +4,7 @@ use crate::disc::{Course, Disc, Drive};
 use crate::generators::{Dice, drive, leg};
 use crate::oracle::contact::{Driven, meet};
 use pcr_core::{Encounter, Interval, Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
-use pcr_host::fleet::build_ecm;
+use pcr_host::fleet::{Format, build_ecm};
 use std::f64::consts::PI;
 
 /// How a fleet is planned.
@@ -38,7 +38,7 @@ pub struct Tally {
 const GROWTH: f64 = 1e-4;
 
 /// Two to six agents in a square of 6 m, or on one another's paths.
-fn fleet(dice: &mut Dice) -> Vec<Driven> {
+pub fn fleet(dice: &mut Dice) -> Vec<Driven> {
     let agents = 2 + dice.below(5);
     let agent = |dice: &mut Dice| {
         let start = [dice.range(-3.0, 3.0), dice.range(-3.0, 3.0), dice.range(-PI, PI)];
@@ -143,8 +143,9 @@ fn limits(motion: &Motion<'_, f64>) -> [f64; 2] {
 }
 
 /// The motion as the oracle takes it.
-fn drive_of(motion: &Motion<'_, f64>) -> Drive {
+pub fn drive_of<S: Format>(motion: &Motion<'_, S>) -> Drive {
     let phases = motion.profile().phases();
-    let speed = phases.first().map_or(0.0, |first| first.speed()[0]);
-    Drive::Pieces(speed, phases.iter().map(|phase| (phase.time().length(), phase.acceleration())).collect())
+    let speed = phases.first().map_or(0.0, |first| first.speed()[0].to_f64());
+    let pieces = phases.iter().map(|phase| (phase.time().length().to_f64(), phase.acceleration().to_f64()));
+    Drive::Pieces(speed, pieces.collect())
 }

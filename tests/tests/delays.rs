@@ -1,6 +1,7 @@
 //! Start delays: every region forbids the interval that the definition forbids, and known answers.
 
 use pcr_core::{Encounter, Interval, RegionRef, earliest_start, union};
+use pcr_fixed::Q16;
 use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::driven_pairs;
@@ -115,6 +116,14 @@ proptest! {
     #[test]
     fn regions_forbid_what_the_definition_forbids_f32((pair, drives) in driven_pairs()) {
         audited::<f32>([&pair.0, &pair.1], &drives)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(settings(1_500, 25, 43))]
+    #[test]
+    fn regions_forbid_what_the_definition_forbids_q16((pair, drives) in driven_pairs()) {
+        audited::<Q16>([&pair.0, &pair.1], &drives)?;
     }
 }
 

@@ -1,9 +1,12 @@
 //! Fleet plans: no two discs come nearer than their radii, by the oracle; and nobody waits longer than for all others.
 
 use pcr_core::{Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
-use pcr_host::fleet::build_ecm;
+use pcr_fixed::Q16;
+use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
-use pcr_tests::plans::{Method, Tally, audit};
+use pcr_tests::generators::Dice;
+use pcr_tests::oracle::contact::{Driven, meet};
+use pcr_tests::plans::{Method, Tally, audit, drive_of, fleet};
 use std::f64::consts::PI;
 
 /// `cargo run --release -p pcr-tests --example fleets` takes any number.
@@ -29,6 +32,53 @@ fn random_fleets_are_delayed_without_collisions_and_without_idle_waits() {
 fn random_fleets_are_given_speeds_without_collisions_and_without_idle_waits() {
     let tally = audited(Method::Speed);
     assert!(tally.faster > 0, "{tally:?}");
+}
+
+/// Plans in another format, for what is left of the numbers in it: discs that are smaller by `slip` \[m\] are apart.
+fn audited_in<S: Format>(slip: f64) {
+    const PHASES: usize = 64;
+    let mut solved = [0_u64; 2];
+    for seed in 0..FLEETS {
+        let driven: Vec<Driven> = fleet(&mut Dice::seeded(seed))
+            .into_iter()
+            .map(|(disc, drive, start)| (disc.rounded::<S>(), drive.rounded::<S>(), S::from_f64(start).to_f64()))
+            .collect();
+        let courses = driven.iter().map(|(disc, drive, start)| Course::<S>::driven(disc, drive, *start));
+        let Ok(courses) = courses.collect::<Result<Vec<_>, _>>() else { continue };
+        let motions: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
+        let ecm = build_ecm(&motions).expect("a small table");
+        let mut stations = vec![Station::EMPTY; 160];
+        for (way, solved) in solved.iter_mut().enumerate() {
+            let mut profiles = vec![Profile::<S, PHASES>::standing(); 40];
+            let (mut plan, mut order) = (motions.clone(), (0..motions.len()).collect::<Vec<_>>());
+            let outcome = match way {
+                0 => plan_delays(&ecm, &motions, &mut plan, &mut order),
+                _ => plan_speeds(&ecm, &motions, &mut plan, &mut order, &mut profiles, &mut stations),
+            };
+            if let Err(unsolved) = outcome {
+                assert!(!matches!(unsolved, Unsolved::Overlap(_)), "seed {seed}: {unsolved}");
+                continue;
+            }
+            *solved += 1;
+            let last = plan.iter().map(|motion| motion.time().hi.to_f64()).fold(0.0, f64::max);
+            let planned: Vec<Driven> = (driven.iter().zip(&plan))
+                .map(|((disc, ..), motion)| (disc.grown(-slip), drive_of(motion), motion.time().lo.to_f64()))
+                .collect();
+            for (k, a) in planned.iter().enumerate() {
+                for b in &planned[..k] {
+                    assert!(!meet(a, b, [a.2, b.2], [0.0, last], 0.0), "seed {seed}, way {way}: {a:?} and {b:?}");
+                }
+            }
+        }
+    }
+    println!("{solved:?} of {FLEETS}");
+    assert!(solved.iter().all(|&solved| solved * 10 > FLEETS), "{solved:?} of {FLEETS}");
+}
+
+#[test]
+fn plans_meet_nobody_in_f32_and_q16() {
+    audited_in::<f32>(5e-4);
+    audited_in::<Q16>(5e-3);
 }
 
 fn line(start: [f64; 3], length: f64) -> Course<f64> {
