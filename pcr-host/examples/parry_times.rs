@@ -28,7 +28,7 @@ fn main() {
     }
 }
 
-/// The time of the contact, which is half a second after the begin.
+/// The time of the contact, 0.74 s after the begin.
 fn cast(begin: f64) -> Option<f64> {
     // Where they would have been at the time 0.
     let motion = |x: f64, y: f64, speed: [f64; 2]| {

@@ -12,6 +12,7 @@
 //! crowd      random fleets of any size
 //! errors     an answer against the reference
 //! measure    times, in rounds                               Comparison
+//! chart      time against error
 //! stopwatch  one core's time, also while others are at work
 //! ```
 //!
@@ -20,6 +21,7 @@
 
 #[cfg(feature = "peers")]
 mod casts;
+mod chart;
 mod crowd;
 mod errors;
 pub(crate) mod measure;

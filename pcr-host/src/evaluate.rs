@@ -133,18 +133,20 @@ struct Fleet {
     size: [usize; 2],
     /// Of the analytic method, the computational one and PQP, as printed \[ms\].
     paper: [f64; 3],
+    /// Memory of the first two, as printed.
+    memory: &'static str,
 }
 
 struct Fleets(Vec<Fleet>);
 
-/// File, agents, regions, and the paper's times \[ms\].
-const TABLE_VI: [(&str, [usize; 2], [f64; 3]); 6] = [
-    ("table6-5.json", [5, 16], [1.4, 7_750.0, 97.0]),
-    ("table6-12.json", [12, 16], [1.5, 48_125.0, 1_220.0]),
-    ("paper12.json", [12, 126], [14.3, 51_110.0, 1_220.0]),
-    ("table6-30.json", [30, 218], [18.6, 193_763.0, 3_791.0]),
-    ("table6-50.json", [50, 718], [66.3, 553_279.0, 10_755.0]),
-    ("table6-100.json", [100, 2_478], [255.7, 2_032_841.0, 53_619.0]),
+/// File; agents and regions, times \[ms\], and memory as the paper prints them.
+const TABLE_VI: [(&str, [usize; 2], [f64; 3], &str); 6] = [
+    ("table6-5.json", [5, 16], [1.4, 7_750.0, 97.0], "1 KB / 3 MB"),
+    ("table6-12.json", [12, 16], [1.5, 48_125.0, 1_220.0], "1 KB / 3 MB"),
+    ("paper12.json", [12, 126], [14.3, 51_110.0, 1_220.0], "4 KB / 10 MB"),
+    ("table6-30.json", [30, 218], [18.6, 193_763.0, 3_791.0], "14 KB / 17 MB"),
+    ("table6-50.json", [50, 718], [66.3, 553_279.0, 10_755.0], "46 KB / 54 MB"),
+    ("table6-100.json", [100, 2_478], [255.7, 2_032_841.0, 53_619.0], "159 KB / 202 MB"),
 ];
 
 impl Fleets {
@@ -153,12 +155,12 @@ impl Fleets {
             Extent::Full => &TABLE_VI[..],
             Extent::Quick => &TABLE_VI[2..3],
         };
-        let fleet = |&(name, size, paper): &(&str, _, _)| {
+        let fleet = |&(name, size, paper, memory): &(&str, _, _, _)| {
             let path = data.join(name);
             let text = fs::read_to_string(&path)
                 .map_err(|error| Problem::File(path.clone(), format!("cannot be read: {error}")))?;
             let scenario = Scenario::from_json(&text).map_err(|error| Problem::File(path, error.to_string()))?;
-            Ok(Fleet { scenario, size, paper })
+            Ok(Fleet { scenario, size, paper, memory })
         };
         Ok(Self(rows.iter().map(fleet).collect::<Result<_, Problem>>()?))
     }

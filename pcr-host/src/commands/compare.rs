@@ -2,11 +2,12 @@
 
 use super::{STATUSES, Stop, scenario};
 use clap::{Args, ValueEnum};
-use pcr_host::compare::{Comparison, Effort};
+use pcr_host::compare::{Comparison, Effort, Question};
 use pcr_host::import::Options;
 use pcr_host::progress::Progress;
 use pcr_host::regions::Failure;
 use pcr_host::report;
+use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -15,7 +16,8 @@ const EXAMPLES: &str = "\
 Examples:
   pcr compare                                        every method on the paper's 12 agents
   pcr compare fleet.json --method polyline           pcr, and methods whose names hold a word
-  pcr compare small.json large.json --format csv     a line a method and a scenario";
+  pcr compare small.json large.json --format csv     a line a method and a scenario
+  pcr compare fleet.json -o charts                   and time against error as pictures";
 
 /// Run this and other methods side by side: time, memory, and errors against the definition
 #[derive(Args)]
@@ -32,6 +34,9 @@ pub(super) struct Arguments {
     /// Form of the output
     #[arg(long, value_enum, default_value_t = Output::Table)]
     format: Output,
+    /// Draw time against error to regions-1.svg and conflicts-1.svg in this directory, with the number of the scenario
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     import: Options,
 }
@@ -84,7 +89,19 @@ impl Arguments {
                 Output::Csv => report::comparison_csv(&comparison, &mut out)?,
             }
             out.flush()?;
+            if let Some(directory) = &self.output {
+                draw(&comparison, directory, place + 1)?;
+            }
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+fn draw(comparison: &Comparison, directory: &Path, number: usize) -> Result<(), Stop> {
+    fs::create_dir_all(directory).map_err(|error| Stop::not_written(directory, &error))?;
+    for (question, name) in [(Question::Regions, "regions"), (Question::Conflicts, "conflicts")] {
+        let file = directory.join(format!("{name}-{number}.svg"));
+        fs::write(&file, comparison.chart(question)).map_err(|error| Stop::not_written(&file, &error))?;
+    }
+    Ok(())
 }

@@ -2,7 +2,6 @@
 
 use super::{Extent, Fleets, Problem, Section, picture};
 use crate::compare::{Comparison, Errors, Question, Row};
-use crate::picture::plot::{Chart, Series};
 use crate::report::comparison_table;
 use crate::report::figures::{bytes, digits, time, times};
 use std::fmt::Write as _;
@@ -15,21 +14,24 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     }
     let mut text = table(fleets, &all);
     let mut pictures = Vec::new();
-    let shown = [
-        ("12", fleets.0.iter().position(|fleet| fleet.size == [12, 126])),
-        ("100", fleets.0.iter().position(|fleet| fleet.size[0] == 100)),
-    ];
-    for (agents, place) in shown {
-        let Some(comparison) = place.and_then(|place| all.get(place)) else { continue };
-        let name = if agents == "12" { "methods-12" } else { "methods-100" };
-        let _ = writeln!(text, "\n## All methods, {agents} agents\n\n{}", WORDS);
+    for (fleet, comparison) in fleets.0.iter().zip(&all) {
+        let names = match fleet.size {
+            [12, 126] => [(Question::Regions, "regions-12"), (Question::Conflicts, "conflicts-12")],
+            [100, _] => [(Question::Regions, "regions-100"), (Question::Conflicts, "conflicts-100")],
+            _ => continue,
+        };
+        let agents = comparison.agents;
+        let _ = writeln!(text, "\n## All methods, {agents} agents\n\n{WORDS}");
         let mut table = Vec::new();
         // Writing to memory does not fail.
         let _ = comparison_table(comparison, true, &mut table);
         text.push_str(String::from_utf8_lossy(&table).trim_start());
-        let what = format!("Time and error of the conflicts of {agents} agents");
-        let _ = write!(text, "\n{}", picture(name, &what));
-        pictures.push((name, chart(comparison, &what)));
+        text.push('\n');
+        for (question, name) in names {
+            let what = format!("{agents} agents: {}", question.title());
+            text.push_str(&picture(name, &what));
+            pictures.push((name, comparison.chart(question)));
+        }
     }
     Ok(Section { text, pictures })
 }
@@ -51,7 +53,7 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
         proximity every 0.01 s with cylinders of 100 triangles. *Paper*: a Pentium IV at 2.33 GHz. A ratio is that of a method's time to \
         that of the analytic method; ours are against the fastest sampled map that we could write, without boxes and with them.\n\n\
         | agents | crossings | analytic, paper | ours | sampled / analytic, paper | ours | ours, boxes | mesh / analytic, paper | ours | \
-        memory analytic / sampled, ours |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        memory analytic / sampled, paper | ours |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     for (fleet, comparison) in fleets.0.iter().zip(all) {
         let [agents, crossings] = fleet.size;
@@ -65,41 +67,45 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
         let memory = own.zip(regions("sampled map 0.01 s, boxes"));
         let _ = writeln!(
             text,
-            "| {agents} | {crossings} | {} | {} | {} | {} | {} | {} | {mesh_ratio} | {} |",
+            "| {agents} | {crossings} | {} | {} | {} | {} | {} | {} | {mesh_ratio} | {} | {} |",
             time(analytic),
             own.map_or("–".into(), |own| time(own.ms)),
             times(sampled / analytic),
             ratio(regions("sampled map 0.01 s")),
             ratio(regions("sampled map 0.01 s, boxes")),
             times(mesh / analytic),
+            fleet.memory,
             memory.map_or("–".into(), |(own, sampled)| format!("{} / {}", bytes(own.bytes), bytes(sampled.bytes))),
         );
     }
-    let sampled = all.iter().filter_map(|comparison| {
-        let row = find(comparison, Question::Regions, "sampled map 0.01 s, boxes")?;
-        let Errors::Regions { area, difference } = row.errors else { return None };
-        Some(difference / area)
-    });
-    let (least, most) = sampled.fold((f64::INFINITY, 0.0_f64), |(least, most), part| (least.min(part), most.max(part)));
-    if least <= most {
+    let ratios = |fleet: &super::Fleet| fleet.paper[1] / fleet.paper[0];
+    let paper = span(fleets.0.iter().map(ratios));
+    let plain = span(ratios_of(all, "sampled map 0.01 s"));
+    let boxes = span(ratios_of(all, "sampled map 0.01 s, boxes"));
+    let area = span(all.iter().filter_map(|comparison| {
+        match find(comparison, Question::Regions, "sampled map 0.01 s, boxes")?.errors {
+            Errors::Regions { area, difference } => Some(100.0 * difference / area),
+            Errors::Conflicts { .. } => None,
+        }
+    }));
+    if let (Some(paper), Some(plain), Some(boxes), Some(area)) = (paper, plain, boxes, area) {
         let _ = writeln!(
             text,
-            "\nThe sampled maps are off by {} % to {} % of the area of the regions. The ratio without boxes is of the paper's order; \
-            boxes around paths and runs of samples, which its method did not have, take most of the work away, not the memory.",
-            digits(100.0 * least),
-            digits(100.0 * most)
+            "\nA sampled map takes {plain} times as long as the analytic one here, {paper} times in the paper. Boxes around paths and runs \
+            of samples, which the paper's method does not have, bring that down to {boxes} times; the memory stays. Its area \
+            is off by {area} %."
         );
     }
     text
 }
 
-fn chart(comparison: &Comparison, title: &str) -> String {
-    let series = comparison.rows.iter().filter_map(|row| match row.errors {
-        Errors::Conflicts { time, .. } => {
-            Some(Series { name: row.method.clone(), points: vec![[row.ms, time.max(1e-10)]], line: false })
-        }
-        Errors::Regions { .. } => None,
-    });
-    let axes = ["time [ms]", "largest error of a begin or end [s]"];
-    Chart { title, axes, series: series.collect() }.draw()
+fn ratios_of<'c>(all: &'c [Comparison], name: &'c str) -> impl Iterator<Item = f64> + 'c {
+    all.iter().filter_map(move |comparison| Some(find(comparison, Question::Regions, name)?.ratio))
+}
+
+/// From the least to the largest.
+fn span(values: impl Iterator<Item = f64>) -> Option<String> {
+    let [least, most] =
+        values.fold([f64::INFINITY, 0.0_f64], |[least, most], value| [least.min(value), most.max(value)]);
+    (least <= most).then(|| format!("{} to {}", digits(least), digits(most)))
 }

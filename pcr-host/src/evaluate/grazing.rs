@@ -2,6 +2,7 @@
 
 use super::{Extent, Fleets, Problem, Section};
 use crate::compare::{Answer, Field, Input, Method, Question, methods};
+use crate::fleet::Refused;
 use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 use std::fmt::Write as _;
@@ -27,12 +28,13 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     for depth in DEPTHS {
         let _ = write!(text, " {depth:e} m |");
     }
-    text.push_str(" wrong |\n|---|");
+    text.push_str(" wrong | where |\n|---|");
     text.push_str(&"---:|".repeat(DEPTHS.len() + 1));
-    text.push('\n');
+    text.push_str("---|\n");
     let mut inputs = Vec::new();
     for depth in DEPTHS {
-        let of = |clearance: f64| pairs(clearance).iter().map(Input::new).collect::<Result<Vec<_>, _>>();
+        let named = |scenario: &Scenario| Ok((scenario.name.clone(), Input::new(scenario)?));
+        let of = |clearance: f64| pairs(clearance).iter().map(named).collect::<Result<Vec<_>, Refused>>();
         inputs.push([of(-depth)?, of(depth)?]);
     }
     for method in methods().iter().filter(|method| method.question() == Question::Conflicts || sampled(method.as_ref()))
@@ -43,18 +45,28 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
             continue;
         }
         let _ = write!(text, "| {name} |");
-        let mut wrong = 0;
-        for [contacts, misses] in &inputs {
-            let found =
-                |inputs: &[Input]| inputs.iter().filter(|input| collides(method.as_ref(), &input.field())).count();
-            let (found, invented) = (found(contacts), found(misses));
-            wrong += contacts.len() - found + invented;
-            let _ = write!(text, " {found} · {invented} |");
+        let mut wrong: Vec<&str> = Vec::new();
+        for cases in &inputs {
+            // Of the contacts, then of the near misses.
+            let mut counts = [0; 2];
+            for ((count, pairs), contact) in counts.iter_mut().zip(cases).zip([true, false]) {
+                for (kind, input) in pairs {
+                    let found = collides(method.as_ref(), &input.field());
+                    *count += usize::from(found);
+                    if found != contact {
+                        wrong.push(kind);
+                    }
+                }
+            }
+            let _ = write!(text, " {} · {} |", counts[0], counts[1]);
         }
-        let _ = writeln!(text, " {wrong} |");
+        let count = wrong.len();
+        wrong.sort_unstable();
+        wrong.dedup();
+        let _ = writeln!(text, " {count} | {} |", if count == 0 { "–".into() } else { wrong.join(", ") });
     }
     text.push_str(
-        "\nFixed point and single precision round outward: what is nearer than their ε counts as a contact, and no contact is lost \
+        "\nFixed point and single precision round outward: what is nearer than their ε counts as a contact \
         ([errors.md](errors.md)). Meshes and polylines are drawn around the discs and paths.\n",
     );
     Ok(Section { text, pictures: Vec::new() })

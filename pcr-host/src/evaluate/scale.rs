@@ -30,11 +30,13 @@ struct Point {
 }
 
 pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
-    let sizes: &[usize] = match extent {
-        Extent::Full => &[100, 1_000, 10_000, 100_000],
-        Extent::Quick => &[100, 300],
+    // Small fleets are repeated until they are as many agents.
+    let (sizes, repeated): (&[usize], usize) = match extent {
+        Extent::Full => (&[100, 1_000, 10_000, 100_000], 20_000),
+        Extent::Quick => (&[100, 300], 300),
     };
-    let points = sizes.iter().map(|&agents| measure(agents)).collect::<Result<Vec<_>, Problem>>()?;
+    let points =
+        sizes.iter().map(|&agents| measure(agents, (repeated / agents).max(1))).collect::<Result<Vec<_>, Problem>>()?;
     let mut text = String::from(
         "## Scale\n\nRandom fleets as dense as the paper's (12 agents on 7 m by 7 m), paths of three to six segments. `rows` finds the agents that \
         come near by a grid, and works through the fleet an agent at a time without keeping anything, as a server would that \
@@ -95,9 +97,7 @@ fn on_one_core(repetitions: usize, mut work: impl FnMut()) -> f64 {
     1e3 * clock.elapsed() / repetitions as f64
 }
 
-fn measure(agents: usize) -> Result<Point, Problem> {
-    /// Small fleets are repeated until they are as many.
-    const AGENTS_IN_ALL: usize = 20_000;
+fn measure(agents: usize, rounds: usize) -> Result<Point, Problem> {
     reset_peak();
     let fleet = Fleet::<f64>::new(&crowd(agents, 1))?;
     let motions = fleet.motions();
@@ -106,7 +106,6 @@ fn measure(agents: usize) -> Result<Point, Problem> {
         regions.fetch_add(2 * row.table().len(), Ordering::Relaxed);
     })?;
     let memory = peak();
-    let rounds = (AGENTS_IN_ALL / agents).max(1);
     let mut failed = None;
     let rows = on_one_core(rounds, || failed = one_by_one(&motions).err().or(failed));
     let all_cores =

@@ -1,6 +1,6 @@
 //! `pcr compare`: its forms.
 
-use crate::fixture::{crossing, file, run};
+use crate::fixture::{crossing, directory, file, run};
 
 #[test]
 fn two_scenarios_in_every_form() {
@@ -21,6 +21,20 @@ fn two_scenarios_in_every_form() {
         let rows = value["rows"].as_array().unwrap();
         assert_eq!((rows.len(), &rows[0]["method"]), (4, &serde_json::json!("pcr f64")));
         assert!(rows.iter().all(|row| row["ms"].as_f64().unwrap() > 0.0));
+    }
+}
+
+#[test]
+fn charts_show_every_method() {
+    let name = file("compare-charts", "one.json", crossing().to_string());
+    let output = directory("compare-charts").join("charts");
+    run(&["compare", &name, "--method", "polyline", "--rounds", "1", "-o", output.to_str().unwrap()]).ok();
+    for (chart, methods) in
+        [("regions-1.svg", vec!["pcr f64"]), ("conflicts-1.svg", vec!["pcr f64", "polyline 1 mm", "polyline 10 mm"])]
+    {
+        let svg = std::fs::read_to_string(output.join(chart)).unwrap();
+        assert!(roxmltree::Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{chart}");
+        assert!(methods.iter().all(|method| svg.contains(&format!(">{method}<"))), "{chart}");
     }
 }
 
