@@ -41,9 +41,14 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
     type Item = Interval<S>;
 
     fn next(&mut self) -> Option<Interval<S>> {
-        let beyond = |interval: &Interval<S>| self.after.is_none_or(|after| interval.lo > after);
-        let lowest = |a: Interval<S>, b: Interval<S>| if b.lo < a.lo { b } else { a };
-        let mut next = self.intervals.clone().filter(beyond).reduce(lowest)?;
+        let mut lowest: Option<Interval<S>> = None;
+        for interval in self.intervals.clone() {
+            let beyond = self.after.is_none_or(|after| interval.lo > after);
+            if beyond && lowest.is_none_or(|lowest| interval.lo < lowest.lo) {
+                lowest = Some(interval);
+            }
+        }
+        let mut next = lowest?;
         loop {
             let grown = self.intervals.clone().filter(|other| other.meets(next)).fold(next, Interval::hull);
             if grown == next {

@@ -4,7 +4,7 @@ use crate::geometry::Interval;
 use crate::intervals::union;
 use crate::motion::Motion;
 use crate::pair::Pair;
-use crate::pieces::{List, Piece};
+use crate::pieces::List;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
@@ -108,12 +108,12 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 
     /// Length range along the ego's path \[m\], rounded outward.
     pub fn length(&self) -> Interval<S> {
-        self.hull(|piece| self.own(piece))
+        self.hull(self.transposed)
     }
 
     /// Length range along the other's path \[m\], rounded outward.
     pub fn other_length(&self) -> Interval<S> {
-        self.hull(|piece| self.others(piece))
+        self.hull(!self.transposed)
     }
 
     /// Time range \[s\], rounded outward: the other agent is then in [`RegionRef::other_length`].
@@ -124,6 +124,11 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     /// The bound ε of this region, [`excess`] of its pair \[m\].
     pub fn excess(&self) -> S {
         self.pair.excess()
+    }
+
+    /// What rounding may do to a distance \[m\].
+    pub(crate) fn slack(&self) -> S {
+        self.pair.slack
     }
 
     /// Whether the region begins with the other agent standing at its start: it then reaches back as a strip
@@ -200,16 +205,9 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         if self.transposed { self.pair.first } else { self.pair.second }
     }
 
-    fn own(&self, piece: &Piece<S>) -> Interval<S> {
-        if self.transposed { piece.second } else { piece.first }
-    }
-
-    fn others(&self, piece: &Piece<S>) -> Interval<S> {
-        if self.transposed { piece.first } else { piece.second }
-    }
-
-    fn hull(&self, part: impl Fn(&Piece<S>) -> Interval<S>) -> Interval<S> {
-        let mut parts = self.pieces.clone().map(part);
+    /// Length range along the path of the first agent of the pair, or of the second.
+    fn hull(&self, of_second: bool) -> Interval<S> {
+        let mut parts = self.pieces.clone().map(|piece| if of_second { piece.second } else { piece.first });
         let first = parts.next().unwrap_or_default();
         parts.fold(first, Interval::hull)
     }

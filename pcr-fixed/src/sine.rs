@@ -37,6 +37,7 @@ impl Sine {
     }
 
     /// `a u + b v`, rounded once.
+    #[inline(never)]
     pub(crate) fn combine(a: i32, u: Self, b: i32, v: Self) -> i32 {
         let sum = i64::from(a) * i64::from(u.0) + i64::from(b) * i64::from(v.0);
         ((sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32

@@ -1,9 +1,10 @@
-//! `f32` against `f64`, on the reference pairs: what the smaller format may add, and that it never loses anything.
+//! The other formats against `f64`, on the reference pairs: what a smaller format may add, and that it never loses anything.
 //!
-//! The inputs are rounded to `f32` first: what that does to a scenario is no error of the algorithm. Lengths are
+//! The inputs are rounded to the format first: what that does to a scenario is no error of the algorithm. Lengths are
 //! compared at 1 m/s; the motions have tests of their own (`motions.rs`).
 
 use pcr_core::{Interval, RegionRef, excess};
+use pcr_fixed::{Q12, Q16, Q20};
 use pcr_host::fleet::Format;
 use pcr_tests::audit::{Audit, Seen};
 use pcr_tests::disc::{Disc, Leg};
@@ -18,9 +19,10 @@ const F32_EXCESS: f64 = 2e-6;
 /// Samples of each region.
 const SAMPLES: u32 = if cfg!(debug_assertions) { 8 } else { 32 };
 
-fn pairs() -> impl Iterator<Item = (String, Disc, Disc)> {
+/// The pairs, in numbers of the format.
+fn pairs<S: Format>() -> impl Iterator<Item = (String, Disc, Disc)> {
     cases().into_iter().map(|case| {
-        let [ego, other] = [0, 1].map(|k| Disc::of_agent(&case.scenario.agents[k]).rounded::<f32>());
+        let [ego, other] = [0, 1].map(|k| Disc::of_agent(&case.scenario.agents[k]).rounded::<S>());
         (case.name, ego, other)
     })
 }
@@ -52,7 +54,7 @@ fn within(inner: &[[f64; 2]], outer: &[[f64; 2]], tolerance: f64) -> bool {
 #[test]
 fn the_stated_excess_is_what_the_library_says() {
     let mut largest = 0.0_f64;
-    for (_, ego, other) in pairs() {
+    for (_, ego, other) in pairs::<f32>() {
         let audit = Audit::<f32>::new(&ego, &other).expect("a valid pair");
         let (motions, _) = audit.table();
         let stated = excess(&motions[0], &motions[1]) / motions[0].extent().max(motions[1].extent());
@@ -63,24 +65,48 @@ fn the_stated_excess_is_what_the_library_says() {
 
 #[test]
 fn f32_contains_the_f64_regions_and_is_within_those_of_a_larger_radius() {
-    for (name, ego, other) in pairs() {
-        let small = Audit::<f32>::new(&ego, &other).expect("a valid pair");
+    // Joints lie where the format sums them up to, which may be a roundoff of the length away.
+    assert_eq!(contains_and_is_within::<f32>(|extent| (F32_EXCESS * extent, f64::from(f32::EPSILON) * extent)), 0);
+}
+
+#[test]
+fn fixed_point_contains_the_f64_regions_and_is_within_those_of_a_larger_radius() {
+    fn refused<S: Format>(digit: f64) -> usize {
+        // Ends of slices are numbers of the format: within half a digit of where they are.
+        contains_and_is_within::<S>(|_| (0.0, digit))
+    }
+    let pairs = cases().len();
+    assert!(refused::<Q20>(Q20::LAST_DIGIT.to_f64()) < pairs / 2);
+    assert!(refused::<Q16>(Q16::LAST_DIGIT.to_f64()) < pairs / 4);
+    assert!(refused::<Q12>(Q12::LAST_DIGIT.to_f64()) < pairs / 4);
+}
+
+/// Compares slices with those of `f64`, for the radius and for one that is larger by an excess, that of the library at least,
+/// with a tolerance of lengths, both by the extent. How many pairs the format cannot hold.
+fn contains_and_is_within<S: Format>(allowed: impl Fn(f64) -> (f64, f64)) -> usize {
+    let mut refused = 0;
+    // A debug run takes some of them.
+    for (name, ego, other) in pairs::<S>().step_by(if cfg!(debug_assertions) { 5 } else { 1 }) {
+        let Ok(small) = Audit::<S>::new(&ego, &other) else {
+            refused += 1;
+            continue;
+        };
         let (ego, other) = (clipped(&ego), clipped(&other));
-        let extent = extent(&ego, &other);
+        let (larger, tolerance) = allowed(extent(&ego, &other));
+        let (motions, _) = small.table();
+        let larger = larger.max(excess(&motions[0], &motions[1]).to_f64());
         let exact = Audit::<f64>::new(&ego, &other).expect("a valid pair");
-        let grown = Audit::<f64>::new(&ego.grown(F32_EXCESS * extent), &other).expect("a valid pair");
+        let grown = Audit::<f64>::new(&ego.grown(larger), &other).expect("a valid pair");
         let (tables, exact_tables, grown_tables) = (small.table(), exact.table(), grown.table());
         let regions: Vec<_> = tables.1.pair(&tables.0, 0, 1).collect();
         let exact_regions: Vec<_> = exact_tables.1.pair(&exact_tables.0, 0, 1).collect();
         let grown_regions: Vec<_> = grown_tables.1.pair(&grown_tables.0, 0, 1).collect();
-        // Joints lie where the format sums them up to, which may be a roundoff of the length away.
-        let tolerance = f64::from(f32::EPSILON) * extent;
         for region in &exact_regions {
             let range = region.other_length();
             for k in 0..=SAMPLES {
                 // A number of both formats, inside the range.
-                let s = (range.lo + range.length() * f64::from(k) / f64::from(SAMPLES)) as f32;
-                let s = f64::from(s.min(tables.0[1].path().length()));
+                let s = S::from_f64(range.lo + range.length() * f64::from(k) / f64::from(SAMPLES));
+                let s = s.min(tables.0[1].path().length()).to_f64();
                 let (inner, middle, outer) =
                     (slices(&exact_regions, s), slices(&regions, s), slices(&grown_regions, s));
                 assert!(within(&inner, &middle, tolerance), "{name} at {s}: {inner:?} not in {middle:?}");
@@ -92,13 +118,14 @@ fn f32_contains_the_f64_regions_and_is_within_those_of_a_larger_radius() {
             assert_eq!(regions.len(), exact_regions.len(), "{name}");
         }
     }
+    refused
 }
 
 #[test]
 fn f32_regions_are_audited_on_the_reference_pairs() {
     const EFFORT: Effort = Effort { resolution: 2e-2, boxes: 3_000, range: 1e-4 };
     let mut seen = Seen::default();
-    for (name, ego, other) in pairs() {
+    for (name, ego, other) in pairs::<f32>() {
         let audit = Audit::<f32>::new(&ego, &other).expect("a valid pair");
         if let Err(violation) = audit.all(EFFORT, 12, &mut seen) {
             panic!("{name}: {violation}");

@@ -2,7 +2,8 @@
 //! agent, wherever that stands.
 
 use pcr_core::{Encounter, Interval, gaps, safe_intervals, safe_lengths, union};
-use pcr_host::fleet::Format;
+use pcr_fixed::Q16;
+use pcr_host::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::line::{below, reaches};
@@ -37,27 +38,31 @@ fn audited<S: Format>(discs: [Disc; 2], drives: [(Drive, f64); 2], [from, to]: [
     let part = Interval::new(length(from.min(to)), length(from.max(to)));
     let one = S::from_f64(1.0);
     let during = Interval::new(b.time().lo - one, b.time().hi + one);
-    let windows: Vec<_> = encounter.blocked(part, during).collect();
-    let [lo, hi] = [part.lo.to_f64(), part.hi.to_f64()];
-    let reaches_at = |time: f64, margin: f64| {
-        let s = travel.length_at(time);
-        reaches(|l| pair.clearance(s, l), lo, hi, margin, 1e-10)
-    };
-    let deep_at = |time: f64| {
-        let s = travel.length_at(time);
-        !below(|l| pair.clearance(s, l) + tolerance, lo, hi, 0.0, 1e-10).inner.is_empty()
-    };
-    for window in &windows {
-        prop_assert!(during.lo <= window.lo && window.lo <= window.hi && window.hi <= during.hi);
-        for time in samples([window.lo.to_f64(), window.hi.to_f64()]) {
-            let near = [time, time - slip, time + slip].into_iter().any(|time| reaches_at(time, tolerance));
-            prop_assert!(near, "not blocked at {time}: {window:?}");
+    let motions = [a, b];
+    let ecm = build_ecm(&motions).expect("two agents");
+    let by_regions = ecm.pair(&motions, 0, 1).flat_map(|region| region.blocked(part, during));
+    for windows in [encounter.blocked(part, during).collect(), by_regions.collect::<Vec<_>>()] {
+        let [lo, hi] = [part.lo.to_f64(), part.hi.to_f64()];
+        let reaches_at = |time: f64, margin: f64| {
+            let s = travel.length_at(time);
+            reaches(|l| pair.clearance(s, l), lo, hi, margin, 1e-10)
+        };
+        let deep_at = |time: f64| {
+            let s = travel.length_at(time);
+            !below(|l| pair.clearance(s, l) + tolerance, lo, hi, 0.0, 1e-10).inner.is_empty()
+        };
+        for window in &windows {
+            prop_assert!(during.lo <= window.lo && window.lo <= window.hi && window.hi <= during.hi);
+            for time in samples([window.lo.to_f64(), window.hi.to_f64()]) {
+                let near = [time, time - slip, time + slip].into_iter().any(|time| reaches_at(time, tolerance));
+                prop_assert!(near, "not blocked at {time}: {window:?}");
+            }
         }
-    }
-    for free in gaps(union(windows.iter().copied()), during) {
-        let inside = [free.lo.to_f64() + slip, free.hi.to_f64() - slip];
-        for time in samples(inside).filter(|_| inside[0] < inside[1]) {
-            prop_assert!(!deep_at(time), "not free at {time}: {free:?}");
+        for free in gaps(union(windows.iter().copied()), during) {
+            let inside = [free.lo.to_f64() + slip, free.hi.to_f64() - slip];
+            for time in samples(inside).filter(|_| inside[0] < inside[1]) {
+                prop_assert!(!deep_at(time), "not free at {time}: {free:?}");
+            }
         }
     }
 
@@ -102,6 +107,13 @@ proptest! {
         (pair, drives) in driven_pairs(), from in 0.0..1.0_f64, to in 0.0..1.0_f64,
     ) {
         audited::<f32>([pair.0, pair.1], drives, [from, to])?;
+    }
+
+    #[test]
+    fn blocked_parts_are_those_of_the_definition_q16(
+        (pair, drives) in driven_pairs(), from in 0.0..1.0_f64, to in 0.0..1.0_f64,
+    ) {
+        audited::<Q16>([pair.0, pair.1], drives, [from, to])?;
     }
 }
 

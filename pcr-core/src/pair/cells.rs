@@ -113,7 +113,9 @@ impl<S: Scalar> SegmentPair<'_, S> {
             if piece.second.contains(s) {
                 // With one lap there is no doubt whose end it is.
                 let own = if wraps { piece.share.of(slices, self.first, piece.first) } else { slices };
-                piece.first = own.into_iter().flatten().fold(piece.first, Interval::hull);
+                for slice in own {
+                    piece.first = slice.map_or(piece.first, |slice| piece.first.hull(slice));
+                }
             }
             index = piece.next;
         }

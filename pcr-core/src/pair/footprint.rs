@@ -250,8 +250,10 @@ impl Share {
         segment: &Segment<S>,
         hull: Interval<S>,
     ) -> Option<Interval<S>> {
-        let own = self.of(intervals, segment, hull).into_iter().flatten();
-        own.reduce(|a, b| if a.length() < b.length() { b } else { a })
+        match self.of(intervals, segment, hull) {
+            [Some(a), Some(b)] => Some(if a.length() < b.length() { b } else { a }),
+            [a, b] => a.or(b),
+        }
     }
 }
 

@@ -145,6 +145,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
 
 /// A length along a circle, less than one lap away, moved onto its first lap unless it is within the margin of it.
 /// Lines have one lap only.
+#[inline(never)]
 pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>, margin: S) -> S {
     if length < -margin {
         length + segment.circumference

@@ -79,8 +79,8 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         length: Interval<S>,
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let (ego, other) = (self.ego_motion(), self.other_motion());
-        let slack = S::slack(ego.extent().max(other.extent()));
+        let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
+        // The cut of a segment adds roundings of its own.
         let radius = ego.radius() + other.radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
         let pieces = self.pieces().filter(move |piece| piece.length.meets(length));

@@ -118,11 +118,10 @@ macro_rules! impl_float {
                     inside.then(|| Radians(2.0 * $atan2(n, m)))
                 };
                 // By doubt alone they are one: -b/a = -g/b, by the larger one of what is in doubt.
-                match discriminant < 0.0 {
-                    false => Some([angle(q, a), angle(g, q)]),
-                    true if a.abs() > g.abs() => Some([angle(q, a), None]),
-                    true => Some([angle(g, q), None]),
-                }
+                let two = discriminant >= 0.0;
+                let first = if two || a.abs() > g.abs() { angle(q, a) } else { None };
+                let second = if two || a.abs() <= g.abs() { angle(g, q) } else { None };
+                Some([first, second])
             }
             fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed

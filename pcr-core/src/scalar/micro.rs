@@ -111,11 +111,10 @@ impl Scalar for Micro {
             let inside = cos * sector.cos + sin * sector.sin >= norm * sector.least;
             inside.then(|| Radians(Self(2.0 * atan2(n, m))))
         };
-        match discriminant < 0.0 {
-            false => Some([angle(q, a.0), angle(g.0, q)]),
-            true if a.0.abs() > g.0.abs() => Some([angle(q, a.0), None]),
-            true => Some([angle(g.0, q), None]),
-        }
+        let two = discriminant >= 0.0;
+        let first = if two || a.0.abs() > g.0.abs() { angle(q, a.0) } else { None };
+        let second = if two || a.0.abs() <= g.0.abs() { angle(g.0, q) } else { None };
+        Some([first, second])
     }
     fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
         Self((ramp.slow.0 + 0.5 * ramp.acceleration.0 * elapsed.0) * elapsed.0)
@@ -136,9 +135,6 @@ impl Scalar for Micro {
     }
     fn portion(self, part: Self, whole: Self) -> Self {
         Self(self.0.portion(part.0, whole.0))
-    }
-    fn tolerance(extent: Self) -> Self {
-        Self(f32::tolerance(extent.0))
     }
     fn slack(extent: Self) -> Self {
         Self(0.5 * Self::SLACK * f32::EPSILON * extent.0)
