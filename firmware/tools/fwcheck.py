@@ -69,7 +69,9 @@ def frame_of(op, text):
     return 0
 
 
-functions, current = {}, None
+functions, current, end = {}, None, 0
+symbols = subprocess.run(["readelf", "-sW", arguments.elf], check=True, capture_output=True, text=True).stdout
+sizes = {int(a, 16) & ~1: int(n) for a, n in re.findall(r"^\s*\d+: ([0-9a-f]+) +(\d+) FUNC", symbols, re.M)}
 listing = subprocess.run(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", arguments.elf], check=True, capture_output=True,
                          text=True).stdout
 # Thumb-1 moves sp by more than 508 bytes through a register: down by a constant from the literal pool, which is negative,
@@ -81,9 +83,12 @@ for line in listing.splitlines():
         if not m[1].startswith("$"):
             current = functions.setdefault(m[1], Function())
             constants = {}
+            start = int(line.split(" ", 1)[0], 16)
+            end = start + (sizes.get(start) or 2**32)
         continue
     m = LINE.match(line)
-    if not m or not current:
+    # What the linker puts between functions looks like jumps.
+    if not m or not current or int(line.split(":", 1)[0], 16) >= end:
         continue
     op, text = m[1], re.sub(r"\s*[@;].*$", "", m[2])
     if m := re.match(r"\s+[0-9a-f]+:\tldr\s+(r\d), \[pc, #\d+\]\s*[@;] \(([0-9a-f]+)", line):

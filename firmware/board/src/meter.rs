@@ -24,6 +24,20 @@ mod clock {
         unsafe { CURRENT.read_volatile() }
     }
 
+    /// Whether it has run out since this was asked last.
+    #[inline(always)]
+    pub(super) fn ran_out() -> bool {
+        // SAFETY: as above. To read it clears it.
+        unsafe { CONTROL.read_volatile() & (1 << 16) != 0 }
+    }
+
+    /// Sets it to its largest count.
+    #[inline(always)]
+    pub(super) fn wind() {
+        // SAFETY: as above. Whatever is written makes it 0, and the next tick the largest.
+        unsafe { CURRENT.write_volatile(0) }
+    }
+
     /// It counts down, in 24 bits.
     #[inline(always)]
     pub(super) fn between(from: u32, to: u32) -> u32 {
@@ -50,6 +64,12 @@ mod clock {
         unsafe { core::arch::asm!("csrr {}, minstret", out(reg) count) }
         count
     }
+
+    pub(super) fn ran_out() -> bool {
+        false
+    }
+
+    pub(super) fn wind() {}
 
     #[inline(always)]
     pub(super) fn between(from: u32, to: u32) -> u32 {
@@ -89,15 +109,18 @@ impl Meter {
         Self { known: u64::from(clock::between(a, b).wrapping_sub(nothing)), nothing }
     }
 
-    /// Instructions of `work`, at most about five million.
+    /// Instructions of `work`; `u32::MAX` for more than the clock can count, about five million on ARM.
     #[inline(always)]
     pub fn count<R>(&self, work: impl FnOnce() -> R) -> (u32, R) {
+        clock::wind();
+        let _ = clock::ran_out();
         let from = clock::now();
         let result = work();
         let to = clock::now();
         let ticks = u64::from(clock::between(from, to).saturating_sub(self.nothing));
         let scaled = ticks.wrapping_mul(u64::from(KNOWN)).wrapping_add(self.known / 2);
-        (scaled.checked_div(self.known).unwrap_or(0) as u32, result)
+        let count = scaled.checked_div(self.known).unwrap_or(0) as u32;
+        (if clock::ran_out() { u32::MAX } else { count }, result)
     }
 }
 

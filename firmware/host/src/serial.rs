@@ -1,7 +1,7 @@
 //! Talks to a supervisor and checks what it says against the same computation here.
 
 use crate::{BuiltIn, store};
-use pcr_core::{Ecm, Limits, Piece, Region};
+use pcr_core::{Ecm, Limits, Motion, Piece, Region, earliest_start};
 use pcr_supervisor::frame::{self, Damage, Receiver, VERSION};
 use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, text};
 use pcr_supervisor::scenario::{AGENTS, PIECES, REGIONS};
@@ -117,7 +117,7 @@ where
     link.expect(&Request::Load, &Answer::Added { agents: u16::try_from(agents.len())? })?;
     table(&mut link, agents)?;
     println!("the fleet that is built in has the same table");
-    Ok(())
+    replan(&mut link, agents)
 }
 
 fn sendable<S: Number>(agent: &Agent<S, &'static [pcr_supervisor::Step<S>]>) -> Result<Agent<S>, Box<dyn Error>> {
@@ -235,18 +235,55 @@ where
     same(&regions, &(2 * ecm.len()))?;
     let bytes: usize = link.bytes.try_iter().sum();
     println!("{regions} regions with {pieces} pieces in {bytes} bytes, equal to those computed here bit by bit");
+    let conflicts = conflicts(link, &fleet)?;
+    println!("{conflicts} pairs that conflict, and where they do first, equal bit by bit");
+    Ok(())
+}
 
+/// The first conflicts are those of these motions; how many are more than a touch.
+fn conflicts<S: Number + Send>(link: &mut Link<S>, fleet: &[Motion<'_, S>]) -> Result<u16, Box<dyn Error>>
+where
+    S::Angle: Send,
+{
     link.ask(&Request::Conflicts)?;
-    let mut conflicts = 0;
+    let (mut conflicts, mut touching) = (0, 0);
     for first in 0..fleet.len() {
         for second in first + 1..fleet.len() {
-            if let Some(conflict) = ConflictRecord::first(&fleet, [first, second]) {
-                same(&link.hear()?, &Answer::Conflict(conflict))?;
+            if let Some(conflict) = ConflictRecord::first(fleet, [first, second]) {
+                touching += u16::from(conflict.touching);
                 conflicts += 1;
+                same(&link.hear()?, &Answer::Conflict(conflict))?;
             }
         }
     }
     same(&link.hear()?, &Answer::End { count: conflicts })?;
-    println!("{conflicts} pairs that conflict, and where they do first, equal bit by bit");
-    Ok(())
+    Ok(conflicts - touching)
+}
+
+/// Agents are replanned as they are here, one after the other; then nobody meets anybody, but for a touch.
+fn replan<S: Number + Send>(link: &mut Link<S>, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>>
+where
+    S::Angle: Send,
+{
+    let store = store(agents)?;
+    let mut fleet = store.motions();
+    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
+    let before = conflicts(link, &fleet)?;
+    let mut planned = 0;
+    for agent in 0..fleet.len() {
+        let answer = match earliest_start(ecm.row(&fleet, agent), S::ZERO) {
+            Some(delay) => {
+                fleet[agent] = fleet[agent].delayed(delay)?;
+                planned += 1;
+                Answer::Replanned { agent: u16::try_from(agent)?, time: fleet[agent].time() }
+            }
+            None => Answer::Refused(Refusal::NoPlan),
+        };
+        link.expect(&Request::Replan { agent: u16::try_from(agent)? }, &answer)?;
+    }
+    let nobody = u16::try_from(fleet.len())?;
+    link.expect(&Request::Replan { agent: nobody }, &Answer::Refused(Refusal::NoSuchAgent))?;
+    let after = conflicts(link, &fleet)?;
+    println!("{planned} agents replanned: {before} pairs that conflict before, {after} after, equal bit by bit");
+    if planned == fleet.len() && after == 0 { Ok(()) } else { Err("there are conflicts left".into()) }
 }

@@ -4,6 +4,9 @@ use crate::agent::{Agent, Step};
 use heapless::Vec;
 use pcr_core::{Curve, Invalid, Motion, PathRef, Phase, Profile, ProfileRef, Scalar, Segment};
 
+/// The motions of up to `A` agents.
+pub type Motions<'a, S, const A: usize> = Vec<Motion<'a, S>, A>;
+
 /// What the motions of up to `A` agents with `N` segments in all borrow.
 #[derive(Debug)]
 pub struct Store<S: Scalar, const A: usize, const N: usize> {
@@ -80,12 +83,25 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         self.agents.push(parts).map_err(|_| Invalid::Full("agent"))
     }
 
+    /// Lets an agent set off later by `delay`, which its motion must allow ([`Motion::delayed`]).
+    pub fn delay(&mut self, agent: usize, delay: S) {
+        if let Some(parts) = self.agents.get_mut(agent) {
+            parts.start = parts.start + delay;
+        }
+    }
+
     /// The motions of all agents.
     // Inlined, its copies of the motions would lie on the stack of all that is done with them.
     #[inline(never)]
-    pub fn motions(&self) -> Vec<Motion<'_, S>, A> {
-        let mut rest = &self.segments[..];
+    pub fn motions(&self) -> Motions<'_, S, A> {
         let mut motions = Vec::new();
+        self.put_motions(&mut motions);
+        motions
+    }
+
+    /// Puts the motions of all agents behind those that are there.
+    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) {
+        let mut rest = &self.segments[..];
         for parts in &self.agents {
             let Some((own, others)) = rest.split_at_checked(parts.segments) else {
                 break;
@@ -99,7 +115,6 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
                 break;
             }
         }
-        motions
     }
 }
 

@@ -24,7 +24,7 @@ pub mod scenario;
 pub mod service;
 
 pub use agent::{Agent, Step};
-pub use fleet::Store;
+pub use fleet::{Motions, Store};
 pub use message::{Answer, Request};
 pub use number::Number;
 pub use service::Service;

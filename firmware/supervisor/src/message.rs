@@ -30,6 +30,12 @@ pub enum Request<S: Number> {
     /// The first conflict of every two agents that have one, moving as they were given: an [`Answer::Conflict`] each,
     /// by the lower index, and [`Answer::End`].
     Conflicts,
+    /// Let an agent set off as late as it must to meet none of the others, moving as they do, and no later; what is
+    /// answered from then on is about its new motion. [`Answer::Replanned`], [`Answer::Refused`].
+    Replan {
+        /// The agent.
+        agent: u16,
+    },
 }
 
 /// An answer of the supervisor.
@@ -76,6 +82,13 @@ pub enum Answer<S: Number> {
     Refused(Refusal),
     /// The first conflict of two agents.
     Conflict(ConflictRecord<S>),
+    /// The motion of an agent now.
+    Replanned {
+        /// The agent.
+        agent: u16,
+        /// From setting off to arrival \[s\].
+        time: Interval<S>,
+    },
 }
 
 /// A region as it is sent.
@@ -157,6 +170,10 @@ pub enum Refusal {
     },
     /// The table has no room for all regions.
     TableFull,
+    /// There is no such agent.
+    NoSuchAgent,
+    /// However late the agent sets off, it meets another one.
+    NoPlan,
 }
 
 /// [`Invalid`] without its words.

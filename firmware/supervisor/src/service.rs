@@ -5,20 +5,23 @@ use crate::fleet::Store;
 use crate::message::{Answer, ConflictRecord, PieceRecord, Refusal, RegionRecord, Request, short, text};
 use crate::number::Number;
 use crate::scenario::{AGENTS, PIECES, REGIONS, SEGMENTS};
-use pcr_core::{Ecm, Piece, Region};
+use pcr_core::{Ecm, Interval, Piece, Region, earliest_start};
 
 /// A fleet and its table, made to be a `static`.
 #[derive(Debug)]
 pub struct Service<S: Number> {
     fleet: Store<S, AGENTS, SEGMENTS>,
     table: Ecm<S, [Region; REGIONS], [Piece<S>; PIECES]>,
+    /// Whether the table is that of the fleet.
+    computed: bool,
     built_in: &'static [Agent<S, &'static [Step<S>]>],
 }
 
 impl<S: Number> Service<S> {
     /// No agents yet, and a fleet to load.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
-        Self { fleet: Store::new(), table: Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]), built_in }
+        let table = Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]);
+        Self { fleet: Store::new(), table, computed: false, built_in }
     }
 
     /// Answers a request: one call of `send` for each answer.
@@ -48,6 +51,10 @@ impl<S: Number> Service<S> {
             }),
             Request::Row { ego } => self.row(usize::from(ego), send),
             Request::Conflicts => self.conflicts(send),
+            Request::Replan { agent } => send(match self.replan(agent) {
+                Ok(time) => Answer::Replanned { agent, time },
+                Err(refusal) => Answer::Refused(refusal),
+            }),
         }
     }
 
@@ -57,12 +64,16 @@ impl<S: Number> Service<S> {
     }
 
     fn empty_table(&mut self) {
+        self.computed = false;
         (0..AGENTS).for_each(|agent| self.table.remove(agent));
     }
 
     fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Answer<S> {
         match self.fleet.add(agent) {
-            Ok(_) => Answer::Added { agents: short(self.fleet.len()) },
+            Ok(_) => {
+                self.computed = false;
+                Answer::Added { agents: short(self.fleet.len()) }
+            }
             Err(invalid) => Answer::Refused(invalid.into()),
         }
     }
@@ -79,7 +90,23 @@ impl<S: Number> Service<S> {
         if outcome.is_err() {
             self.empty_table();
         }
+        self.computed = outcome.is_ok();
         Ok(outcome?)
+    }
+
+    /// When the agent moves now.
+    fn replan(&mut self, agent: u16) -> Result<Interval<S>, Refusal> {
+        if !self.computed {
+            self.compute()?;
+        }
+        let (agent, motions) = (usize::from(agent), self.fleet.motions());
+        let motion = motions.get(agent).ok_or(Refusal::NoSuchAgent)?;
+        let delay = earliest_start(self.table.row(&motions, agent), S::ZERO).ok_or(Refusal::NoPlan)?;
+        let time = motion.delayed(delay)?.time();
+        drop(motions);
+        // The table is of paths: it stays as it is.
+        self.fleet.delay(agent, delay);
+        Ok(time)
     }
 
     fn row(&self, ego: usize, mut send: impl FnMut(Answer<S>)) {

@@ -63,7 +63,9 @@ fn every_message_comes_back_as_it_was() {
         there_and_back(request);
     }
     there_and_back(Request::<f32>::Row { ego: 65535 });
+    there_and_back(Request::<f32>::Replan { agent: 3 });
     let range = Interval::new(0.0, 1.0);
+    there_and_back(Answer::Replanned { agent: 3, time: Interval::new(2.5_f32, 20.25) });
     let conflict =
         ConflictRecord { agents: [0, 1], time: range, lengths: [range; 2], depth: 0.25_f32, touching: false };
     there_and_back(Answer::Conflict(conflict));
@@ -72,6 +74,8 @@ fn every_message_comes_back_as_it_was() {
         Refusal::Frame(Damage::Version(2)),
         Refusal::Agent { what: text("length of the profile"), why: Reason::OutOfRange },
         Refusal::TableFull,
+        Refusal::NoSuchAgent,
+        Refusal::NoPlan,
     ] {
         there_and_back(Answer::<f32>::Refused(refusal));
     }

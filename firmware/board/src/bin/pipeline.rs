@@ -1,5 +1,5 @@
 //! The library's whole pipeline and nothing else, for its size and its stack: constructors, the table of the 12 agents,
-//! and what one asks of it. The storage is static; the motions, which borrow it, are on the stack.
+//! and what one asks of it. All storage is static.
 #![no_std]
 #![no_main]
 
@@ -7,15 +7,17 @@ use core::hint::black_box;
 use pcr_board::{AGENTS, Number, entry};
 use pcr_core::{Ecm, Full, Interval, Invalid, Motion, Piece, Region};
 use pcr_supervisor::scenario::{self, PIECES, REGIONS};
-use pcr_supervisor::{Agent, Step, Store};
+use pcr_supervisor::{Agent, Motions, Step, Store};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
 type Table = Ecm<Number, [Region; REGIONS], [Piece<Number>; PIECES]>;
+type Parts = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
+type Fleet<'a> = Motions<'a, Number, { scenario::AGENTS }>;
 type BuiltIn = [Agent<Number, &'static [Step<Number>]>];
 
-static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
-    ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<Parts> = ConstStaticCell::new(Store::new());
+static FLEET: ConstStaticCell<Fleet<'static>> = ConstStaticCell::new(Fleet::new());
 static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]));
 
 // The table of the 12 agents, and what it may take (`check.sh` reads this from the build that succeeds).
@@ -23,8 +25,8 @@ const _: () = assert!(size_of::<Table>() <= 6 * 1024, "the budget of the table")
 
 #[entry]
 fn main() -> ! {
-    let seen = match (STORE.try_take(), TABLE.try_take()) {
-        (Some(store), Some(table)) => job(store, table, black_box(&AGENTS)),
+    let seen = match (STORE.try_take(), FLEET.try_take(), TABLE.try_take()) {
+        (Some(store), Some(fleet), Some(table)) => job(store, fleet, table, black_box(&AGENTS)),
         _ => None,
     };
     process::exit(if seen == Some(2 * 68) { 0 } else { 1 })
@@ -32,22 +34,15 @@ fn main() -> ! {
 
 /// The job whose stack counts.
 #[inline(never)]
-fn job(
-    store: &mut Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>,
-    table: &mut Table,
-    agents: &BuiltIn,
-) -> Option<usize> {
+fn job<'a>(store: &'a mut Parts, fleet: &mut Fleet<'a>, table: &mut Table, agents: &BuiltIn) -> Option<usize> {
     construct(store, agents).ok()?;
-    let fleet = store.motions();
-    build(table, &fleet).ok()?;
-    Some(ask(table, &fleet))
+    store.put_motions(fleet);
+    build(table, fleet).ok()?;
+    Some(ask(table, fleet))
 }
 
 #[inline(never)]
-fn construct(
-    store: &mut Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>,
-    agents: &BuiltIn,
-) -> Result<(), Invalid> {
+fn construct(store: &mut Parts, agents: &BuiltIn) -> Result<(), Invalid> {
     agents.iter().try_for_each(|agent| store.add(agent).map(|_| ()))
 }
 

@@ -9,12 +9,12 @@
 use core::fmt::Write;
 use core::hint::black_box as any;
 use pcr_board::{Number, entry};
-use pcr_core::scalar::{Angle, Ramp, Unit, Wide};
+use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
     Bounds, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid, Limits,
     Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region, RegionRef,
-    Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_start, excess, first_conflict, gaps,
-    plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
+    Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_departure, earliest_start, excess,
+    first_conflict, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -81,7 +81,9 @@ fn arithmetic<S: Scalar>() {
     any((Scalar::slack(a), S::quadratic_roots(a, wide::<S>(), wide::<S>())));
     let ramp = Ramp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
     any((S::ramp_length(any(ramp), a), S::ramp_time(any(ramp), a)));
-    any(S::half_tangent_roots(wide::<S>(), wide::<S>(), wide::<S>(), wide::<S>()));
+    let sector = Sector { cos: unit::<S>(), sin: unit::<S>(), least: unit::<S>() };
+    any(S::half_tangent_roots(wide::<S>(), wide::<S>(), wide::<S>(), wide::<S>(), any(sector)));
+    any(Sector::<S::Unit>::all());
     any((Scalar::portion(a, b, number()), S::tolerance(a)));
     any((Scalar::sum(a, b), Scalar::advance(a, b, number(), unit::<S>()), Scalar::sum_up(a, b)));
     any((S::drift(any(0), a), S::lag(a, b)));
@@ -127,12 +129,13 @@ fn constructors<S: Scalar>() -> Result<(), Invalid> {
     let path = Path::<S, 2>::starting_at(any(pose))?;
     let path = Path::line(path, number())?;
     let path = Path::arc(path, number(), any(Turn::Left), number())?;
-    let path = any(path);
+    let path = Path::turn(any(path), angle::<S>())?;
     any(Path::as_path(&path));
     any(PathRef::<S>::new(any(&[])).is_ok());
     let segment = Segment::standing(any(pose))?;
     let segment = Segment::then_line(&segment, number())?;
     let segment = any(Segment::then_arc(&segment, number(), any(Turn::Right), number())?);
+    let segment = any(Segment::turned(segment, angle::<S>())?);
     let curve: Curve<S> = Segment::curve(&segment);
     any((curve, Segment::length(&segment), Segment::from(&segment), Segment::bounds(&segment)));
     any((Segment::point_at(&segment, number()), Segment::heading_at(&segment, number())));
@@ -165,6 +168,8 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any(Motion::new(path, profile, number(), number()).is_ok());
         any(Motion::delayed(*motion, number()).is_ok());
         any(Motion::with_profile(*motion, profile, number()).is_ok());
+        any((Motion::with_lateness(*motion, number()).is_ok(), Motion::lateness(motion)));
+        any(Profile::<S, 4>::stretched(profile, number()).is_ok());
         any((Motion::time_excess(motion), excess(motion, motion)));
         any((Motion::radius(motion), Motion::time(motion), Motion::bounds(motion), Motion::extent(motion)));
         any((Motion::length_at(motion, number()), Motion::speed_at(motion, number())));
@@ -238,7 +243,10 @@ fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
     any((RegionRef::contains(region, number(), number()), RegionRef::other_motion(region)));
     any((RegionRef::ego_motion(region), RegionRef::forbidden_delays(region)));
     any(RegionRef::blocked(region, interval(), interval()).last());
+    any(RegionRef::forbidden_durations::<4>(region).is_ok());
     any(earliest_start(core::iter::once(region.clone()), number()));
+    any(earliest_departure(core::iter::once(region.clone()), number(), number()));
+    any(least_duration::<S, 4>(core::iter::once(region.clone()), number()).is_ok());
     any(RegionRef::slice_at(region, number()).last());
     for piece in RegionRef::pieces(region) {
         any((PieceRef::piece_type(&piece), PieceType::of(piece.ego.curve(), piece.other.curve())));

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""figures.py [--write]: the tables in README.md and docs/firmware.md are those of the figures in expected/; with --write it
+makes them so. `check.sh` compares expected/ with what it measures."""
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Target, format, what people call it, ε for two agents at M = VT = 10 m (`tests/tests/outward.rs`, the_excess_is_as_documented).
+COLUMNS = [
+    ("thumbv7em-none-eabihf", "f32", "Cortex-M4F", "17 µm"),
+    ("thumbv7em-none-eabihf", "micro", "Cortex-M4F", "31 µm"),
+    ("thumbv7m-none-eabi", "q16", "Cortex-M3", "0.21 mm"),
+    ("thumbv6m-none-eabi", "q16", "Cortex-M0", "0.21 mm"),
+    ("riscv32imc-unknown-none-elf", "q16", "RV32IMC", "0.21 mm"),
+]
+FORMATS = {"f32": "`f32`", "micro": "`Micro`", "q16": "`Q16`"}
+
+
+def figures(target, form):
+    lines = (ROOT / f"firmware/expected/{target}-{form}.txt").read_text().splitlines()
+    return {what.strip(): int(number) for number, what in (line.split(None, 1) for line in lines if line[0] != "#")}
+
+
+def row(cells):
+    return "| " + " | ".join(cells) + " |"
+
+
+def number(found, what, unit=""):
+    return f"{found[what]:,}{unit}" if what in found else "–"
+
+
+def overview():
+    """README: a line for each target and format."""
+    yield row(["target, format", "ε at 10 m", "library code", "table in RAM", "stack", "instructions: table, a region"])
+    yield "|---" * 6 + "|"
+    for target, form, core, excess in COLUMNS:
+        found = figures(target, form)
+        yield row([f"{core}, {FORMATS[form]}", excess, number(found, "bytes of code of the library in it", " B"),
+                   number(found, "bytes of the table in RAM", " B"),
+                   number(found, "bytes of stack of the pipeline, measured", " B"),
+                   f"{number(found, 'instructions: table of all agents')}, "
+                   f"{number(found, 'instructions: ... per region, both directions')}"])
+
+
+def details():
+    """docs/firmware.md: a line for each figure."""
+    found = [figures(target, form) for target, form, _, _ in COLUMNS]
+    yield row(["12 agents"] + [f"{core}, {FORMATS[form]}" for _, form, core, _ in COLUMNS])
+    yield "|---" * (len(COLUMNS) + 1) + "|"
+    for what in dict.fromkeys(what for figures in found for what in figures):
+        yield row([what] + [number(figures, what) for figures in found])
+
+
+def main():
+    write = sys.argv[1:] == ["--write"]
+    stale = []
+    for name, table in (("README.md", overview), ("docs/firmware.md", details)):
+        path = ROOT / name
+        text = path.read_text()
+        head, rest = text.split("<!-- figures: firmware/tools/figures.py --write -->\n", 1)
+        _, tail = rest.split("<!-- end of figures -->\n", 1)
+        made = head + "<!-- figures: firmware/tools/figures.py --write -->\n" + "\n".join(table()) + "\n<!-- end of figures -->\n" + tail
+        if made != text:
+            stale.append(name)
+            if write:
+                path.write_text(made)
+    if stale and not write:
+        sys.exit(f"figures in {' and '.join(stale)} are not those of firmware/expected: run firmware/tools/figures.py --write")
+
+
+main()
