@@ -113,7 +113,7 @@ fn an_interval_belongs_to_its_piece_although_its_middle_only_touches() {
 /// The turning point of an interval at the start of an arc, of which rounding made one before it.
 #[test]
 fn an_interval_turns_back_at_an_end_of_the_segment() {
-    case_holds::<Q12>(&[226_983]);
+    case_holds::<Q12>(&[226_983, 20_155_155]);
 }
 
 /// Contact from inside an arc beside its centre, which the squares of distances from the circle lose.

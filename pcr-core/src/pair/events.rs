@@ -110,7 +110,9 @@ pub(crate) fn turning_points<S: Scalar>(
         }
     };
     for (l, end) in [S::ZERO, first.length].into_iter().zip(events.ends) {
-        if end.offset.abs() >= radius - slack {
+        // Further out it is not rounding that keeps the contact from the segment.
+        let offset = end.offset.abs();
+        if radius - slack <= offset && offset <= radius + slack.half() {
             contact(l, end);
         }
     }
