@@ -22,7 +22,7 @@ for run in "${jobs[@]}"; do
   mkdir -p "$corpus"
   real=tests/data/real small=tests/data/small
   case $target in
-    scenario) seeds=(tests/data/paper12.json tests/data/table6-5.json) ;;
+    scenario) seeds=(tests/data/paper12.json tests/data/table6-5.json "$small/outlines.json") ;;
     nav2) seeds=("$real/nav2/sample_graph.geojson") ;;
     lif) seeds=("$real"/lif/example_0[1-6].lif.json "$real/lif/example_17.lif.json") ;;
     vda5050) seeds=("$real"/vda5050/*.json "$small/state.json") ;;

@@ -14,6 +14,9 @@ use serde::Serialize;
 /// Discs of a cover at most.
 const MOST: usize = 64;
 
+/// Corners of a polygon at most.
+const CORNERS: usize = 256;
+
 /// Overhang that is allowed if nothing is said: this share of the shorter side of the box around the polygon.
 const OVERHANG: f64 = 0.125;
 
@@ -49,10 +52,10 @@ impl Footprint {
     /// `allowed` \[m\]; an eighth of the shorter side of its box if there is none.
     ///
     /// # Errors
-    /// What is wrong: fewer than three corners, no area, or more than 64 discs would be needed.
+    /// What is wrong: fewer than three corners or more than 256, no area, or more than 64 discs would be needed.
     pub fn new(polygon: Vec<[f64; 2]>, allowed: Option<f64>) -> Result<Self, String> {
-        if polygon.len() < 3 {
-            return Err(format!("{} corners; allowed are 3 and more", polygon.len()));
+        if !(3..=CORNERS).contains(&polygon.len()) {
+            return Err(format!("{} corners; allowed are 3 to {CORNERS}", polygon.len()));
         }
         let [lo, hi] = bounds(&polygon);
         let side = (hi[0] - lo[0]).min(hi[1] - lo[1]);
