@@ -115,7 +115,7 @@ fn discs<S: Format>(
         let stretch = Stretch { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
         let Some(footprint) = outline.footprint else {
             discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
-            agents.push(part);
+            agents.push(if outlines.len() > 1 { settled::<S>(part) } else { part });
             continue;
         };
         let precision = Precision::of::<S>(&part);
@@ -130,11 +130,22 @@ fn discs<S: Format>(
     Ok(())
 }
 
+/// The agent with a start of which no coordinate is less than the last digit of the format, which rounding may leave of 0.
+fn settled<S: Format>(mut agent: Agent) -> Agent {
+    for coordinate in agent.start.iter_mut().take(2) {
+        if S::from_f64(*coordinate) == S::ZERO {
+            *coordinate = 0.0;
+        }
+    }
+    agent
+}
+
 /// The disc with a radius that makes up for the digits that the format does not have.
 fn rounded<S: Format>(offset: Offset) -> Result<Offset, Refused> {
     if S::NAME == f64::NAME {
         return Ok(offset);
     }
+    let offset = offset.map(settled::<S>);
     let fleet = Fleet::<S>::new(&Scenario { name: String::new(), agents: vec![offset.agent.clone()] })?;
     let rounding = fleet.motions().first().map(|motion| Rounding::of(&offset.agent, motion));
     Ok(rounding.map_or(offset.clone(), |rounding| offset.rounded(rounding)))

@@ -90,6 +90,12 @@ impl Offset {
         tracer.finish(vehicle, at, id)
     }
 
+    /// The disc with something done to its agent.
+    pub(super) fn map(mut self, change: impl Fn(Agent) -> Agent) -> Self {
+        self.agent = change(self.agent);
+        self
+    }
+
     /// The disc with what a number format makes of its motion.
     pub(super) fn rounded(mut self, Rounding { distance, length }: Rounding) -> Self {
         self.agent.radius += distance;
