@@ -63,7 +63,12 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
         let count = wrong.len();
         wrong.sort_unstable();
         wrong.dedup();
-        let _ = writeln!(text, " {count} | {} |", if count == 0 { "–".into() } else { wrong.join(", ") });
+        let places = match wrong.len() {
+            0 => "–".into(),
+            KINDS => "everywhere".into(),
+            _ => wrong.join(", "),
+        };
+        let _ = writeln!(text, " {count} | {places} |");
     }
     text.push_str(
         "\nFixed point and single precision round outward: what is nearer than their ε counts as a contact \
@@ -108,8 +113,11 @@ fn agent(id: usize, t_start: f64, start: [f64; 3], segment: PathSegment) -> Agen
     }
 }
 
+/// Kinds of pairs.
+const KINDS: usize = 4;
+
 /// One pair of each kind whose discs come within this clearance \[m\], and no nearer.
-fn pairs(clearance: f64) -> [Scenario; 4] {
+fn pairs(clearance: f64) -> [Scenario; KINDS] {
     let reach = RADII[0] + RADII[1] + clearance;
     let line = |length| PathSegment::Line { length };
     let arc = |radius, sweep| PathSegment::Arc { radius, sweep };
