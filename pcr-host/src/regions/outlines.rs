@@ -91,16 +91,34 @@ pub(super) fn regions<S: Format>(work: &Work<'_, S>, discs: &[Disced], asked: Op
 
 /// The parts, those together that are connected.
 fn components<'p, 'a, S: Format>(parts: &'p [Part<'a, S>]) -> Vec<Vec<&'p Part<'a, S>>> {
-    let mut components: Vec<Vec<&Part<'a, S>>> = Vec::new();
-    for part in parts {
-        let meets = |component: &Vec<&Part<'a, S>>| component.iter().any(|other| part.meets(other));
-        let (together, apart): (Vec<_>, Vec<_>) = components.into_iter().partition(meets);
-        let mut joined: Vec<&Part<'a, S>> = together.concat();
-        joined.push(part);
-        components = apart;
-        components.push(joined);
+    let mut sorted: Vec<&Part<'a, S>> = parts.iter().collect();
+    sorted.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]));
+    let mut group: Vec<usize> = (0..sorted.len()).collect();
+    fn find(group: &mut [usize], mut part: usize) -> usize {
+        while group[part] != part {
+            group[part] = group[group[part]];
+            part = group[part];
+        }
+        part
     }
-    components
+    // Those that are not over yet.
+    let mut lasting: Vec<usize> = Vec::new();
+    for (place, part) in sorted.iter().enumerate() {
+        lasting.retain(|&other| sorted[other].time[1] + NEAR >= part.time[0]);
+        for &other in &lasting {
+            let (a, b) = (find(&mut group, place), find(&mut group, other));
+            // What is connected already needs no look.
+            if a != b && part.meets(sorted[other]) {
+                group[a.max(b)] = a.min(b);
+            }
+        }
+        lasting.push(place);
+    }
+    let mut components: BTreeMap<usize, Vec<&Part<'a, S>>> = BTreeMap::new();
+    for (place, part) in sorted.iter().enumerate() {
+        components.entry(find(&mut group, place)).or_default().push(part);
+    }
+    components.into_values().collect()
 }
 
 fn union<S: Format>(work: &Work<'_, S>, discs: &[Disced], [i, j]: [u64; 2], parts: &[&Part<'_, S>]) -> Region {
