@@ -18,22 +18,22 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// A fleet of the test data so many times, side by side and out of reach of each other.
+/// 100 agents on lanes that cross, 50 to the east and 50 to the north, so many times, out of reach of each other: all start
+/// and end beside the lanes of the others, so that start delays solve it.
 ///
 /// # Panics
-/// If the file is not there or is refused.
-pub fn copies(name: &str, count: u32) -> Fleet<f64> {
-    let one = scenario(&text(name));
-    let mut all = Scenario { name: name.to_owned(), agents: Vec::new() };
-    for copy in 0..count {
-        for (id, agent) in (u64::from(copy) * one.agents.len() as u64..).zip(&one.agents) {
-            let mut agent = agent.clone();
-            agent.id = id;
-            agent.start[0] += 50.0 * f64::from(copy);
-            all.agents.push(agent);
-        }
-    }
-    Fleet::new(&all).unwrap_or_else(|error| panic!("{error}"))
+/// Never: the scenario is valid.
+pub fn lanes(blocks: u32) -> Fleet<f64> {
+    let agents = (0..100 * blocks).map(|id| {
+        let (block, lane) = (f64::from(id / 100), f64::from(id % 50));
+        let (along, across) = (200.0 * block - 1.0, 0.8 * lane);
+        let (x, y, heading) =
+            if id % 100 < 50 { (along, across, 0.0) } else { (along + 1.0 + across, -1.0, std::f64::consts::FRAC_PI_2) };
+        format!(
+            r#"{{"id":{id},"radius":0.11,"v_max":0.58,"a_max":0.3,"start":{{"x":{x},"y":{y},"heading":{heading}}},"path":[{{"kind":"line","length":42}}]}}"#
+        )
+    });
+    from_json(&format!(r#"{{"agents":[{}]}}"#, agents.collect::<Vec<_>>().join(",")))
 }
 
 /// A fleet from a scenario.

@@ -137,7 +137,7 @@ impl Plan {
         {
             let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
             let why = "each has to let the next one pass first, the last one the first, however they move".into();
-            best.0.unsolved = vec![Unsolved { ids, why }];
+            best.0.unsolved.insert(0, Unsolved { ids, why });
         }
         Ok(best)
     }

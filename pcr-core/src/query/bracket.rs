@@ -9,6 +9,8 @@ use crate::scalar::{Scalar, Wide};
 
 /// Places that are tried, at most; fewer where the format has fewer digits.
 const TRIALS: u32 = 96;
+/// Every so many trials the bracket is halved, whatever the guesses say.
+const PATIENCE: u32 = 12;
 
 /// A bracket: a place inside, with how long the contact is there, and one outside.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +34,11 @@ impl<S: Scalar> Bracket<S> {
             }
             let between = |place: &S| inside.min(outside) < *place && *place < inside.max(outside);
             let next = near.zip(far).and_then(|(near, far)| vanishing(near, far)).filter(between);
-            let place = next.filter(|_| trial % 4 != 3).map(|next| beside(next, guess, inside, outside, resolution));
+            let places =
+                next.filter(|_| trial % PATIENCE != 0).map(|next| beside(next, guess, inside, outside, resolution));
             guess = next;
-            let place = place.filter(between).unwrap_or_else(|| inside + (outside - inside).half());
+            let place = places.and_then(|places| places.into_iter().find(between));
+            let place = place.unwrap_or_else(|| inside + (outside - inside).half());
             match contact(place) {
                 Some(long) => {
                     (near, far) = (Some((place, long)), near);
@@ -58,11 +62,12 @@ fn vanishing<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S>
     Some(if near < far { near - left } else { near + left })
 }
 
-/// A place on that side of the guess where the bracket is wider, as far from it as the guess is uncertain.
-fn beside<S: Scalar>(guess: S, before: Option<S>, inside: S, outside: S, resolution: S) -> S {
-    let doubt = before.map_or((guess - inside).abs().half().half(), |before| (guess - before).abs());
-    let doubt = doubt.max(resolution.half().half());
-    let outward = if inside < outside { doubt } else { -doubt };
-    let wider_outside = (outside - guess).abs() > (guess - inside).abs();
-    if wider_outside { guess + outward } else { guess - outward }
+/// Places to try beside a guess, as far from it as it is uncertain: short of it, which makes the next guess better, or
+/// beyond it where the bracket is all but closed from inside.
+fn beside<S: Scalar>(guess: S, before: Option<S>, inside: S, outside: S, resolution: S) -> [S; 2] {
+    let fine = resolution.half();
+    let doubt = (guess - before.unwrap_or(inside)).abs().half().half().max(fine.half());
+    let (short, long) = if inside < outside { (guess - doubt, guess + doubt) } else { (guess + doubt, guess - doubt) };
+    let beyond = if inside < outside { guess + fine } else { guess - fine };
+    if doubt <= fine && (guess - inside).abs() <= fine { [beyond, long] } else { [short, long] }
 }
