@@ -5,6 +5,7 @@
 use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
+use pcr_core::scalar::{Angle, Wide};
 use pcr_core::{Ecm, Piece, Region, Scalar, earliest_start, first_conflict};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::{Store, scenario};
@@ -49,9 +50,9 @@ fn run() -> Option<()> {
         build = build.saturating_add(count);
         worst = worst.max(count);
     }
-    let motion = fleet.get(AGENT)?;
+    let (motion, zero) = (fleet.get(AGENT)?, <Number as Scalar>::ZERO);
     let (conflict, _) = meter.count(|| black_box(first_conflict(motion, table.row(&fleet, AGENT), motion.time())));
-    let (replan, _) = meter.count(|| black_box(earliest_start(table.row(&fleet, AGENT), Number::ZERO)));
+    let (replan, _) = meter.count(|| black_box(earliest_start(table.row(&fleet, AGENT), zero)));
     let (regions, pairs) = (table.len() as u32, PAIRS);
     let mut ranges = 0_u32;
     for region in table.regions(&fleet) {
@@ -76,5 +77,57 @@ fn run() -> Option<()> {
     if replan < u32::MAX {
         report(b"earliest start of agent 3", replan);
     }
+    let radius = AGENTS.first()?.radius;
+    let [root, sine, tangent] = functions(&meter, radius);
+    report(b"a square root", root);
+    report(b"a sine and cosine", sine);
+    report(b"an arctangent", tangent);
+    #[cfg(feature = "f32")]
+    {
+        let [root, sine, tangent] = functions_of_libm(&meter, radius);
+        report(b"a square root of libm", root);
+        report(b"a sine and cosine of libm", sine);
+        report(b"an arctangent of libm", tangent);
+    }
     Some(())
+}
+
+/// Calls of a function, about all directions.
+const CALLS: u32 = 48;
+
+fn mean(sums: [u32; 3]) -> [u32; 3] {
+    sums.map(|sum| sum / CALLS)
+}
+
+/// Means of the functions that are more than a few instructions.
+fn functions<S: Scalar>(meter: &Meter, radius: S) -> [u32; 3] {
+    let [mut root, mut sine, mut tangent] = [0_u32; 3];
+    let (mut angle, step) = (S::Angle::ZERO, S::Angle::half_subtended(radius.half().half(), radius));
+    for _ in 0..CALLS {
+        let (sin, cos) = angle.sin_cos();
+        let (x, y) = (radius.scale(cos), radius.scale(sin));
+        let square = radius.times(x.abs());
+        root = root.saturating_add(meter.count(|| black_box(black_box(square).sqrt())).0);
+        sine = sine.saturating_add(meter.count(|| black_box(black_box(angle).sin_cos())).0);
+        tangent = tangent.saturating_add(meter.count(|| black_box(S::Angle::atan2(black_box(y), black_box(x)))).0);
+        angle = angle + step;
+    }
+    mean([root, sine, tangent])
+}
+
+/// The same of libm.
+#[cfg(feature = "f32")]
+fn functions_of_libm(meter: &Meter, radius: f32) -> [u32; 3] {
+    let [mut root, mut sine, mut tangent] = [0_u32; 3];
+    let mut angle = 0.0;
+    for _ in 0..CALLS {
+        let (sin, cos) = libm::sincosf(angle);
+        let (x, y) = (radius * cos, radius * sin);
+        let square = radius * x.abs();
+        root = root.saturating_add(meter.count(|| black_box(libm::sqrtf(black_box(square)))).0);
+        sine = sine.saturating_add(meter.count(|| black_box(libm::sincosf(black_box(angle)))).0);
+        tangent = tangent.saturating_add(meter.count(|| black_box(libm::atan2f(black_box(y), black_box(x)))).0);
+        angle += 0.125;
+    }
+    mean([root, sine, tangent])
 }
