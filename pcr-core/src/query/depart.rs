@@ -47,7 +47,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// the start. `None` where no wait helps, or the agent is in someone's way before. Whether it can stop there is not asked: a
 /// motion that is at rest at this length can.
 ///
-/// Where the length cuts a region in two, a wait that leads through between the parts may be missed; so may one that is
+/// Where the motion itself waits at this length, all of that wait counts as the rest of the motion. Where the length cuts a region in two, a wait that leads through between the parts may be missed; so may one that is
 /// shorter than all that the ranges of a region allow, if agents may be late. Cost: for each region
 /// that is met that of [`earliest_start`], and a few hundred operations a piece at this length.
 ///
