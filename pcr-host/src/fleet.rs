@@ -315,9 +315,10 @@ pub(crate) fn table_of<S: Scalar>(
     })
 }
 
-/// Regions and pieces that a fleet of so many agents may have.
+/// Regions and pieces that a fleet of so many agents may have: room for the paper's densest one at once, as a table that
+/// turns out too small is made again.
 fn storage(agents: usize) -> [usize; 2] {
-    [8 * agents + 16, 16 * agents + 16]
+    [16 * agents + 16, 32 * agents + 16]
 }
 
 fn grown<S: Scalar>(
