@@ -1,5 +1,6 @@
 //! `pcr plan`.
 
+use super::map::draw;
 use super::{CONFLICTS, Form, Stop, scenario, write_to};
 use clap::{Args, ValueEnum};
 use pcr_host::import::Options;
@@ -20,6 +21,7 @@ Exit status:
 const EXAMPLES: &str = "\
 Examples:
   pcr plan fleet.json -o plan.json                    the scenario with start delays, without conflicts
+  pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
   pcr plan fleet.json --priority 7,3 --format json    agents 7 and 3 first, then the others as in the file";
 
@@ -32,6 +34,9 @@ pub(super) struct Arguments {
     /// The scenario with the plan; none is written where there is no plan
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Draw the extended collision maps to DIR/before, and those of the plan to DIR/after
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
     /// How conflicts are avoided
     #[arg(long, value_enum, default_value_t = Means::Delay)]
     method: Means,
@@ -100,6 +105,14 @@ impl Arguments {
             }
         }
         out.flush()?;
+        if let Some(directory) = &self.pictures {
+            // Beside the report, which may be for a machine.
+            let told = &mut io::stderr().lock();
+            draw(&scenario, None, &directory.join("before"), told)?;
+            if let Some(solved) = &solved {
+                draw(solved, None, &directory.join("after"), told)?;
+            }
+        }
         Ok(if solved.is_some() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
     }
 }

@@ -117,3 +117,15 @@ fn agents_that_wait_for_one_another_in_a_circle_are_named() {
     let agents = json!({ "agents": [side(1, 0.0), side(2, 1.0)] });
     assert_eq!(plan("no-circle", &agents, &[]).0, 0);
 }
+
+#[test]
+fn the_maps_before_and_after_are_drawn_beside_the_report() {
+    let input = file("plan", "drawn.json", crossing().to_string());
+    let pictures = directory("plan").join("maps");
+    let drawn = run(&["plan", &input, "--pictures", pictures.to_str().unwrap(), "--format", "json"]);
+    assert_eq!((drawn.status, drawn.err.matches("Pictures: ").count()), (0, 2), "{}", drawn.err);
+    assert_eq!(drawn.json()["unsolved"], json!([]));
+    let read = |part: &str| fs::read_to_string(pictures.join(part)).unwrap();
+    assert_ne!(read("before/ecm-1.svg"), read("after/ecm-1.svg"));
+    assert!(read("before/index.html").len() > 1000 && read("after/index.html").len() > 1000);
+}
