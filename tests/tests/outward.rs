@@ -127,6 +127,12 @@ fn what_a_disc_covers_beside_a_centre_is_in_the_region() {
     held_once::<f32>(&[8895]);
 }
 
+/// A disc as large as an arc, but for a digit: contact all around, where rounding decides on ends and turning points.
+#[test]
+fn a_disc_that_fits_an_arc_is_followed_all_the_way() {
+    case_holds::<Q16>(&[208_864, 239_816]);
+}
+
 /// A full circle of which both ends are covered, but for a step so little that rounding shows one interval.
 #[test]
 fn one_interval_may_be_either_of_two() {

@@ -15,7 +15,7 @@ use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
-use crate::segment::Segment;
+use crate::segment::{Curve, Segment};
 
 /// Two segments, by their places in the two paths.
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         // Events may coincide; a second segment of length 0 has one slab only.
         let slabs = in_order.iter().zip(in_order.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
         let slabs = slabs.filter(|slab| slab.lo < slab.hi || self.second.length == S::ZERO);
-        let wraps = wraps(self.first, self.radius);
+        let wraps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
         let begin = pieces.last_pending();
         if wraps {
             self.find_laps(slabs, pieces)?;
@@ -51,6 +51,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
             });
         }
         Ok(())
+    }
+
+    /// Whether a disc fits an arc so well that contact from inside is contact all around: then rounding decides where
+    /// it is, and slices are taken everywhere.
+    fn fits(&self, segment: &Segment<S>) -> bool {
+        let around = (0..6).fold(self.slack, |slack, _| slack.double());
+        matches!(segment.curve, Curve::Arc { radius, .. } if (radius - self.radius).abs() <= around)
     }
 
     fn find_one_lap<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(

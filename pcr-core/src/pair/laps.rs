@@ -1,5 +1,5 @@
 //! From events to pieces where two laps of the first segment can be covered at once: an arc of half a turn or more, or one
-//! that the disc can hold.
+//! that the disc can hold. And where a disc fits one of the arcs, so that slices have to be taken everywhere.
 //!
 //! In a slab, every lap that the disc covers is a cell; cells of neighbouring slabs with the same lap are parts of one
 //! piece. Cells of different laps can only meet where the disc covers the whole circle.
@@ -160,7 +160,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
     fn changes_lap(&self, a: S, b: S, between: S) -> bool {
         let middle = self.first.length.half();
         let quarter = self.first.circumference.half().half();
-        (a > middle) != (b > middle) && (between - middle).abs() > quarter
+        // A line has no laps, and no circumference.
+        quarter > S::ZERO && (a > middle) != (b > middle) && (between - middle).abs() > quarter
     }
 }
 
