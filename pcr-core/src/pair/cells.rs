@@ -2,7 +2,7 @@
 //!
 //! The events cut the second segment into slabs, in each of which the disc covers something of the first one all along or
 //! nothing at all: its middle tells. Neighbouring slabs that are covered are parts of one piece, if one lap at most of the
-//! first segment can be covered ([`super::laps`] is for the others).
+//! first segment can be covered and no disc fits an arc ([`super::laps`] is for the others).
 //!
 //! The lengths of a piece are the hull of its slices where it begins and ends, of the ends of the first segment where they
 //! are covered, and of the turning points: nothing between them can be extreme. Inside the second segment a piece begins
