@@ -7,6 +7,7 @@
 //! figures     Fig. 13 and 14
 //! grazing     contacts and near misses down to a ten-millionth of a metre
 //! memory      what is kept of a collision, and what goes over a wire
+//! traffic     random missions in a real warehouse
 //! scale       fleets of up to 100,000 agents
 //! ```
 
@@ -17,6 +18,7 @@ mod machine;
 mod memory;
 mod scale;
 mod shares;
+mod traffic;
 
 use crate::compare::Effort;
 use crate::regions::Failure;
@@ -88,7 +90,8 @@ fn picture(name: &str, what: &str) -> String {
     format!("![{what}]({PICTURES}/{name}.svg)\n")
 }
 
-/// Writes `evaluation.md` and its pictures into a directory; `data` is the directory with the fleets of the paper's Table VI.
+/// Writes `evaluation.md` and its pictures into a directory; `data` is the directory with the fleets of the paper's Table VI and
+/// the layouts.
 /// `progress` is told how many sections are done, and of how many. Returns the files.
 ///
 /// # Errors
@@ -101,8 +104,15 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 6] =
-        [fleets::section, shares::section, figures::section, grazing::section, memory::section, scale::section];
+    const PARTS: [Part; 7] = [
+        fleets::section,
+        shares::section,
+        figures::section,
+        grazing::section,
+        memory::section,
+        traffic::section,
+        scale::section,
+    ];
     let mut text = machine::preamble(extent);
     let fleets = Fleets::read(data, extent)?;
     let mut files = Vec::new();
@@ -137,7 +147,8 @@ struct Fleet {
     memory: &'static str,
 }
 
-struct Fleets(Vec<Fleet>);
+/// All of them, and the directory with the data.
+struct Fleets(Vec<Fleet>, PathBuf);
 
 /// File; agents and regions, times \[ms\], and memory as the paper prints them.
 const TABLE_VI: [(&str, [usize; 2], [f64; 3], &str); 6] = [
@@ -162,7 +173,7 @@ impl Fleets {
             let scenario = Scenario::from_json(&text).map_err(|error| Problem::File(path, error.to_string()))?;
             Ok(Fleet { scenario, size, paper, memory })
         };
-        Ok(Self(rows.iter().map(fleet).collect::<Result<_, Problem>>()?))
+        Ok(Self(rows.iter().map(fleet).collect::<Result<_, Problem>>()?, data.to_path_buf()))
     }
 
     /// The paper's 12 agents.

@@ -7,7 +7,7 @@
 mod bodies;
 mod offset;
 
-pub(crate) use bodies::{Bodies, Disced};
+pub(crate) use bodies::{Bodies, Disced, tracks};
 
 use serde::Serialize;
 

@@ -4,6 +4,7 @@
 //! nav2        route graphs of the nav2 route server (GeoJSON)
 //! lif         layouts of the VDMA (JSON)
 //! vda5050     orders and states (JSON)
+//! loads       what a vehicle of VDA 5050 carries
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
 //! opendrive   reference lines of roads (XML)
@@ -30,6 +31,7 @@ mod ccbs;
 mod factsheet;
 mod layout;
 mod lif;
+mod loads;
 mod nav2;
 mod nurbs;
 mod opendrive;
@@ -48,6 +50,7 @@ mod warnings;
 mod xml;
 
 pub use layout::{Edge, Id, Layout, Node, Placed};
+pub(crate) use route::{Step, ride, turn};
 pub use trace::{KINK, TURN};
 pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
@@ -233,9 +236,10 @@ fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
     }
 }
 
-/// The same for agents of a vehicle.
-fn report_agents(scenario: &Scenario, vehicle: &Vehicle, warnings: &mut Warnings) {
-    let off = scenario.agents.iter().map(|agent| (format!("agent {}", agent.id), agent.radius - vehicle.radius));
+/// The same for agents, and the radii that their vehicles have.
+fn report_agents(scenario: &Scenario, radii: &[f64], warnings: &mut Warnings) {
+    let off =
+        scenario.agents.iter().zip(radii).map(|(agent, radius)| (format!("agent {}", agent.id), agent.radius - radius));
     report(&off.collect::<Vec<_>>(), warnings);
 }
 
@@ -291,11 +295,14 @@ pub fn scenario(
         }
         Format::Path | Format::Vda5050 => {
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
-            let scenario = match format {
-                Format::Path => samples::read(text, options, &vehicle)?,
-                _ => vda5050::read(text, options, &vehicle, warnings)?,
+            let (scenario, radii) = if format == Format::Path {
+                let scenario = samples::read(text, options, &vehicle)?;
+                let radii = vec![vehicle.radius; scenario.agents.len()];
+                (scenario, radii)
+            } else {
+                vda5050::read(text, options, &vehicle, warnings)?
             };
-            report_agents(&scenario, &vehicle, warnings);
+            report_agents(&scenario, &radii, warnings);
             scenario
         }
     };

@@ -1,15 +1,22 @@
 //! Which edges of a layout may not be used at the same time, and on which lengths: the table of locks of a fleet control.
 //!
 //! Two vehicles are anywhere on two edges. The lengths (l₁, l₂) at which their discs overlap are the collision regions of the two
-//! edges in coordination space: the kernels of the library find them, no motion takes part. Each connected region is a
-//! lock; its extents are the lengths within which one edge is blocked while the other is used. They contain the true ones, the
-//! deviation of arcs from the curves of the file included. A vehicle that stops or turns at a node is at the end of an edge, so that
-//! nodes are part of their edges; on their own they can be asked for.
+//! edges in coordination space: the kernels of the library find them, whatever the motions. The extents of a connected region
+//! are the lengths within which one edge is blocked while the other is used. They contain the true ones, the deviation of arcs from the
+//! curves of the file included. A footprint is the union of its discs in every pose that the vehicle has on an edge ([`rides`]); extents that
+//! overlap are joined, so that the locks of two edges are apart. A vehicle that stops or turns at a node is at the end of an edge, so
+//! that nodes are part of their edges; on their own they can be asked for.
 
-use crate::fleet::{Fleet, build_ecm};
-use crate::import::{self, Edge, Id, ImportError, Imported, Layout, Node};
-use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario};
+mod rides;
+
+use crate::fleet::build_ecm;
+use crate::footprint::{Bodies, Disc};
+use crate::import::{self, Edge, Id, ImportError, Imported, Node};
+use crate::scenario::{Agent, Scenario};
+use rides::Ride;
+pub(crate) use rides::{Rides, corridor};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The locks of a layout for a vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,8 +40,14 @@ pub struct Locks {
 pub struct LockVehicle {
     /// Its type, where the layout has several.
     pub name: Option<String>,
-    /// Radius of its disc \[m\], margin included.
+    /// Radius of its disc \[m\], margin included; with a footprint that of the disc around all of it.
     pub radius: f64,
+    /// With a footprint: no point of a disc is farther than this from the outline \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overhang: Option<f64>,
+    /// With a footprint: the discs that are computed with, margin included.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub discs: Vec<Disc>,
 }
 
 /// Two edges, and the lengths of each within which a vehicle may touch one on the other.
@@ -61,69 +74,67 @@ pub struct NodeLock {
     pub edge_length: [f64; 2],
 }
 
-/// A disc on the path of an edge, or at a node.
+/// An edge or a node, with what a vehicle sweeps there.
+struct Place<'a> {
+    at: At<'a>,
+    rides: Vec<Ride>,
+}
+
 #[derive(Clone, Copy)]
-enum Place<'a> {
+enum At<'a> {
     Edge(&'a Edge),
     Node(&'a Node),
 }
 
-impl Place<'_> {
+impl At<'_> {
     fn id(&self) -> &Id {
         match self {
             Self::Edge(edge) => &edge.id,
             Self::Node(node) => &node.id,
         }
     }
-
-    fn agent(&self, number: usize, layout: &Layout, radius: f64) -> Agent {
-        let (start, path, deviation) = match self {
-            Self::Edge(edge) => layout.path_of(edge),
-            Self::Node(Node { at: [x, y], .. }) => ([*x, *y, 0.0], Vec::<PathSegment>::new(), 0.0),
-        };
-        // Any motion does: lengths do not depend on it.
-        let motion = MotionSpec::RestToRest { v_max: 1.0, a_max: 1.0 };
-        Agent {
-            id: number as u64,
-            radius: radius + deviation,
-            footprint: None,
-            loads: Vec::new(),
-            margin: 0.0,
-            t_start: 0.0,
-            start,
-            path,
-            motion,
-        }
-    }
 }
 
+/// Lengths of two edges at which vehicles may touch.
+type Extents = [[f64; 2]; 2];
+
 impl Locks {
-    /// The locks of a layout for its vehicle; with `nodes`, what standing at a node blocks as well.
+    /// The locks of a layout for its vehicle; with `nodes`, what standing at a node blocks as well, in any heading.
     ///
-    /// Cost: a box test a pair of edges of one level, and a microsecond for each pair of segments that meet.
+    /// Cost: a box test a pair of discs on the edges of one level, and a microsecond for each pair of segments that meet.
     ///
     /// # Errors
-    /// [`ImportError`] for more than 65535 edges (and nodes) of one level, or coordinates beyond what can be computed with.
+    /// [`ImportError`] for more than 65535 discs on the edges (and nodes) of one level, or coordinates beyond what can be computed with.
     pub fn of(imported: &Imported, nodes: bool) -> Result<Self, ImportError> {
-        let Imported { layout, vehicle } = imported;
+        let layout = &imported.layout;
+        let rides = Rides::new(imported);
+        let vehicle = rides.vehicle();
+        let footprint = vehicle.footprint.as_ref();
         let mut locks = Self {
             layout: layout.name.clone(),
-            vehicle: LockVehicle { name: vehicle.name.clone(), radius: vehicle.radius + vehicle.margin },
+            vehicle: LockVehicle {
+                name: vehicle.name.clone(),
+                radius: vehicle.radius,
+                overhang: footprint.map(|footprint| footprint.overhang()),
+                discs: footprint.map_or_else(Vec::new, |footprint| footprint.discs().to_vec()),
+            },
             locks: Vec::new(),
             nodes: nodes.then(Vec::new),
             node_pairs: nodes.then(Vec::new),
         };
         for level in 0..layout.levels.len() {
             let edges = layout.edges.iter().filter(|edge| layout.level(edge) == level);
-            let mut edges: Vec<&Edge> = edges.collect();
-            edges.sort_by(|a, b| a.id.cmp(&b.id));
-            let mut places: Vec<Place<'_>> = edges.into_iter().map(Place::Edge).collect();
+            let mut places: Vec<Place<'_>> =
+                edges.map(|edge| Place { at: At::Edge(edge), rides: rides.on(edge) }).collect();
+            places.sort_by(|a, b| a.at.id().cmp(b.at.id()));
             if nodes {
-                let mut there: Vec<&Node> = layout.nodes.iter().filter(|node| node.level == level).collect();
-                there.sort_by(|a, b| a.id.cmp(&b.id));
-                places.extend(there.into_iter().map(Place::Node));
+                let there = layout.nodes.iter().enumerate().filter(|(_, node)| node.level == level);
+                let mut there: Vec<Place<'_>> =
+                    there.map(|(k, node)| Place { at: At::Node(node), rides: vec![rides.at(k)] }).collect();
+                there.sort_by(|a, b| a.at.id().cmp(b.at.id()));
+                places.extend(there);
             }
-            locks.add(layout, &places)?;
+            locks.add(&places)?;
         }
         locks.locks.sort_by(|a, b| {
             let lengths = |lock: &Lock| [lock.a_length[0], lock.b_length[0]];
@@ -133,32 +144,65 @@ impl Locks {
         Ok(locks)
     }
 
-    fn add(&mut self, layout: &Layout, places: &[Place<'_>]) -> Result<(), ImportError> {
-        let radius = self.vehicle.radius;
-        let agents = places.iter().enumerate().map(|(k, place)| place.agent(k, layout, radius)).collect();
-        let scenario = import::checked(&Scenario { name: String::new(), agents })?;
-        let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))?;
-        let motions = fleet.motions();
-        let ecm = build_ecm(&motions).map_err(|full| ImportError::new(full.to_string()))?;
-        for (k, a) in places.iter().enumerate() {
-            for region in ecm.row(&motions, k).filter(|region| region.other() > k) {
-                let Some(b) = places.get(region.other()) else { continue };
-                let range = |interval: pcr_core::Interval<f64>| [interval.lo, interval.hi];
-                let (own, other) = (range(region.length()), range(region.other_length()));
-                let (a_id, b_id) = (a.id().clone(), b.id().clone());
-                match (a, b) {
-                    (Place::Edge(_), Place::Edge(_)) => {
-                        self.locks.push(Lock { a: a_id, b: b_id, a_length: own, b_length: other });
-                    }
-                    (Place::Edge(_), Place::Node(_)) => {
-                        let lock = NodeLock { node: b_id, edge: a_id, edge_length: own };
+    fn add(&mut self, places: &[Place<'_>]) -> Result<(), ImportError> {
+        for ([a, b], extents) in extents(places)? {
+            let [Some(a), Some(b)] = [places.get(a), places.get(b)] else { continue };
+            let (a_id, b_id) = (a.at.id(), b.at.id());
+            for [a_length, b_length] in joined(extents) {
+                let (a_id, b_id) = (a_id.clone(), b_id.clone());
+                match (a.at, b.at) {
+                    (At::Edge(_), At::Edge(_)) => self.locks.push(Lock { a: a_id, b: b_id, a_length, b_length }),
+                    (At::Edge(_), At::Node(_)) => {
+                        let lock = NodeLock { node: b_id, edge: a_id, edge_length: a_length };
                         self.nodes.get_or_insert_default().push(lock);
                     }
                     // Edges come before nodes.
-                    (Place::Node(_), _) => self.node_pairs.get_or_insert_default().push([a_id, b_id]),
+                    (At::Node(_), _) => self.node_pairs.get_or_insert_default().push([a_id, b_id]),
                 }
             }
         }
         Ok(())
     }
+}
+
+/// Of every two places, the first one before the second, the extents of the regions of their discs.
+fn extents(places: &[Place<'_>]) -> Result<BTreeMap<[usize; 2], Vec<Extents>>, ImportError> {
+    let refused = |problem: &dyn ToString| ImportError::new(problem.to_string());
+    let rides: Vec<(usize, &Ride)> =
+        places.iter().enumerate().flat_map(|(k, place)| place.rides.iter().map(move |ride| (k, ride))).collect();
+    let agents = rides.iter().enumerate().map(|(k, (_, ride))| Agent { id: k as u64, ..ride.agent.clone() });
+    let scenario = import::checked(&Scenario { name: String::new(), agents: agents.collect() })?;
+    let Bodies { fleet, discs, .. } = Bodies::<f64>::new(&scenario).map_err(|problem| refused(&problem))?;
+    let motions = fleet.motions();
+    let ecm = build_ecm(&motions).map_err(|full| refused(&full))?;
+    let mut extents: BTreeMap<[usize; 2], Vec<Extents>> = BTreeMap::new();
+    for (k, disc) in discs.iter().enumerate() {
+        for region in ecm.row(&motions, k).filter(|region| region.other() > k) {
+            let Some(other) = discs.get(region.other()) else { continue };
+            let [Some((a, own)), Some((b, their))] = [rides.get(disc.agent), rides.get(other.agent)] else { continue };
+            if a != b {
+                let range = |interval: pcr_core::Interval<f64>| [interval.lo, interval.hi];
+                let lengths = own.on_edge(disc.on_agent(range(region.length())));
+                let other_lengths = their.on_edge(other.on_agent(range(region.other_length())));
+                extents.entry([*a, *b]).or_default().push([lengths, other_lengths]);
+            }
+        }
+    }
+    Ok(extents)
+}
+
+/// The hulls of those that overlap, again and again until all are apart.
+fn joined(extents: Vec<Extents>) -> Vec<Extents> {
+    let mut apart: Vec<Extents> = Vec::new();
+    for mut next in extents {
+        let overlap = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a <= d && c <= b;
+        while let Some(place) = apart.iter().position(|other| (0..2).all(|k| overlap(next[k], other[k]))) {
+            let other = apart.swap_remove(place);
+            for (a, b) in next.iter_mut().zip(other) {
+                *a = [a[0].min(b[0]), a[1].max(b[1])];
+            }
+        }
+        apart.push(next);
+    }
+    apart
 }

@@ -99,7 +99,7 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
     let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
     let raster = Raster::new();
     for level in 0..imported.layout.levels.len() {
-        let svg = Ground { layout: &imported.layout, level, radius: locks.vehicle.radius }.picture();
+        let svg = Ground { imported, level }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
         let png = raster.png(&svg)?;
         files.extend([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)]);
@@ -123,6 +123,14 @@ pub(crate) fn map(scenario: &Scenario, ego: usize, over: Option<&Overlay<'_>>) -
             Some(overlay) => overlay::picture(scene, ego, overlay),
         })
     })
+}
+
+/// The workspace on a layout beside the map of the agent with the most regions, as SVG.
+///
+/// # Errors
+/// As [`write`].
+pub(crate) fn overview(scenario: &Scenario, ground: Option<Ground<'_>>) -> io::Result<String> {
+    with_scene(scenario, ground, |scene| Ok(overview::picture(scene)))
 }
 
 fn with_scene<T>(

@@ -1,15 +1,19 @@
 //! Plans without collisions: what `pcr plan` prints and writes.
 //!
 //! The agents are planned one after the other in an order of priority, each to arrive as early as those before it allow: by
-//! a later start, or by its speed along the path. Every plan is checked as `pcr check` does before it is returned.
+//! a later start, or by its speed along the path. Starts are planned with the discs of footprints, speeds with the one disc
+//! around them: another speed along the path is none of a disc beside it. Every plan is checked as `pcr check` does before it is returned.
 
 mod circle;
+mod forbidden;
 
 use crate::check::Verdict;
 use crate::fleet::Fleet;
 use crate::fleet::HostEcm;
 use crate::regions::{self, Failure};
 use crate::scenario::{MotionSpec, Scenario};
+pub(crate) use circle::sides;
+pub(crate) use forbidden::{Forbidden, Schedule};
 use pcr_core::{Encounter, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
 use serde::Serialize;
 
@@ -117,7 +121,9 @@ impl Plan {
         let fleet = Fleet::<f64>::new(scenario)?;
         let motions = grown(&fleet);
         let ecm = regions::table(scenario, &motions)?;
-        let planner = Planner { scenario, method, motions: &motions, ecm: &ecm };
+        let outlined = method == Method::Delay && scenario.agents.iter().any(|agent| agent.footprint.is_some());
+        let forbidden = outlined.then(|| Forbidden::of(scenario)).transpose()?;
+        let planner = Planner { scenario, method, motions: &motions, ecm: &ecm, forbidden };
         let mut orders = planner.orders(priority)?.into_iter();
         // There is at least one order.
         let mut best = planner.plan(orders.next().unwrap_or_default())?;
@@ -132,7 +138,9 @@ impl Plan {
                 break;
             }
         }
+        // Of footprints it would be no proof: the discs around them may have to wait where they do not.
         if best.1.is_none()
+            && planner.forbidden.is_none()
             && let Some(circle) = circle::circle(&ecm, &motions)
         {
             let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
@@ -158,6 +166,8 @@ struct Planner<'a> {
     method: Method,
     motions: &'a [Motion<'a, f64>],
     ecm: &'a HostEcm<f64>,
+    /// Where there are footprints and starts are asked for.
+    forbidden: Option<Forbidden>,
 }
 
 impl Planner<'_> {
@@ -213,6 +223,7 @@ impl Planner<'_> {
         let mut stations = vec![Station::EMPTY; if slots > 0 { STATIONS } else { 0 }];
         let mut planned = self.motions.to_vec();
         let outcome = match self.method {
+            Method::Delay if self.forbidden.is_some() => self.delays(&mut planned, &mut order),
             Method::Delay => plan_delays(self.ecm, self.motions, &mut planned, &mut order),
             Method::Speed => {
                 plan_speeds(self.ecm, self.motions, &mut planned, &mut order, &mut profiles, &mut stations)
@@ -242,6 +253,21 @@ impl Planner<'_> {
             return Ok((plan, None));
         }
         Ok((plan, Some(solved)))
+    }
+
+    /// Starts by what the discs of footprints forbid.
+    fn delays(&self, planned: &mut [Motion<'_, f64>], order: &mut Vec<usize>) -> Result<(), Never> {
+        let Some(forbidden) = &self.forbidden else { return Ok(()) };
+        let Schedule { delays, out, order: kept } = forbidden.in_order(forbidden.respecting(std::mem::take(order)));
+        *order = kept;
+        if let Some(out) = out.first() {
+            let agents = [out.agent, out.by];
+            return Err(if out.always { Never::Always(agents) } else { Never::Priorities(agents) });
+        }
+        for (agent, (motion, delay)) in planned.iter_mut().zip(delays).enumerate() {
+            *motion = motion.delayed(delay.unwrap_or_default()).map_err(|_| Never::Full(agent))?;
+        }
+        Ok(())
     }
 
     fn unsolved(&self, never: Never) -> Unsolved {

@@ -173,6 +173,12 @@ impl MotionSpec {
 }
 
 impl Agent {
+    /// A disc without a margin that sets off at the time 0.
+    pub fn disc(id: u64, radius: f64, start: [f64; 3], path: Vec<PathSegment>, motion: MotionSpec) -> Self {
+        let (footprint, loads) = (None, Vec::new());
+        Self { id, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }
+    }
+
     /// Length of the path \[m\].
     pub fn length(&self) -> f64 {
         self.path.iter().map(PathSegment::length).sum()

@@ -3,17 +3,16 @@
 //! Every agent has one mission, the shortest way between two random nodes. All would set off at once; the plan delays them.
 //! Agents for which there is no delay, because they meet others whenever they start, are left out and counted.
 
+mod crowd;
 mod missions;
 mod schedule;
 
 use crate::check::Verdict;
-use crate::fleet::Fleet;
 use crate::import::{Id, Imported};
-use crate::plan::{self, Unsolved};
-use crate::regions::{self, Failure};
+use crate::plan::{Forbidden, Schedule, Unsolved};
+use crate::regions::{self, Answer, Failure};
 use crate::scenario::{Agent, Scenario};
-use missions::Mission;
-use schedule::{Forbidden, Schedule};
+use missions::{Drawn, Mission};
 use serde::Serialize;
 
 /// What is asked for.
@@ -38,6 +37,8 @@ pub struct Traffic {
     pub asked: usize,
     /// Agents that have a mission; for the others there is no room to start or to end.
     pub placed: usize,
+    /// Missions that were drawn and passed over, because no order of starts would have let them through with those before them.
+    pub passed_over: usize,
     /// Agents that have a mission and a plan.
     pub planned: usize,
     /// Collision regions of the agents that have a mission, both directions of every pair.
@@ -83,18 +84,12 @@ impl Traffic {
     /// # Errors
     /// [`Failure`] where the missions cannot be computed with.
     pub fn of(imported: &Imported, request: Request) -> Result<(Self, [Scenario; 2]), Failure> {
-        let drawn = missions::draw(imported, request.agents, request.seed);
+        let Drawn { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
         let layout = &imported.layout;
         let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
         let missions = Scenario { name: layout.name.clone(), agents };
-        let fleet = Fleet::<f64>::new(&missions)?;
-        let ecm = regions::table(&missions, &fleet.motions())?;
-        let regions = (0..missions.agents.len()).map(|agent| ecm.row(&fleet.motions(), agent).count()).sum();
-        let motions = plan::grown(&fleet);
-        let ecm = regions::table(&missions, &motions)?;
-        let mut longest_first: Vec<usize> = (0..motions.len()).collect();
-        longest_first.sort_by(|&a, &b| motions[b].time().length().total_cmp(&motions[a].time().length()));
-        let Schedule { delays, out, .. } = Forbidden::of(&ecm, &motions).schedule(longest_first, request.seed);
+        let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
+        let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
         let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
         let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
         let at_once =
@@ -112,6 +107,7 @@ impl Traffic {
             radius: imported.vehicle.radius,
             asked: request.agents,
             placed: drawn.len(),
+            passed_over,
             planned: plan.agents.len(),
             regions,
             conflicts_before: conflicts(&at_once)?,
@@ -125,6 +121,14 @@ impl Traffic {
         };
         Ok((traffic, [missions, plan]))
     }
+}
+
+/// Start delays for as many agents of a scenario as can have one, of 2000 orders that are tried.
+pub(crate) fn schedule(scenario: &Scenario, seed: u64) -> Result<Schedule, Failure> {
+    let mut longest_first: Vec<usize> = (0..scenario.agents.len()).collect();
+    let duration = |agent: usize| scenario.agents[agent].duration();
+    longest_first.sort_by(|&a, &b| duration(b).total_cmp(&duration(a)));
+    Ok(schedule::best(&Forbidden::of(scenario)?, longest_first, seed))
 }
 
 impl Travel {

@@ -10,6 +10,7 @@ pub mod oracle;
 pub mod outward;
 pub mod paper;
 pub mod plans;
+pub mod polygons;
 pub mod reference;
 pub mod settings;
 pub mod velocity;

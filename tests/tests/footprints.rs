@@ -8,11 +8,9 @@ use pcr_host::fleet::{Fleet, Format};
 use pcr_host::regions::{Answer, Region, Request};
 use pcr_host::scenario::Scenario;
 use pcr_tests::generators::Dice;
+use pcr_tests::polygons::{self, Point, Polygon, apart};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
-
-type Point = [f64; 2];
-type Polygon = Vec<Point>;
 
 /// Ahead of and behind the reference point, and to both sides.
 const TRUCK: [[f64; 2]; 4] = [[-0.3, -0.35], [0.9, -0.35], [0.9, 0.35], [-0.3, 0.35]];
@@ -45,43 +43,7 @@ fn read(agents: &[Value]) -> Scenario {
 
 /// The polygon of a vehicle in a pose.
 fn placed(polygon: &[Point], pose: pcr_core::Pose<f64>) -> Polygon {
-    let (sin, cos) = pose.heading.0.sin_cos();
-    let at = |[ahead, left]: &Point| {
-        [pose.position.x + ahead * cos - left * sin, pose.position.y + ahead * sin + left * cos]
-    };
-    polygon.iter().map(at).collect()
-}
-
-fn from_side(p: Point, a: Point, b: Point) -> f64 {
-    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    let share = (((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-    (a[0] + share * dx - p[0]).hypot(a[1] + share * dy - p[1])
-}
-
-fn sides(polygon: &Polygon) -> impl Iterator<Item = (Point, Point)> {
-    polygon.iter().copied().zip(polygon.iter().copied().cycle().skip(1))
-}
-
-/// Whether a convex polygon, its corners to the left about, holds a point.
-fn holds(polygon: &Polygon, p: Point) -> bool {
-    sides(polygon).all(|(a, b)| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0)
-}
-
-/// Distance of two convex polygons: 0 where they overlap. Two that cross without a corner inside have sides that cross.
-fn apart(a: &Polygon, b: &Polygon) -> f64 {
-    let cross = |(p, q): (Point, Point), (r, s): (Point, Point)| {
-        let side = |a: Point, b: Point, c: Point| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0
-    };
-    let inside = a.iter().any(|p| holds(b, *p)) || b.iter().any(|p| holds(a, *p));
-    if inside || sides(a).any(|own| sides(b).any(|other| cross(own, other))) {
-        return 0.0;
-    }
-    let corners = |own: &Polygon, other: &Polygon| {
-        let distances = own.iter().flat_map(|p| sides(other).map(|(a, b)| from_side(*p, a, b)).collect::<Vec<_>>());
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    corners(a, b).min(corners(b, a))
+    polygons::placed(polygon, [pose.position.x, pose.position.y], pose.heading.0)
 }
 
 /// The reference points alone.

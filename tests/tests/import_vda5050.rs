@@ -150,6 +150,53 @@ fn states_tell_paths_with_or_without_times() {
 }
 
 #[test]
+fn loads_of_a_state_make_its_vehicle_larger() {
+    let state = |loads: Value| {
+        json!({ "serialNumber": "r7", "nodeStates": [], "loads": loads,
+            "agvPosition": { "x": 1.0, "y": 2.0, "theta": 0.5, "mapId": "m" } })
+        .to_string()
+    };
+    let load = |length: f64, width: f64, [x, y, theta]: [f64; 3]| {
+        json!({ "loadId": "a", "loadDimensions": { "length": length, "width": width, "height": 1.0 },
+            "boundingBoxReference": { "x": x, "y": y, "z": 0.2, "theta": theta } })
+    };
+    // A disc becomes the disc around both.
+    let radius = |loads: Value| {
+        let (scenario, warnings) = read(&state(loads), &options()).unwrap();
+        (scenario.agents[0].radius, warnings)
+    };
+    assert_eq!(radius(Value::Null), (0.4, vec![]));
+    assert_eq!(radius(json!([load(0.2, 0.2, [0.1, 0.0, 0.0])])), (0.4, vec![]));
+    let (reach, warnings) = radius(json!([load(1.2, 0.8, [0.5, 0.0, 0.0])]));
+    assert_eq!((reach, warnings), (1.1_f64.hypot(0.4), vec![]));
+    // A quarter turn exchanges length and width.
+    let (reach, _) = radius(json!([load(1.2, 0.8, [0.5, 0.0, std::f64::consts::FRAC_PI_2])]));
+    assert!((reach - 0.9_f64.hypot(0.6)).abs() < 1e-12, "{reach}");
+    let (reach, warnings) = radius(json!([{ "loadId": "b", "loadDimensions": { "length": 2.0, "width": 1.0 } }]));
+    assert_eq!(reach, 1.0_f64.hypot(0.5));
+    assert!(warnings[0].contains("state of r7, load 1: it has no boundingBoxReference"), "{warnings:?}");
+    let (reach, warnings) = radius(json!([{ "loadId": "b", "loadType": "pallet" }]));
+    assert!(reach == 0.4 && warnings[0].contains("no length and width"), "{warnings:?}");
+    let (_, warnings) = radius(json!([load(0.0, 0.8, [0.0; 3])]));
+    assert!(warnings[0].contains("not above 0"), "{warnings:?}");
+    let wrong = read(&state(json!([{ "loadDimensions": { "length": "2", "width": 1 } }])), &options()).unwrap_err();
+    assert_eq!(wrong, "state of r7, load 1, loadDimensions, length: a text where a number is expected");
+    assert!(read(&state(json!({})), &options()).unwrap_err().contains("loads: an object where a list"));
+
+    // A contour becomes the hull of both.
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    let options = Options { fleet: Some(fleet.into()), ..Options::default() };
+    let (scenario, _) = read(&state(json!([load(1.0, 1.2, [0.9, 0.0, 0.0])])), &options).unwrap();
+    let outline = scenario.agents[0].footprint.as_ref().unwrap();
+    let corners = [[-0.6, -0.4], [0.4, -0.6], [1.4, -0.6], [1.4, 0.6], [0.4, 0.6], [-0.6, 0.4]];
+    assert_eq!(outline.polygon().len(), corners.len());
+    for (corner, expected) in outline.polygon().iter().zip(corners) {
+        assert!((corner[0] - expected[0]).hypot(corner[1] - expected[1]) < 1e-12, "{corner:?}");
+    }
+    assert_eq!(scenario.agents[0].radius, outline.reach());
+}
+
+#[test]
 fn what_is_wrong_is_named() {
     let broken = |pointer: &str, value: Value| {
         let mut order = square();

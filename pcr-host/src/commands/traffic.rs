@@ -58,8 +58,7 @@ impl Arguments {
         }
         out.flush()?;
         if let Some(directory) = &self.output {
-            let layout = &imported.layout;
-            let ground = Ground { layout, level: layout.largest_level(), radius: imported.vehicle.radius };
+            let ground = Ground { imported: &imported, level: imported.layout.largest_level() };
             map::draw(&plan, Some(ground), directory, &mut io::stderr())?;
             write_to(&directory.join("missions.json"), &missions)?;
             write_to(&directory.join("plan.json"), &plan)?;

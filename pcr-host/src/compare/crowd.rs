@@ -16,17 +16,8 @@ pub fn crowd(agents: usize, seed: u64) -> Scenario {
         let start = [random.within(0.0, side), random.within(0.0, side), random.within(-PI, PI)];
         let path = (0..3 + random.below(4)).map(|_| segment(&mut random)).collect();
         let (v_max, a_max) = (random.within(0.36, 0.58), 0.3);
-        Agent {
-            id: id as u64 + 1,
-            radius: random.within(0.11, 0.22),
-            footprint: None,
-            loads: Vec::new(),
-            margin: 0.0,
-            t_start: 0.0,
-            start,
-            path,
-            motion: MotionSpec::RestToRest { v_max, a_max },
-        }
+        let motion = MotionSpec::RestToRest { v_max, a_max };
+        Agent::disc(id as u64 + 1, random.within(0.11, 0.22), start, path, motion)
     };
     Scenario { name: format!("crowd of {agents}"), agents: (0..agents).map(agent).collect() }
 }

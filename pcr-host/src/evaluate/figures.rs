@@ -55,7 +55,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
 
 fn agent(id: u64, start: [f64; 3], path: Vec<PathSegment>) -> Agent {
     let motion = MotionSpec::RestToRest { v_max: 0.5, a_max: 0.5 };
-    Agent { id, radius: 0.2, footprint: None, loads: Vec::new(), margin: 0.0, t_start: 0.0, start, path, motion }
+    Agent::disc(id, 0.2, start, path, motion)
 }
 
 fn cases() -> [(&'static str, &'static str, Scenario); 3] {

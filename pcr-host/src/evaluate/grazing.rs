@@ -99,18 +99,7 @@ fn collides(method: &dyn Method, field: &Field<'_>) -> bool {
 
 fn agent(id: usize, t_start: f64, start: [f64; 3], segment: PathSegment) -> Agent {
     let motion = MotionSpec::Profile { v0: SPEED, pieces: vec![(segment.length() / SPEED, 0.0)] };
-    let path = vec![segment];
-    Agent {
-        id: id as u64 + 1,
-        radius: RADII[id],
-        footprint: None,
-        loads: Vec::new(),
-        margin: 0.0,
-        t_start,
-        start,
-        path,
-        motion,
-    }
+    Agent { t_start, ..Agent::disc(id as u64 + 1, RADII[id], start, vec![segment], motion) }
 }
 
 /// Kinds of pairs.

@@ -3,7 +3,8 @@
 
 use super::offset::{Offset, Precision};
 use crate::fleet::{Fleet, Format, Refused, Rounding};
-use crate::scenario::{Agent, Scenario};
+use crate::import::Placed;
+use crate::scenario::{Agent, PathSegment, Scenario};
 use pcr_core::{Interval, Motion};
 
 /// Rounding of lengths along a path, relative.
@@ -99,6 +100,24 @@ impl<S: Format> Bodies<S> {
         let scenario = Scenario { name: scenario.name.clone(), agents };
         Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
     }
+}
+
+/// Where the discs of an agent run, and their radii \[m\].
+pub(crate) fn tracks(agent: &Agent) -> Vec<(Vec<Placed>, f64)> {
+    let mut bodies = (Vec::new(), Vec::new());
+    // In `f64` no disc is refused.
+    let _ = discs::<f64>(agent, 0, &mut bodies);
+    let track = |disc: &Agent| {
+        let [x, y, heading] = disc.start;
+        let mut last = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
+        let pieces = disc.path.iter().map(|&shape| {
+            last = Placed { at: last.end(), heading: last.heading_at_end(), shape };
+            last
+        });
+        let pieces: Vec<Placed> = pieces.collect();
+        (if pieces.is_empty() { vec![last] } else { pieces }, disc.radius)
+    };
+    bodies.0.iter().map(track).collect()
 }
 
 /// Adds the discs of an agent.

@@ -1,6 +1,5 @@
 //! A layout: nodes, and edges between them with their true geometry, whatever file they come from.
 
-use super::trace::Tracer;
 use crate::scenario::PathSegment;
 use serde::Serialize;
 use std::cmp::Ordering;
@@ -148,15 +147,6 @@ impl Layout {
     pub fn node(&self, name: &str) -> Option<usize> {
         let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);
         by_id.or_else(|| self.nodes.iter().position(|node| node.name.as_deref() == Some(name)))
-    }
-
-    /// The path along an edge: start pose, segments, and the largest distance of the curve in the file from them \[m\].
-    pub(crate) fn path_of(&self, edge: &Edge) -> ([f64; 3], Vec<PathSegment>, f64) {
-        let mut tracer = Tracer::default();
-        edge.curve.iter().for_each(|piece| tracer.follow(piece));
-        let trace = tracer.finish(self.nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at));
-        let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
-        (trace.start, path, trace.deviation + edge.deviation)
     }
 
     /// The level that has most nodes; among equals the first.

@@ -22,17 +22,24 @@ const GAP: f64 = 0.05;
 
 /// An edge, and whether it is travelled from its end to its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step<'a> {
-    edge: &'a Edge,
-    backward: bool,
+pub(crate) struct Step<'a> {
+    pub(crate) edge: &'a Edge,
+    pub(crate) backward: bool,
 }
 
 impl Step<'_> {
-    fn target(self) -> usize {
+    /// The node from which it goes.
+    pub(crate) fn origin(self) -> usize {
+        self.edge.ends[usize::from(self.backward)]
+    }
+
+    /// The node to which it goes.
+    pub(crate) fn target(self) -> usize {
         self.edge.ends[usize::from(!self.backward)]
     }
 
-    fn curve(self) -> Vec<Placed> {
+    /// Its lines and arcs in the direction of travel.
+    pub(crate) fn curve(self) -> Vec<Placed> {
         match self.backward {
             true => self.edge.curve.iter().rev().map(Placed::reversed).collect(),
             false => self.edge.curve.clone(),
@@ -226,19 +233,30 @@ pub(super) fn mission(
     Ok(Some(agent(id, &trace, vehicle, 0.0)))
 }
 
+/// The vehicle on a single edge, in one direction.
+pub(crate) fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
+    let mut tracer = Tracer::default();
+    let curve = step.curve();
+    curve.iter().for_each(|piece| tracer.follow(piece));
+    let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.at));
+    trace.deviation += step.edge.deviation;
+    agent(0, &trace, vehicle, 0.0)
+}
+
+/// The vehicle that turns in place from a heading by an angle, or stands there.
+pub(crate) fn turn(vehicle: &Vehicle, at: [f64; 2], heading: f64, angle: f64) -> Agent {
+    let mut tracer = Tracer::default();
+    tracer.turn(at, heading, angle);
+    agent(0, &tracer.finish(at), vehicle, 0.0)
+}
+
 /// The agent that travels a path.
 pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> Agent {
-    Agent {
-        id,
-        radius: vehicle.radius + trace.deviation,
-        footprint: vehicle.footprint.as_ref().map(|footprint| footprint.grown(trace.deviation)),
-        loads: Vec::new(),
-        margin: vehicle.margin,
-        t_start,
-        start: trace.start,
-        path: trace.stretches.iter().map(|stretch| stretch.shape).collect(),
-        motion: speed::motion(&trace.stretches, vehicle),
-    }
+    let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
+    let motion = speed::motion(&trace.stretches, vehicle);
+    let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(trace.deviation));
+    let disc = Agent::disc(id, vehicle.radius + trace.deviation, trace.start, path, motion);
+    Agent { footprint, margin: vehicle.margin, t_start, ..disc }
 }
 
 #[cfg(test)]

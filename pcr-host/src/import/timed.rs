@@ -43,17 +43,9 @@ pub(super) fn agent(id: u64, radius: f64, stops: &[Stop]) -> Result<Agent, Impor
     }
     let trace = tracer.finish(first);
     let pieces = pieces(&sections);
-    Ok(Agent {
-        id,
-        radius: radius + trace.deviation,
-        footprint: None,
-        loads: Vec::new(),
-        margin: 0.0,
-        t_start,
-        start: trace.start,
-        path: trace.stretches.iter().map(|stretch| stretch.shape).collect(),
-        motion: MotionSpec::Profile { v0: 0.0, pieces },
-    })
+    let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
+    let motion = MotionSpec::Profile { v0: 0.0, pieces };
+    Ok(Agent { t_start, ..Agent::disc(id, radius + trace.deviation, trace.start, path, motion) })
 }
 
 /// The profile over sections of given lengths and durations.

@@ -119,6 +119,14 @@ impl Tracer {
         }
     }
 
+    /// Begins here in this heading, and turns in place by an angle.
+    pub(super) fn turn(&mut self, at: [f64; 2], heading: f64, sweep: f64) {
+        self.face(at, heading);
+        if sweep != 0.0 {
+            self.push(PathSegment::Arc { radius: TURN, sweep }, true);
+        }
+    }
+
     fn push(&mut self, shape: PathSegment, in_place: bool) {
         let placed = Placed { at: self.at, heading: self.heading, shape };
         (self.at, self.heading) = (placed.end(), placed.heading_at_end());

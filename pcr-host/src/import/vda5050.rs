@@ -4,13 +4,13 @@
 //! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed limits; the base
 //!   ends where the first node or edge is not released, and the horizon is travelled only if asked for.
 //! - A state with an `intermediatePath` is a plan with times, seconds since the time stamp of the first state; one with a
-//!   `plannedPath` travels that from rest; one with neither stands where it is.
+//!   `plannedPath` travels that from rest; one with neither stands where it is. Its loads make the vehicle larger.
 
 use super::layout::Placed;
 use super::timed::{self, seconds};
 use super::trace::Tracer;
 use super::value::Object;
-use super::{ImportError, Options, Vehicle, Warnings, route, trajectory};
+use super::{ImportError, Options, Vehicle, Warnings, loads, route, trajectory};
 use crate::scenario::{Agent, MotionSpec, Scenario};
 use serde_json::Value;
 
@@ -26,13 +26,13 @@ pub(super) fn is_message(root: &Value) -> bool {
     one.is_some_and(|one| one.get("orderId").is_some() || one.get("nodeStates").is_some())
 }
 
-/// Reads orders and states.
+/// Reads orders and states; returns the radii of the vehicles with their loads as well.
 pub(super) fn read(
     text: &str,
     options: &Options,
     vehicle: &Vehicle,
     warnings: &mut Warnings,
-) -> Result<Scenario, ImportError> {
+) -> Result<(Scenario, Vec<f64>), ImportError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut messages = Vec::new();
     for value in serde_json::Deserializer::from_str(text).into_iter::<Value>() {
@@ -46,6 +46,7 @@ pub(super) fn read(
     }
     let mut reader = Reader { options, vehicle, warnings, origin: None };
     let mut scenario = Scenario { name: String::new(), agents: Vec::new() };
+    let mut radii = Vec::new();
     for (k, value) in messages.iter().enumerate() {
         let id = k as u64 + 1;
         let message = Object::new(format!("message {id}"), value)?;
@@ -54,10 +55,13 @@ pub(super) fn read(
         if message.get("nodes").is_some() {
             let order = message.called(format!("order {name}"));
             scenario.agents.push(reader.order(id, &order)?);
+            radii.push(vehicle.radius);
         } else if state.iter().any(|field| message.get(field).is_some()) {
             let robot = message.text("serialNumber").ok().flatten().unwrap_or_default();
             let state = message.called(format!("state of {robot}"));
-            scenario.agents.push(reader.state(id, &state)?);
+            let loaded = loads::loaded(&state, vehicle, reader.warnings)?;
+            scenario.agents.push(reader.state(id, &state, &loaded)?);
+            radii.push(loaded.radius);
         } else {
             return Err(message.missing("nodes or nodeStates"));
         }
@@ -65,7 +69,7 @@ pub(super) fn read(
             scenario.name = name.to_owned();
         }
     }
-    Ok(scenario)
+    Ok((scenario, radii))
 }
 
 struct Reader<'a> {
@@ -164,13 +168,13 @@ impl Reader<'_> {
         Ok(route::agent(id, &trace, self.vehicle, 0.0))
     }
 
-    fn state(&mut self, id: u64, state: &Object<'_>) -> Result<Agent, ImportError> {
+    fn state(&mut self, id: u64, state: &Object<'_>, vehicle: &Vehicle) -> Result<Agent, ImportError> {
         let pose =
             state.object("mobileRobotPosition")?.map_or_else(|| state.object("agvPosition"), |pose| Ok(Some(pose)))?;
         let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?.unwrap_or(0.0);
         let at = pose.map(|pose| pose.point()).transpose()?;
         if let Some(path) = state.object("intermediatePath")? {
-            return self.timed(id, state, &path, at);
+            return self.timed(id, state, &path, at, vehicle.radius);
         }
         if let Some(path) = state.object("plannedPath")? {
             let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
@@ -179,24 +183,16 @@ impl Reader<'_> {
             fit.pieces.iter().for_each(|piece| tracer.follow(piece));
             let mut trace = tracer.finish(at.or(fit.pieces.first().map(|piece| piece.at)).unwrap_or_default());
             trace.deviation += fit.deviation;
-            return Ok(route::agent(id, &trace, self.vehicle, 0.0));
+            return Ok(route::agent(id, &trace, vehicle, 0.0));
         }
         let [x, y] = at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
         if !state.list("nodeStates")?.is_empty() {
             self.warnings.add(&state.name, "it tells no path; it is taken as standing where it is");
         }
-        let motion = MotionSpec::RestToRest { v_max: self.vehicle.speed, a_max: self.vehicle.acceleration };
-        Ok(Agent {
-            id,
-            radius: self.vehicle.radius,
-            footprint: self.vehicle.footprint.clone(),
-            loads: Vec::new(),
-            margin: self.vehicle.margin,
-            t_start: 0.0,
-            start: [x, y, heading],
-            path: Vec::new(),
-            motion,
-        })
+        let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
+        let Vehicle { radius, margin, .. } = *vehicle;
+        let stands = Agent::disc(id, radius, [x, y, heading], Vec::new(), motion);
+        Ok(Agent { footprint: vehicle.footprint.clone(), margin, ..stands })
     }
 
     /// The agent on a polyline with times.
@@ -206,6 +202,7 @@ impl Reader<'_> {
         state: &Object<'_>,
         path: &Object<'_>,
         at: Option<[f64; 2]>,
+        radius: f64,
     ) -> Result<Agent, ImportError> {
         let stamp = |object: &Object<'_>, field: &str| match object.text(field)? {
             None => Err(object.missing(field)),
@@ -223,7 +220,7 @@ impl Reader<'_> {
         let origin = *self.origin.get_or_insert(stops.first().map_or(0.0, |(_, time)| *time));
         stops.iter_mut().for_each(|(_, time)| *time -= origin);
         let named = |error| ImportError::new(format!("{}: {error}", path.name));
-        timed::agent(id, self.vehicle.radius, &stops).map_err(named)
+        timed::agent(id, radius, &stops).map_err(named)
     }
 }
 

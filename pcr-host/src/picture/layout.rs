@@ -1,11 +1,13 @@
-//! A layout as a picture: the corridors of a disc on the edges of a level.
+//! A layout as a picture: the corridors of a vehicle on the edges of a level.
 //!
-//! The corridor that a disc sweeps on an edge is the stroke of the edge with round ends, as wide as the disc: SVG draws it exactly.
+//! The corridor that a disc sweeps is the stroke of its path with round ends, as wide as the disc: SVG draws it exactly. That of a
+//! footprint is the union of those of its discs.
 
 use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, at_least_visible, room_at_left};
 use super::map::ROOM_ABOVE;
 use super::svg::{PathData, Pixels, Svg};
-use crate::import::{Edge, Layout, Node, Placed};
+use crate::import::{Edge, Imported, Layout, Node, Placed};
+use crate::locks::{Rides, corridor};
 use crate::scenario::PathSegment;
 use pcr_core::Interval;
 use std::f64::consts::PI;
@@ -20,26 +22,28 @@ const LEAST: f64 = 160.0;
 /// Nodes up to which their names are written.
 const NAMED: usize = 60;
 
-/// A level of a layout that discs of a radius travel.
+/// A level of a layout that a vehicle travels.
 #[derive(Clone, Copy, Debug)]
 pub struct Ground<'a> {
-    /// The layout.
-    pub layout: &'a Layout,
+    /// The layout and the vehicle.
+    pub imported: &'a Imported,
     /// Place of the level in [`Layout::levels`].
     pub level: usize,
-    /// Of the discs, without the deviation of edges \[m\].
-    pub radius: f64,
 }
 
-/// Lines and true arcs of an edge, by a map from metres to the picture; `flipped` where its y-axis points down.
-pub(super) fn path(edge: &Edge, scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
+/// Arcs of a smaller radius than this are turns in place, of which nothing is to be seen \[m\].
+const POINT: f64 = 1e-6;
+
+/// Lines and true arcs one after the other, by a map from metres to the picture; `flipped` where its y-axis points down.
+pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
     let mut data = PathData::default();
-    for (k, piece) in edge.curve.iter().enumerate() {
+    for (k, piece) in curve.iter().enumerate() {
         if k == 0 {
             data.move_to(at(piece.at));
         }
         match piece.shape {
             PathSegment::Line { .. } => data.line_to(at(piece.end())),
+            PathSegment::Arc { radius, .. } if radius < POINT => data.line_to(at(piece.end())),
             PathSegment::Arc { radius, sweep } => {
                 // Below half a turn two points and a radius leave no doubt which arc is meant.
                 let parts = (sweep.abs() / (0.75 * PI)).ceil().max(1.0) as usize;
@@ -83,28 +87,38 @@ pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Int
 impl Ground<'_> {
     /// Box around what is on the level \[m\].
     pub(super) fn bounds(&self) -> [Interval<f64>; 2] {
-        bounds(self.layout, Some(self.level), self.radius)
+        bounds(&self.imported.layout, Some(self.level), self.reach())
+    }
+
+    /// Radius of the disc around the vehicle with its margin \[m\].
+    fn reach(&self) -> f64 {
+        self.imported.vehicle.radius + self.imported.vehicle.margin
     }
 
     /// The corridors, the edges and the nodes, these with their names if they are few.
     pub(super) fn draw(&self, svg: &mut Svg, frame: &Frame, names: bool) {
         let metre = 1.0 / frame.x.units_per_pixel();
-        let edges: Vec<&Edge> = self.layout.edges.iter().filter(|edge| self.layout.level(edge) == self.level).collect();
+        let layout = &self.imported.layout;
+        let edges: Vec<&Edge> = layout.edges.iter().filter(|edge| layout.level(edge) == self.level).collect();
         let round: [(&str, &dyn Display); 3] =
             [("fill", &"none"), ("stroke-linecap", &"round"), ("stroke-linejoin", &"round")];
-        let strokes = |svg: &mut Svg, colour: &str, opacity: &str, width: &dyn Fn(&Edge) -> f64| {
-            svg.start("g", &[&round[..], &[("stroke", &colour), ("stroke-opacity", &opacity)]].concat());
-            for edge in &edges {
-                let data = path(edge, metre, true, |point| frame.at(point));
-                if !data.is_empty() {
-                    svg.empty("path", &[("d", &data), ("stroke-width", &Pixels(width(edge)))]);
-                }
+        let stroke = |svg: &mut Svg, curve: &[Placed], width: f64| {
+            let data = path(curve, metre, true, |point| frame.at(point));
+            if !data.is_empty() {
+                svg.empty("path", &[("d", &data), ("stroke-width", &Pixels(width))]);
             }
-            svg.end();
         };
-        strokes(svg, "#2078bf", "0.1", &|edge| 2.0 * (self.radius + edge.deviation) * metre);
-        strokes(svg, "#1d2125", "1", &|_| 1.1);
-        let nodes: Vec<&Node> = self.layout.nodes.iter().filter(|node| node.level == self.level).collect();
+        let rides = Rides::new(self.imported);
+        // One colour for all of them, however many lie on one another.
+        svg.start("g", &[&round[..], &[("stroke", &"#2078bf"), ("opacity", &"0.18")]].concat());
+        for (curve, radius) in edges.iter().flat_map(|edge| corridor(&rides.on(edge))) {
+            stroke(svg, &curve, 2.0 * radius * metre);
+        }
+        svg.end();
+        svg.start("g", &[&round[..], &[("stroke", &"#1d2125")]].concat());
+        edges.iter().for_each(|edge| stroke(svg, &edge.curve, 1.1));
+        svg.end();
+        let nodes: Vec<&Node> = layout.nodes.iter().filter(|node| node.level == self.level).collect();
         let radius = Pixels(if names { 2.0 } else { 1.2 });
         svg.start("g", &[("fill", &"#a94022"), ("font-size", &Pixels(9.0))]);
         for node in &nodes {
@@ -141,12 +155,16 @@ impl Ground<'_> {
     }
 
     fn title(&self) -> String {
-        let layout = self.layout;
+        let Imported { layout, vehicle } = self.imported;
         let name = if layout.name.is_empty() { "Layout" } else { &layout.name };
         let level = match layout.levels.get(self.level).filter(|_| layout.levels.len() > 1) {
             Some(level) => format!(", {level}"),
             None => String::new(),
         };
-        format!("{name}{level}: corridors of a disc of {} m", self.radius)
+        let of = match &vehicle.footprint {
+            Some(footprint) => format!("a footprint of {} corners", footprint.polygon().len()),
+            None => format!("a disc of {} m", self.reach()),
+        };
+        format!("{name}{level}: corridors of {of}")
     }
 }

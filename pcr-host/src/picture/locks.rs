@@ -1,15 +1,18 @@
 //! The page of a layout and its locks, in which an edge shows what it blocks.
 
 use super::layout::{bounds, path};
-use super::template;
-use crate::import::{Edge, Id, Imported, Placed};
-use crate::locks::Locks;
+use super::template::Page;
+use crate::import::{Id, Imported, Placed};
+use crate::locks::{Locks, Rides, corridor};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 
-const TEMPLATE: &str = include_str!("locks/locks.html");
-const STYLE: &str = include_str!("locks/locks.css");
-const SCRIPT: &str = include_str!("locks/locks.js");
+const PAGE: Page = Page {
+    kind: "locks",
+    body: include_str!("locks/locks.html"),
+    style: include_str!("locks/locks.css"),
+    script: include_str!("locks/locks.js"),
+};
 
 /// Steps of a metre in the page: coordinates are written to a hundredth of a step.
 const STEPS: f64 = 1000.0;
@@ -17,30 +20,31 @@ const STEPS: f64 = 1000.0;
 /// The page.
 pub(super) fn page(imported: &Imported, locks: &Locks) -> String {
     let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
-    template::fill([TEMPLATE, STYLE, SCRIPT], name, &data(imported, locks))
-}
-
-/// The edge, travelled backward.
-fn back(edge: &Edge) -> Edge {
-    Edge { curve: edge.curve.iter().rev().map(Placed::reversed).collect(), ..edge.clone() }
+    PAGE.fill(name, &data(imported, locks))
 }
 
 /// Numbers of the page: lengths in metres, coordinates and path data in steps of a millimetre, y up.
 fn data(imported: &Imported, locks: &Locks) -> Value {
     let (layout, vehicle) = (&imported.layout, &locks.vehicle);
     let steps = |point: [f64; 2]| point.map(|x| x * STEPS);
+    let line = |curve: &[Placed]| path(curve, STEPS, false, steps).to_string();
+    let rides = Rides::new(imported);
     let edges = layout.edges.iter().map(|edge| {
         let ends = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.id.to_string()).unwrap_or_default());
+        let back: Vec<Placed> = edge.curve.iter().rev().map(Placed::reversed).collect();
+        let corridor = corridor(&rides.on(edge)).into_iter();
         json!({
             "id": edge.id.to_string(),
             "ends": ends,
             "level": layout.level(edge),
             "length": edge.length(),
-            "radius": vehicle.radius + edge.deviation,
-            "path": path(edge, STEPS, false, steps).to_string(),
-            "back": path(&back(edge), STEPS, false, steps).to_string(),
+            "corridor": corridor.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
+            "path": line(&edge.curve),
+            "back": line(&back),
         })
     });
+    let corners =
+        imported.vehicle.footprint.iter().flat_map(|footprint| footprint.polygon()).map(|corner| steps(*corner));
     let nodes = layout.nodes.iter().map(|node| {
         let [x, y] = steps(node.at);
         json!({ "id": node.id.to_string(), "level": node.level, "x": x, "y": y })
@@ -54,6 +58,7 @@ fn data(imported: &Imported, locks: &Locks) -> Value {
     let bounds = [x.lo, -y.hi, x.length(), y.length()].map(|length| length * STEPS);
     json!({
         "radius": vehicle.radius,
+        "footprint": corners.collect::<Vec<_>>(),
         "levels": layout.levels,
         "bounds": bounds,
         "edges": edges.collect::<Vec<_>>(),
@@ -96,7 +101,7 @@ mod tests {
     #[test]
     fn curves_are_drawn_with_true_arcs() {
         let imported = imported(Format::Lif, CURVES);
-        let svg = Ground { layout: &imported.layout, level: 0, radius: 0.4 }.picture();
+        let svg = Ground { imported: &imported, level: 0 }.picture();
         let document = roxmltree::Document::parse(&svg).unwrap();
         let arcs = document.descendants().filter_map(|node| node.attribute("d")).map(|data| data.matches('A').count());
         // Corridor and line of each edge.

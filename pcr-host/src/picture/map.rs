@@ -57,7 +57,8 @@ fn title(scene: &Scene<'_>, ego: usize, shapes: &[Shape]) -> String {
         1 => "1 region".to_owned(),
         count => format!("{count} regions"),
     };
-    format!("Extended collision map of agent {}: {regions}", scene.id(ego))
+    let around = if scene.has_outlines() { " of the discs around all outlines" } else { "" };
+    format!("Extended collision map of agent {}: {regions}{around}", scene.id(ego))
 }
 
 /// The map in a frame.

@@ -7,14 +7,17 @@ use super::axis::Frame;
 use super::contour::{Outline, is_thin};
 use super::map::{THIN, places, spans};
 use super::scene::{Scene, Shape};
-use super::template;
+use super::template::Page;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-const TEMPLATE: &str = include_str!("page/page.html");
-const STYLE: &str = include_str!("page/page.css");
-const SCRIPT: &str = include_str!("page/page.js");
+const PAGE: Page = Page {
+    kind: "collision regions",
+    body: include_str!("page/page.html"),
+    style: include_str!("page/page.css"),
+    script: include_str!("page/page.js"),
+};
 
 /// Steps of the coordinates of outlines along each axis of a map: a twentieth of a pixel on a large screen.
 const GRID: f64 = 20_000.0;
@@ -28,7 +31,7 @@ const LABEL_SIZE: f64 = 14.0;
 /// The page.
 pub(super) fn page(scene: &Scene<'_>) -> String {
     let name = if scene.scenario.name.is_empty() { "Collision regions" } else { &scene.scenario.name };
-    template::fill([TEMPLATE, STYLE, SCRIPT], name, &data(scene))
+    PAGE.fill(name, &data(scene))
 }
 
 fn data(scene: &Scene<'_>) -> Value {
@@ -38,6 +41,7 @@ fn data(scene: &Scene<'_>) -> Value {
     json!({
         "name": scene.scenario.name,
         "grid": GRID,
+        "outlines": scene.has_outlines(),
         "horizon": interval(scene.horizon()),
         "bounds": [x.lo, x.hi, y.lo, y.hi],
         "agents": agents.collect::<Vec<_>>(),
@@ -67,10 +71,17 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
         let acceleration = if time.length() > 0.0 { (speeds[1] - speeds[0]) / time.length() } else { 0.0 };
         json!([time.lo, time.length(), length.lo, speeds[0], speeds[1], acceleration])
     });
+    let footprint = scene.footprint(place);
+    let discs = match footprint {
+        Some(footprint) => footprint.discs().iter().map(|disc| json!([disc.ahead, disc.left, disc.radius])).collect(),
+        None => vec![json!([0.0, 0.0, motion.radius()])],
+    };
     json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
         "radius": motion.radius(),
+        "discs": discs,
+        "outline": footprint.map_or(&[][..], |footprint| footprint.polygon()),
         "colour": scene.colour(place).to_string(),
         "time": interval(motion.time()),
         "length": motion.path().length(),

@@ -4,6 +4,7 @@ use super::contour::{Outline, trace};
 use super::layout::Ground;
 use super::palette::{Colour, colour};
 use crate::fleet::HostEcm;
+use crate::footprint::Footprint;
 use crate::scenario::Scenario;
 use pcr_core::{Bounds, Crossing, Interval, Motion, PieceType, RegionRef, crossings};
 
@@ -47,6 +48,17 @@ impl Scene<'_> {
     /// Number of the agent at this place of the scenario.
     pub(super) fn id(&self, place: usize) -> u64 {
         self.scenario.agents.get(place).map_or(0, |agent| agent.id)
+    }
+
+    /// The outline of the agent at this place of the scenario, if it is no disc and the same all the way.
+    pub(super) fn footprint(&self, place: usize) -> Option<&Footprint> {
+        let agent = self.scenario.agents.get(place).filter(|agent| agent.loads.is_empty());
+        agent.and_then(|agent| agent.footprint.as_ref())
+    }
+
+    /// Whether an agent is more than a disc: maps show the discs around all of them.
+    pub(super) fn has_outlines(&self) -> bool {
+        self.scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty())
     }
 
     /// Colour of the agent at this place of the scenario.

@@ -1,22 +1,48 @@
-//! Pages that are one HTML file with everything in it.
+//! Pages that are one HTML file with everything in it, and ask for nothing from anywhere.
 
 use super::svg::Escaped;
 use serde_json::Value;
 
-/// The page of a template, its style and its script: `{{title}}`, `{{style}}`, `{{script}}` and `{{data}}` take their places.
-pub(crate) fn fill([template, style, script]: [&str; 3], title: &str, data: &Value) -> String {
-    // A text in the data cannot end the element that holds it.
-    let data = data.to_string().replace('<', "\\u003c");
-    let mut page = String::with_capacity(template.len() + style.len() + script.len() + data.len());
+/// What all pages have in common.
+const FRAME: &str = include_str!("template.html");
+
+/// A kind of page.
+pub(crate) struct Page {
+    /// What the page shows, after the title of the window.
+    pub(crate) kind: &'static str,
+    /// Its elements, in which `{{title}}` takes its place.
+    pub(crate) body: &'static str,
+    /// CSS.
+    pub(crate) style: &'static str,
+    /// JavaScript, which reads the element `data`.
+    pub(crate) script: &'static str,
+}
+
+impl Page {
+    /// The page with a title and data.
+    pub(crate) fn fill(&self, title: &str, data: &Value) -> String {
+        let title = Escaped(title).to_string();
+        // A text in the data cannot end the element that holds it.
+        let data = data.to_string().replace('<', "\\u003c");
+        let body = replaced(self.body, &|key| (key == "title").then_some(title.as_str()));
+        replaced(FRAME, &|key| match key {
+            "title" => Some(title.as_str()),
+            "kind" => Some(self.kind),
+            "style" => Some(self.style),
+            "body" => Some(body.as_str()),
+            "data" => Some(data.as_str()),
+            "script" => Some(self.script),
+            _ => None,
+        })
+    }
+}
+
+/// The template with what its `{{keys}}` stand for; what is put in is not looked at again.
+fn replaced<'a>(template: &str, value: &dyn Fn(&str) -> Option<&'a str>) -> String {
+    let mut page = String::with_capacity(template.len());
     for part in template.split("{{") {
         let (key, text) = part.split_once("}}").unwrap_or(("", part));
-        match key {
-            "title" => page.push_str(&Escaped(title).to_string()),
-            "style" => page.push_str(style),
-            "script" => page.push_str(script),
-            "data" => page.push_str(&data),
-            _ => {}
-        }
+        page.push_str(value(key).unwrap_or_default());
         page.push_str(text);
     }
     page

@@ -5,7 +5,7 @@ use super::labels::{Labels, SPACING};
 use super::map::ROOM_ABOVE;
 use super::scene::Scene;
 use super::svg::{PathData, Pixels, Svg, text_width};
-use pcr_core::{Bounds, Curve, Interval, Motion, Segment, Turn};
+use pcr_core::{Bounds, Curve, Interval, Motion, Pose, Segment, Turn};
 use std::f64::consts::PI;
 
 /// Size of the numbers of agents \[px\].
@@ -79,30 +79,37 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
         if !arrows.is_empty() {
             svg.empty("path", &[("d", &arrows), ("fill", &colour), ("stroke", &"none")]);
         }
-        let end = motion.path().point_at(motion.path().length());
-        if motion.path().length() > 0.0 {
-            disc(svg, motion, frame, [end.x, end.y], &[("stroke-dasharray", &"2.5 2"), ("stroke-width", &"0.9")]);
+        let length = motion.path().length();
+        if length > 0.0 {
+            let dashed: Style<'_> = &[("stroke-dasharray", &"2.5 2"), ("stroke-width", &"0.9")];
+            body(svg, scene, place, motion.path().pose_at(length), frame, dashed);
         }
-        let start = motion.path().point_at(0.0);
-        disc(svg, motion, frame, [start.x, start.y], &[("fill", &colour), ("fill-opacity", &"0.35")]);
+        body(svg, scene, place, motion.path().pose_at(0.0), frame, &[("fill", &colour), ("fill-opacity", &"0.35")]);
         svg.end();
     }
     draw_numbers(svg, scene, frame);
     frame.draw_border(svg);
 }
 
-fn disc(
-    svg: &mut Svg,
-    motion: &Motion<'_, f64>,
-    frame: &Frame,
-    centre: [f64; 2],
-    style: &[(&str, &dyn std::fmt::Display)],
-) {
-    let [x, y] = frame.at(centre);
-    let radius = radius(motion, frame);
-    let (x, y, radius) = (Pixels(x), Pixels(y), Pixels(radius));
-    let place: [(&str, &dyn std::fmt::Display); 3] = [("cx", &x), ("cy", &y), ("r", &radius)];
-    svg.empty("circle", &[place.as_slice(), style].concat());
+/// Attributes.
+type Style<'a> = &'a [(&'a str, &'a dyn std::fmt::Display)];
+
+/// The disc or the outline of an agent in a pose.
+fn body(svg: &mut Svg, scene: &Scene<'_>, place: usize, pose: Pose<f64>, frame: &Frame, style: Style<'_>) {
+    let at = |ahead: f64, left: f64| {
+        let (sin, cos) = pose.heading.0.sin_cos();
+        frame.at([pose.position.x + ahead * cos - left * sin, pose.position.y + ahead * sin + left * cos])
+    };
+    if let Some(footprint) = scene.footprint(place) {
+        let mut data = PathData::default();
+        data.polygon(footprint.polygon().iter().map(|[ahead, left]| at(*ahead, *left)));
+        svg.empty("path", &[&[("d", &data as &dyn std::fmt::Display)], style].concat());
+    } else if let Some(motion) = scene.motions.get(place) {
+        let [x, y] = at(0.0, 0.0);
+        let (x, y, radius) = (Pixels(x), Pixels(y), Pixels(radius(motion, frame)));
+        let circle: Style<'_> = &[("cx", &x), ("cy", &y), ("r", &radius)];
+        svg.empty("circle", &[circle, style].concat());
+    }
 }
 
 /// Radius of a disc \[px\]; one that would not be seen is shown as a dot.

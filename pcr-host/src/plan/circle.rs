@@ -46,10 +46,16 @@ pub(super) fn circle(ecm: &HostEcm<f64>, motions: &[Motion<'_, f64>]) -> Option<
 
 /// Whether the ego has to pass the region after the other, and can.
 fn is_second(region: &RegionRef<'_, f64>) -> bool {
+    sides(region) == [true, false]
+}
+
+/// Whether the ego has to pass a region after the other agent, and whether before it, whenever they start and however they move:
+/// the region holds the end of its path or the start of the other's, or the start of its own or the end of the other's.
+pub(crate) fn sides(region: &RegionRef<'_, f64>) -> [bool; 2] {
     let length = region.length();
-    let never_first = length.hi >= region.ego_motion().path().length() || region.is_open_at_start();
-    let never_second = length.lo <= 0.0 || region.is_open_at_end();
-    never_first && !never_second
+    let after = length.hi >= region.ego_motion().path().length() || region.is_open_at_start();
+    let before = length.lo <= 0.0 || region.is_open_at_end();
+    [after, before]
 }
 
 fn gates(region: &RegionRef<'_, f64>) -> Vec<Gate> {

@@ -27,9 +27,10 @@ pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
 /// # Errors
 /// Those of the writer.
 pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
-    let Traffic { layout, seed, asked, placed, planned, .. } = traffic;
+    let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
+    writeln!(out, "{passed_over} missions passed over that no order of starts lets through with those before them")?;
     let mut columns = Columns::new(&["agent", "<from", "<to", "length [m]", "delay [s]", "t_end [s]"]);
     let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| format!("{time:.3}"));
     for mission in &traffic.missions {

@@ -10,13 +10,16 @@ use super::{Controller, FRAME, Snapshot};
 use crate::fleet::build_ecm;
 use crate::picture::contour::trace;
 use crate::picture::palette::colour;
-use crate::picture::template;
+use crate::picture::template::Page;
 use pcr_core::{Motion, RegionRef};
 use serde_json::{Value, json};
 
-const TEMPLATE: &str = include_str!("replay/replay.html");
-const STYLE: &str = include_str!("replay/replay.css");
-const SCRIPT: &str = include_str!("replay/replay.js");
+const PAGE: Page = Page {
+    kind: "replay",
+    body: include_str!("replay/replay.html"),
+    style: include_str!("replay/replay.css"),
+    script: include_str!("replay/replay.js"),
+};
 
 /// Positions are given in this unit \[m\].
 const UNIT: f64 = 1e-4;
@@ -30,7 +33,7 @@ const PIXELS: f64 = 500.0;
 /// The page for some runs of a task.
 pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
     let name = if task.name.is_empty() { "Simulation" } else { &task.name };
-    template::fill([TEMPLATE, STYLE, SCRIPT], name, &data(task, outcomes))
+    PAGE.fill(name, &data(task, outcomes))
 }
 
 fn rounded(length: f64) -> i64 {

@@ -1,5 +1,6 @@
-//! Random missions: pairs of nodes with a way between them.
+//! Random missions: pairs of nodes with a way between them, that some order of starts lets through.
 
+use super::crowd::Crowd;
 use crate::import::{Imported, Placed, mission};
 use crate::random::Random;
 use crate::scenario::Agent;
@@ -40,16 +41,27 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
+/// Missions that were drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Drawn {
+    pub(super) missions: Vec<Mission>,
+    /// How many were passed over because no order of starts would let them through.
+    pub(super) passed_over: usize,
+}
+
 /// Missions for up to `count` agents on the level that has most nodes: each from a random node to another one, so that
-/// no two agents overlap at their starts or at their ends. Fewer where there is no such pair of nodes with a way between them.
-pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Vec<Mission> {
+/// no two agents overlap at their starts or at their ends, and there is an order in which all can start. Fewer where there is no such pair
+/// of nodes with a way between them.
+pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Drawn {
     let Imported { layout, vehicle } = imported;
     let level = layout.largest_level();
     let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
     let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
     let mut random = Random(seed);
-    let mut missions: Vec<Mission> = Vec::new();
+    let mut drawn = Drawn::default();
+    let mut crowd = Crowd::default();
     for id in (1..).take(count) {
+        let missions = &drawn.missions;
         let free = &|end: usize, node: usize| {
             let apart = |mission: &Mission| distance(layout.nodes[mission.ends[end]].at, layout.nodes[node].at) > reach;
             missions.iter().all(apart)
@@ -63,8 +75,15 @@ pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Vec<Mission>
         let possible = pairs.filter_map(|ends| Some(Mission { ends, agent: mission(imported, id, ends).ok()?? }));
         let clear =
             |drawn: &Mission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
-        let Some(drawn) = possible.into_iter().find(clear) else { break };
-        missions.push(drawn);
+        let mut passed_over = 0;
+        let found = possible.into_iter().filter(clear).find(|mission| {
+            let joins = crowd.add(&mission.agent);
+            passed_over += usize::from(!joins);
+            joins
+        });
+        drawn.passed_over += passed_over;
+        let Some(mission) = found else { break };
+        drawn.missions.push(mission);
     }
-    missions
+    drawn
 }

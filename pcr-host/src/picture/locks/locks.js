@@ -58,12 +58,13 @@ function show(k) {
     return;
   }
   const edge = data.edges[k];
-  make(overlay, "path", { d: edge.path, class: "corridor", "stroke-width": 2 * STEPS * edge.radius });
+  const corridor = make(overlay, "g", { class: "corridor" });
+  for (const [d, width] of edge.corridor) make(corridor, "path", { d, "stroke-width": width });
   for (const [other, , lengths] of blocks[k]) {
     const blocked = data.edges[other];
     if (blocked.path === "") continue;
     // The part between two lengths, as a dash of the whole path.
-    const mark = { d: blocked.path, class: "blocked", "stroke-width": 0.5 * STEPS * edge.radius };
+    const mark = { d: blocked.path, class: "blocked", "stroke-width": 0.5 * STEPS * data.radius };
     if (blocked.length > 0) {
       const [from, to] = lengths;
       mark.pathLength = blocked.length;
@@ -75,11 +76,18 @@ function show(k) {
   const chosen = make(overlay, "path", { d: edge.path, class: "chosen" });
   const end = chosen.getTotalLength();
   if (end > 0) {
-    // The direction of travel, at its end.
-    const [tip, from] = [chosen.getPointAtLength(end), chosen.getPointAtLength(end * 0.99)];
-    const turn = Math.atan2(tip.y - from.y, tip.x - from.x) * 180 / Math.PI;
-    const size = STEPS * edge.radius;
-    make(overlay, "path", { d: "M0 0l-1 .6v-1.2z", class: "arrow", transform: `translate(${tip.x} ${tip.y}) rotate(${turn}) scale(${size})` });
+    // The direction of travel at its end, and the vehicle there and at its start.
+    const place = (at, from, to) => {
+      const turn = Math.atan2(to.y - from.y, to.x - from.x) * 180 / Math.PI;
+      return `translate(${at.x} ${at.y}) rotate(${turn})`;
+    };
+    const [start, first, last, tip] = [0, 0.01, 0.99, 1].map((share) => chosen.getPointAtLength(end * share));
+    for (const transform of [place(start, start, first), place(tip, last, tip)]) {
+      if (data.footprint.length > 0) make(overlay, "polygon", { points: data.footprint.join(" "), class: "vehicle", transform });
+      else make(overlay, "circle", { r: STEPS * data.radius, class: "vehicle", transform });
+    }
+    const size = 0.6 * STEPS * data.radius;
+    make(overlay, "path", { d: "M0 0l-1 .6v-1.2z", class: "arrow", transform: `${place(tip, last, tip)} scale(${size})` });
   }
   text(about, "h2", "Edge " + edge.id);
   const same = line_of[k].filter((other) => other !== k);
@@ -116,7 +124,7 @@ function draw() {
     if (edge.level !== at) return;
     text(choice, "option", edge.id).value = String(k);
     if (edge.path === "") return;
-    make(corridors, "path", { d: edge.path, "stroke-width": 2 * STEPS * edge.radius });
+    for (const [d, width] of edge.corridor) make(corridors, "path", { d, "stroke-width": width });
     make(lines, "path", { d: edge.path, class: "edge" });
     const target = make(targets, "path", { d: edge.path, class: "target" });
     target.addEventListener("pointerenter", () => { if (pinned === null) show(k); });
@@ -138,7 +146,8 @@ function draw() {
 data.levels.forEach((name, k) => { text(level, "option", name === "" ? "1" : name).value = String(k); });
 document.getElementById("level-label").hidden = data.levels.length < 2;
 document.getElementById("summary").textContent =
-  data.edges.length + " edges, " + data.nodes.length + " nodes, " + data.locks.length + " locks for a disc of " + data.radius + " m";
+  data.edges.length + " edges, " + data.nodes.length + " nodes, " + data.locks.length + " locks for " +
+  (data.footprint.length > 0 ? "a footprint of " + data.footprint.length + " corners" : "a disc of " + data.radius + " m");
 level.addEventListener("change", draw);
 choice.addEventListener("change", () => { pinned = choice.value === "" ? null : Number(choice.value); show(pinned); });
 svg.addEventListener("click", () => { pinned = null; show(null); });

@@ -27,8 +27,8 @@ function lengthAt(agent, time) {
   return length + Math.min(Math.max(slows ? all - way : way, 0), all);
 }
 
-// Point at a length of the path: on an arc over its half chord.
-function pointAt(agent, length) {
+// Point and heading at a length of the path: on an arc over its half chord.
+function poseAt(agent, length) {
   let low = 0;
   for (let high = agent.segments.length; high - low > 1;) {
     const middle = (low + high) >> 1;
@@ -36,13 +36,20 @@ function pointAt(agent, length) {
   }
   const [from, whole, x, y, heading, bend] = agent.segments[low];
   const u = Math.min(Math.max(length - from, 0), whole);
-  if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading)];
+  if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading), heading];
   const half = u / bend / 2;
   const chord = 2 * bend * Math.sin(half);
-  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half)];
+  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), heading + 2 * half];
 }
 
-const positionAt = (agent, time) => pointAt(agent, lengthAt(agent, time));
+// Of an outline that is no disc each of its discs counts.
+function touch(a, [x, y, heading], b, [u, v, other]) {
+  if (Math.hypot(x - u, y - v) > a.radius + b.radius) return false;
+  const placed = (agent, x, y, heading) => agent.discs.map(([ahead, left, radius]) =>
+    [x + ahead * Math.cos(heading) - left * Math.sin(heading), y + ahead * Math.sin(heading) + left * Math.cos(heading), radius]);
+  const others = placed(b, u, v, other);
+  return placed(a, x, y, heading).some(([x, y, r]) => others.some(([u, v, s]) => Math.hypot(x - u, y - v) <= r + s));
+}
 
 // ---- Drawing ----
 
@@ -102,6 +109,9 @@ function frame(svg, xs, ys, width, height, titles) {
 const discs = [], paths = [];
 let cursor = null;
 
+// The heading of a pose as the screen turns it.
+const degrees = ([, , heading]) => -heading * 180 / Math.PI;
+
 function drawWorkspace() {
   const [x0, x1, y0, y1] = data.bounds;
   // Below this extent ticks could not be told apart.
@@ -116,28 +126,32 @@ function drawWorkspace() {
   const view = frame($("workspace"), xs, ys, width, height, ["x [m]", "y [m]"]);
   const screen = ([x, y]) => [view.x.at(x), view.y.at(y)];
   const radius = (agent) => Math.max(agent.radius * metre, 2);
+  // The outline around the point that travels; y points down.
+  const outline = (parent, agent, attributes) => agent.outline.length > 0
+    ? element(parent, "polygon", { ...attributes, points: agent.outline.map(([ahead, left]) => [ahead * metre, -left * metre]).join(" ") })
+    : element(parent, "circle", { ...attributes, r: radius(agent) });
   agents.forEach((agent, k) => {
     const group = element(view.content, "g", { class: "agent", style: `--colour:${agent.colour}` });
-    let d = "M" + screen(pointAt(agent, 0)).join(" ");
+    let d = "M" + screen(poseAt(agent, 0)).join(" ");
     for (const [from, length, , , , bend] of agent.segments) {
       // Below half a turn two points and a radius leave no doubt which arc is meant.
       const parts = bend === 0 ? 1 : Math.max(1, Math.ceil(length / Math.abs(bend) / (0.75 * Math.PI)));
       for (let part = 1; part <= parts; part += 1) {
-        const end = screen(pointAt(agent, from + length * part / parts)).join(" ");
+        const end = screen(poseAt(agent, from + length * part / parts)).join(" ");
         const size = Math.abs(bend) * metre;
         d += bend === 0 ? `L${end}` : `A${size} ${size} 0 0 ${bend < 0 ? 1 : 0} ${end}`;
       }
     }
     element(group, "path", { class: "path", d });
-    const [cx, cy] = screen(pointAt(agent, agent.length));
-    element(group, "circle", { class: "end", cx, cy, r: radius(agent) });
+    const end = poseAt(agent, agent.length);
+    outline(group, agent, { class: "end", transform: `translate(${screen(end).join(" ")}) rotate(${degrees(end)})` });
     paths.push(group);
   });
   agents.forEach((agent, k) => {
     const disc = element(view.content, "g", {
       class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.id}`,
     });
-    element(disc, "circle", { r: radius(agent) });
+    outline(disc, agent, { class: "outline" });
     element(disc, "text", {}, agent.id);
     disc.addEventListener("click", () => selectEgo(k));
     disc.addEventListener("keydown", (event) => { if (onKey(event)) selectEgo(k); });
@@ -205,7 +219,7 @@ function drawMap() {
     span: `${view.top}V${view.bottom}`,
   };
   const count = map.regions.length;
-  $("caption").textContent = `Extended collision map of agent ${ego.id}: ${count} region${count === 1 ? "" : "s"}, labelled by the`
+  $("caption").textContent = `Extended collision map of agent ${ego.id}: ${count} region${count === 1 ? "" : "s"}${data.outlines ? " of the discs around all outlines" : ""}, labelled by the`
     + " other agent; dashed strips are agents that stand at their start or end. Point at a region, or press Tab, to read about it.";
 }
 
@@ -261,18 +275,18 @@ function describe(region) {
 // ---- Time ----
 
 function showTime() {
-  const points = agents.map((agent) => positionAt(agent, state.time));
+  const poses = agents.map((agent) => poseAt(agent, lengthAt(agent, state.time)));
   const hit = agents.map(() => false);
   for (let i = 0; i < agents.length; i += 1) {
     if (!state.shown[i]) continue;
     for (let j = 0; j < i; j += 1) {
-      const apart = Math.hypot(points[i][0] - points[j][0], points[i][1] - points[j][1]);
-      if (state.shown[j] && apart <= agents[i].radius + agents[j].radius) hit[i] = hit[j] = true;
+      if (state.shown[j] && touch(agents[i], poses[i], agents[j], poses[j])) hit[i] = hit[j] = true;
     }
   }
   discs.forEach((disc, k) => {
-    const [x, y] = drawWorkspace.screen(points[k]);
+    const [x, y] = drawWorkspace.screen(poses[k]);
     disc.setAttribute("transform", `translate(${x} ${y})`);
+    disc.firstElementChild.setAttribute("transform", `rotate(${degrees(poses[k])})`);
     disc.classList.toggle("hit", hit[k]);
   });
   if (cursor) {

@@ -1,0 +1,79 @@
+//! Agents that can all arrive if they start in some order.
+//!
+//! A region of two agents that holds the start of one, or the end of the other, is passed by the first before the second, whenever they
+//! start. Where two have to go before one another, or all around a circle, there is no order.
+
+use crate::fleet::build_ecm_of;
+use crate::footprint::Bodies;
+use crate::plan::sides;
+use crate::scenario::{Agent, Scenario};
+use pcr_core::Motion;
+
+/// More room than agents have in plans and checks \[m\]: what is decided here holds there.
+const ROOM: f64 = 1e-6;
+
+/// Agents, each with those that have to start after it.
+#[derive(Default)]
+pub(super) struct Crowd {
+    agents: Vec<Bodies<f64>>,
+    after: Vec<Vec<usize>>,
+}
+
+impl Crowd {
+    /// Adds an agent if there still is an order for all; returns whether there is.
+    pub(super) fn add(&mut self, agent: &Agent) -> bool {
+        let alone = Scenario { name: String::new(), agents: vec![agent.clone()] };
+        // What cannot be computed with is not in anybody's way, and no mission.
+        let Ok(bodies) = Bodies::<f64>::new(&alone) else { return false };
+        let Some([before, after]) = self.order(&bodies) else { return false };
+        // Whom those after it lead to, and whom they again: nobody who has to come before it.
+        let mut reached = vec![false; self.agents.len()];
+        let mut open = after.clone();
+        while let Some(next) = open.pop() {
+            if !std::mem::replace(&mut reached[next], true) {
+                open.extend(&self.after[next]);
+            }
+        }
+        if before.iter().any(|&agent| reached[agent]) {
+            return false;
+        }
+        before.iter().for_each(|&agent| self.after[agent].push(self.agents.len()));
+        self.agents.push(bodies);
+        self.after.push(after);
+        true
+    }
+
+    /// Those that have to start before an agent and after it, none where some have to do both.
+    fn order(&self, agent: &Bodies<f64>) -> Option<[Vec<usize>; 2]> {
+        let others: Vec<(usize, Motion<'_, f64>)> = self
+            .agents
+            .iter()
+            .enumerate()
+            .flat_map(|(k, bodies)| grown(bodies).map(move |motion| (k, motion)))
+            .collect();
+        let mut marks = [vec![false; self.agents.len()], vec![false; self.agents.len()]];
+        for own in grown(agent) {
+            let pair: Vec<Motion<'_, f64>> =
+                std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
+            let ecm = build_ecm_of(&pair, 0).ok()?;
+            for region in ecm.row(&pair, 0) {
+                let Some((other, _)) = others.get(region.other().wrapping_sub(1)) else { continue };
+                let [goes_after, goes_before] = sides(&region);
+                marks[0][*other] |= goes_after;
+                marks[1][*other] |= goes_before;
+            }
+        }
+        let both = marks[0].iter().zip(&marks[1]).any(|(before, after)| *before && *after);
+        let places = |side: &Vec<bool>| (0..side.len()).filter(|&agent| side[agent]).collect();
+        (!both).then(|| [places(&marks[0]), places(&marks[1])])
+    }
+}
+
+/// The motions of the discs of an agent, with their margins and a little more.
+fn grown(bodies: &Bodies<f64>) -> impl Iterator<Item = Motion<'_, f64>> {
+    bodies
+        .fleet
+        .motions()
+        .into_iter()
+        .map(|motion| motion.with_margin(motion.margin() + ROOM).unwrap_or(motion).inflated())
+}

@@ -1,0 +1,222 @@
+//! Locks of vehicles with outlines, against their polygons in many poses on the edges and in the turns at their ends.
+
+use pcr_host::footprint::Footprint;
+use pcr_host::import::{Edge, Format, Imported, KINK, Layout, Options, Warnings, layout};
+use pcr_host::locks::{Lock, Locks};
+use pcr_host::scenario::PathSegment;
+use pcr_tests::polygons::{Point, Polygon, apart, placed};
+use std::f64::consts::PI;
+
+const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
+const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
+const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
+
+/// Longer than wide, its reference point nearer to one end.
+const FORK: [Point; 4] = [[-0.4, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.4, 0.3]];
+
+/// A route graph with one-way edges.
+const GRAPH: &str = if cfg!(debug_assertions) { SAMPLE } else { WAREHOUSE };
+
+/// Poses of each edge, and of each turn.
+const POSES: usize = if cfg!(debug_assertions) { 6 } else { 16 };
+
+fn read(format: Format, text: &str, footprint: Option<Footprint>) -> Imported {
+    let radius = footprint.as_ref().map_or(0.5, Footprint::reach);
+    let options = Options { radius: Some(radius), ..Options::default() };
+    let mut imported = layout(format, text, &options, &mut Warnings::default()).unwrap();
+    imported.vehicle.footprint = footprint;
+    imported
+}
+
+/// A length on an edge, where that is, and the heading there.
+#[derive(Clone, Copy)]
+struct Pose(f64, Point, f64);
+
+/// On an edge at a length, travelled forward.
+fn on(edge: &Edge, length: f64) -> Pose {
+    let mut rest = length;
+    let mut last = Pose(0.0, [0.0; 2], 0.0);
+    for piece in &edge.curve {
+        let u = rest.clamp(0.0, piece.shape.length());
+        let ([x, y], (sin, cos)) = (piece.at, piece.heading.sin_cos());
+        let (along, across, turned) = match piece.shape {
+            PathSegment::Line { .. } => (u, 0.0, 0.0),
+            PathSegment::Arc { radius, sweep } => {
+                let angle = u / radius;
+                (radius * angle.sin(), (radius * (1.0 - angle.cos())).copysign(sweep), angle.copysign(sweep))
+            }
+        };
+        last = Pose(length, [x + along * cos - across * sin, y + along * sin + across * cos], piece.heading + turned);
+        if rest <= piece.shape.length() {
+            break;
+        }
+        rest -= piece.shape.length();
+    }
+    last
+}
+
+/// The directions in which an edge may be travelled: the nodes from and to which, and the headings there.
+fn ways(edge: &Edge) -> Vec<([usize; 2], [f64; 2])> {
+    let [start, end] = [on(edge, 0.0).2, on(edge, edge.length()).2];
+    let [from, to] = edge.ends;
+    let back = edge.two_way.then_some(([to, from], [end + PI, start + PI]));
+    [([from, to], [start, end])].into_iter().chain(back).collect()
+}
+
+fn within_half_turn(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(2.0 * PI) - PI
+}
+
+/// Poses on an edge, those of both directions, and those of the turns from and to the edges at its ends.
+fn poses(layout: &Layout, edge: &Edge) -> Vec<Pose> {
+    let length = edge.length();
+    let steps = || (0..=POSES).map(|k| k as f64 / POSES as f64);
+    let mut poses = Vec::new();
+    for ([from, to], [start, end]) in ways(edge) {
+        let backward = from != edge.ends[0];
+        for share in steps() {
+            let Pose(at, point, heading) = on(edge, share * length);
+            poses.push(Pose(at, point, if backward { heading + PI } else { heading }));
+        }
+        let mut turn = |node: usize, from: &[f64], to: &[f64]| {
+            let pairs = || from.iter().flat_map(|a| to.iter().map(move |b| (*a, within_half_turn(b - a))));
+            let at = if node == edge.ends[0] { 0.0 } else { length };
+            // It goes back only where there is no other way.
+            let on_ways: Vec<_> = pairs().filter(|(_, turn)| turn.abs() <= PI - KINK).collect();
+            let turns: Vec<_> =
+                if on_ways.is_empty() { pairs().map(|(a, _)| (a, 2.0 * PI)).collect() } else { on_ways };
+            for (from, turn) in turns {
+                poses.extend(steps().map(|share| Pose(at, on(edge, at).1, from + turn * share)));
+            }
+        };
+        let others = || layout.edges.iter().flat_map(ways);
+        let arriving: Vec<f64> =
+            others().filter(|(ends, _)| ends[1] == from).map(|(_, headings)| headings[1]).collect();
+        let leaving: Vec<f64> = others().filter(|(ends, _)| ends[0] == to).map(|(_, headings)| headings[0]).collect();
+        turn(from, &arriving, &[start]);
+        turn(to, &[end], &leaving);
+    }
+    poses
+}
+
+fn outlines(poses: &[Pose]) -> Vec<(f64, Point, Polygon)> {
+    poses.iter().map(|&Pose(length, at, heading)| (length, at, placed(&FORK, at, heading))).collect()
+}
+
+fn within([lo, hi]: [f64; 2], x: f64) -> bool {
+    lo - 1e-9 <= x && x <= hi + 1e-9
+}
+
+/// Compares the locks of a layout with polygons in many poses; returns how many pairs of poses overlap.
+fn compare(imported: &Imported) -> usize {
+    let layout = &imported.layout;
+    let locks = Locks::of(imported, false).unwrap().locks;
+    let footprint = imported.vehicle.footprint.as_ref().unwrap();
+    let mut edges: Vec<&Edge> = layout.edges.iter().filter(|edge| edge.length() > 0.0).collect();
+    edges.sort_by(|a, b| a.id.cmp(&b.id));
+    let swept: Vec<_> = edges.iter().map(|edge| outlines(&poses(layout, edge))).collect();
+    let mut overlaps = 0;
+    for (k, a) in edges.iter().enumerate() {
+        for (m, b) in edges.iter().enumerate().skip(k + 1) {
+            if layout.level(a) != layout.level(b) {
+                continue;
+            }
+            let own: Vec<&Lock> = locks.iter().filter(|lock| (&lock.a, &lock.b) == (&a.id, &b.id)).collect();
+            let deviation = a.deviation + b.deviation;
+            for (length, at, outline) in &swept[k] {
+                for (other, there, other_outline) in &swept[m] {
+                    let distance = (at[0] - there[0]).hypot(at[1] - there[1]);
+                    if distance > 2.0 * footprint.reach() || apart(outline, other_outline) > 0.0 {
+                        continue;
+                    }
+                    overlaps += 1;
+                    let there = own.iter().any(|lock| within(lock.a_length, *length) && within(lock.b_length, *other));
+                    assert!(there, "{} at {length}, {} at {other}: no lock", a.id, b.id);
+                }
+            }
+            // Half the way between two poses of the other edge, and what the cover and the curves are off.
+            let coarse = 0.5 * (b.length() + PI * footprint.reach()) / POSES as f64;
+            for lock in own {
+                for end in lock.a_length.into_iter().filter(|end| *end > 1e-6 && *end < a.length() - 1e-6) {
+                    let ways = ways(a).len();
+                    let Pose(_, at, heading) = on(a, end);
+                    let nearest = (0..ways).map(|way| placed(&FORK, at, heading + way as f64 * PI));
+                    let nearest = nearest.flat_map(|own| swept[m].iter().map(move |(_, _, other)| apart(&own, other)));
+                    let nearest = nearest.fold(f64::INFINITY, f64::min);
+                    let most = 2.0 * footprint.overhang() + deviation + coarse + 1e-6;
+                    assert!(nearest <= most, "{} at {end}, {}: {nearest} of {most}", a.id, b.id);
+                }
+            }
+        }
+    }
+    overlaps
+}
+
+fn fork() -> Footprint {
+    Footprint::new(FORK.to_vec(), None).unwrap()
+}
+
+#[test]
+fn no_overlap_of_polygons_is_without_a_lock() {
+    for (format, text) in [(Format::Nav2, GRAPH), (Format::Lif, CURVES), (Format::Rmf, OFFICE)] {
+        let overlaps = compare(&read(format, text, Some(fork())));
+        assert!(overlaps > 100, "{format}: {overlaps}");
+    }
+}
+
+/// Locks of an outline are within those of the disc around it, and block less.
+#[test]
+fn an_outline_blocks_less_than_the_disc_around_it() {
+    let locks = |footprint: Option<Footprint>| {
+        let mut imported = read(Format::Nav2, GRAPH, footprint);
+        imported.vehicle.radius = fork().reach();
+        Locks::of(&imported, false).unwrap().locks
+    };
+    let (outline, disc) = (locks(Some(fork())), locks(None));
+    for lock in &outline {
+        let holds = |other: &&Lock| {
+            let around = |[lo, hi]: [f64; 2], [from, to]: [f64; 2]| lo - 1e-6 <= from && to <= hi + 1e-6;
+            (&other.a, &other.b) == (&lock.a, &lock.b)
+                && around(other.a_length, lock.a_length)
+                && around(other.b_length, lock.b_length)
+        };
+        assert!(disc.iter().any(|other| holds(&other)), "{lock:?}");
+    }
+    let blocked = |locks: &[Lock]| {
+        let area = |lock: &Lock| [lock.a_length, lock.b_length].map(|[lo, hi]| hi - lo).iter().product::<f64>();
+        locks.iter().map(area).sum::<f64>()
+    };
+    let share = blocked(&outline) / blocked(&disc);
+    println!("{} locks, {} of the disc; {share:.3} of what that blocks", outline.len(), disc.len());
+    assert!((0.3..0.95).contains(&share), "{share}");
+}
+
+/// A vehicle at a node may have any heading: it blocks what the disc around it does, but for the overhang.
+#[test]
+fn a_vehicle_at_a_node_may_have_any_heading() {
+    let imported = read(Format::Nav2, GRAPH, Some(fork()));
+    let table = Locks::of(&imported, true).unwrap();
+    let layout = &imported.layout;
+    let (nodes, reach) = (table.nodes.unwrap(), fork().reach());
+    for node in &layout.nodes {
+        for edge in layout.edges.iter().filter(|edge| edge.length() > 0.0) {
+            let lengths: Vec<_> = nodes.iter().filter(|lock| lock.node == node.id && lock.edge == edge.id).collect();
+            for share in 0..=20 {
+                let Pose(length, at, heading) = on(edge, edge.length() * f64::from(share) / 20.0);
+                if (at[0] - node.at[0]).hypot(at[1] - node.at[1]) > 2.0 * reach {
+                    continue;
+                }
+                let outline = placed(&FORK, at, heading);
+                let headings = (0..36).map(|k| placed(&FORK, node.at, f64::from(k) * PI / 18.0));
+                let meets = headings.into_iter().any(|there| apart(&there, &outline) == 0.0);
+                assert!(
+                    !meets || lengths.iter().any(|lock| within(lock.edge_length, length)),
+                    "{} {}",
+                    node.id,
+                    edge.id
+                );
+            }
+        }
+    }
+}
