@@ -3,7 +3,7 @@
 //! Two vehicles are anywhere on two edges. The lengths (l₁, l₂) at which their discs overlap are the collision regions of the two
 //! edges in coordination space: the kernels of the library find them, whatever the motions. The extents of a connected region
 //! are the lengths within which one edge is blocked while the other is used. They contain the true ones, the deviation of arcs from the
-//! curves of the file included. A footprint is the union of its discs in every pose that the vehicle has on an edge ([`rides`]); extents that
+//! curves of the file included. A footprint is the union of its discs in every pose that the vehicle has on an edge, its turns at both ends included; extents that
 //! overlap are joined, so that the locks of two edges are apart. A vehicle that stops or turns at a node is at the end of an edge, so
 //! that nodes are part of their edges; on their own they can be asked for.
 
