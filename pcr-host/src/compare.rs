@@ -9,6 +9,9 @@
 //! polyline   flattened paths, closed-form discs piece by piece
 //! casts      generic continuous collision detection     (feature `peers`)
 //! mesh       proximity of meshes, sample by sample      (feature `peers`)
+//! program    libraries in C++, as programs beside this  (feature `peers`)
+//! fcl        proximity of meshes by FCL                 (feature `peers`)
+//! box2d      the time of impact of Box2D                (feature `peers`)
 //! crowd      random fleets of any size
 //! errors     an answer against the reference
 //! measure    times, in rounds                               Comparison
@@ -20,15 +23,21 @@
 //! method, and of its time.
 
 #[cfg(feature = "peers")]
+mod box2d;
+#[cfg(feature = "peers")]
 mod casts;
 mod chart;
 mod crowd;
 mod errors;
+#[cfg(feature = "peers")]
+mod fcl;
 pub(crate) mod measure;
 #[cfg(feature = "peers")]
 mod mesh;
 mod pcr;
 mod polyline;
+#[cfg(feature = "peers")]
+mod program;
 pub mod reference;
 pub(crate) mod sampled;
 pub(crate) mod stopwatch;
@@ -36,7 +45,7 @@ mod track;
 
 pub use crowd::crowd;
 pub use errors::Errors;
-pub use measure::{Comparison, Effort, Row};
+pub use measure::{Absent, Comparison, Effort, Row};
 pub use track::Track;
 
 use crate::fleet::{Fleet, Format, Refused};
@@ -44,6 +53,8 @@ use crate::scenario::Scenario;
 use pcr_core::{Interval, Motion};
 use pcr_fixed::Q16;
 use serde::Serialize;
+use std::hint::black_box;
+use stopwatch::Stopwatch;
 
 /// A fleet, in every form that a method starts from.
 #[derive(Debug)]
@@ -141,11 +152,21 @@ pub(crate) trait Method: Sync {
     fn is_parallel(&self) -> bool {
         false
     }
+    /// What it needs and is not there.
+    fn missing(&self) -> Option<&'static str> {
+        None
+    }
     /// The answer; `None` for a fleet beyond its limits.
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>>;
+    /// The time that the answer takes \[s\], and the answer.
+    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
+        let clock = Stopwatch::start();
+        let answer = black_box(self.answer(black_box(field)));
+        (if self.is_parallel() { clock.wall() } else { clock.elapsed() }, answer)
+    }
 }
 
-/// All methods, pcr on one core first for each question: what the others are compared with.
+/// All methods, those that lack something too; pcr on one core first for each question: what the others are compared with.
 pub(crate) fn methods() -> Vec<Box<dyn Method>> {
     let mut methods = pcr::regions();
     methods.extend(sampled::methods());
@@ -154,8 +175,24 @@ pub(crate) fn methods() -> Vec<Box<dyn Method>> {
     #[cfg(feature = "peers")]
     methods.extend(casts::methods());
     #[cfg(feature = "peers")]
+    methods.extend(box2d::methods());
+    #[cfg(feature = "peers")]
     methods.extend(mesh::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(fcl::methods());
     methods
+}
+
+/// Libraries in C++ that methods use, with their versions, or that they are left out.
+#[cfg(feature = "peers")]
+pub(crate) fn libraries() -> Vec<String> {
+    [program::Program::FCL, program::Program::BOX2D].map(program::Program::library).into()
+}
+
+/// The same: none.
+#[cfg(not(feature = "peers"))]
+pub(crate) fn libraries() -> Vec<String> {
+    vec!["built without the feature `peers`".into()]
 }
 
 /// A number format with a fleet in it.

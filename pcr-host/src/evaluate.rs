@@ -21,6 +21,7 @@ mod shares;
 mod traffic;
 
 use crate::compare::Effort;
+use crate::import::{self, Format, Imported, Options, Warnings};
 use crate::regions::Failure;
 use crate::scenario::Scenario;
 use std::path::{Path, PathBuf};
@@ -147,8 +148,12 @@ struct Fleet {
     memory: &'static str,
 }
 
-/// All of them, and the directory with the data.
-struct Fleets(Vec<Fleet>, PathBuf);
+/// All of them.
+struct Fleets {
+    all: Vec<Fleet>,
+    /// The directory with the data.
+    data: PathBuf,
+}
 
 /// File; agents and regions, times \[ms\], and memory as the paper prints them.
 const TABLE_VI: [(&str, [usize; 2], [f64; 3], &str); 6] = [
@@ -173,11 +178,22 @@ impl Fleets {
             let scenario = Scenario::from_json(&text).map_err(|error| Problem::File(path, error.to_string()))?;
             Ok(Fleet { scenario, size, paper, memory })
         };
-        Ok(Self(rows.iter().map(fleet).collect::<Result<_, Problem>>()?, data.to_path_buf()))
+        Ok(Self { all: rows.iter().map(fleet).collect::<Result<_, Problem>>()?, data: data.to_owned() })
+    }
+
+    /// The route graph of nav2's warehouse, with discs of this radius \[m\].
+    fn warehouse(&self, radius: f64) -> Result<Imported, Problem> {
+        let path = self.data.join("real/nav2/warehouse_graph.geojson");
+        let problem = |problem: String| Problem::File(path.clone(), problem);
+        let text = fs::read_to_string(&path).map_err(|error| problem(format!("cannot be read: {error}")))?;
+        let options = Options { radius: Some(radius), ..Options::default() };
+        // What it assumes about speeds goes for all agents alike.
+        let imported = import::roads(Format::Nav2, &text, &options, &mut Warnings::default());
+        imported.map_err(|error| problem(error.to_string()))
     }
 
     /// The paper's 12 agents.
     fn paper12(&self) -> Option<&Fleet> {
-        self.0.iter().find(|fleet| fleet.size == [12, 126])
+        self.all.iter().find(|fleet| fleet.size == [12, 126])
     }
 }

@@ -112,20 +112,15 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
     files.into_iter().map(write).collect()
 }
 
-/// The map of an agent, as SVG: by itself, or its outlines over bars.
+/// The collision map of an agent over what a sampled map says, as SVG.
 ///
 /// # Errors
-/// As [`write`].
-pub(crate) fn map(scenario: &Scenario, ego: usize, over: Option<&Overlay<'_>>) -> io::Result<String> {
-    with_scene(scenario, None, |scene| {
-        Ok(match over {
-            None => map::picture(scene, ego),
-            Some(overlay) => overlay::picture(scene, ego, overlay),
-        })
-    })
+/// As [`write`], without the files.
+pub(crate) fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Result<String> {
+    with_scene(scenario, None, |scene| Ok(overlay::picture(scene, ego, overlay)))
 }
 
-/// The workspace on a layout beside the map of the agent with the most regions, as SVG.
+/// The workspace, on the ground if there is one, beside the map of the agent with the most regions, as SVG.
 ///
 /// # Errors
 /// As [`write`].

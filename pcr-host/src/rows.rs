@@ -1,6 +1,9 @@
 //! Collision regions of fleets of any size, an agent at a time: a row is the table of an agent with those after it that
 //! come near. Rows are independent of one another: they are computed on all cores, and a fleet of which no table would fit
 //! into memory can be worked through row by row.
+//!
+//! Agents are taken along a curve that fills the plane, so that the paths of neighbours are still in the cache, and each thread
+//! has one row, whose storage it keeps.
 
 mod grid;
 
@@ -19,17 +22,40 @@ pub struct Row<'a, S: Format> {
     table: HostEcm<S>,
 }
 
+impl<S: Format> Default for Row<'_, S> {
+    fn default() -> Self {
+        Self { agents: Vec::new(), motions: Vec::new(), table: HostEcm::new(Vec::new(), Vec::new()) }
+    }
+}
+
 impl<'a, S: Format> Row<'a, S> {
     /// The row of `ego` with these agents.
     ///
     /// # Errors
     /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 65535 pieces.
     pub fn new(motions: &[Motion<'a, S>], ego: usize, others: &[u32]) -> Result<Self, Full> {
-        let mut agents = vec![ego as u32];
-        agents.extend_from_slice(others);
-        let motions: Vec<_> = agents.iter().filter_map(|&agent| motions.get(agent as usize).copied()).collect();
-        let table = table_of(&motions, 0, [2 * agents.len(), 3 * agents.len()])?;
-        Ok(Self { agents, motions, table })
+        let mut row = Self::default();
+        row.fill(motions, ego, others)?;
+        Ok(row)
+    }
+
+    /// Becomes the row of `ego` with these agents, in the storage that it has.
+    fn fill(&mut self, motions: &[Motion<'a, S>], ego: usize, others: &[u32]) -> Result<(), Full> {
+        self.agents.clear();
+        self.agents.push(ego as u32);
+        self.agents.extend_from_slice(others);
+        self.motions.clear();
+        self.motions.extend(self.agents.iter().filter_map(|&agent| motions.get(agent as usize)));
+        // All that is in the table belongs to the agent of the row.
+        self.table.remove(0);
+        match self.table.insert(&self.motions, 0) {
+            Err(Full::Regions | Full::Pieces) => {
+                let agents = self.agents.len();
+                self.table = table_of(&self.motions, 0, [2 * agents, 3 * agents])?;
+                Ok(())
+            }
+            done => done,
+        }
     }
 
     /// Numbers in the fleet: the agent, then those that come near it.
@@ -63,20 +89,47 @@ pub fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
     [left - reach, bottom - reach, right + reach, top + reach]
 }
 
-/// All rows, one after the other to `take`, which is called from several threads, in no order. O(agents + regions) for fleets of
-/// constant density.
+/// Rows one after the other, in one storage.
+#[derive(Debug)]
+pub struct Walk<'m, 'a, S: Format> {
+    motions: &'m [Motion<'a, S>],
+    grid: &'m Grid,
+    near: Vec<u32>,
+    row: Row<'a, S>,
+}
+
+impl<'m, 'a, S: Format> Walk<'m, 'a, S> {
+    /// Through a fleet with the index of [`grid`].
+    pub fn new(motions: &'m [Motion<'a, S>], grid: &'m Grid) -> Self {
+        Self { motions, grid, near: Vec::new(), row: Row::default() }
+    }
+
+    /// The row of an agent.
+    ///
+    /// # Errors
+    /// As [`Row::new`].
+    pub fn row(&mut self, ego: usize) -> Result<&Row<'a, S>, Full> {
+        self.grid.after(ego, &mut self.near);
+        self.row.fill(self.motions, ego, &self.near)?;
+        Ok(&self.row)
+    }
+}
+
+/// All rows to `take`, which is called from several threads, in no order. O(agents + regions) for fleets of constant density.
 ///
 /// # Errors
 /// As [`Row::new`].
-pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(usize, Row<'a, S>) + Sync) -> Result<(), Full> {
+pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(&Row<'a, S>) + Sync) -> Result<(), Full> {
     let grid = grid(motions);
-    // Neighbours one after the other: they are still in the cache.
-    grid.order().into_par_iter().try_for_each(|ego| {
-        let ego = ego as usize;
-        take(ego, Row::new(motions, ego, &grid.after(ego))?);
+    let walk = || Walk::new(motions, &grid);
+    grid.order().into_par_iter().with_min_len(STRETCH).try_for_each_init(walk, |walk, ego| {
+        take(walk.row(ego as usize)?);
         Ok(())
     })
 }
+
+/// Agents that a thread takes at once, neighbours of one another.
+const STRETCH: usize = 64;
 
 /// All rows, by their agents, computed on all cores.
 ///
@@ -84,5 +137,11 @@ pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(usize, Row<'
 /// As [`Row::new`].
 pub fn rows<'a, S: Format>(motions: &[Motion<'a, S>]) -> Result<Vec<Row<'a, S>>, Full> {
     let grid = grid(motions);
-    (0..motions.len()).into_par_iter().map(|ego| Row::new(motions, ego, &grid.after(ego))).collect()
+    (0..motions.len())
+        .into_par_iter()
+        .map_init(Vec::new, |near, ego| {
+            grid.after(ego, near);
+            Row::new(motions, ego, near)
+        })
+        .collect()
 }

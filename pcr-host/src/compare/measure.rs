@@ -2,12 +2,10 @@
 //! for a while slows all of them down. A ratio is the median of the ratios of the rounds.
 
 use super::errors::{Errors, Truth, errors};
-use super::stopwatch::Stopwatch;
 use super::{Answer, Field, Input, Method, Question, methods};
 use crate::fleet::Refused;
 use crate::scenario::Scenario;
 use serde::Serialize;
-use std::hint::black_box;
 
 /// How much time a comparison may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +27,17 @@ pub struct Comparison {
     pub agents: usize,
     /// By the question, pcr first.
     pub rows: Vec<Row>,
+    /// Methods that were asked for and have no row.
+    pub absent: Vec<Absent>,
+}
+
+/// A method without an answer.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Absent {
+    /// With resolution or format.
+    pub method: String,
+    /// Why.
+    pub reason: &'static str,
 }
 
 /// A method on a scenario.
@@ -75,11 +84,8 @@ impl Comparison {
                 name == "pcr f64" || filters.iter().any(|filter| name.contains(filter))
             });
         }
-        Ok(Self {
-            name: scenario.name.clone(),
-            agents: scenario.agents.len(),
-            rows: compare(&field, &methods, effort, progress),
-        })
+        let (rows, absent) = compare(&field, &methods, effort, progress);
+        Ok(Self { name: scenario.name.clone(), agents: scenario.agents.len(), rows, absent })
     }
 }
 
@@ -97,24 +103,33 @@ fn compare(
     methods: &[Box<dyn Method>],
     effort: Effort,
     progress: &mut dyn FnMut(usize, usize),
-) -> Vec<Row> {
+) -> (Vec<Row>, Vec<Absent>) {
     let truth = Truth::new(field, effort.slices);
     let total = methods.len();
     progress(0, total);
     // The first round tells how many more there is time for, and how good the answers are.
     let mut courses: Vec<Course<'_>> = Vec::new();
+    let mut absent = Vec::new();
     let mut baseline = None;
     for (done, method) in methods.iter().enumerate() {
         let method = method.as_ref();
+        let mut leave_out = |reason| absent.push(Absent { method: method.name(), reason });
+        if let Some(reason) = method.missing() {
+            leave_out(reason);
+            continue;
+        }
         if baseline.is_none_or(|of: &dyn Method| of.question() != method.question()) {
             baseline = Some(method);
         }
-        let base = baseline.map_or(f64::NAN, |baseline| timed(baseline, field).0);
-        let (took, answer) = timed(method, field);
+        let base = baseline.map_or(f64::NAN, |baseline| baseline.timed(field).0);
+        let (took, answer) = method.timed(field);
         let rounds = ((effort.budget / took) as usize).clamp(1, effort.rounds);
-        if let Some(answer) = answer {
-            let row = row(&truth, method, &answer);
-            courses.push(Course { method, times: vec![[took, base]], rounds, row });
+        match answer {
+            Some(answer) => {
+                let row = row(&truth, method, &answer);
+                courses.push(Course { method, times: vec![[took, base]], rounds, row });
+            }
+            None => leave_out("it has no answer for this fleet"),
         }
         progress(done + 1, total);
     }
@@ -127,20 +142,13 @@ fn compare(
             if known.is_some() && round >= course.rounds {
                 continue;
             }
-            let took = timed(course.method, field).0;
+            let took = course.method.timed(field).0;
             let base = known.map_or(took, |(_, base)| base);
             baseline = Some((question, base));
             course.times.push([took, base]);
         }
     }
-    courses.into_iter().map(Course::finish).collect()
-}
-
-/// The time of a method \[s\], and its answer.
-fn timed<'f>(method: &dyn Method, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
-    let clock = Stopwatch::start();
-    let answer = black_box(method.answer(black_box(field)));
-    (if method.is_parallel() { clock.wall() } else { clock.elapsed() }, answer)
+    (courses.into_iter().map(Course::finish).collect(), absent)
 }
 
 impl Course<'_> {

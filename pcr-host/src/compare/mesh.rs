@@ -9,16 +9,16 @@ use parry3d_f64::shape::TriMesh;
 use std::f64::consts::{PI, TAU};
 
 /// Time between samples, that of the paper \[s\].
-const STEP: f64 = 0.01;
+pub(super) const STEP: f64 = 0.01;
 
 /// Sides of a cylinder: two triangles a side, and two less than there are sides on either end make 100.
-const SIDES: u32 = 26;
+pub(super) const SIDES: u32 = 26;
 
 /// Height of a cylinder \[m\].
-const HEIGHT: f64 = 0.1;
+pub(super) const HEIGHT: f64 = 0.1;
 
 /// How far the second cylinder stands above the first one, so that no two faces lie in one plane \[m\].
-const STEP_UP: f64 = 0.037;
+pub(super) const STEP_UP: f64 = 0.037;
 
 struct Mesh;
 
@@ -40,8 +40,7 @@ impl Method for Mesh {
     }
 
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
-        let [begin, end] = field.horizon;
-        let times: Vec<f64> = (0..=((end - begin) / STEP) as usize).map(|k| begin + STEP * k as f64).collect();
+        let times = samples(field);
         let bodies = field.tracks.iter().map(|track| Body::new(track, &times)).collect::<Option<Vec<_>>>()?;
         let mut found = Vec::new();
         for (first, a) in bodies.iter().enumerate() {
@@ -60,6 +59,17 @@ impl Method for Mesh {
     }
 }
 
+/// The times at which a fleet is looked at.
+pub(super) fn samples(field: &Field<'_>) -> Vec<f64> {
+    let [begin, end] = field.horizon;
+    (0..=((end - begin) / STEP) as usize).map(|k| begin + STEP * k as f64).collect()
+}
+
+/// The radius of the edges of a cylinder around a disc.
+pub(super) fn circumscribed(radius: f64) -> f64 {
+    radius / (PI / f64::from(SIDES)).cos()
+}
+
 struct Body {
     mesh: TriMesh,
     radius: f64,
@@ -69,7 +79,7 @@ struct Body {
 
 impl Body {
     fn new(track: &Track, times: &[f64]) -> Option<Self> {
-        let radius = track.radius / (PI / f64::from(SIDES)).cos();
+        let radius = circumscribed(track.radius);
         let at = times.iter().map(|&time| track.position(time)).collect();
         Some(Self { mesh: cylinder(radius)?, radius, at })
     }

@@ -48,9 +48,9 @@ impl Method for Polyline {
 
 /// From here on with constant velocity.
 #[derive(Clone, Copy, Debug)]
-struct Knot {
-    time: f64,
-    at: Point,
+pub(super) struct Knot {
+    pub(super) time: f64,
+    pub(super) at: Point,
     velocity: Point,
 }
 
@@ -77,7 +77,8 @@ pub(super) fn cuts(track: &Track, tolerance: f64, weight: f64) -> Vec<f64> {
     cuts
 }
 
-fn knots(track: &Track, tolerance: f64, horizon: [f64; 2]) -> Vec<Knot> {
+/// A track as lines: no position is off by more than the tolerance.
+pub(super) fn knots(track: &Track, tolerance: f64, horizon: [f64; 2]) -> Vec<Knot> {
     let mut times = vec![horizon[0]];
     times.extend(cuts(track, tolerance, 1.0));
     times.push(horizon[1]);

@@ -38,7 +38,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             }
             let bars = sampled::bars(&field, step, EGO);
             let overlay = Overlay { bars: &bars, step, part: (!whole).then_some(PART), title };
-            pictures.push((name, drawn(picture::map(&fleet.scenario, EGO, Some(&overlay)))?));
+            pictures.push((name, drawn(picture::over(&fleet.scenario, EGO, &overlay))?));
             text.push_str(&picture(name, title));
         }
     }
@@ -47,7 +47,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         across a joint of a path. None is special to the library.\n\n",
     );
     for (name, title, scenario) in cases() {
-        pictures.push((name, drawn(picture::map(&scenario, 0, None))?));
+        pictures.push((name, drawn(picture::overview(&scenario, None))?));
         text.push_str(&picture(name, title));
     }
     Ok(Section { text, pictures })
@@ -67,17 +67,17 @@ fn cases() -> [(&'static str, &'static str, Scenario); 3] {
         (
             "fig14a",
             "Two paths without an intersection: an arc that comes near a line",
-            of("near", vec![straight(), agent(2, [-1.5, 1.75, -FRAC_PI_2], vec![arc(1.5, PI)])]),
+            of("near each other", vec![straight(), agent(2, [-1.5, 1.75, -FRAC_PI_2], vec![arc(1.5, PI)])]),
         ),
         (
             "fig14b",
             "Two crossings so near each other that their regions overlap",
-            of("overlap", vec![straight(), agent(2, [-1.5, 1.15, -FRAC_PI_2], vec![arc(1.5, PI)])]),
+            of("overlapping regions", vec![straight(), agent(2, [-1.5, 1.15, -FRAC_PI_2], vec![arc(1.5, PI)])]),
         ),
         (
             "fig14c",
             "A path that changes from a line to an arc in the middle of a region",
-            of("joint", vec![straight(), agent(2, [0.3, -1.5, FRAC_PI_2], vec![line(1.45), arc(0.6, 2.2)])]),
+            of("across a joint", vec![straight(), agent(2, [0.3, -1.5, FRAC_PI_2], vec![line(1.45), arc(0.6, 2.2)])]),
         ),
     ]
 }

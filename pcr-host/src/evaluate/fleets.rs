@@ -9,12 +9,12 @@ use std::fmt::Write as _;
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let filters: Vec<String> = extent.filters().iter().map(|&filter| filter.to_owned()).collect();
     let mut all = Vec::new();
-    for fleet in &fleets.0 {
+    for fleet in &fleets.all {
         all.push(Comparison::new(&fleet.scenario, extent.effort(), &filters, &mut |_, _| {})?);
     }
     let mut text = table(fleets, &all);
     let mut pictures = Vec::new();
-    for (fleet, comparison) in fleets.0.iter().zip(&all) {
+    for (fleet, comparison) in fleets.all.iter().zip(&all) {
         let names = match fleet.size {
             [12, 126] => [(Question::Regions, "regions-12"), (Question::Conflicts, "conflicts-12")],
             [100, _] => [(Question::Regions, "regions-100"), (Question::Conflicts, "conflicts-100")],
@@ -50,36 +50,39 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
     let mut text = String::from(
         "## Table VI\n\nThe paper's fleets are not published; these have as many agents and regions as its own, by its count, which is that of \
         crossings. The analytic method against the computational one, which samples both paths every 0.01 s, and mesh \
-        proximity every 0.01 s with cylinders of 100 triangles. *Paper*: a Pentium IV at 2.33 GHz. A ratio is that of a method's time to \
+        proximity every 0.01 s with cylinders of 100 triangles: the paper's by PQP, ours by parry3d and by FCL. *Paper*: a Pentium IV at 2.33 GHz. A ratio is that of a method's time to \
         that of the analytic method; ours are against the fastest sampled map that we could write, without boxes and with them.\n\n\
-        | agents | crossings | analytic, paper | ours | sampled / analytic, paper | ours | ours, boxes | mesh / analytic, paper | ours | \
-        memory analytic / sampled, paper | ours |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        | agents | crossings | analytic, paper | ours | sampled / analytic, paper | ours | ours, boxes | mesh / analytic, paper | parry3d | FCL | \
+        memory analytic / sampled, paper | ours |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
-    for (fleet, comparison) in fleets.0.iter().zip(all) {
+    for (fleet, comparison) in fleets.all.iter().zip(all) {
         let [agents, crossings] = fleet.size;
         let [analytic, sampled, mesh] = fleet.paper;
         let regions = |name| find(comparison, Question::Regions, name);
         let ratio = |row: Option<&Row>| row.map_or("–".into(), |row| times(row.ratio));
         let own = regions("pcr f64");
-        let mesh_ratio = find(comparison, Question::Conflicts, "parry3d meshes 0.01 s")
-            .zip(own)
-            .map_or("–".into(), |(mesh, own)| times(mesh.ms / own.ms));
+        let meshes = ["parry3d meshes 0.01 s", "FCL meshes 0.01 s"].map(|name| {
+            let both = find(comparison, Question::Conflicts, name).zip(own);
+            both.map_or("–".into(), |(mesh, own)| times(mesh.ms / own.ms))
+        });
         let memory = own.zip(regions("sampled map 0.01 s, boxes"));
         let _ = writeln!(
             text,
-            "| {agents} | {crossings} | {} | {} | {} | {} | {} | {} | {mesh_ratio} | {} | {} |",
+            "| {agents} | {crossings} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
             time(analytic),
             own.map_or("–".into(), |own| time(own.ms)),
             times(sampled / analytic),
             ratio(regions("sampled map 0.01 s")),
             ratio(regions("sampled map 0.01 s, boxes")),
             times(mesh / analytic),
+            meshes[0],
+            meshes[1],
             fleet.memory,
             memory.map_or("–".into(), |(own, sampled)| format!("{} / {}", bytes(own.bytes), bytes(sampled.bytes))),
         );
     }
     let ratios = |fleet: &super::Fleet| fleet.paper[1] / fleet.paper[0];
-    let paper = span(fleets.0.iter().map(ratios));
+    let paper = span(fleets.all.iter().map(ratios));
     let plain = span(ratios_of(all, "sampled map 0.01 s"));
     let boxes = span(ratios_of(all, "sampled map 0.01 s, boxes"));
     let area = span(all.iter().filter_map(|comparison| {

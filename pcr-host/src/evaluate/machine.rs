@@ -1,6 +1,7 @@
 //! What the evaluation runs on.
 
 use super::Extent;
+use crate::compare::libraries;
 use std::fs;
 use std::thread::available_parallelism;
 
@@ -13,8 +14,7 @@ pub(super) fn preamble(extent: Extent) -> String {
         kilobytes.map_or("an unknown amount".into(), |kilobytes| format!("{:.0} GiB", kilobytes / f64::from(1 << 20)));
     let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     let load = load.split(' ').next().filter(|load| !load.is_empty()).unwrap_or("unknown");
-    let peers =
-        if cfg!(feature = "peers") { "" } else { " Built without the feature `peers`: other libraries are left out." };
+    let libraries = libraries().join("; ");
     let quick = match extent {
         Extent::Full => "",
         Extent::Quick => " Written with `--quick`: small fleets, without the slowest methods.",
@@ -23,9 +23,9 @@ pub(super) fn preamble(extent: Extent) -> String {
     format!(
         "# Evaluation\n\n\
         Written by `cargo run --release --features peers -- evaluate`, the text with all numbers and pictures; nothing is \
-        edited by hand.{peers}{quick}\n\n\
+        edited by hand.{quick}\n\n\
         **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} (of {cores} if \
-        nothing waits). Times are medians. What is claimed is *ratios*: in each round all methods run one after \
+        nothing waits). **Libraries in C++**: {libraries}. Times are medians. What is claimed is *ratios*: in each round all methods run one after \
         the other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; \
         sampling, flattening and meshes are part of its time. Methods run on one core where nothing else is said, and work of more than \
         40 ms counts by the time that the processor spent on it, so that other work on the machine does not count.\n"

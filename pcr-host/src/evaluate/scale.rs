@@ -1,6 +1,8 @@
 //! Fleets of up to 100,000 agents.
 
-use super::machine::line;
+mod copies;
+mod course;
+
 use super::{Extent, Fleets, Problem, Section, picture};
 use crate::compare::crowd;
 use crate::compare::measure::median;
@@ -8,121 +10,138 @@ use crate::compare::stopwatch::Stopwatch;
 use crate::fleet::{Fleet, build_ecm};
 use crate::picture::plot::{Chart, Series};
 use crate::report::figures::{digits, time};
-use crate::rows;
-use pcr_core::Motion;
+use crate::scenario::Scenario;
+use copies::Copies;
+use course::{Course, TABLE};
 use std::fmt::Write as _;
-use std::fs;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The largest fleet of which one table is made, and of which an agent is exchanged.
-const TABLE: usize = 10_000;
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let copies = Copies::new(fleets.warehouse(copies::RADIUS)?);
+    let copies = copies.map_err(|error| Problem::File(fleets.data.clone(), error.to_string()))?;
+    let floor = Kind::run("floor", &|agents, seed| crowd(agents, seed), extent)?;
+    let warehouse = Kind::run("warehouse", &|agents, seed| copies.fleet(agents, seed), extent)?;
+    let kinds = [floor, warehouse];
+    let ([width, depth], [nodes, edges]) = copies.size();
+    let words = [
+        "Random agents on a floor as dense as the paper's, 12 agents on 7 m by 7 m, with paths of three to six segments that stay \
+        on it."
+            .to_owned(),
+        format!(
+            "The warehouse graph of nav2 ({nodes} nodes, {edges} edges, {} m by {} m) in copies side by side, with {} agents a copy of {} m \
+            radius, each on the shortest way from a random node to another one, corners rounded.",
+            digits(width),
+            digits(depth),
+            copies::AGENTS,
+            copies::RADIUS
+        ),
+    ];
+    let mut text = String::from(
+        "## Scale\n\n`rows` finds the agents that come near by a grid, and works through the fleet an agent at a time along a curve that \
+        fills the plane, without keeping anything, as a server would that streams; `table` is the table of the library, which compares the \
+        boxes of all pairs. Small fleets are many different ones, so that none is known to the processor from before. Regions in \
+        both directions.\n",
+    );
+    for (kind, words) in kinds.iter().zip(words) {
+        let _ = write!(text, "\n{words}\n\n{}", kind.table());
+    }
+    text.push_str("\nTime grows with these powers of the agents and of the regions, fitted to the sizes above:\n\n");
+    text.push_str(
+        "| | rows, agents | rows, regions | all cores, agents | table, agents | time an agent varies by | time a region varies by |\n\
+        |---|---:|---:|---:|---:|---:|---:|\n",
+    );
+    kinds.iter().for_each(|kind| text.push_str(&kind.fitted()));
+    let _ = write!(text, "\n{}", exchange(if extent == Extent::Full { TABLE } else { 300 })?);
+    let _ =
+        write!(text, "\n{}{}", picture("scale-agents", "Time by agents"), picture("scale-regions", "Time by regions"));
+    let by_agents = kinds.iter().flat_map(|kind| {
+        [
+            kind.series("rows", |course| course.agents as f64, |course| Some(course.rows)),
+            kind.series("all cores", |course| course.agents as f64, |course| Some(course.all_cores)),
+            kind.series("table", |course| course.agents as f64, |course| course.table),
+        ]
+    });
+    let by_regions = kinds.iter().map(|kind| kind.series("rows", |course| course.regions, |course| Some(course.rows)));
+    let chart = |axis, series| Chart { title: "All regions of a fleet", axes: [axis, "time [ms]"], series }.draw();
+    let pictures = vec![
+        ("scale-agents", chart("agents", by_agents.collect())),
+        ("scale-regions", chart("regions", by_regions.collect())),
+    ];
+    Ok(Section { text, pictures })
+}
 
-/// A fleet worked through row by row.
-struct Point {
-    agents: usize,
-    regions: usize,
-    /// On one core, on all, and of the table of all pairs \[ms\].
-    rows: f64,
-    all_cores: f64,
-    table: Option<f64>,
-    /// Largest so far \[MB\].
+/// Fleets of a kind, in growing sizes.
+struct Kind {
+    name: &'static str,
+    courses: Vec<Course>,
+    /// Of the process with the largest one \[MB\].
     memory: Option<f64>,
 }
 
-pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
-    // Small fleets are repeated until they are as many agents.
-    let (sizes, repeated): (&[usize], usize) = match extent {
-        Extent::Full => (&[100, 1_000, 10_000, 100_000], 20_000),
-        Extent::Quick => (&[100, 300], 300),
-    };
-    let points =
-        sizes.iter().map(|&agents| measure(agents, (repeated / agents).max(1))).collect::<Result<Vec<_>, Problem>>()?;
-    let mut text = String::from(
-        "## Scale\n\nRandom fleets as dense as the paper's (12 agents on 7 m by 7 m), paths of three to six segments. `rows` finds the agents that \
-        come near by a grid, and works through the fleet an agent at a time without keeping anything, as a server would that \
-        streams; `table` is the table of the library, which compares the boxes of all pairs. Regions in both directions.\n\n\
-        | agents | regions | rows, an agent | all cores, an agent | table, an agent | memory of the process |\n|---:|---:|---:|---:|---:|---:|\n",
-    );
-    let share = |ms: f64, agents: usize| time(ms / agents as f64);
-    for point in &points {
-        let Point { agents, regions, rows, all_cores, .. } = *point;
-        let table = point.table.map_or("–".into(), |table| share(table, agents));
-        let memory = point.memory.map_or("–".into(), |memory| format!("{} MB", digits(memory)));
-        let _ = writeln!(
-            text,
-            "| {agents} | {regions} | {} | {} | {table} | {memory} |",
-            share(rows, agents),
-            share(all_cores, agents)
+impl Kind {
+    fn run(name: &'static str, make: &dyn Fn(usize, u64) -> Scenario, extent: Extent) -> Result<Self, Problem> {
+        let sizes: &[usize] = match extent {
+            Extent::Full => &[100, 1_000, 10_000, 100_000],
+            Extent::Quick => &[100, 300],
+        };
+        let memory = course::memory(make, sizes.last().copied().unwrap_or(0))?;
+        let courses = sizes.iter().map(|&agents| Course::run(make, agents, extent));
+        Ok(Self { name, courses: courses.collect::<Result<_, _>>()?, memory })
+    }
+
+    fn table(&self) -> String {
+        let mut text = String::from(
+            "| agents | regions an agent | rows, an agent | rows, a region | all cores, an agent | table, an agent |\n\
+            |---:|---:|---:|---:|---:|---:|\n",
         );
+        for Course { agents, regions, rows, all_cores, table } in &self.courses {
+            let share = |ms: f64| time(ms / *agents as f64);
+            let _ = writeln!(
+                text,
+                "| {agents} | {} | {} | {} | {} | {} |",
+                digits(regions / *agents as f64),
+                share(*rows),
+                time(rows / regions),
+                share(*all_cores),
+                table.map_or("–".into(), share)
+            );
+        }
+        if let (Some(memory), Some(largest)) = (self.memory, self.courses.last()) {
+            let _ = writeln!(
+                text,
+                "\nMaking and streaming the fleet of {} takes the process to {} MB at most.",
+                largest.agents,
+                digits(memory)
+            );
+        }
+        text
     }
-    let line_of = |y: fn(&Point) -> Option<f64>, x: fn(&Point) -> f64| -> Vec<[f64; 2]> {
-        points.iter().filter_map(|point| Some([x(point), y(point)?])).collect()
-    };
-    let by_agents = line_of(|point| Some(point.rows), |point| point.agents as f64);
-    let by_regions = line_of(|point| Some(point.rows), |point| point.regions as f64);
-    let table = line_of(|point| point.table, |point| point.agents as f64);
-    let each = points.iter().map(|point| point.rows / point.agents as f64);
-    let (least, most) = each.fold((f64::INFINITY, 0.0_f64), |(least, most), each| (least.min(each), most.max(each)));
-    let exponents = [&by_agents, &by_regions, &table].map(|line| exponent(line));
-    let _ = writeln!(
-        text,
-        "\nFitted: time grows with the power {:.2} of the agents and {:.2} of the regions by rows, {:.2} of the agents by the table. \
-        The time for an agent varies by a factor of {} over all sizes.\n",
-        exponents[0],
-        exponents[1],
-        exponents[2],
-        digits(most / least)
-    );
-    text.push_str(&exchange(if extent == Extent::Full { TABLE } else { 300 })?);
-    let _ = write!(text, "\n{}", picture("scale", "Time by agents"));
-    let all_cores = line_of(|point| Some(point.all_cores), |point| point.agents as f64);
-    let series = |name: &str, points: Vec<[f64; 2]>| Series { name: name.into(), points, line: true };
-    let series =
-        vec![series("rows", by_agents), series("rows, all cores", all_cores), series("table of all pairs", table)];
-    let chart = Chart { title: "All regions of a fleet", axes: ["agents", "time [ms]"], series };
-    Ok(Section { text, pictures: vec![("scale", chart.draw())] })
-}
 
-/// Time by the wall \[ms\].
-fn milliseconds(work: impl FnOnce()) -> f64 {
-    let clock = Stopwatch::start();
-    work();
-    1e3 * clock.wall()
-}
-
-/// Time of one core \[ms\], over so many repetitions.
-fn on_one_core(repetitions: usize, mut work: impl FnMut()) -> f64 {
-    let clock = Stopwatch::start();
-    (0..repetitions).for_each(|_| work());
-    1e3 * clock.elapsed() / repetitions as f64
-}
-
-fn measure(agents: usize, rounds: usize) -> Result<Point, Problem> {
-    reset_peak();
-    let fleet = Fleet::<f64>::new(&crowd(agents, 1))?;
-    let motions = fleet.motions();
-    let regions = AtomicUsize::new(0);
-    rows::each(&motions, |_, row| {
-        regions.fetch_add(2 * row.table().len(), Ordering::Relaxed);
-    })?;
-    let memory = peak();
-    let mut failed = None;
-    let rows = on_one_core(rounds, || failed = one_by_one(&motions).err().or(failed));
-    let all_cores =
-        (0..rounds).map(|_| milliseconds(|| failed = rows::each(&motions, |_, row| drop(row)).err().or(failed)));
-    let all_cores = median(all_cores.collect());
-    let table = (agents <= TABLE).then(|| on_one_core(rounds, || failed = build_ecm(&motions).err().or(failed)));
-    if let Some(full) = failed {
-        return Err(full.into());
+    fn series(&self, what: &str, x: fn(&Course) -> f64, y: fn(&Course) -> Option<f64>) -> Series {
+        let points = self.courses.iter().filter_map(|course| Some([x(course), y(course)?])).collect();
+        Series { name: format!("{}, {what}", self.name), points, line: true }
     }
-    let regions = regions.into_inner();
-    Ok(Point { agents, regions, rows, all_cores, table, memory })
-}
 
-fn one_by_one(motions: &[Motion<'_, f64>]) -> Result<(), pcr_core::Full> {
-    let grid = rows::grid(motions);
-    let row = |ego: usize| rows::Row::new(motions, ego, &grid.after(ego)).map(drop);
-    grid.order().into_iter().try_for_each(|ego| row(ego as usize))
+    /// A row of the table of exponents.
+    fn fitted(&self) -> String {
+        let of = |x: fn(&Course) -> f64, y: fn(&Course) -> Option<f64>| exponent(&self.series("", x, y).points);
+        let agents = |course: &Course| course.agents as f64;
+        let varies = |each: &dyn Fn(&Course) -> f64| {
+            let each = self.courses.iter().map(each);
+            let (least, most) =
+                each.fold((f64::INFINITY, 0.0_f64), |(least, most), each| (least.min(each), most.max(each)));
+            digits(most / least)
+        };
+        format!(
+            "| {} | {:.2} | {:.2} | {:.2} | {:.2} | {} × | {} × |\n",
+            self.name,
+            of(agents, |course| Some(course.rows)),
+            of(|course| course.regions, |course| Some(course.rows)),
+            of(agents, |course| Some(course.all_cores)),
+            of(agents, |course| course.table),
+            varies(&|course| course.rows / course.agents as f64),
+            varies(&|course| course.rows / course.regions)
+        )
+    }
 }
 
 /// One agent of a large fleet gets another path, in the table of all.
@@ -139,15 +158,16 @@ fn exchange(agents: usize) -> Result<String, Problem> {
         let (before, after) = (motions[agent], others[agent]);
         // There and back: the table does not grow.
         for motion in [after, before] {
-            let mut outcome = Ok(());
-            times.push(milliseconds(|| outcome = table.replace(&mut motions, agent, motion)));
+            let clock = Stopwatch::start();
+            let outcome = table.replace(&mut motions, agent, motion);
+            times.push(1e3 * clock.wall());
             outcome?;
         }
     }
     let longest = times.iter().copied().fold(0.0, f64::max);
     Ok(format!(
-        "One of {agents} agents gets another path, and its regions with all others are computed anew in the table of {} regions: {} \
-        (median of {}), at most {}.\n",
+        "One of {agents} agents on the floor gets another path, and its regions with all others are computed anew in the table of {} \
+        regions: {} (median of {}), at most {}.\n",
         2 * table.len(),
         time(median(times.clone())),
         times.len(),
@@ -165,17 +185,6 @@ fn exponent(points: &[[f64; 2]]) -> f64 {
         (top + (log[0] - x) * (log[1] - y), bottom + (log[0] - x) * (log[0] - x))
     });
     top / bottom
-}
-
-/// From here on the peak counts anew, where the system can do that.
-fn reset_peak() {
-    let _ = fs::write("/proc/self/clear_refs", "5");
-}
-
-/// Most memory that the process has had \[MB\].
-fn peak() -> Option<f64> {
-    let kilobytes: f64 = line("/proc/self/status", "VmHWM")?.split(' ').next()?.parse().ok()?;
-    Some(kilobytes / 1e3)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ struct Point {
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let rounds = extent.effort().rounds;
     let mut points = Vec::new();
-    for fleet in &fleets.0 {
+    for fleet in &fleets.all {
         let parts = Fleet::<f64>::new(&fleet.scenario)?;
         let motions = parts.motions();
         let regions = 2 * crate::regions::table(&fleet.scenario, &motions)?.len();
@@ -40,18 +40,26 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         let _ = writeln!(text, "| {agents} | {regions} | {} | {rest} | {} |", time(finding), share(finding / all));
     }
     let _ = write!(text, "\n{}{}", picture("fig12a", "Time by agents"), picture("fig12b", "Time by regions"));
-    let chart = |title, axis, x: fn(&Point) -> f64| {
-        let series = |name: &str, y: fn(&Point) -> f64| {
-            let mut line: Vec<[f64; 2]> = points.iter().map(|point| [x(point), y(point)]).collect();
-            line.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            Series { name: name.into(), points: line, line: true }
-        };
-        let series = vec![series("finding pairs", |p| p.finding), series("all", |p| p.all)];
+    text.push_str(&picture("fig12c", "Shares by agents"));
+    let series = |name: &str, x: fn(&Point) -> f64, y: fn(&Point) -> f64| {
+        let mut line: Vec<[f64; 2]> = points.iter().map(|point| [x(point), y(point)]).collect();
+        line.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Series { name: name.into(), points: line, line: true }
+    };
+    let times = |title, axis, x: fn(&Point) -> f64| {
+        let series = vec![series("finding pairs", x, |p| p.finding), series("all", x, |p| p.all)];
         Chart { title, axes: [axis, "time [ms]"], series }.draw()
     };
+    let agents = |point: &Point| point.agents as f64;
+    let shares = vec![
+        series("finding pairs", agents, |p| 100.0 * p.finding / p.all),
+        series("regions", agents, |p| 100.0 * (1.0 - p.finding / p.all)),
+    ];
+    let shares = Chart { title: "Shares of the time", axes: ["agents", "share [%]"], series: shares };
     let pictures = vec![
-        ("fig12a", chart("Time by the number of agents", "agents", |point| point.agents as f64)),
-        ("fig12b", chart("Time by the number of regions", "regions", |point| point.regions as f64)),
+        ("fig12a", times("Time by the number of agents", "agents", agents)),
+        ("fig12b", times("Time by the number of regions", "regions", |point| point.regions as f64)),
+        ("fig12c", shares.draw()),
     ];
     Ok(Section { text, pictures })
 }

@@ -5,15 +5,11 @@ use crate::check::Verdict;
 use crate::compare::stopwatch::Stopwatch;
 use crate::fleet::build_ecm;
 use crate::footprint::Footprint;
-use crate::import::{Format, Imported, Options, Warnings, roads};
+use crate::import::Imported;
 use crate::picture::{Ground, overview};
 use crate::report::figures::{digits, time};
 use crate::traffic::{Request, Traffic, schedule};
 use std::fmt::Write as _;
-use std::fs;
-
-/// The route graph of nav2's warehouse, below the directory of the data.
-const GRAPH: &str = "real/nav2/warehouse_graph.geojson";
 
 /// Radius of the discs \[m\].
 const RADIUS: f64 = 0.4;
@@ -29,11 +25,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         Extent::Full => &[10, 25, 50, 100],
         Extent::Quick => &[10],
     };
-    let path = fleets.1.join(GRAPH);
-    let refused = |problem: &dyn ToString| Problem::File(path.clone(), problem.to_string());
-    let text = fs::read_to_string(&path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
-    let options = Options { radius: Some(RADIUS), ..Options::default() };
-    let disc = roads(Format::Nav2, &text, &options, &mut Warnings::default()).map_err(|error| refused(&error))?;
+    let refused = |problem: &dyn ToString| Problem::File(fleets.data.clone(), problem.to_string());
+    let disc = fleets.warehouse(RADIUS)?;
     let [nodes, edges] = [disc.layout.nodes.len(), disc.layout.edges.len()];
     let [length, width] = SIZE;
     let mut text = format!(

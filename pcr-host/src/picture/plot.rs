@@ -29,6 +29,9 @@ const ROOM: [f64; 2] = [64.0, 28.0];
 /// Room between the plot and the legend, and height of an entry \[px\].
 const LEGEND: [f64; 2] = [14.0, 15.0];
 
+/// Least distance of a value from the border, in powers of ten: marks stay within the plot, apart from its labels.
+const MARGIN: f64 = 0.15;
+
 /// Whole powers of ten, as exponents, and where they lie \[px\].
 struct Decades {
     lo: f64,
@@ -41,7 +44,7 @@ impl Decades {
         let exponents = values.filter(|value| *value > 0.0).map(f64::log10);
         let lo = exponents.clone().fold(f64::INFINITY, f64::min);
         let hi = exponents.fold(f64::NEG_INFINITY, f64::max);
-        let (lo, hi) = if lo <= hi { ((lo - 0.05).floor(), (hi + 0.05).ceil()) } else { (0.0, 1.0) };
+        let (lo, hi) = if lo <= hi { ((lo - MARGIN).floor(), (hi + MARGIN).ceil()) } else { (0.0, 1.0) };
         Self { lo, hi: hi.max(lo + 1.0), pixels }
     }
 

@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::figures::{bytes, seconds, share, time, times};
 use super::{heading, quoted};
-use crate::compare::{Comparison, Errors, Question, Row};
+use crate::compare::{Absent, Comparison, Errors, Question, Row};
 use std::io::{self, Write};
 
 /// The header line of [`comparison_csv`].
@@ -39,7 +39,7 @@ pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Resu
 /// # Errors
 /// Those of the writer.
 pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl Write) -> io::Result<()> {
-    let Comparison { agents, rows, .. } = comparison;
+    let Comparison { agents, rows, absent, .. } = comparison;
     if !markdown {
         writeln!(out, "{}: {agents} agents", heading(&comparison.name))?;
     }
@@ -56,6 +56,10 @@ pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl 
         }
         writeln!(out)?;
         if markdown { columns.write_markdown(out)? } else { columns.write(out)? }
+    }
+    if !absent.is_empty() {
+        let absent: Vec<_> = absent.iter().map(|Absent { method, reason }| format!("{method}: {reason}")).collect();
+        writeln!(out, "\nLeft out: {}.", absent.join("; "))?;
     }
     Ok(())
 }

@@ -72,11 +72,11 @@ impl Grid {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
-    /// The boxes row by row of the grid: neighbours come soon after one another.
+    /// The boxes along a Hilbert curve: neighbours come soon after one another.
     pub fn order(&self) -> Vec<u32> {
         let cell = |&place: &u32| {
             let b = &self.boxes[place as usize];
-            (self.place(1, b[1]), self.place(0, b[0]))
+            hilbert([self.place(0, b[0]), self.place(1, b[1])].map(|place| place as u32))
         };
         let mut order: Vec<u32> = (0..self.boxes.len() as u32).collect();
         order.sort_by_cached_key(cell);
@@ -86,6 +86,13 @@ impl Grid {
     /// The boxes that meet one, in increasing order. O(boxes in the cells that it covers).
     pub fn near(&self, b: &Box) -> Vec<u32> {
         let mut near = Vec::new();
+        self.find(b, 0, &mut near);
+        near
+    }
+
+    /// The boxes from a place on that meet one, in increasing order.
+    fn find(&self, b: &Box, from: usize, near: &mut Vec<u32>) {
+        near.clear();
         for cell in self.cells(b) {
             let members = &self.members[self.begins[cell] as usize..self.begins[cell + 1] as usize];
             let meets = |other: &Box| {
@@ -93,16 +100,48 @@ impl Grid {
                 let corner = [b[0].max(other[0]), b[1].max(other[1])];
                 meet(b, other) && self.place(1, corner[1]) * self.size[0] + self.place(0, corner[0]) == cell
             };
+            // Members are in increasing order.
+            let members = &members[members.partition_point(|&member| (member as usize) < from)..];
             near.extend(members.iter().copied().filter(|&member| meets(&self.boxes[member as usize])));
         }
         near.sort_unstable();
-        near
     }
 
-    /// The boxes after this one that meet it, in increasing order.
-    pub fn after(&self, place: usize) -> Vec<u32> {
-        let mut near = self.boxes.get(place).map_or(Vec::new(), |b| self.near(b));
-        near.retain(|&other| other as usize > place);
-        near
+    /// The boxes after this one that meet it, in increasing order, in place of what is in `near`.
+    pub fn after(&self, place: usize, near: &mut Vec<u32>) {
+        match self.boxes.get(place) {
+            Some(b) => self.find(b, place + 1, near),
+            None => near.clear(),
+        }
+    }
+}
+
+/// How far along a Hilbert curve a cell lies: from each cell it goes on to one beside it (Hilbert 1891).
+fn hilbert([mut x, mut y]: [u32; 2]) -> u64 {
+    let mut along = 0;
+    for bit in (0..32).rev() {
+        let [right, upper] = [x >> bit & 1, y >> bit & 1];
+        along = along << 2 | u64::from((3 * right) ^ upper);
+        // A quarter is a smaller curve, the lower two turned over.
+        if upper == 0 {
+            if right == 1 {
+                (x, y) = (!x, !y);
+            }
+            (x, y) = (y, x);
+        }
+    }
+    along
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_goes_from_each_cell_to_one_beside_it() {
+        let mut cells: Vec<[u32; 2]> = (0..64).flat_map(|x| (0..64).map(move |y| [x, y])).collect();
+        cells.sort_by_key(|&cell| hilbert(cell));
+        assert_eq!(cells[0], [0, 0]);
+        assert!(cells.windows(2).all(|pair| pair[0][0].abs_diff(pair[1][0]) + pair[0][1].abs_diff(pair[1][1]) == 1));
     }
 }

@@ -1,0 +1,60 @@
+//! Compiles the programs in `peers/` that run other libraries' methods, each where its library is installed; with the feature
+//! `peers` only. Where one is not, the tool says so when it compares.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What is installed on Debian: when it changes, libraries may have come or gone.
+const INSTALLED: &str = "/var/lib/dpkg/status";
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=peers");
+    let directory = env::var_os("OUT_DIR").map(PathBuf::from);
+    let Some(directory) = directory.filter(|_| env::var_os("CARGO_FEATURE_PEERS").is_some()) else { return };
+    if Path::new(INSTALLED).exists() {
+        println!("cargo:rerun-if-changed={INSTALLED}");
+    }
+    for (name, packages) in [("fcl", ["fcl", "eigen3"].as_slice()), ("box2d", &["box2d"])] {
+        let program = directory.join(name);
+        match compile(name, packages, &program) {
+            Ok(version) => {
+                let variable = format!("PCR_PEER_{}", name.to_uppercase());
+                println!("cargo:rustc-env={variable}={}", program.display());
+                println!("cargo:rustc-env={variable}_VERSION={version}");
+            }
+            Err(problem) => println!("cargo:warning=left out of comparisons: {name}: {problem}"),
+        }
+    }
+}
+
+/// Makes the program, and returns the version of the library.
+fn compile(name: &str, packages: &[&str], program: &Path) -> Result<String, String> {
+    let flags = |which: &str| run(Command::new("pkg-config").arg(which).args(packages));
+    let include = flags("--cflags")?;
+    // Warnings of the libraries' headers are not ours.
+    let include = include.split_whitespace().flat_map(|flag| match flag.strip_prefix("-I") {
+        Some(directory) => vec!["-isystem", directory],
+        None => vec![flag],
+    });
+    let libraries = flags("--libs")?;
+    let source = Path::new("peers").join(name).with_extension("cc");
+    let mut compiler = Command::new(env::var_os("CXX").unwrap_or_else(|| "c++".into()));
+    compiler.args(["-std=c++17", "-O3", "-DNDEBUG", "-Wall", "-Wextra"]).args(include).arg(source);
+    run(compiler.arg("-o").arg(program).args(libraries.split_whitespace()))?;
+    Ok(run(Command::new("pkg-config").args(["--modversion", name]))?.trim().to_owned())
+}
+
+/// What a command prints, or the last line of what it complains about.
+fn run(command: &mut Command) -> Result<String, String> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
+    if output.status.success() {
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+    }
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    let complaint =
+        complaint.lines().find(|line| line.contains("error")).or(complaint.lines().last()).unwrap_or("failed");
+    Err(format!("{name}: {complaint}"))
+}

@@ -1,0 +1,103 @@
+//! Methods of libraries in C++, as programs beside the tool: the build script compiles them from `peers/` where the libraries are
+//! installed. They read numbers, and write the time that the work took, then the contacts; starting them and
+//! carrying the numbers does not count.
+
+use super::{Answer, Found};
+use std::io::{self, Write as _};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// A program, or why there is none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Program {
+    name: &'static str,
+    version: Option<&'static str>,
+    path: Option<&'static str>,
+    /// What has to be installed when the tool is built.
+    pub(super) missing: &'static str,
+}
+
+impl Program {
+    /// The Flexible Collision Library.
+    pub(super) const FCL: Self = Self {
+        name: "FCL",
+        version: option_env!("PCR_PEER_FCL_VERSION"),
+        path: option_env!("PCR_PEER_FCL"),
+        missing: "libfcl-dev was not installed when pcr was built",
+    };
+
+    /// Box2D.
+    pub(super) const BOX2D: Self = Self {
+        name: "Box2D",
+        version: option_env!("PCR_PEER_BOX2D_VERSION"),
+        path: option_env!("PCR_PEER_BOX2D"),
+        missing: "libbox2d-dev was not installed when pcr was built",
+    };
+
+    /// The library with its version, or that it is left out.
+    pub(super) fn library(self) -> String {
+        match self.version.filter(|_| self.is_there()) {
+            Some(version) => format!("{} {version}", self.name),
+            None => format!("{} is left out: {}", self.name, self.missing),
+        }
+    }
+
+    /// Whether it can be run.
+    pub(super) fn is_there(self) -> bool {
+        self.path.is_some_and(|path| Path::new(path).is_file())
+    }
+
+    /// The time that the work took \[s\], and the contacts, with times as `in_time` has them from the program's.
+    pub(super) fn contacts<'f>(self, input: &[f64], in_time: impl Fn(f64) -> f64) -> io::Result<(f64, Answer<'f>)> {
+        let output = self.run(input)?;
+        parse(&output, in_time).ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, "not what a peer writes"))
+    }
+
+    fn run(self, input: &[f64]) -> io::Result<String> {
+        let path = self.path.ok_or(io::ErrorKind::NotFound)?;
+        let mut child = Command::new(path).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+        let bytes: Vec<u8> = input.iter().flat_map(|number| number.to_ne_bytes()).collect();
+        // It reads everything before it writes anything. Dropped, the pipe is closed.
+        let sent = child.stdin.take().map_or(Ok(()), |mut pipe| pipe.write_all(&bytes));
+        let output = child.wait_with_output()?;
+        sent?;
+        if !output.status.success() {
+            return Err(io::Error::other(format!("{path}: {}", output.status)));
+        }
+        String::from_utf8(output.stdout).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    }
+}
+
+fn parse<'f>(output: &str, in_time: impl Fn(f64) -> f64) -> Option<(f64, Answer<'f>)> {
+    let mut lines = output.lines();
+    let time = lines.next()?.parse().ok()?;
+    let contact = |line: &str| {
+        let mut words = line.split(' ');
+        let agents = [words.next()?.parse().ok()?, words.next()?.parse().ok()?];
+        let [begin, end] = [words.next()?.parse::<f64>().ok()?, words.next()?.parse().ok()?];
+        let end = (!end.is_nan()).then(|| in_time(end));
+        Some(Found { agents, begin: in_time(begin), end })
+    };
+    Some((time, Answer::Conflicts(lines.map(contact).collect::<Option<_>>()?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contacts_are_read_with_and_without_an_end() {
+        let (time, answer) = parse("0.25\n0 3 5 7\n1 2 4 nan\n", |sample| 0.5 * sample).unwrap();
+        let Answer::Conflicts(found) = answer else { panic!("contacts are conflicts") };
+        let expected =
+            [Found { agents: [0, 3], begin: 2.5, end: Some(3.5) }, Found { agents: [1, 2], begin: 2.0, end: None }];
+        assert_eq!((time, &found[..]), (0.25, &expected[..]));
+    }
+
+    #[test]
+    fn what_no_peer_writes_is_no_answer() {
+        for output in ["", "time\n", "0.1\n0 1\n", "0.1\n0 1 2 x\n"] {
+            assert!(parse(output, |time| time).is_none(), "{output:?}");
+        }
+    }
+}
