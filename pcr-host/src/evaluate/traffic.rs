@@ -17,6 +17,9 @@ const RADIUS: f64 = 0.4;
 /// Length and width of the vehicle with an outline \[m\].
 const SIZE: [f64; 2] = [0.9, 0.6];
 
+/// Largest fleet of these.
+const OUTLINED: usize = 25;
+
 /// The fleet of the picture.
 const DRAWN: usize = 50;
 
@@ -41,7 +44,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let outlined = with_outline(&disc).map_err(|problem| refused(&problem))?;
     let vehicles = [(&disc, format!("disc of {RADIUS} m")), (&outlined, format!("{length} m by {width} m"))];
     for (imported, name) in vehicles {
-        for &agents in sizes {
+        let most = if imported.vehicle.footprint.is_some() { OUTLINED } else { usize::MAX };
+        for &agents in sizes.iter().filter(|agents| **agents <= most) {
             let (row, [_, plan]) = row(imported, &name, agents)?;
             text.push_str(&row);
             if agents == DRAWN && imported.vehicle.footprint.is_none() {

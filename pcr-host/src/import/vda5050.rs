@@ -57,8 +57,9 @@ pub(super) fn read(
             scenario.agents.push(reader.order(id, &order)?);
             radii.push(vehicle.radius);
         } else if state.iter().any(|field| message.get(field).is_some()) {
-            let robot = message.text("serialNumber").ok().flatten().unwrap_or_default();
-            let state = message.called(format!("state of {robot}"));
+            let robot = message.text("serialNumber").ok().flatten();
+            let state =
+                message.called(robot.map_or_else(|| format!("state {id}"), |robot| format!("state of {robot}")));
             let loaded = loads::loaded(&state, vehicle, reader.warnings)?;
             scenario.agents.push(reader.state(id, &state, &loaded)?);
             radii.push(loaded.radius);

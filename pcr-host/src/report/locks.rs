@@ -46,15 +46,20 @@ pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
     let name = if locks.layout.is_empty() { "layout" } else { &locks.layout };
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();
     pairs.dedup();
-    let (count, pairs, radius) = (locks.locks.len(), pairs.len(), locks.vehicle.radius);
-    writeln!(out, "{}: {count} locks of {pairs} pairs of edges, radius {radius} m", printable(name))?;
+    let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let (count, pairs) = (counted(locks.locks.len(), "lock"), counted(pairs.len(), "pair"));
+    let vehicle = match (locks.vehicle.discs.len(), locks.vehicle.radius) {
+        (0, radius) => format!("radius {radius} m"),
+        (discs, radius) => format!("an outline of {discs} discs within {radius:.3} m"),
+    };
+    writeln!(out, "{}: {count} of {pairs} of edges, {vehicle}", printable(name))?;
     let range = |[from, to]: [f64; 2]| {
         // What rounding adds is no millimetre.
         let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
         [format!("{from:.3}"), format!("{to:.3}")]
     };
     let text = |id: &dyn ToString| printable(&id.to_string());
-    if count > 0 {
+    if !locks.locks.is_empty() {
         let mut columns = Columns::new(&["<a", "<b", "a from [m]", "to", "b from [m]", "to"]);
         for lock in &locks.locks {
             let cells = [[text(&lock.a), text(&lock.b)], range(lock.a_length), range(lock.b_length)];

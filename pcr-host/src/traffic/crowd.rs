@@ -25,34 +25,27 @@ impl Crowd {
         let alone = Scenario { name: String::new(), agents: vec![agent.clone()] };
         // What cannot be computed with is not in anybody's way, and no mission.
         let Ok(bodies) = Bodies::<f64>::new(&alone) else { return false };
-        let Some([before, after]) = self.order(&bodies) else { return false };
-        // Whom those after it lead to, and whom they again: nobody who has to come before it.
-        let mut reached = vec![false; self.agents.len()];
-        let mut open = after.clone();
-        while let Some(next) = open.pop() {
-            if !std::mem::replace(&mut reached[next], true) {
-                open.extend(&self.after[next]);
-            }
-        }
-        if before.iter().any(|&agent| reached[agent]) {
+        // Most that fail do so by one disc of each already.
+        if self.order(&bodies, true).is_none() {
             return false;
         }
+        let Some([before, after]) = self.order(&bodies, false) else { return false };
         before.iter().for_each(|&agent| self.after[agent].push(self.agents.len()));
         self.agents.push(bodies);
         self.after.push(after);
         true
     }
 
-    /// Those that have to start before an agent and after it, none where some have to do both.
-    fn order(&self, agent: &Bodies<f64>) -> Option<[Vec<usize>; 2]> {
+    /// Those that have to start before an agent and after it, by all discs or by one of each; none where there is no order.
+    fn order(&self, agent: &Bodies<f64>, one: bool) -> Option<[Vec<usize>; 2]> {
         let others: Vec<(usize, Motion<'_, f64>)> = self
             .agents
             .iter()
             .enumerate()
-            .flat_map(|(k, bodies)| grown(bodies).map(move |motion| (k, motion)))
+            .flat_map(|(k, bodies)| grown(bodies, one).into_iter().map(move |motion| (k, motion)))
             .collect();
         let mut marks = [vec![false; self.agents.len()], vec![false; self.agents.len()]];
-        for own in grown(agent) {
+        for own in grown(agent, one) {
             let pair: Vec<Motion<'_, f64>> =
                 std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
             let ecm = build_ecm_of(&pair, 0).ok()?;
@@ -63,17 +56,25 @@ impl Crowd {
                 marks[1][*other] |= goes_before;
             }
         }
-        let both = marks[0].iter().zip(&marks[1]).any(|(before, after)| *before && *after);
-        let places = |side: &Vec<bool>| (0..side.len()).filter(|&agent| side[agent]).collect();
-        (!both).then(|| [places(&marks[0]), places(&marks[1])])
+        let places = |marks: &[bool]| -> Vec<usize> { (0..marks.len()).filter(|&agent| marks[agent]).collect() };
+        let [before, after] = marks.map(|marks| places(&marks));
+        // Whom those after it lead to, and whom they again: nobody who has to come before it.
+        let mut reached = vec![false; self.agents.len()];
+        let mut open = after.clone();
+        while let Some(next) = open.pop() {
+            if !std::mem::replace(&mut reached[next], true) {
+                open.extend(&self.after[next]);
+            }
+        }
+        let circle = before.iter().any(|&agent| reached[agent]);
+        (!circle).then_some([before, after])
     }
 }
 
-/// The motions of the discs of an agent, with their margins and a little more.
-fn grown(bodies: &Bodies<f64>) -> impl Iterator<Item = Motion<'_, f64>> {
-    bodies
-        .fleet
-        .motions()
-        .into_iter()
-        .map(|motion| motion.with_margin(motion.margin() + ROOM).unwrap_or(motion).inflated())
+/// The motions of the discs of an agent, or of the one in the middle of its cover, with their margins and a little more.
+fn grown(bodies: &Bodies<f64>, one: bool) -> Vec<Motion<'_, f64>> {
+    let motions = bodies.fleet.motions();
+    let middle = motions.len() / 2;
+    let chosen = motions.into_iter().enumerate().filter(|(k, _)| !one || *k == middle);
+    chosen.map(|(_, motion)| motion.with_margin(motion.margin() + ROOM).unwrap_or(motion).inflated()).collect()
 }

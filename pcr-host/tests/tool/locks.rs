@@ -43,7 +43,7 @@ fn csv_and_table() {
     assert!(lines[1].starts_with("7,20,1.") && lines[2].starts_with("node 3,7,,,0,0.5"), "{csv}");
     let table = run_with(&[&arguments[..], &["table"]].concat(), cross.as_bytes()).out;
     let expected = "\
-cross: 1 locks of 1 pairs of edges, radius 0.25 m
+cross: 1 lock of 1 pair of edges, radius 0.25 m
   a  b   a from [m]     to  b from [m]     to
   7  20       1.500  2.500       1.500  2.500
 4 locks of nodes
