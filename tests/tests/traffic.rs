@@ -60,8 +60,7 @@ fn every_mission_that_is_placed_is_planned() {
     let imported = read(Format::Nav2, WAREHOUSE, 0.4);
     for seed in 1..=3 {
         let (traffic, [_, plan]) = Traffic::of(&imported, Request { agents: AGENTS, seed }).unwrap();
-        // Beyond about 50 agents somebody always stands in the way.
-        assert!(traffic.placed >= AGENTS - 5, "{seed}: {}", traffic.placed);
+        assert_eq!(traffic.placed, AGENTS, "{seed}");
         assert_eq!((traffic.planned, traffic.conflicts_after), (traffic.placed, 0), "{seed}: {:?}", traffic.unsolved);
         assert!(traffic.passed_over > 0 && clearance(&plan) > 0.0);
     }

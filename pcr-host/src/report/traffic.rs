@@ -31,6 +31,13 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
     writeln!(out, "{passed_over} missions passed over that no order of starts lets through with those before them")?;
+    if placed < asked {
+        let without = asked - placed;
+        writeln!(
+            out,
+            "{without} without a mission: whatever nodes are left, somebody always stands in the way of another"
+        )?;
+    }
     let mut columns = Columns::new(&["agent", "<from", "<to", "length [m]", "delay [s]", "t_end [s]"]);
     let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| format!("{time:.3}"));
     for mission in &traffic.missions {

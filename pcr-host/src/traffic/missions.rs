@@ -49,15 +49,33 @@ pub(super) struct Drawn {
     pub(super) passed_over: usize,
 }
 
+/// Draws at most, where not all agents have a mission in the first one.
+const DRAWS: usize = 4;
+
 /// Missions for up to `count` agents on the level that has most nodes: each from a random node to another one, so that
-/// no two agents overlap at their starts or at their ends, and there is an order in which all can start. Fewer where there is no such pair
-/// of nodes with a way between them.
+/// no two agents overlap at their starts or at their ends, and there is an order in which all can start. Of some draws the first that has a
+/// mission for everybody, else the one that has most.
 pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Drawn {
+    let mut seeds = Random(seed);
+    let mut best = attempt(imported, count, Random(seed));
+    for _ in 1..DRAWS {
+        if best.missions.len() == count {
+            break;
+        }
+        let next = attempt(imported, count, Random(seeds.bits()));
+        let passed_over = best.passed_over + next.passed_over;
+        let more = next.missions.len() > best.missions.len();
+        best = Drawn { passed_over, ..if more { next } else { best } };
+    }
+    best
+}
+
+/// One draw, an agent after the other: it ends where there is no pair of nodes with a way between them for the next one.
+fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
     let Imported { layout, vehicle } = imported;
     let level = layout.largest_level();
     let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
     let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
-    let mut random = Random(seed);
     let mut drawn = Drawn::default();
     let mut crowd = Crowd::default();
     for id in (1..).take(count) {
