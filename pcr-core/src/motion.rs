@@ -4,7 +4,7 @@ use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, Wide};
 use crate::segment::Curve;
 
 /// A disc on a path with a speed profile. It stands at the start of the path before it sets off, and at the
@@ -21,7 +21,7 @@ pub struct Motion<'a, S: Scalar> {
     bounds: Bounds<S>,
     extent: S,
     drift: S,
-    lag: S,
+    top_speed: S,
 }
 
 impl<'a, S: Scalar> Motion<'a, S> {
@@ -43,9 +43,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
         // `count` would check for overflow.
         let arcs = arcs.fold(0_usize, |count, _| count.saturating_add(1));
         let drift = S::drift(arcs, extent);
-        let speeds = profile.phases().iter().flat_map(|phase| phase.speed());
-        let lag = S::lag(speeds.fold(S::ZERO, S::max), profile.duration());
-        Ok(Self { path, profile, radius, margin: S::ZERO, start, lateness: S::ZERO, bounds, extent, drift, lag })
+        let top_speed = profile.top_speed();
+        Ok(Self { path, profile, radius, margin: S::ZERO, start, lateness: S::ZERO, bounds, extent, drift, top_speed })
     }
 
     /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
@@ -161,7 +160,13 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
     pub(crate) fn lag(&self) -> S {
-        self.lag
+        S::lag(self.top_speed, self.profile.duration())
+    }
+
+    /// How far the agent goes at its top speed in a time that holds all of its motion and the time 0 \[m\].
+    pub(crate) fn reach(&self) -> S {
+        let time = self.time();
+        self.top_speed.times(time.lo.abs().max(time.hi.abs())).narrow()
     }
 
     /// λ: length travelled at a time \[m\], limited to the length of the path.

@@ -139,11 +139,6 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         self.locate(length).map_or(Curve::Line, |(segment, _)| segment.curve)
     }
 
-    /// The segment at a travelled length \[m\]; at a joint the later one.
-    pub(crate) fn segment_at(self, length: S) -> Option<&'a Segment<S>> {
-        self.locate(length).map(|(segment, _)| segment)
-    }
-
     /// Box around the path \[m\].
     pub fn bounds(self) -> Bounds<S> {
         let mut rest = self.segments.iter().map(|segment| segment.bounds);

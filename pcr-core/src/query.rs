@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! legs        a motion, cut where its formula changes          (internal)
+//! windows     the legs of two, while they may be near         (internal)
 //! chord       the relative motion between two instants          (internal)
 //! contact     when two discs are in contact                      Encounter, Contacts
 //! clearance   how near they come                                 Approach
@@ -23,6 +24,7 @@ mod depart;
 mod legs;
 mod safe;
 mod stretch;
+mod windows;
 
 pub use clearance::Approach;
 pub use conflict::{Conflict, Conflicts, Met, first_conflict};

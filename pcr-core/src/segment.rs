@@ -10,7 +10,7 @@
 //! which keeps its relative accuracy for every radius, nearly straight arcs included.
 
 use crate::error::{Invalid, in_range, not_negative, positive};
-use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
+use crate::geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 use crate::scalar::{Angle, Scalar, Sector, Unit};
 
 /// Side to which an arc bends.
@@ -305,6 +305,26 @@ impl<S: Scalar> Segment<S> {
             && !separated(other, self)
             && self.circle_near(other, reach)
             && other.circle_near(self, reach)
+    }
+
+    /// Where it may come nearer than `reach` to another segment, as lengths along it: the part of a line that is as near to
+    /// the box of the other, the whole of an arc.
+    pub(crate) fn beside(&self, other: &Self, reach: S) -> Option<Interval<S>> {
+        let whole = Interval::new(S::ZERO, self.length);
+        if self.curve != Curve::Line {
+            return Some(whole);
+        }
+        // At u it is within x + u c of the middle, on the axis on which x is where it starts and c its slope.
+        let within = |x: S, slope: S::Unit, half: S| {
+            let ends = [-half - x, half - x].map(|way| way.quotient_unit(slope));
+            let [Some(a), Some(b)] = ends else { return whole };
+            Interval::new(a.min(b), a.max(b))
+        };
+        let from = self.start - other.middle;
+        let along = within(from.along(other.direction), other.direction.dot(self.direction), other.half[0] + reach);
+        let across = within(from.across(other.direction), other.direction.cross(self.direction), other.half[1] + reach);
+        let part = whole.common(along).common(across);
+        (part.lo <= part.hi).then_some(part)
     }
 
     /// Whether the circle of an arc may come nearer than `reach` to the box of another segment.

@@ -35,7 +35,7 @@ pub struct Tally {
 
 /// Discs that are a little larger, so that the true ones are certain not to touch after a few hundred steps of the
 /// oracle \[m\]. The plans are held to 1e-8 m with the larger ones.
-const GROWTH: f64 = 1e-4;
+const GROWTH: f64 = 1e-5;
 
 /// Two to six agents in a square of 6 m, or on one another's paths.
 pub fn fleet(dice: &mut Dice) -> Vec<Driven> {

@@ -67,9 +67,8 @@ fn waits<S: Format>() {
         let travel = Travel::new(&pair[0].1, pair[0].0.length(), pair[0].2);
         let at = fleet[0].length_at(S::from_f64(travel.time().0 + 0.4 * (travel.time().1 - travel.time().0)));
         let leaves = travel.last_time_at(at.to_f64());
-        let dwell = travel.last_time_at(at.to_f64() + 1e-3) - travel.first_time_at(at.to_f64() - 1e-3);
-        if at <= S::ZERO || dwell > 0.2 {
-            // A start delay; or a wait of the motion itself, all of which counts as the rest of it.
+        if at <= S::ZERO {
+            // A start delay.
             continue;
         }
         let moves = |wait: f64| {

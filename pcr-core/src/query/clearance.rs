@@ -5,7 +5,8 @@
 
 use crate::geometry::Interval;
 use crate::query::chord::Chord;
-use crate::query::contact::{Encounter, Window, Windows};
+use crate::query::contact::Encounter;
+use crate::query::windows::{Window, Windows};
 use crate::scalar::{Scalar, Wide};
 
 /// When two agents are nearest to one another, and how near.
@@ -24,17 +25,20 @@ impl<S: Scalar> Encounter<'_, S> {
     /// [`Encounter::tolerance`] of the least separation. Both stand at their start before they set off and at their end after
     /// their arrival. The clearance is the separation less [`Encounter::radius`].
     ///
-    /// Cost: a comparison of boxes a leg and a few steps for those that come nearer than the legs before.
+    /// Cost: a comparison of boxes a pair of segments and a few steps for those that come nearer than the ones before.
     pub fn closest(&self, during: Interval<S>) -> Approach<S> {
-        let separation = (self.other.position_at(during.lo) - self.ego.position_at(during.lo)).norm_squared().sqrt();
+        let separation = |time: S| (self.other.position_at(time) - self.ego.position_at(time)).norm_squared().sqrt();
+        let mut best = Approach { time: during.lo, separation: separation(during.lo) };
         // A bound that holds for the first windows as well.
-        let ends = Windows::new(self, during).map(|window| window.at(window.time.hi).separation());
-        let bound = ends.fold(separation, S::min) + self.tolerance().half();
-        let mut best = Approach { time: during.lo, separation };
-        for window in Windows::new(self, during) {
-            if window.near(best.separation.min(bound)) {
-                self.closest_in(&window, bound, &mut best);
-            }
+        let eighth = during.length().half().half().half();
+        let places = [(); 8].iter().scan(during.lo, |place, ()| {
+            *place = *place + eighth;
+            Some(separation(*place))
+        });
+        let bound = places.fold(best.separation, S::min) + self.tolerance().half();
+        let mut windows = Windows::new([self.ego, self.other], during);
+        while let Some(window) = windows.next(best.separation.min(bound) + self.pad()) {
+            self.closest_in(&window, bound, &mut best);
         }
         best
     }

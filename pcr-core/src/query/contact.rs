@@ -3,21 +3,22 @@
 //! Over a step of length h the relative position Δ(t) of the two centres stays within
 //!
 //! ```text
-//! e = Σ |a| h² / 8 + w² / 8ϱ          (w the way of an agent, ϱ the radius of its arc)
+//! e = Σ |a| h² / 8 + w² / 8ϱ          (w the way of an agent, ϱ the radius of its arc; w² / 4ϱ if it speeds up or slows)
 //! ```
 //!
 //! of the chord between its values at both ends (linear interpolation), so that the chord decides: outside a circle of
-//! R + e there is no contact, inside one of R - e there is. Where it does not, the step is cut to the part in doubt:
-//! e falls with the square of the step, and the part in doubt with e. On lines at constant speeds e is 0 and one step
-//! is exact; elsewhere an end of a contact takes about five. The worst case is discs that stay at a distance of R
-//! within the tolerance for a time T: every step there is at least h = √(2 ε / c) long, c = Σ |a| + v²/ϱ, as e <= ε / 4
-//! always decides; hence at most a few T / h + 1 steps a leg. `Contacts::steps` counts them.
+//! R + e there is no contact, inside one of R - e there is. As the deviation is 0 at both ends, less decides that nothing
+//! happens at all (`chord::clears`, `chord::keeps`), also where a step begins at a distance of R. Else the step is cut to
+//! the part in doubt: e falls with the square of the step, and the part in doubt with e. On lines at constant speeds e is
+//! 0 and one step is exact; elsewhere an end of a contact takes about five. The worst case is discs that stay at a
+//! distance of R within the tolerance for a time T: every step there is at least h = √(2 ε / c) long, c = Σ |a| + v²/ϱ, as
+//! e <= ε / 4 always decides; hence at most a few T / h + 1 steps a leg. `Contacts::steps` counts them.
 
-use crate::geometry::{Interval, Vector};
+use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::query::chord::Chord;
-use crate::query::legs::{Leg, Legs};
-use crate::scalar::{Scalar, Wide};
+use crate::query::chord::{Chord, clears, keeps};
+use crate::query::windows::{Instant, Window, Windows};
+use crate::scalar::Scalar;
 
 /// Two agents in motion: are they in contact, when, how near do they come.
 ///
@@ -54,16 +55,12 @@ pub struct Encounter<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> Encounter<'a, S> {
-    /// Cost: the phases of both motions.
+    /// The two, whose order says whose lengths come first.
     pub fn new(ego: &'a Motion<'a, S>, other: &'a Motion<'a, S>) -> Self {
-        // The last digit of a time counts with the speed.
-        let late = |motion: &Motion<'_, S>| {
-            let time = motion.time();
-            motion.profile().top_speed().times(time.lo.abs().max(time.hi.abs())).narrow()
-        };
         let extent = ego.extent().max(other.extent());
         let quadruple = |length: S| length.double().double();
-        let pad = quadruple(S::slack(extent + late(ego) + late(other))) + ego.drift() + other.drift();
+        // The last digit of a time counts with the speed.
+        let pad = quadruple(S::slack(extent + ego.reach() + other.reach())) + ego.drift() + other.drift();
         Self { ego, other, pad, tolerance: S::tolerance(extent).max(quadruple(pad)) }
     }
 
@@ -88,13 +85,13 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     /// When the discs are in contact during an interval of time \[s\], in increasing order, each as long as it lasts.
     /// Both stand at their start before they set off and at their end after their arrival.
     ///
-    /// Cost: a comparison of boxes a leg, and 50 to 100 ns a step on a desktop: one to a few where segments come near
-    /// each other at the same time, about ten for a contact.
+    /// Cost: a comparison of boxes a pair of segments, four times of lengths where two come near each other, and 50 to
+    /// 100 ns a step on a desktop: one to a few where they do so at the same time, about ten for a contact.
     pub fn contacts(&self, during: Interval<S>) -> Contacts<'a, S> {
         let reach = self.radius() + self.pad;
         let apart = !self.ego.bounds().expanded(reach).meets(self.other.bounds());
-        let windows = (!apart).then(|| Windows::new(self, during));
-        Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, during, steps: 0 }
+        let windows = (!apart).then(|| Windows::new([self.ego, self.other], during));
+        Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
     }
 }
 
@@ -102,83 +99,6 @@ impl<S: Scalar> Encounter<'_, S> {
     /// What rounding may do to a distance \[m\].
     pub(crate) fn pad(&self) -> S {
         self.pad
-    }
-}
-
-/// The intervals of time in which both agents are on one leg each.
-#[derive(Clone, Debug)]
-pub(crate) struct Windows<'a, S: Scalar> {
-    legs: [Legs<'a, S>; 2],
-    current: [Option<Leg<'a, S>>; 2],
-}
-
-/// A leg of each agent, while both last.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Window<'a, S: Scalar> {
-    pub(crate) time: Interval<S>,
-    legs: [Leg<'a, S>; 2],
-}
-
-impl<'a, S: Scalar> Windows<'a, S> {
-    pub(crate) fn new(encounter: &Encounter<'a, S>, during: Interval<S>) -> Self {
-        let (mut ego, mut other) = (Legs::new(encounter.ego, during), Legs::new(encounter.other, during));
-        let current = [ego.next(), other.next()];
-        Self { legs: [ego, other], current }
-    }
-}
-
-impl<'a, S: Scalar> Iterator for Windows<'a, S> {
-    type Item = Window<'a, S>;
-
-    fn next(&mut self) -> Option<Window<'a, S>> {
-        let [Some(a), Some(b)] = self.current else {
-            return None;
-        };
-        let time = a.time.common(b.time);
-        for ((current, legs), ends) in self.current.iter_mut().zip(&mut self.legs).zip([a.time.hi, b.time.hi]) {
-            if ends <= time.hi {
-                *current = legs.next();
-            }
-        }
-        Some(Window { time, legs: [a, b] })
-    }
-}
-
-/// Where both agents are at a time.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Instant<S> {
-    pub(crate) time: S,
-    lengths: [S; 2],
-    /// From the one centre to the other.
-    pub(crate) apart: Vector<S>,
-}
-
-impl<S: Scalar> Instant<S> {
-    /// Distance of the centres \[m\].
-    pub(crate) fn separation(&self) -> S {
-        self.apart.norm_squared().sqrt()
-    }
-}
-
-impl<S: Scalar> Window<'_, S> {
-    pub(crate) fn at(&self, time: S) -> Instant<S> {
-        let [a, b] = &self.legs;
-        let lengths = [a.length_at(time), b.length_at(time)];
-        Instant { time, lengths, apart: b.point_at(lengths[1]) - a.point_at(lengths[0]) }
-    }
-
-    /// How far the relative position may be from the chord between two instants \[m\].
-    pub(crate) fn deviation(&self, from: &Instant<S>, to: &Instant<S>) -> S {
-        let duration = to.time - from.time;
-        let [[a, b], [c, d]] = [from.lengths, to.lengths];
-        let [ego, other] = &self.legs;
-        ego.deviation(c - a, duration) + other.deviation(d - b, duration)
-    }
-
-    /// Whether the boxes of the segments come within `reach` of one another.
-    pub(crate) fn near(&self, reach: S) -> bool {
-        let [a, b] = &self.legs;
-        a.bounds().expanded(reach).meets(b.bounds())
     }
 }
 
@@ -194,14 +114,15 @@ pub struct Contacts<'a, S: Scalar> {
     scan: Option<Scan<'a, S>>,
     /// Since when there is contact.
     since: Option<S>,
-    during: Interval<S>,
+    /// The end of the window that was searched last.
+    last: Option<Instant<S>>,
     steps: u32,
 }
 
 #[cfg(feature = "defmt")]
 impl<S: Scalar + defmt::Format> defmt::Format for Contacts<'_, S> {
     fn format(&self, f: defmt::Formatter<'_>) {
-        defmt::write!(f, "contacts within {} m during {} s, {} steps so far", self.radius, self.during, self.steps);
+        defmt::write!(f, "contacts within {} m, {} steps so far", self.radius, self.steps);
     }
 }
 
@@ -230,12 +151,33 @@ impl<S: Scalar> Contacts<'_, S> {
 }
 
 impl<'a, S: Scalar> Contacts<'a, S> {
-    /// The next window in which something may change.
+    /// The next window in which the two may come as near as a contact lasts.
     fn next_scan(&mut self) -> Option<Scan<'a, S>> {
-        let windows = self.windows.as_mut()?;
-        let (radius, inside) = (self.radius, self.since.is_some());
-        let window = windows.find(|window| inside || window.near(radius))?;
-        Some(Scan { window, now: window.at(window.time.lo), step: window.time.length() })
+        let reach = self.radius + self.encounter.tolerance;
+        let window = self.windows.as_mut()?.next(reach)?;
+        let now = self.last.filter(|last| last.time == window.time.lo).unwrap_or_else(|| window.at(window.time.lo));
+        Some(Scan { window, now, step: window.time.length() })
+    }
+
+    /// Searches the rest of a window, up to the end of a contact.
+    fn rest_of(&mut self, mut scan: Scan<'a, S>) -> Option<Interval<S>> {
+        loop {
+            let event = self.step(&mut scan);
+            let over = scan.now.time >= scan.window.time.hi;
+            let ended = match event {
+                Some(Event::Begin(time)) => {
+                    self.since = Some(time);
+                    None
+                }
+                Some(Event::End(time)) => self.since.take().map(|since| Interval::new(since, time)),
+                None => None,
+            };
+            if over || ended.is_some() {
+                self.last = Some(scan.now);
+                self.scan = (!over).then_some(scan);
+                return ended;
+            }
+        }
     }
 
     /// One step of the search; an event where something changes.
@@ -245,21 +187,28 @@ impl<'a, S: Scalar> Contacts<'a, S> {
         let left = window.time.hi - now.time;
         let (duration, to) = if step < left { (step, now.time + step) } else { (left, window.time.hi) };
         let ahead = window.at(to);
-        let stretch = Stretch {
-            now,
-            ahead,
-            chord: Chord::between(now.apart, ahead.apart),
-            error: window.deviation(&now, &ahead),
-            duration,
-            radius: self.radius,
-            tolerance: self.encounter.tolerance,
-            pad: self.encounter.pad,
+        let error = window.deviation(&now, &ahead);
+        let (ends, inside) = ([now.apart, ahead.apart], self.since.is_some());
+        let Encounter { tolerance, pad, .. } = self.encounter;
+        let goes_on = if inside {
+            keeps(ends, self.radius + tolerance, error)
+        } else {
+            clears(ends, self.radius + pad, error, pad)
         };
-        let next = if self.since.is_none() { stretch.search() } else { stretch.follow() };
-        scan.now = if next.from > now.time { window.at(next.from) } else { now };
-        if next.from >= to {
-            scan.now = ahead;
-        }
+        let next = if goes_on {
+            Next { from: to, step: duration.double(), event: None }
+        } else {
+            let chord = Chord::between(now.apart, ahead.apart);
+            let stretch = Stretch { now, ahead, chord, error, duration, radius: self.radius, tolerance, pad };
+            if inside { stretch.follow() } else { stretch.search() }
+        };
+        scan.now = if next.from >= to {
+            ahead
+        } else if next.from > now.time {
+            window.at(next.from)
+        } else {
+            now
+        };
         scan.step = next.step;
         next.event
     }
@@ -296,7 +245,7 @@ impl<S: Scalar> Stretch<S> {
         let doubt = certain.map(|certain| self.time_at(certain.lo) - begin);
         match self.refined(begin, doubt) {
             Some(next) if !self.decides(doubt) => next,
-            _ => Next { from: begin, step: self.duration.double(), event: Some(Event::Begin(begin)) },
+            _ => Next { from: begin, step: S::LIMIT, event: Some(Event::Begin(begin)) },
         }
     }
 
@@ -318,7 +267,7 @@ impl<S: Scalar> Stretch<S> {
         match self.refined(from, doubt) {
             _ if self.decides(doubt) => {
                 let event = Some(Event::End(left_at(self.radius + self.error)));
-                Next { from: left_at(outer - self.error), step: self.duration.double(), event }
+                Next { from: left_at(outer - self.error), step: S::LIMIT, event }
             }
             Some(next) => next,
             // Times have a last digit, too: contact is what cannot be excluded.
@@ -361,16 +310,17 @@ impl<S: Scalar> Iterator for Contacts<'_, S> {
 
     fn next(&mut self) -> Option<Interval<S>> {
         loop {
-            let Some(mut scan) = self.scan.take().or_else(|| self.next_scan()) else {
-                // In contact until the end.
-                return self.since.take().map(|since| Interval::new(since, self.during.hi));
-            };
-            let event = self.step(&mut scan);
-            self.scan = (scan.now.time < scan.window.time.hi).then_some(scan);
-            match event {
-                Some(Event::Begin(time)) => self.since = Some(time),
-                Some(Event::End(time)) => return self.since.take().map(|since| Interval::new(since, time)),
-                None => {}
+            let scan = self.scan.take().or_else(|| self.next_scan());
+            // No contact outlasts the windows that follow one another.
+            if let (Some(since), Some(last)) = (self.since, self.last)
+                && scan.as_ref().is_none_or(|scan| last.time < scan.now.time)
+            {
+                (self.since, self.scan) = (None, scan);
+                return Some(Interval::new(since, last.time));
+            }
+            let ended = self.rest_of(scan?);
+            if ended.is_some() {
+                return ended;
             }
         }
     }

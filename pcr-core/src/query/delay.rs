@@ -37,15 +37,15 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// The delays that the ranges of the region allow.
     fn possible_delays(&self) -> Interval<S> {
         let length = self.length();
-        let Interval { lo, hi } = self.delays_on(length);
+        let Interval { lo, hi } = self.delays_of(self.ego_motion().time_in(length));
         let never = length.hi >= self.ego_motion().path().length() || self.is_open_at_start();
         let ever = length.lo <= S::ZERO || self.is_open_at_end();
         Interval::new(if never { -S::LIMIT } else { lo }, if ever { S::LIMIT } else { hi })
     }
 
-    /// The delays at which the ego is on a part of its path while the other is in the region.
-    pub(super) fn delays_on(&self, part: Interval<S>) -> Interval<S> {
-        let (own, their) = (self.ego_motion().time_in(part), self.time());
+    /// The delays that bring what the ego does at these times \[s\] to those at which the other is in the region.
+    pub(super) fn delays_of(&self, own: Interval<S>) -> Interval<S> {
+        let their = self.time();
         // Differences of times have a rounding of their own.
         let slack = self.resolution();
         Interval::new(their.lo - own.hi - slack, their.hi - own.lo + slack)
@@ -80,14 +80,15 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// How long the ego meets the region if it starts later by this delay, if it does.
     fn contact_after(&self, delay: S) -> Option<S> {
         // A start that the format does not hold is none to recommend.
-        self.ego_motion().delayed(delay).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, self.length()))
+        self.ego_motion().delayed(delay).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, self.length(), -S::LIMIT))
     }
 
-    /// How long the ego, in another motion along its path, first meets the region on a part of it \[s\], if it does.
-    pub(super) fn contact_of(&self, ego: &Motion<'_, S>, part: Interval<S>) -> Option<S> {
+    /// How long the ego, in another motion along its path, first meets the region on a part of it from a time on \[s\], if
+    /// it does.
+    pub(super) fn contact_of(&self, ego: &Motion<'_, S>, part: Interval<S>, from: S) -> Option<S> {
         let other = self.other_motion();
         let encounter = Encounter::new(ego, other);
-        let all = encounter.time();
+        let all = Interval::new(encounter.time().lo.max(from), encounter.time().hi);
         let (own, their) = (times(ego, part, all)?, times(other, self.other_length(), all)?);
         let during = Interval::new(own.lo.max(their.lo), own.hi.min(their.hi));
         // A contact is connected, hence part of one region; at a grazing one only its deepest point may be inside.

@@ -18,8 +18,11 @@ impl<S: Scalar> RegionRef<'_, S> {
         }
         // Standing at the end of the path is a part of the rest.
         let ego = self.ego_motion();
-        let contact = |wait: S| ego.delayed(wait).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, part));
-        let possible = self.with_lateness(self.delays_on(part));
+        let leaves = self.leaves(at);
+        let contact =
+            |wait: S| ego.delayed(wait).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, part, leaves + wait));
+        let own = ego.time_in(part);
+        let possible = self.with_lateness(self.delays_of(Interval::new(own.lo.max(leaves), own.hi.max(leaves))));
         let parked = self.blocked(part, Interval::new(S::LIMIT, S::LIMIT)).next().is_some();
         let stands = part.hi >= ego.path().length() || self.is_open_at_start();
         let apart = wait >= possible.hi && !parked || wait < possible.lo && !stands;
@@ -33,10 +36,14 @@ impl<S: Scalar> RegionRef<'_, S> {
         Some(Bracket { inside: wait, outside: possible.hi, resolution: self.resolution() }.shrunk(contact))
     }
 
+    /// When the ego leaves a length of its path by its motion.
+    fn leaves(&self, at: S) -> S {
+        self.ego_motion().time().lo + self.ego_motion().profile().last_time_at(at)
+    }
+
     /// How long the ego can stand at a length of its path, from when it leaves it by its motion on.
     fn longest_wait(&self, at: S) -> S {
-        let ego = self.ego_motion();
-        let leaves = ego.time().lo + ego.profile().last_time_at(at);
+        let leaves = self.leaves(at);
         let windows = self.blocked(Interval::new(at, at), Interval::new(leaves, S::LIMIT));
         windows.map(|window| window.lo - leaves).fold(S::LIMIT, S::min)
     }
@@ -47,9 +54,10 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// the start. `None` where no wait helps, or the agent is in someone's way before. Whether it can stop there is not asked: a
 /// motion that is at rest at this length can.
 ///
-/// Where the motion itself waits at this length, all of that wait counts as the rest of the motion. Where the length cuts a region in two, a wait that leads through between the parts may be missed; so may one that is
-/// shorter than all that the ranges of a region allow, if agents may be late. Cost: for each region
-/// that is met that of [`earliest_start`], and a few hundred operations a piece at this length.
+/// Where the motion itself waits at this length, that wait comes before. Where the length cuts a region in two, a wait that
+/// leads through between the parts may be missed; so may one that is shorter than all that the ranges of a region allow, if
+/// agents may be late. Cost: for each region that is met that of [`earliest_start`], and a few hundred operations a piece at
+/// this length.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, earliest_departure};

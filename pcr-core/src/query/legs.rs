@@ -1,7 +1,7 @@
 //! A motion, cut where its formula changes: each leg is one phase on one segment, or a stand.
 //!
-//! The legs of a motion cover a given interval of time without gaps: the agent stands at the start of its path before
-//! it sets off and at the end after its arrival.
+//! A motion has a stage before it sets off, one on each segment, and one after its arrival. Stages know where they are,
+//! which costs nothing; when they are takes a time of a length for either end. Legs are the phases of a stage.
 
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
@@ -9,11 +9,9 @@ use crate::profile::Phase;
 use crate::scalar::{Scalar, Wide};
 use crate::segment::{Curve, Segment};
 
-/// Part of a motion at constant acceleration on one segment.
+/// Part of a motion at constant acceleration on one segment, or a stand.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg<'a, S: Scalar> {
-    /// When \[s\].
-    pub(crate) time: Interval<S>,
     segment: &'a Segment<S>,
     /// `None` for a stand.
     phase: Option<&'a Phase<S>>,
@@ -37,11 +35,6 @@ impl<S: Scalar> Leg<'_, S> {
         self.segment.point_at(length - self.segment.from)
     }
 
-    /// Box around the segment.
-    pub(crate) fn bounds(&self) -> Bounds<S> {
-        self.segment.bounds
-    }
-
     /// How far the agent may be from the point that goes at constant speed along the chord of its way \[m\], over a part
     /// of the leg that takes `duration` \[s\] for `way` \[m\].
     ///
@@ -51,105 +44,111 @@ impl<S: Scalar> Leg<'_, S> {
         let eighth = |length: S| length.half().half().half();
         let bend = match self.segment.curve {
             Curve::Line => S::ZERO,
-            Curve::Arc { radius, .. } if way <= radius => eighth(way.portion(way, radius)),
-            // Both points are within half the way of the middle of the chord.
-            Curve::Arc { .. } => way,
+            Curve::Arc { radius, .. } => way.portion(way, radius.double().double().double()),
         };
         let Some(phase) = self.phase else {
             return bend;
         };
         let gain = phase.acceleration().abs().times(duration).narrow();
-        bend + eighth(gain.times(duration).narrow())
+        if gain <= S::ZERO { bend } else { bend.double() + eighth(gain.times(duration).narrow()) }
     }
 }
 
-/// What comes next.
+/// Part of a motion on one segment, or one of its two stands.
 #[derive(Clone, Copy, Debug)]
-enum Stage<S> {
-    /// The stand before the motion, if any.
-    Before,
-    /// This phase and segment.
-    Travel(usize, usize),
-    /// The stand after the motion, if any.
-    After,
-    /// A single instant, at this length.
-    Instant(S),
-    Done,
-}
-
-/// The legs of a motion in an interval of time, in their order, none of them empty.
-///
-/// Cost: a time of a length for each joint before the end of the interval.
-#[derive(Clone, Debug)]
-pub(crate) struct Legs<'a, S: Scalar> {
+pub(crate) struct Stage<'a, S: Scalar> {
     motion: &'a Motion<'a, S>,
-    until: S,
-    /// Where the next leg begins.
-    now: S,
-    stage: Stage<S>,
+    /// 0 for the stand before the motion, then 1 more than the place of the segment, at last the stand after the motion.
+    place: usize,
+    segment: &'a Segment<S>,
+    /// Where a stand is: length along the path \[m\].
+    stand: Option<S>,
 }
 
-impl<'a, S: Scalar> Legs<'a, S> {
-    /// An interval of length 0 has one leg.
-    pub(crate) fn new(motion: &'a Motion<'a, S>, during: Interval<S>) -> Self {
-        let stage = if during.lo < during.hi { Stage::Before } else { Stage::Instant(motion.length_at(during.lo)) };
-        Self { motion, until: during.hi, now: during.lo, stage }
+impl<'a, S: Scalar> Stage<'a, S> {
+    /// The first stage from a place on whose box meets another one.
+    pub(crate) fn in_box(motion: &'a Motion<'a, S>, place: usize, around: &Bounds<S>) -> Option<Self> {
+        let segments = motion.path().segments();
+        let stands_in = |point: Point<S>| around.x.contains(point.x) && around.y.contains(point.y);
+        let stage = |place, segment, stand| Some(Self { motion, place, segment, stand });
+        let first = segments.first()?;
+        if place == 0 && stands_in(first.start) {
+            return stage(0, first, Some(S::ZERO));
+        }
+        let skipped = place.saturating_sub(1);
+        let mut rest = segments.get(skipped..)?.iter();
+        if let Some(on) = rest.position(|segment| around.meets(segment.bounds)) {
+            let on = skipped.wrapping_add(on);
+            return stage(on.wrapping_add(1), segments.get(on)?, None);
+        }
+        let (last, after) = (segments.last()?, segments.len().wrapping_add(1));
+        if place <= after && stands_in(last.end) { stage(after, last, Some(motion.path().length())) } else { None }
     }
 
-    fn stand(&mut self, length: S, until: S) -> Option<Leg<'a, S>> {
-        let (time, start) = (Interval::new(self.now, until.min(self.until)), self.motion.time().lo);
-        self.now = time.hi;
-        let segment = self.motion.path().segment_at(length)?;
-        Some(Leg { time, segment, phase: None, start, stand: length })
-    }
-}
-
-impl<'a, S: Scalar> Iterator for Legs<'a, S> {
-    type Item = Leg<'a, S>;
-
-    fn next(&mut self) -> Option<Leg<'a, S>> {
-        let travel = self.motion.time();
-        loop {
-            match self.stage {
-                Stage::Done => return None,
-                Stage::Instant(length) => {
-                    self.stage = Stage::Done;
-                    return self.stand(length, self.until);
-                }
-                _ if self.now >= self.until => self.stage = Stage::Done,
-                Stage::Before => {
-                    self.stage = Stage::Travel(0, 0);
-                    if self.now < travel.lo {
-                        return self.stand(S::ZERO, travel.lo);
-                    }
-                }
-                Stage::After => {
-                    self.stage = Stage::Done;
-                    return self.stand(self.motion.path().length(), self.until);
-                }
-                Stage::Travel(at, on) => {
-                    let segments = self.motion.path().segments();
-                    let (Some(phase), Some(segment)) = (self.motion.profile().phases().get(at), segments.get(on))
-                    else {
-                        self.stage = Stage::After;
-                        continue;
-                    };
-                    let joint = segment.from + segment.length;
-                    let next = on.wrapping_add(1);
-                    let end = if joint < phase.length().hi && next < segments.len() {
-                        self.stage = Stage::Travel(at, next);
-                        phase.time_at(joint.max(phase.length().lo))
-                    } else {
-                        self.stage = Stage::Travel(at.wrapping_add(1), on);
-                        phase.time().hi
-                    };
-                    let time = Interval::new(self.now, (travel.lo + end).min(self.until));
-                    if time.lo < time.hi {
-                        self.now = time.hi;
-                        return Some(Leg { time, segment, phase: Some(phase), start: travel.lo, stand: S::ZERO });
-                    }
-                }
+    /// Box around it \[m\].
+    pub(crate) fn bounds(&self) -> Bounds<S> {
+        match self.stand {
+            None => self.segment.bounds,
+            Some(_) => {
+                let point = if self.place == 0 { self.segment.start } else { self.segment.end };
+                Bounds::around(point, point)
             }
         }
+    }
+
+    pub(crate) fn place(&self) -> usize {
+        self.place
+    }
+
+    /// The lengths of the path at which a stage whose box is near that of another one may come nearer than `reach` to it
+    /// \[m\], if there are any.
+    pub(crate) fn beside(&self, other: &Self, reach: S) -> Option<Interval<S>> {
+        let Segment { from, to, length, .. } = *self.segment;
+        let part = match (self.stand, other.stand) {
+            (None, None) if !self.segment.near(other.segment, reach) => return None,
+            (None, None) => self.segment.beside(other.segment, reach)?,
+            _ => Interval::new(S::ZERO, length),
+        };
+        Some(Interval::new(from + part.lo, if part.hi < length { from + part.hi } else { to }))
+    }
+
+    /// When the agent is on a part of it, in an interval of time that stands are not longer than \[s\]. A wait at a joint
+    /// belongs to the segment before.
+    pub(crate) fn time_in(&self, part: Interval<S>, during: Interval<S>) -> Interval<S> {
+        let (travel, profile, place) = (self.motion.time(), self.motion.profile(), self.place);
+        let joints = self.motion.path().segments().len();
+        let lo = match part.lo {
+            _ if place == 0 => during.lo,
+            _ if place == 1 && part.lo <= self.segment.from => travel.lo,
+            _ if place > joints => travel.hi,
+            joint if joint <= self.segment.from => travel.lo + profile.last_time_at(joint),
+            length => travel.lo + profile.first_time_at(length),
+        };
+        let hi = match part.hi {
+            _ if place == 0 => travel.lo,
+            _ if place > joints => during.hi,
+            _ if place == joints && part.hi >= self.segment.to => travel.hi,
+            length => travel.lo + profile.last_time_at(length),
+        };
+        Interval::new(lo.max(during.lo), hi.min(during.hi))
+    }
+
+    /// The leg of the stage from a time on, and when it ends, if the stage does not end before. `phase` is the place of
+    /// a phase that is not after it, and then of its own.
+    pub(crate) fn leg(&self, now: S, phase: &mut usize) -> (Leg<'a, S>, Option<S>) {
+        let start = self.motion.time().lo;
+        let mut phases = self.motion.profile().phases().get(*phase..).unwrap_or_default().iter();
+        let over = |phase: &&Phase<S>| start + phase.time().hi <= now;
+        let leg = |phase, stand| Leg { segment: self.segment, phase, start, stand };
+        if let Some(stand) = self.stand {
+            return (leg(None, stand), None);
+        }
+        let current = loop {
+            match phases.next() {
+                Some(passed) if over(&passed) => *phase = phase.wrapping_add(1),
+                current => break current,
+            }
+        };
+        (leg(current, self.motion.path().length()), current.map(|phase| start + phase.time().hi))
     }
 }

@@ -103,7 +103,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         let ego = self.ego_motion();
         let contact = |profile: &Profile<S, N>| {
             let ego = ego.with_profile(profile.as_profile(), ego.time().lo)?;
-            Ok(self.contact_of(&ego, self.length()))
+            Ok(self.contact_of(&ego, self.length(), -S::LIMIT))
         };
         match Profile::<S, N>::stretched(ego.profile(), duration).and_then(|profile| contact(&profile)) {
             Err(full @ Invalid::Full(_)) => Err(full),

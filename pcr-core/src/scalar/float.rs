@@ -127,6 +127,9 @@ macro_rules! impl_float {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed
             }
             fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+                if ramp.acceleration == 0.0 {
+                    return length.quotient(ramp.slow);
+                }
                 // Δt = 2 Δl / (v + √(v² + 2 a Δl))
                 let fast = Wide::<$t>::sqrt(ramp.slow * ramp.slow + 2.0 * (ramp.acceleration * length));
                 (2.0 * length).quotient(ramp.slow + fast)

@@ -1,0 +1,109 @@
+//! The intervals of time in which two agents may be near one another, each on one leg.
+//!
+//! Stages of the two are compared first by where they are, then by when: boxes reject most, and only the rest costs times
+//! of lengths. In the order of the ego's stages, then of the other's, those at the same time follow one another in time.
+
+use crate::geometry::{Interval, Vector};
+use crate::motion::Motion;
+use crate::query::legs::{Leg, Stage};
+use crate::scalar::{Scalar, Wide};
+
+/// A leg of each agent, while both last.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Window<'a, S: Scalar> {
+    pub(crate) time: Interval<S>,
+    legs: [Leg<'a, S>; 2],
+}
+
+/// Where both agents are at a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant<S> {
+    pub(crate) time: S,
+    lengths: [S; 2],
+    /// From the one centre to the other.
+    pub(crate) apart: Vector<S>,
+}
+
+impl<S: Scalar> Instant<S> {
+    /// Distance of the centres \[m\].
+    pub(crate) fn separation(&self) -> S {
+        self.apart.norm_squared().sqrt()
+    }
+}
+
+impl<S: Scalar> Window<'_, S> {
+    pub(crate) fn at(&self, time: S) -> Instant<S> {
+        let [a, b] = &self.legs;
+        let lengths = [a.length_at(time), b.length_at(time)];
+        Instant { time, lengths, apart: b.point_at(lengths[1]) - a.point_at(lengths[0]) }
+    }
+
+    /// How far the relative position may be from the chord between two instants \[m\].
+    pub(crate) fn deviation(&self, from: &Instant<S>, to: &Instant<S>) -> S {
+        let duration = to.time - from.time;
+        let [[a, b], [c, d]] = [from.lengths, to.lengths];
+        let [ego, other] = &self.legs;
+        ego.deviation(c - a, duration) + other.deviation(d - b, duration)
+    }
+}
+
+/// The windows of two agents that may be near one another, in increasing order of time.
+#[derive(Clone, Debug)]
+pub(crate) struct Windows<'a, S: Scalar> {
+    motions: [&'a Motion<'a, S>; 2],
+    /// What is left of the interval of time \[s\].
+    during: Interval<S>,
+    /// Whether that was of length 0: so is its window then.
+    instant: bool,
+    /// The stages that are compared next, and the first one of the other that is not over before.
+    stages: [usize; 2],
+    first: usize,
+    /// What is left of the time that two stages share.
+    rest: Option<(Interval<S>, [Stage<'a, S>; 2])>,
+    /// The phases of both, or some before them.
+    phases: [usize; 2],
+}
+
+impl<'a, S: Scalar> Windows<'a, S> {
+    pub(crate) fn new(motions: [&'a Motion<'a, S>; 2], during: Interval<S>) -> Self {
+        // Without the stands that are over before.
+        let stages = motions.map(|motion| usize::from(motion.time().lo < during.lo));
+        Self { motions, during, instant: during.lo == during.hi, stages, first: stages[1], rest: None, phases: [0; 2] }
+    }
+
+    /// The next window in which the two may come nearer than `reach`.
+    pub(crate) fn next(&mut self, reach: S) -> Option<Window<'a, S>> {
+        let (time, stages) = match self.rest.take() {
+            None => self.meeting(reach)?,
+            Some(rest) => rest,
+        };
+        let ([ego, other], [own, their]) = (&stages, &mut self.phases);
+        let ((ego, ends), (other, then)) = (ego.leg(time.lo, own), other.leg(time.lo, their));
+        let until = time.hi.min(ends.unwrap_or(time.hi)).min(then.unwrap_or(time.hi));
+        self.during.lo = until;
+        self.rest = (until < time.hi).then_some((Interval::new(until, time.hi), stages));
+        Some(Window { time: Interval::new(time.lo, until), legs: [ego, other] })
+    }
+
+    /// The next two stages that may come nearer than `reach` at the same time, and when both last.
+    fn meeting(&mut self, reach: S) -> Option<(Interval<S>, [Stage<'a, S>; 2])> {
+        let [ego, other] = self.motions;
+        loop {
+            let own = Stage::in_box(ego, self.stages[0], &other.bounds().expanded(reach))?;
+            if own.place() > self.stages[0] {
+                self.stages = [own.place(), self.first];
+            }
+            let around = own.bounds().expanded(reach);
+            while let Some(their) = Stage::in_box(other, self.stages[1], &around) {
+                self.stages[1] = their.place().wrapping_add(1);
+                let Some(part) = own.beside(&their, reach) else { continue };
+                let Some(their_part) = their.beside(&own, reach) else { continue };
+                let time = own.time_in(part, self.during).common(their.time_in(their_part, self.during));
+                if time.lo < time.hi || self.instant && time.lo <= time.hi {
+                    return Some((time, [own, their]));
+                }
+            }
+            self.stages = [own.place().wrapping_add(1), self.first];
+        }
+    }
+}
