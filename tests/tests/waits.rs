@@ -66,7 +66,8 @@ fn waits<S: Format>() {
         let ecm = build_ecm(&fleet).expect("a small table");
         let travel = Travel::new(&pair[0].1, pair[0].0.length(), pair[0].2);
         let at = fleet[0].length_at(S::from_f64(travel.time().0 + 0.4 * (travel.time().1 - travel.time().0)));
-        let leaves = travel.last_time_at(at.to_f64());
+        // A wait there is over then; rounded, its length may not be the one of the definition.
+        let leaves = (fleet[0].time().lo + fleet[0].profile().last_time_at(at)).to_f64();
         if at <= S::ZERO {
             // A start delay.
             continue;
