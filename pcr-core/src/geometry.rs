@@ -161,7 +161,7 @@ impl<S: Scalar> Interval<S> {
 
     /// Whether the two have a point in common.
     pub fn meets(self, other: Self) -> bool {
-        self.lo <= other.hi && other.lo <= self.hi
+        (self.lo <= other.hi) & (other.lo <= self.hi)
     }
 
     /// The smallest interval that holds both.
@@ -220,7 +220,7 @@ impl<S: Scalar> Bounds<S> {
 
     /// Whether the two have a point in common.
     pub fn meets(self, other: Self) -> bool {
-        self.x.meets(other.x) && self.y.meets(other.y)
+        self.x.meets(other.x) & self.y.meets(other.y)
     }
 
     /// Largest magnitude of a coordinate \[m\].

@@ -115,8 +115,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return true;
         }
         let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
-        let share = |piece: &Piece<S>| piece.share.one_of(slices, own, piece.first);
-        share(before).is_some_and(|slice| share(after) == Some(slice))
+        let [before, after] = [before, after].map(|piece| piece.at_joint(slices, own));
+        before.into_iter().flatten().any(|slice| after.contains(&Some(slice)))
     }
 
     /// At a joint of the first path the pieces share intervals of the second segment: those within reach of
@@ -146,7 +146,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
             let slices = Footprint::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
             let near = |slice: Interval<S>| slice.lo - self.slack <= l && l <= slice.hi + self.slack;
-            piece.second.contains(s) && piece.share.one_of(slices, segment, piece.first).is_some_and(near)
+            piece.second.contains(s) && piece.at_joint(slices, segment).into_iter().flatten().any(near)
         };
         let shared = Footprint::of(own.end, other).reach(other, self.radius).intervals(other);
         shared.into_iter().flatten().any(|shared| {
@@ -191,10 +191,11 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
         // One interval of the second segment is connected, hence part of one region: that of its middle. It may go
-        // on beyond the piece.
+        // on beyond the piece. But where the whole circle is about to be covered rounding may show one interval for two:
+        // then each piece has its part.
         let belongs = |slice: &Interval<S>| {
             let middle = slice.middle();
-            let footprint = Footprint::of(other.point_at(middle), own);
+            let footprint = Footprint::of(other.point_at(middle - other.from), own);
             let holds = |slices: [Option<Interval<S>>; 2]| {
                 slices.into_iter().flatten().any(|slice| along_path(slice, own).contains(l))
             };
@@ -205,9 +206,13 @@ impl<'a, S: Scalar> Pair<'a, S> {
                 // way round from here.
                 slices = at(self.radius + self.excess());
             }
-            piece.second.contains(middle + other.from) && holds(self.share(piece, own, slices))
+            piece.second.contains(middle) && holds(self.share(piece, own, slices))
         };
-        covered.map(|slice| slice.filter(belongs).map(|slice| along_path(slice, other)))
+        covered.map(|slice| {
+            let slice = along_path(slice?, other);
+            let whole = piece.second.contains(slice.middle()) || !piece.second.meets(slice);
+            Some(if whole { slice } else { slice.common(piece.second) }).filter(belongs)
+        })
     }
 
     /// Of what is covered of the first segment, that which a piece stands for.

@@ -9,6 +9,7 @@ use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pair::footprint::{Lap, Share};
 use crate::scalar::Scalar;
+use crate::segment::Segment;
 use core::marker::PhantomData;
 
 /// No piece: the end of a list.
@@ -51,6 +52,15 @@ impl<S: Scalar> Piece<S> {
     pub(crate) fn new(segments: [u16; 2], lap: Lap, share: Share, first: Interval<S>, second: Interval<S>) -> Self {
         let [first_segment, second_segment] = segments;
         Self { first, second, first_segment, second_segment, lap, share, group: 0, next: NONE }
+    }
+
+    /// The intervals that it is about at a joint, lengths being those along segments. Of two it is the longer one: the other
+    /// one is thin, made by rounding alone. But a whole circle rounding may cut anywhere.
+    pub(crate) fn at_joint(&self, covered: [Option<Interval<S>>; 2], segment: &Segment<S>) -> [Option<Interval<S>>; 2] {
+        match self.share.of(covered, segment, self.first) {
+            [Some(a), Some(b)] if self.lap != Lap::Whole => [Some(if a.length() < b.length() { b } else { a }), None],
+            intervals => intervals,
+        }
     }
 }
 

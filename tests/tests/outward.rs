@@ -110,6 +110,18 @@ fn an_interval_belongs_to_its_piece_although_its_middle_only_touches() {
     case_holds::<Q12>(&[217_531, 289_883]);
 }
 
+/// Two intervals of a circle that is about to be covered, which rounding shows as one from the point.
+#[test]
+fn an_interval_may_be_part_of_two_pieces() {
+    case_holds::<Q16>(&[41_800_936]);
+}
+
+/// The whole circle in the piece, two intervals at the joint: the shorter one leads on.
+#[test]
+fn pieces_are_joined_by_any_of_their_intervals() {
+    case_holds::<Q12>(&[40_599_347, 41_182_836]);
+}
+
 /// The turning point of an interval at the start of an arc, of which rounding made one before it.
 #[test]
 fn an_interval_turns_back_at_an_end_of_the_segment() {
@@ -131,6 +143,15 @@ fn what_a_disc_covers_beside_a_centre_is_in_the_region() {
 #[test]
 fn a_disc_that_fits_an_arc_is_followed_all_the_way() {
     case_holds::<Q16>(&[208_864, 239_816]);
+    case_holds::<Q20>(&[41_639_206]);
+    case_holds::<Q16>(&[60_330_273]);
+    case_holds::<Q12>(&[60_521_926]);
+}
+
+/// A disc about the end of an arc in which another arc fits, and touches it from inside.
+#[test]
+fn a_circle_that_only_just_is_covered_is_cut_at_its_far_end() {
+    case_holds::<Q12>(&[60_453_906]);
 }
 
 /// A full circle of which both ends are covered, but for a step so little that rounding shows one interval.

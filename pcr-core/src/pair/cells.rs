@@ -9,7 +9,7 @@
 //! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
 //! to rounding.
 
-use super::events::{Events, turning_points, wraps};
+use super::events::{Events, turning_points, widest, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -49,6 +49,10 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 let slices = if wraps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
                 self.turn_back(pieces, begin, slices, s, wraps);
             });
+            if self.fits(self.first) {
+                let widest = widest(self.first, self.second, self.radius, self.slack);
+                widest.into_iter().flatten().for_each(|s| self.turn_back(pieces, begin, self.slices(s), s, wraps));
+            }
         }
         Ok(())
     }

@@ -17,7 +17,7 @@
 use super::footprint::{Footprint, Reach};
 use super::offset::{Carrier, Relative, on_first_lap};
 use crate::geometry::Direction;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, Wide};
 use crate::segment::{Curve, Segment};
 use heapless::Vec;
 
@@ -133,6 +133,16 @@ pub(crate) fn turning_points<S: Scalar>(
     }
 }
 
+/// Where a disc that fits an arc covers most of it: at a distance `√|ϱ² - R²|` from its centre, `R` without its slack. The
+/// contact with the arc is then normal to a path through the centre, but P3 cannot tell whether there is one.
+pub(crate) fn widest<S: Scalar>(arc: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
+    let Curve::Arc { radius: own, .. } = arc.curve else {
+        return [None; 2];
+    };
+    let centre = Footprint::of(middle_diameter(arc, own).start, second);
+    ends(&centre, second, ((own - radius).abs() + slack).times(own + radius).sqrt(), slack)
+}
+
 /// Distance from the centre of an arc at which the disc touches its circle from inside, or begins to cover all of it:
 /// always for a disc that can, and where that is so near the centre that P3 would lose it.
 fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
@@ -141,11 +151,15 @@ fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
 }
 
 /// The lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from
-/// being that near it is the foot: a slab that only just is covered, by rounding too, ends there.
+/// being that near it is the foot, and where it may have kept the circle from being that far the other end of the diameter:
+/// a slab that only just is covered, by rounding too, ends there.
 fn ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
     let (foot, half) = match footprint.reach(segment, radius) {
         Reach::Around { foot, half } => (foot, half),
         Reach::Nothing if footprint.offset.abs() <= radius + slack => (footprint.foot(segment), S::ZERO),
+        Reach::Whole if footprint.reach(segment, radius - slack) != Reach::Whole => {
+            (footprint.foot(segment), segment.circumference.half())
+        }
         _ => return [None; 2],
     };
     [foot - half, foot + half].map(|u| {

@@ -242,19 +242,6 @@ impl Share {
             })
         })
     }
-
-    /// The one of them that the piece is about: a second one that rounding alone has made is thin.
-    pub(crate) fn one_of<S: Scalar>(
-        self,
-        intervals: [Option<Interval<S>>; 2],
-        segment: &Segment<S>,
-        hull: Interval<S>,
-    ) -> Option<Interval<S>> {
-        match self.of(intervals, segment, hull) {
-            [Some(a), Some(b)] => Some(if a.length() < b.length() { b } else { a }),
-            [a, b] => a.or(b),
-        }
-    }
 }
 
 pub(crate) fn shift<S: Scalar>(foot: S, segment: &Segment<S>, lap: Lap) -> S {
