@@ -9,7 +9,7 @@
 //! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
 //! to rounding.
 
-use super::events::{Events, turning_points, widest, wraps};
+use super::events::{Events, turning_points, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -37,22 +37,18 @@ impl<S: Scalar> SegmentPair<'_, S> {
         // Events may coincide; a second segment of length 0 has one slab only.
         let slabs = in_order.iter().zip(in_order.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
         let slabs = slabs.filter(|slab| slab.lo < slab.hi || self.second.length == S::ZERO);
-        let wraps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
+        let by_laps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
         let begin = pieces.last_pending();
-        if wraps {
+        if by_laps {
             self.find_laps(slabs, pieces)?;
         } else {
             self.find_one_lap(slabs, pieces)?;
         }
         if pieces.last_pending() != begin {
             turning_points(self.first, self.second, &events, self.radius, self.slack, |l, s| {
-                let slices = if wraps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
-                self.turn_back(pieces, begin, slices, s, wraps);
+                let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
+                self.turn_back(pieces, begin, slices, s, by_laps);
             });
-            if self.fits(self.first) {
-                let widest = widest(self.first, self.second, self.radius, self.slack);
-                widest.into_iter().flatten().for_each(|s| self.turn_back(pieces, begin, self.slices(s), s, wraps));
-            }
         }
         Ok(())
     }
@@ -117,13 +113,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
         begin: u32,
         slices: [Option<Interval<S>>; 2],
         s: S,
-        wraps: bool,
+        by_laps: bool,
     ) {
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
             if piece.second.contains(s) {
                 // With one lap there is no doubt whose end it is.
-                let own = if wraps { piece.share.of(slices, self.first, piece.first) } else { slices };
+                let own = if by_laps { piece.share.of(slices, self.first, piece.first) } else { slices };
                 for slice in own {
                     piece.first = slice.map_or(piece.first, |slice| piece.first.hull(slice));
                 }

@@ -7,8 +7,8 @@
 //! - the ends of the second segment;
 //! - contacts with an end of the first segment: P1 about it;
 //! - contacts normal to the first segment, `c = ±R` from its carrier: intervals begin and end (P3);
-//! - where the disc begins or ceases to cover the whole circle of the first segment, or touches it all around from
-//!   inside: P1 about its centre, because P3 compares squares and these distances are small;
+//! - where the disc begins or ceases to cover the whole circle of the first segment, touches it all around from inside, or
+//!   covers most of it: P1 about its centre, because P3 compares squares and these distances are small;
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
@@ -21,9 +21,9 @@ use crate::scalar::{Scalar, Wide};
 use crate::segment::{Curve, Segment};
 use heapless::Vec;
 
-/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 2 for the whole circle and 2
+/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 4 for the whole circle and 2
 /// changes of lap.
-const MAX_EVENTS: usize = 14;
+const MAX_EVENTS: usize = 16;
 
 /// Events of a pair of segments.
 pub(crate) struct Events<S> {
@@ -53,6 +53,9 @@ impl<S: Scalar> Events<S> {
                 let centre = Footprint::of(diameter.start, second);
                 if let Some(ring) = ring {
                     events.add_ends(&centre, second, ring, slack);
+                    // Where it covers most, √|ϱ² - R²| from the centre, R without its slack: a path through the centre is
+                    // normal to the contact there, but P3 cannot tell whether there is one.
+                    events.add_ends(&centre, second, (ring + slack).times(own + radius).sqrt(), slack);
                 }
                 if wraps {
                     let diameter = Relative::new(second, diameter, &centre);
@@ -133,16 +136,6 @@ pub(crate) fn turning_points<S: Scalar>(
     }
 }
 
-/// Where a disc that fits an arc covers most of it: at a distance `√|ϱ² - R²|` from its centre, `R` without its slack. The
-/// contact with the arc is then normal to a path through the centre, but P3 cannot tell whether there is one.
-pub(crate) fn widest<S: Scalar>(arc: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
-    let Curve::Arc { radius: own, .. } = arc.curve else {
-        return [None; 2];
-    };
-    let centre = Footprint::of(middle_diameter(arc, own).start, second);
-    ends(&centre, second, ((own - radius).abs() + slack).times(own + radius).sqrt(), slack)
-}
-
 /// Distance from the centre of an arc at which the disc touches its circle from inside, or begins to cover all of it:
 /// always for a disc that can, and where that is so near the centre that P3 would lose it.
 fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
@@ -151,16 +144,14 @@ fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
 }
 
 /// The lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from
-/// being that near it is the foot, and where it may have kept the circle from being that far the other end of the diameter:
-/// a slab that only just is covered, by rounding too, ends there.
+/// being that near it is the foot, and of a circle that is nearer everywhere the other end of the diameter: a slab that only
+/// just is covered, by rounding too, ends there.
 fn ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
     let (foot, half) = match footprint.reach(segment, radius) {
         Reach::Around { foot, half } => (foot, half),
         Reach::Nothing if footprint.offset.abs() <= radius + slack => (footprint.foot(segment), S::ZERO),
-        Reach::Whole if footprint.reach(segment, radius - slack) != Reach::Whole => {
-            (footprint.foot(segment), segment.circumference.half())
-        }
-        _ => return [None; 2],
+        Reach::Whole => (footprint.foot(segment), segment.circumference.half()),
+        Reach::Nothing => return [None; 2],
     };
     [foot - half, foot + half].map(|u| {
         let u = on_first_lap(u, segment, S::ZERO);
