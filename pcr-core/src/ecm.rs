@@ -6,6 +6,7 @@ use crate::pair::Pair;
 use crate::pieces::{List, NONE, Piece, Pieces};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
+use core::cell::Cell;
 
 /// Entry of the table: a region of an unordered pair of agents. 8 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -241,8 +242,15 @@ where
         let len = self.len.saturating_add(1);
         let behind = self.regions.as_mut().get_mut(index..len).ok_or(Full::Regions)?;
         // Every entry from here on moves up by one place.
-        let mut entry = Region { agents: [first, second], head };
-        behind.iter_mut().for_each(|place| core::mem::swap(place, &mut entry));
+        let places = Cell::from_mut(behind).as_slice_of_cells();
+        for neighbours in places.windows(2).rev() {
+            if let [place, next] = neighbours {
+                next.set(place.get());
+            }
+        }
+        if let Some(place) = places.first() {
+            place.set(Region { agents: [first, second], head });
+        }
         self.len = len;
         Ok(())
     }
