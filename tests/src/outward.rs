@@ -66,9 +66,9 @@ pub type Violation = String;
 /// What a run over many pairs has come to.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    /// Counts and extremes of all pairs that the format can hold.
+    /// Counts and extremes of all pairs that were checked.
     pub seen: Seen,
-    /// Pairs that it cannot hold.
+    /// Pairs that the format or a table cannot hold.
     pub refused: u64,
     /// What did not hold, with the number of the case.
     pub violations: Vec<Violation>,
@@ -82,7 +82,7 @@ impl Tally {
         self.violations.extend_from_slice(&other.violations);
     }
 
-    /// Cases, those included that the format cannot hold.
+    /// Cases, those included that were refused.
     pub fn cases(&self) -> u64 {
         self.seen.pairs + self.refused
     }
@@ -121,11 +121,11 @@ pub fn run<S: Format>(first: u64, count: u64) -> Tally {
         let ((pair, drives), mut dice) = case(seed);
         match Checked::<S>::new(&pair, &drives) {
             Err(_) => tally.refused += 1,
-            Ok(checked) => {
-                if let Err(violation) = checked.check(&mut dice, &mut tally.seen) {
-                    tally.violations.push(format!("{seed}: {violation}"));
-                }
-            }
+            Ok(checked) => match checked.check(&mut dice, &mut tally.seen) {
+                Ok(true) => {}
+                Ok(false) => tally.refused += 1,
+                Err(violation) => tally.violations.push(format!("{seed}: {violation}")),
+            },
         }
     }
     tally
@@ -195,17 +195,17 @@ impl<S: Format> Checked<S> {
         Ok(Self { agents, radius: radii[0] + radii[1], doubt })
     }
 
-    /// Checks both directions.
+    /// Checks both directions; `false` if it did not, as no table can hold the pair.
     ///
     /// # Errors
     /// The first violation.
-    pub fn check(&self, dice: &mut Dice, seen: &mut Seen) -> Result<(), Violation> {
+    pub fn check(&self, dice: &mut Dice, seen: &mut Seen) -> Result<bool, Violation> {
         let motions = self.agents.each_ref().map(|agent| agent.course.motion());
         let pairs_of_segments = motions.iter().map(|motion| motion.path().segments().len()).product::<usize>();
         let ecm = match build_ecm(&motions) {
             Ok(ecm) => ecm,
             // Long paths that meet all along: what no storage can hold.
-            Err(Full::Pair(_)) if pairs_of_segments > usize::from(u16::MAX) => return Ok(()),
+            Err(Full::Pair(_)) if pairs_of_segments > usize::from(u16::MAX) => return Ok(false),
             Err(full) => return Err(full.to_string()),
         };
         let excess = excess(&motions[0], &motions[1]).to_f64();
@@ -227,6 +227,6 @@ impl<S: Format> Checked<S> {
             view.points(dice, seen)?;
             view.ranges(dice, seen)?;
         }
-        Ok(())
+        Ok(true)
     }
 }
