@@ -3,7 +3,7 @@
 //! The discs of an agent move with one motion, so that the regions of all pairs of discs lie in the same plane of time and
 //! length once their lengths are those of the reference point. A region of the agents is a connected union of them.
 
-use super::{Piece, Region, Slice, Work, slice};
+use super::record::{Piece, Region, Slice, Work, slice};
 use crate::fleet::Format;
 use crate::footprint::Disced;
 use pcr_core::RegionRef;

@@ -1,0 +1,227 @@
+//! Regions of the table as records: numbers of agents and segments, lengths, and crossings with their descriptors.
+
+use crate::fleet::{Fleet, Format, HostEcm};
+use pcr_core::{Crossing, Curve, Motion, RegionRef, Turn, crossings};
+use serde::Serialize;
+
+/// A collision region: what agent `i` has to keep out of because of agent `j`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Region {
+    /// Number of the ego.
+    pub i: u64,
+    /// Number of the other agent.
+    pub j: u64,
+    /// Time range \[s\].
+    pub t: [f64; 2],
+    /// Length range along the path of `i` \[m\].
+    pub l: [f64; 2],
+    /// Whether it reaches back to before `j` sets off, as a strip.
+    pub open_start: bool,
+    /// Whether it goes on after the arrival of `j`, as a strip.
+    pub open_end: bool,
+    /// By the segments of `i`, then of `j`.
+    pub pieces: Vec<Piece>,
+    /// Evenly spaced inner times, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slices: Option<Vec<Slice>>,
+}
+
+/// The part of a region that belongs to one segment of each path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Piece {
+    /// SS, SA, AS or AA; the first letter is the ego's.
+    #[serde(rename = "type")]
+    pub piece_type: String,
+    /// Segment of `i` in the scenario, counted from 1; none where `i` stands all the time.
+    pub i_segment: Option<usize>,
+    /// Segment of `j`, likewise.
+    pub j_segment: Option<usize>,
+    /// Length range along the path of `i` \[m\].
+    pub i_length: [f64; 2],
+    /// Length range along the path of `j` \[m\].
+    pub j_length: [f64; 2],
+    /// The crossings of the two paths in it, in the order of `i`: none where the paths only come near, mostly one.
+    pub crossings: Vec<Descriptor>,
+}
+
+/// The paper's descriptor of the region at a crossing (Table VII).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Descriptor {
+    /// When `j` passes \[s\].
+    #[serde(rename = "T")]
+    pub time: f64,
+    /// Length along the path of `i` \[m\].
+    #[serde(rename = "L")]
+    pub length: f64,
+    /// Sum of the radii \[m\].
+    pub r_hat: f64,
+    /// Speed of `j` as it passes \[m/s\].
+    pub v: f64,
+    /// Heading of `j` less heading of `i` \[rad\], both accumulated along their paths (in `f32` from start headings
+    /// without whole turns).
+    pub theta: f64,
+    /// Radius of the arc of `i` \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_i: Option<f64>,
+    /// Its turn: +1 counter-clockwise, -1 clockwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dir_i: Option<i8>,
+    /// Radius of the arc of `j` \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_j: Option<f64>,
+    /// Its turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dir_j: Option<i8>,
+}
+
+/// What a region covers at one time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Slice {
+    /// \[s\]
+    pub t: f64,
+    /// Disjoint intervals along the path of `i` \[m\], in increasing order.
+    pub l: Vec<[f64; 2]>,
+}
+
+/// A table, and what its regions are described with.
+pub(super) struct Work<'a, S: Format> {
+    pub(super) ids: &'a [u64],
+    pub(super) fleet: &'a Fleet<S>,
+    pub(super) motions: &'a [Motion<'a, S>],
+    pub(super) ecm: &'a HostEcm<S>,
+    pub(super) slices: Option<usize>,
+}
+
+impl<S: Format> Work<'_, S> {
+    /// The regions of one ego.
+    pub(super) fn row(&self, ego: usize) -> Vec<Region> {
+        let mut row = Vec::new();
+        let mut regions = self.ecm.row(self.motions, ego).peekable();
+        while let Some(first) = regions.next() {
+            let other = first.other();
+            let mut pair = vec![first];
+            while let Some(next) = regions.next_if(|next| next.other() == other) {
+                pair.push(next);
+            }
+            row.extend(self.pair(ego, other, &pair));
+        }
+        row
+    }
+
+    /// The regions of one ordered pair, each crossing of the paths in the piece that holds it.
+    fn pair(&self, ego: usize, other: usize, pair: &[RegionRef<'_, S>]) -> Vec<Region> {
+        let mut records: Vec<Region> = pair.iter().map(|region| self.region(ego, other, region)).collect();
+        let (Some(own), Some(their)) = (self.motions.get(ego), self.motions.get(other)) else {
+            return records;
+        };
+        for crossing in crossings(own, their) {
+            let place = self.place_of(ego, other, &crossing, pair, &records);
+            let piece = place.and_then(|[region, piece]| records.get_mut(region)?.pieces.get_mut(piece));
+            if let Some(piece) = piece {
+                piece.crossings.push(Descriptor::of(&crossing));
+            }
+        }
+        for piece in records.iter_mut().flat_map(|record| &mut record.pieces) {
+            piece.crossings.sort_by(|a, b| a.length.total_cmp(&b.length));
+        }
+        records
+    }
+
+    /// Region and piece that a crossing lies in.
+    fn place_of(
+        &self,
+        ego: usize,
+        other: usize,
+        crossing: &Crossing<S>,
+        pair: &[RegionRef<'_, S>],
+        records: &[Region],
+    ) -> Option<[usize; 2]> {
+        let (length, other_length) = (crossing.length.to_f64(), crossing.other_length.to_f64());
+        let segments = self.segments(ego, other, crossing.segments);
+        let within = |[lo, hi]: [f64; 2], length: f64| lo <= length && length <= hi;
+        let holds = |piece: &Piece| {
+            [piece.i_segment, piece.j_segment] == segments
+                && within(piece.i_length, length)
+                && within(piece.j_length, other_length)
+        };
+        let places = records.iter().enumerate().flat_map(|(k, record)| {
+            record.pieces.iter().enumerate().filter(|(_, piece)| holds(piece)).map(move |(piece, _)| [k, piece])
+        });
+        // Regions may interlock, then the ranges of several hold the crossing, but only one contains it.
+        let contains = |k: usize| pair.get(k).is_some_and(|region| region.contains(crossing.time, crossing.length));
+        let mut candidates: Vec<[usize; 2]> = places.collect();
+        if candidates.len() > 1 {
+            candidates.sort_by_key(|&[k, _]| !contains(k));
+        }
+        candidates.first().copied()
+    }
+
+    pub(super) fn region(&self, ego: usize, other: usize, region: &RegionRef<'_, S>) -> Region {
+        let (time, length) = (region.time(), region.length());
+        let t = [time.lo.to_f64(), time.hi.to_f64()];
+        let pieces = region.pieces().map(|piece| {
+            let [i_segment, j_segment] = self.segments(ego, other, piece.segments);
+            Piece {
+                piece_type: piece.piece_type().to_string(),
+                i_segment,
+                j_segment,
+                i_length: [piece.length.lo.to_f64(), piece.length.hi.to_f64()],
+                j_length: [piece.other_length.lo.to_f64(), piece.other_length.hi.to_f64()],
+                crossings: Vec::new(),
+            }
+        });
+        let mut pieces: Vec<Piece> = pieces.collect();
+        pieces.sort_by(|a, b| {
+            let starts = a.i_length[0].total_cmp(&b.i_length[0]).then(a.j_length[0].total_cmp(&b.j_length[0]));
+            (a.i_segment, a.j_segment).cmp(&(b.i_segment, b.j_segment)).then(starts)
+        });
+        let slices = self.slices.map(|slices| {
+            let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
+            times.map(|time| slice(region, S::from_f64(time))).collect()
+        });
+        let id = |agent: usize| self.ids.get(agent).copied().unwrap_or_default();
+        Region {
+            i: id(ego),
+            j: id(other),
+            t,
+            l: [length.lo.to_f64(), length.hi.to_f64()],
+            open_start: region.is_open_at_start(),
+            open_end: region.is_open_at_end(),
+            pieces,
+            slices,
+        }
+    }
+
+    /// Numbers in the scenario of a segment of each path.
+    fn segments(&self, ego: usize, other: usize, [i, j]: [usize; 2]) -> [Option<usize>; 2] {
+        [self.fleet.source(ego, i), self.fleet.source(other, j)].map(|source| source.map(|index| index + 1))
+    }
+}
+
+pub(super) fn slice<S: Format>(region: &RegionRef<'_, S>, time: S) -> Slice {
+    let intervals = region.slice_at(time).map(|interval| [interval.lo.to_f64(), interval.hi.to_f64()]);
+    Slice { t: time.to_f64(), l: intervals.collect() }
+}
+
+impl Descriptor {
+    fn of<S: Format>(crossing: &Crossing<S>) -> Self {
+        let arc = |curve: Curve<S>| match curve {
+            Curve::Line => (None, None),
+            Curve::Arc { radius, turn: Turn::Left } => (Some(radius.to_f64()), Some(1)),
+            Curve::Arc { radius, turn: Turn::Right } => (Some(radius.to_f64()), Some(-1)),
+        };
+        let (sigma_i, dir_i) = arc(crossing.ego_curve);
+        let (sigma_j, dir_j) = arc(crossing.other_curve);
+        Self {
+            time: crossing.time.to_f64(),
+            length: crossing.length.to_f64(),
+            r_hat: crossing.combined_radius.to_f64(),
+            v: crossing.speed.to_f64(),
+            theta: S::radians(crossing.theta),
+            sigma_i,
+            dir_i,
+            sigma_j,
+            dir_j,
+        }
+    }
+}
