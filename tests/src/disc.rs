@@ -188,6 +188,9 @@ impl Drive {
     }
 }
 
+/// A disc, how it is driven, and when it sets off \[s\].
+pub type Driven = (Disc, Drive, f64);
+
 /// What a motion of the library borrows.
 #[derive(Clone, Debug)]
 pub struct Course<S: Format> {
@@ -252,6 +255,12 @@ impl<S: Format> Course<S> {
         let course = Self { segments, phases, radius: S::from_f64(disc.radius), start: S::from_f64(start) };
         course.try_motion()?;
         Ok(course)
+    }
+
+    /// The driven disc with the numbers that are left of it in the format `S`, and its course; none where it does not fit.
+    pub fn rounded((disc, drive, start): &Driven) -> Option<(Self, Driven)> {
+        let (disc, drive, start) = (disc.rounded::<S>(), drive.rounded::<S>(), S::from_f64(*start).to_f64());
+        Some((Self::driven(&disc, &drive, start).ok()?, (disc, drive, start)))
     }
 
     /// The motion.

@@ -1,8 +1,8 @@
 //! Plans of random fleets, checked by the oracle.
 
-use crate::disc::{Course, Disc, Drive};
+use crate::disc::{Course, Disc, Drive, Driven};
 use crate::generators::{Dice, drive, leg};
-use crate::oracle::contact::{Driven, meet};
+use crate::oracle::contact::Meeting;
 use pcr_core::{Encounter, Interval, Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
 use pcr_host::fleet::{Format, build_ecm};
 use std::f64::consts::PI;
@@ -91,7 +91,8 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
                 let ends = [starts[0] + motions[a].time().length(), motions[b].time().hi];
                 let during = [starts[0].min(starts[1]) - 1.0, ends[0].max(ends[1]) + 1.0];
                 let margin = 2.0 * GROWTH + 1e-6;
-                assert!(meet(&driven[a], &driven[b], starts, during, margin), "seed {seed}: {a} and {b} at {k}");
+                let meeting = Meeting::new(&leaving(&driven[a], starts[0]), &leaving(&driven[b], starts[1]));
+                assert!(meeting.comes_within(margin, during), "seed {seed}: {a} and {b} at {k}");
             }
         }
         Err(Unsolved::Priorities(_)) => tally.not_found += 1,
@@ -116,9 +117,9 @@ fn solved(seed: u64, driven: &[Driven], motions: &[Motion<'_, f64>], plan: &[Mot
         let latest = all_there + motions[agent].time().length() + 1e-6;
         assert!(earliest <= plan[agent].time().lo, "seed {seed}, agent {agent}");
         // Unless the agent cannot wait for them: another one passes over its start.
+        let waiting = leaving(&driven[agent], all_there);
         let waits = |other: usize| {
-            let starts = [all_there, planned[other].2];
-            !meet(&driven[agent], &planned[other], starts, [first, latest.max(last)], 2.0 * GROWTH + 1e-6)
+            !Meeting::new(&waiting, &planned[other]).comes_within(2.0 * GROWTH + 1e-6, [first, latest.max(last)])
         };
         let in_time = plan[agent].time().hi <= latest;
         assert!(in_time || !before.iter().all(|&other| waits(other)), "seed {seed}, agent {agent}");
@@ -126,14 +127,18 @@ fn solved(seed: u64, driven: &[Driven], motions: &[Motion<'_, f64>], plan: &[Mot
             assert!(planned <= given * (1.0 + 1e-9), "seed {seed}, agent {agent}: {planned} above {given}");
         }
         for &other in before {
-            let starts = [planned[agent].2, planned[other].2];
-            let met = meet(&planned[agent], &planned[other], starts, [first, last], 0.0);
+            let met = Meeting::new(&planned[agent], &planned[other]).comes_within(0.0, [first, last]);
             assert!(!met, "seed {seed}: {agent} and {other}");
             let encounter = Encounter::new(&plan[agent], &plan[other]);
             let clearance = encounter.closest(Interval::new(first, last)).separation - encounter.radius();
             assert!(clearance > -1e-8, "seed {seed}: {agent} and {other} by {clearance}");
         }
     }
+}
+
+/// The same at another start time \[s\].
+fn leaving((disc, drive, _): &Driven, start: f64) -> Driven {
+    (disc.clone(), drive.clone(), start)
 }
 
 /// Largest speed and acceleration.

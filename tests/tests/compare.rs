@@ -8,7 +8,7 @@ use pcr_host::fleet::{Fleet, build_ecm};
 use pcr_host::rows::{Row as FleetRow, Walk, each, grid, rows};
 use pcr_host::scenario::Scenario;
 use pcr_tests::disc::{Disc, Drive};
-use pcr_tests::oracle::contact::contacts;
+use pcr_tests::oracle::contact::Meeting;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const FLEETS: u64 = if cfg!(debug_assertions) { 3 } else { 30 };
@@ -34,18 +34,15 @@ fn the_reference_agrees_with_the_oracle() {
         for first in 0..12 {
             for second in first + 1..12 {
                 let found = reference::contacts(&tracks[first], &tracks[second], during);
-                let known = contacts(&driven[first], &driven[second], [0.0; 2], during, 1e-8);
-                // The oracle's argument is the way that both can have travelled.
-                let speed = driven[first].1.top_speed() + driven[second].1.top_speed() + 1e-3;
-                let in_time = |(begin, end): (f64, f64)| [begin / speed, end / speed];
+                let known = Meeting::new(&driven[first], &driven[second]).contacts(during, 1e-8);
                 let holds =
                     |outer: [f64; 2], inner: [f64; 2]| outer[0] - SLIP <= inner[0] && inner[1] <= outer[1] + SLIP;
                 let case = format!("seed {seed}: {first}, {second}");
-                for inner in known.inner.iter().map(|&inner| in_time(inner)) {
-                    assert!(found.iter().any(|found| holds(found.time, inner)), "{case}");
+                for &inner in &known.inner {
+                    assert!(found.iter().any(|found| holds(found.time, inner.into())), "{case}");
                 }
                 for found in &found {
-                    assert!(known.outer.iter().any(|&outer| holds(in_time(outer), found.time)), "{case}");
+                    assert!(known.outer.iter().any(|&outer| holds(outer.into(), found.time)), "{case}");
                 }
                 met += found.len();
             }

@@ -3,9 +3,9 @@
 use pcr_core::{Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
 use pcr_fixed::Q16;
 use pcr_host::fleet::{Format, build_ecm};
-use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::Dice;
-use pcr_tests::oracle::contact::{Driven, meet};
+use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::plans::{Method, Tally, audit, drive_of, fleet};
 use std::f64::consts::PI;
 
@@ -39,12 +39,10 @@ fn audited_in<S: Format>(slip: f64) {
     const PHASES: usize = 64;
     let mut solved = [0_u64; 2];
     for seed in 0..FLEETS {
-        let driven: Vec<Driven> = fleet(&mut Dice::seeded(seed))
-            .into_iter()
-            .map(|(disc, drive, start)| (disc.rounded::<S>(), drive.rounded::<S>(), S::from_f64(start).to_f64()))
-            .collect();
-        let courses = driven.iter().map(|(disc, drive, start)| Course::<S>::driven(disc, drive, *start));
-        let Ok(courses) = courses.collect::<Result<Vec<_>, _>>() else { continue };
+        let rounded = fleet(&mut Dice::seeded(seed)).iter().map(Course::<S>::rounded).collect::<Option<Vec<_>>>();
+        let Some((courses, driven)) = rounded.map(|rounded| rounded.into_iter().unzip::<_, _, Vec<_>, Vec<_>>()) else {
+            continue;
+        };
         let motions: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
         let ecm = build_ecm(&motions).expect("a small table");
         let mut stations = vec![Station::EMPTY; 160];
@@ -66,7 +64,8 @@ fn audited_in<S: Format>(slip: f64) {
                 .collect();
             for (k, a) in planned.iter().enumerate() {
                 for b in &planned[..k] {
-                    assert!(!meet(a, b, [a.2, b.2], [0.0, last], 0.0), "seed {seed}, way {way}: {a:?} and {b:?}");
+                    let met = Meeting::new(a, b).comes_within(0.0, [0.0, last]);
+                    assert!(!met, "seed {seed}, way {way}: {a:?} and {b:?}");
                 }
             }
         }

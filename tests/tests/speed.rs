@@ -3,9 +3,9 @@
 use pcr_core::{Drive as Speeds, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed};
 use pcr_fixed::Q16;
 use pcr_host::fleet::{Format, build_ecm};
-use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, leg};
-use pcr_tests::oracle::contact::{Driven, contacts};
+use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::velocity::Grid;
 use std::f64::consts::PI;
 
@@ -60,7 +60,7 @@ fn audited<S: Format>(ego: &Disc, others: &[Driven], plan: &SpeedPlan<S, 48>, sl
     for other in others {
         let last = (other.2 + pcr_tests::oracle::Travel::new(&other.1, other.0.length(), 0.0).time().1).max(end) + 1.0;
         let smaller = (ego.0.grown(-slip), ego.1.clone(), ego.2);
-        let met = contacts(&smaller, other, [ego.2, other.2], [-1.0, last], 0.0).inner;
+        let met = Meeting::new(&smaller, other).contacts([-1.0, last], 0.0).inner;
         assert!(met.is_empty(), "{met:?} with {other:?}");
     }
 }
@@ -99,15 +99,11 @@ fn audited_in<S: Format>(slip: f64) {
     let mut solved = 0;
     for seed in 0..CASES / 4 {
         let (ego, others) = scene(&mut Dice::seeded(seed));
-        let (ego, others) = (ego.rounded::<S>(), others.into_iter());
-        let round =
-            |(disc, drive, start): Driven| (disc.rounded::<S>(), drive.rounded::<S>(), S::from_f64(start).to_f64());
-        let others: Vec<Driven> = others.map(round).collect();
-        let course = |driven: &Driven| Course::<S>::driven(&driven.0, &driven.1, driven.2).expect("a valid disc");
-        let mut courses = vec![course(&(ego.clone(), Drive::Limits(1.0, 1.0), 0.0))];
-        courses.extend(others.iter().map(course));
+        let all = [(ego, Drive::Limits(1.0, 1.0), 0.0)].into_iter().chain(others);
+        let rounded = all.map(|driven| Course::<S>::rounded(&driven).expect("a valid disc"));
+        let (courses, driven): (Vec<_>, Vec<_>) = rounded.unzip();
         if let Ok(plan) = planned(&courses, Speeds::rest_to_rest(limits::<S>())) {
-            audited(&ego, &others, &plan, slip);
+            audited(&driven[0].0, &driven[1..], &plan, slip);
             solved += 1;
         }
     }

@@ -6,9 +6,9 @@ use pcr_core::{
 };
 use pcr_fixed::Q16;
 use pcr_host::fleet::{Format, build_ecm};
-use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, drive, leg};
-use pcr_tests::oracle::contact::{Driven, contacts};
+use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::oracle::line::{Intervals, below};
 use pcr_tests::oracle::{Pair, Travel};
 use std::f64::consts::PI;
@@ -17,23 +17,19 @@ const CASES: u64 = if cfg!(debug_assertions) { 40 } else { 2_000 };
 /// Phases of a profile, at most.
 const PHASES: usize = 16;
 
-/// Two discs whose paths lead about the same place.
-fn scene<S: Format>(seed: u64) -> Option<[Driven; 2]> {
+/// Two discs whose paths lead about the same place, and their courses.
+fn scene<S: Format>(seed: u64) -> Option<([Driven; 2], [Course<S>; 2])> {
     let dice = &mut Dice::seeded(seed);
     let mut driven = || {
         let start = [dice.range(-2.0, 2.0), dice.range(-2.0, 2.0), dice.range(-PI, PI)];
         let legs = (0..1 + dice.below(3)).map(|_| leg(dice)).collect();
-        let disc = Disc { radius: dice.range(0.05, 0.3), start, legs }.rounded::<S>();
-        let drive = drive(dice, disc.length()).rounded::<S>();
-        let start = S::from_f64(if dice.chance(0.5) { 0.0 } else { dice.range(0.0, 5.0) }).to_f64();
-        (disc, drive, start)
+        let disc = Disc { radius: dice.range(0.05, 0.3), start, legs };
+        let drive = drive(dice, disc.rounded::<S>().length());
+        let start = if dice.chance(0.5) { 0.0 } else { dice.range(0.0, 5.0) };
+        Course::<S>::rounded(&(disc, drive, start))
     };
-    let pair = [driven(), driven()];
-    pair.iter().all(|driven| course::<S>(driven).is_some()).then_some(pair)
-}
-
-fn course<S: Format>((disc, drive, start): &Driven) -> Option<Course<S>> {
-    Course::driven(disc, drive, *start).ok()
+    let [(ego, own), (other, their)] = [driven()?, driven()?];
+    Some(([own, their], [ego, other]))
 }
 
 /// What the format may be off, as a distance \[m\].
@@ -60,8 +56,7 @@ fn span(pair: &[Driven; 2], more: f64) -> [f64; 2] {
 fn waits<S: Format>() {
     let (mut found, mut waited, mut never) = (0_u32, 0_u32, 0_u32);
     for seed in 0..CASES {
-        let Some(pair) = scene::<S>(seed) else { continue };
-        let courses = pair.each_ref().map(|driven| course::<S>(driven).expect("a valid disc"));
+        let Some((pair, courses)) = scene::<S>(seed) else { continue };
         let fleet = courses.each_ref().map(Course::motion);
         let ecm = build_ecm(&fleet).expect("a small table");
         let travel = Travel::new(&pair[0].1, pair[0].0.length(), pair[0].2);
@@ -122,8 +117,7 @@ fn durations<S: Format>() {
     const SAMPLES: i32 = 24;
     let (mut inside, mut outside, mut coarse) = (0, 0, 0);
     for seed in 0..CASES {
-        let Some(pair) = scene::<S>(seed) else { continue };
-        let courses = pair.each_ref().map(|driven| course::<S>(driven).expect("a valid disc"));
+        let Some((pair, courses)) = scene::<S>(seed) else { continue };
         let fleet = courses.each_ref().map(Course::motion);
         let ecm = build_ecm(&fleet).expect("a small table");
         let forbidden: Vec<Interval<S>> = ecm
@@ -210,11 +204,10 @@ fn plans_with_lateness_hold_for_all_delays_in_it() {
     const DRAWS: u32 = 6;
     let mut planned = [0_u32; 2];
     for seed in 0..CASES {
-        let Some(pair) = scene::<f64>(seed) else { continue };
+        let Some((pair, courses)) = scene::<f64>(seed) else { continue };
         let dice = &mut Dice::seeded(seed + 1_000_000);
         let late = [dice.range(0.0, 2.0), dice.range(0.0, 2.0)];
         let pair = pair.map(|(disc, drive, start)| (disc.grown(1e-6), drive, start));
-        let courses = pair.each_ref().map(|driven| course::<f64>(driven).expect("a valid disc"));
         let fleet: Vec<Motion<'_, f64>> = courses
             .iter()
             .zip(late)
@@ -244,7 +237,7 @@ fn plans_with_lateness_hold_for_all_delays_in_it() {
                 let last = span(&[ego.clone(), other.clone()], 0.0);
                 // Before it is meant to move the ego is where it is.
                 let during = [if way == 0 { last[0] } else { starts[0] }, last[1]];
-                let met = contacts(&ego, &other, starts, during, 0.0).inner;
+                let met = Meeting::new(&ego, &other).contacts(during, 0.0).inner;
                 assert!(met.is_empty(), "seed {seed}, way {way}: {starts:?} {met:?}");
             }
         }

@@ -2,28 +2,48 @@
 
 use super::line::{Intervals, below, reaches};
 use super::{Pair, Travel};
-use crate::disc::{Disc, Drive};
+use crate::disc::Driven;
 
-/// A disc, how it is driven, and when it sets off.
-pub type Driven = (Disc, Drive, f64);
+/// Ends of a contact are known within the time in which the discs go this way \[m\].
+const TOLERANCE: f64 = 1e-9;
 
-/// Whether two discs come within `margin` \[m\] of contact at any time, if they set off at `starts`: `false` is certain.
-pub fn meet(a: &Driven, b: &Driven, starts: [f64; 2], during: [f64; 2], margin: f64) -> bool {
-    let (clearance, speed) = clearance(a, b, starts);
-    reaches(clearance, during[0] * speed, during[1] * speed, margin, 1e-9)
+/// Two driven discs over time.
+#[derive(Clone, Debug)]
+pub struct Meeting {
+    /// Their paths.
+    pub pair: Pair,
+    /// The way of each.
+    pub travels: [Travel; 2],
+    /// The clearance changes no faster than this \[m/s\].
+    pub speed: f64,
 }
 
-/// What is known of the times at which two discs are in contact, or within `margin` of it, if they set off at `starts`.
-pub fn contacts(a: &Driven, b: &Driven, starts: [f64; 2], during: [f64; 2], margin: f64) -> Intervals {
-    let (clearance, speed) = clearance(a, b, starts);
-    below(clearance, during[0] * speed, during[1] * speed, margin, 1e-9)
-}
+impl Meeting {
+    /// The ego and the other.
+    pub fn new(ego: &Driven, other: &Driven) -> Self {
+        let travels = [ego, other].map(|(disc, drive, start)| Travel::new(drive, disc.length(), *start));
+        let speed = ego.1.top_speed() + other.1.top_speed() + 1e-3;
+        Self { pair: Pair::new(&ego.0, &other.0), travels, speed }
+    }
 
-/// The clearance of two discs over the time multiplied by a speed, than which it does not change faster, and the speed.
-fn clearance(a: &Driven, b: &Driven, starts: [f64; 2]) -> (impl Fn(f64) -> f64 + use<>, f64) {
-    let pair = Pair::new(&a.0, &b.0);
-    let travels =
-        [(a, starts[0]), (b, starts[1])].map(|(driven, start)| Travel::new(&driven.1, driven.0.length(), start));
-    let speed = a.1.top_speed() + b.1.top_speed() + 1e-3;
-    (move |x: f64| pair.clearance(travels[1].length_at(x / speed), travels[0].length_at(x / speed)), speed)
+    /// How far the discs are from contact at a time \[s\], \[m\]: negative where they overlap.
+    pub fn clearance(&self, time: f64) -> f64 {
+        self.pair.clearance(self.travels[1].length_at(time), self.travels[0].length_at(time))
+    }
+
+    /// Whether they come within `margin` \[m\] of contact at any time of `during` \[s\]: `false` is certain.
+    pub fn comes_within(&self, margin: f64, during: [f64; 2]) -> bool {
+        let [lo, hi] = during.map(|time| time * self.speed);
+        reaches(|way| self.clearance(way / self.speed), lo, hi, margin, TOLERANCE)
+    }
+
+    /// When they are in contact for sure, and within `margin` \[m\] of it perhaps \[s\].
+    pub fn contacts(&self, during: [f64; 2], margin: f64) -> Intervals {
+        let [lo, hi] = during.map(|time| time * self.speed);
+        let found = below(|way| self.clearance(way / self.speed), lo, hi, margin, TOLERANCE);
+        let in_time = |ways: Vec<(f64, f64)>| {
+            ways.into_iter().map(|(begin, end)| (begin / self.speed, end / self.speed)).collect()
+        };
+        Intervals { inner: in_time(found.inner), outer: in_time(found.outer) }
+    }
 }
