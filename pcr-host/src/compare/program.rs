@@ -2,7 +2,8 @@
 //! installed. They read numbers, and write the time that the work took, then the contacts; starting them and
 //! carrying the numbers does not count.
 
-use super::{Answer, Found};
+use super::stopwatch::Stopwatch;
+use super::{Answer, Field, Found, Method, Question};
 use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -14,7 +15,7 @@ pub(super) struct Program {
     version: Option<&'static str>,
     path: Option<&'static str>,
     /// What has to be installed when the tool is built.
-    pub(super) missing: &'static str,
+    missing: &'static str,
 }
 
 impl Program {
@@ -43,12 +44,12 @@ impl Program {
     }
 
     /// Whether it can be run.
-    pub(super) fn is_there(self) -> bool {
+    fn is_there(self) -> bool {
         self.path.is_some_and(|path| Path::new(path).is_file())
     }
 
     /// The time that the work took \[s\], and the contacts, with times as `in_time` has them from the program's.
-    pub(super) fn contacts<'f>(self, input: &[f64], in_time: impl Fn(f64) -> f64) -> io::Result<(f64, Answer<'f>)> {
+    fn contacts<'f>(self, input: &[f64], in_time: impl Fn(f64) -> f64) -> io::Result<(f64, Answer<'f>)> {
         let output = self.run(input)?;
         parse(&output, in_time).ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, "not what a peer writes"))
     }
@@ -65,6 +66,49 @@ impl Program {
             return Err(io::Error::other(format!("{path}: {}", output.status)));
         }
         String::from_utf8(output.stdout).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    }
+}
+
+/// A program as a method that finds contacts.
+pub(super) struct Peer {
+    pub(super) program: Program,
+    pub(super) name: String,
+    pub(super) tells: &'static str,
+    /// What the program reads; making it counts.
+    pub(super) input: fn(&Field<'_>) -> Vec<f64>,
+    /// Times from the program's \[s\].
+    pub(super) in_time: fn(&Field<'_>, f64) -> f64,
+}
+
+impl Method for Peer {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn question(&self) -> Question {
+        Question::Conflicts
+    }
+
+    fn tells(&self) -> &'static str {
+        self.tells
+    }
+
+    fn missing(&self) -> Option<&'static str> {
+        (!self.program.is_there()).then_some(self.program.missing)
+    }
+
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+        self.timed(field).1
+    }
+
+    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
+        let clock = Stopwatch::start();
+        let input = (self.input)(field);
+        let made = clock.elapsed();
+        match self.program.contacts(&input, |time| (self.in_time)(field, time)) {
+            Ok((work, answer)) => (made + work, Some(answer)),
+            Err(_) => (made, None),
+        }
     }
 }
 
