@@ -8,6 +8,10 @@
 //! An interval without a lower end says that the other one goes first, one without an upper end that it goes last. Where no circle of
 //! agents has to go before one another, an order that keeps to this has a schedule for all of them: each waits until those
 //! before it are out of its way, at the latest until they have arrived.
+//!
+//! `plan_delays` of pcr-core, which `pcr plan` uses where there are no footprints, needs no heap: it finds delays by contacts, anew for
+//! every order, each motion with its own. It serves neither discs that are delayed together nor `pcr traffic`, which tries thousands of
+//! orders. What a region forbids is the core's in both (`RegionRef::forbidden_delays`).
 
 use super::grown;
 use crate::footprint::Bodies;
