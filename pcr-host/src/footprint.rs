@@ -98,7 +98,7 @@ impl Footprint {
         self.overhang
     }
 
-    /// The same outline, larger by a distance all around \[m\].
+    /// The same outline, larger by a distance from 0 all around \[m\].
     #[must_use]
     pub fn grown(&self, by: f64) -> Self {
         let discs = self.discs.iter().map(|disc| Disc { radius: disc.radius + by, ..*disc });

@@ -9,7 +9,7 @@ pub const TABLE_V: [usize; 12] = [14, 10, 18, 9, 15, 10, 8, 6, 12, 9, 10, 5];
 /// Agent whose regions Table VII lists.
 pub const TABLE_VII_AGENT: u64 = 3;
 
-/// Half a unit of the last digit that the paper prints.
+/// Half a unit of the last digit that the paper prints, in the unit of the number.
 pub const ROUNDING: f64 = 0.05;
 
 /// A row of Table VII, as printed.

@@ -102,7 +102,7 @@ pub enum PathSegment {
 }
 
 impl Scenario {
-    /// Gives this margin \[m\] to every agent that has none.
+    /// Gives this margin, from 0 \[m\], to every agent that has none.
     pub fn give_margin(&mut self, margin: f64) {
         for agent in self.agents.iter_mut().filter(|agent| agent.margin == 0.0) {
             agent.margin = margin;
@@ -173,7 +173,8 @@ impl MotionSpec {
 }
 
 impl Agent {
-    /// A disc without a margin that sets off at the time 0.
+    /// A disc of this radius \[m\] without a margin that sets off at the time 0; `start` is abscissa \[m\], ordinate \[m\], heading
+    /// \[rad\].
     pub fn disc(id: u64, radius: f64, start: [f64; 3], path: Vec<PathSegment>, motion: MotionSpec) -> Self {
         let (footprint, loads) = (None, Vec::new());
         Self { id, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }

@@ -50,7 +50,7 @@ fn distance(a: Point, b: Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// When two discs are in contact during a time.
+/// When two discs are in contact during a time \[s\].
 pub fn contacts(a: &Track, b: &Track, during: [f64; 2]) -> Vec<Contact> {
     let reach = a.radius + b.radius;
     if !near(a.bounds(), b.bounds(), reach) {

@@ -66,7 +66,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// The line between two points.
+    /// The line between two points \[m\].
     pub fn line(from: [f64; 2], to: [f64; 2]) -> Self {
         let [x, y] = [to[0] - from[0], to[1] - from[1]];
         Self { at: from, heading: y.atan2(x), shape: PathSegment::Line { length: x.hypot(y) } }

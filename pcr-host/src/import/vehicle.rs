@@ -46,6 +46,9 @@ pub const TOLERANCE: f64 = 1e-3;
 pub const CORNER_RADIUS: f64 = 1.0;
 
 /// How to read files that are not scenarios.
+///
+/// Lengths are in metres, speeds in m/s and rad/s, accelerations in m/s² and rad/s². The command line takes numbers above 0,
+/// of margin and corner radius also 0, up to 1e6.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Options {
     /// Format of the file; by its name and content if left out

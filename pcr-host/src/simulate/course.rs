@@ -67,6 +67,9 @@ impl Course {
     }
 
     /// The lines and arcs.
+    ///
+    /// # Errors
+    /// [`Invalid`] where they do not make a path.
     pub fn path(&self) -> Result<PathRef<'_, f64>, Invalid> {
         PathRef::new(&self.segments)
     }

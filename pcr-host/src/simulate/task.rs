@@ -27,7 +27,7 @@ pub struct Robot {
     pub radius: f64,
     /// Margin to be kept around it \[m\].
     pub margin: f64,
-    /// What it can do.
+    /// Largest speed \[m/s\] and acceleration \[m/s²\].
     pub limits: Limits<f64>,
     /// One after the other; each begins where the one before it ends.
     pub missions: Vec<Mission>,
