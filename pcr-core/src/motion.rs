@@ -16,12 +16,11 @@ pub struct Motion<'a, S: Scalar> {
     profile: ProfileRef<'a, S>,
     radius: S,
     margin: S,
-    start: S,
+    time: Interval<S>,
     lateness: S,
     bounds: Bounds<S>,
     extent: S,
     drift: S,
-    lag: S,
     top_speed: S,
 }
 
@@ -33,8 +32,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`Invalid::LengthMismatch`] where the profile does not travel the length of the path (rounding aside).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
         positive(radius, "radius")?;
-        in_range(start, "start time")?;
-        in_range(start + profile.duration(), "end time")?;
+        let time = travel_time(profile, start)?;
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius;
         if (profile.length() - path.length()).abs() > S::slack(extent) {
@@ -45,9 +43,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let arcs = arcs.fold(0_usize, |count, _| count.saturating_add(1));
         let drift = S::drift(arcs, extent);
         let top_speed = profile.top_speed();
-        let lag = S::lag(top_speed, profile.duration());
         let (margin, lateness) = (S::ZERO, S::ZERO);
-        Ok(Self { path, profile, radius, margin, start, lateness, bounds, extent, drift, lag, top_speed })
+        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, top_speed })
     }
 
     /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
@@ -116,9 +113,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
     pub fn delayed(self, delay: S) -> Result<Self, Invalid> {
         in_range(delay, "delay")?;
-        let start = in_range(self.start + delay, "start time")?;
-        in_range(start + self.profile.duration(), "end time")?;
-        Ok(Self { start, ..self })
+        Ok(Self { time: travel_time(self.profile, self.time.lo + delay)?, ..self })
     }
 
     /// The path.
@@ -143,7 +138,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// From setting off to arrival, that rounded up \[s\].
     pub fn time(&self) -> Interval<S> {
-        Interval::new(self.start, self.start.sum_up(self.profile.duration()))
+        self.time
     }
 
     /// Box around the path \[m\], radius not included.
@@ -163,25 +158,24 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
     pub(crate) fn lag(&self) -> S {
-        self.lag
+        S::lag(self.top_speed, self.profile.duration())
     }
 
     /// How far the agent goes at its top speed in a time that holds all of its motion and the time 0 \[m\].
     pub(crate) fn reach(&self) -> S {
-        let time = self.time();
-        self.top_speed.times(time.lo.abs().max(time.hi.abs())).narrow()
+        self.top_speed.times(self.latest()).narrow()
     }
 
     /// λ: length travelled at a time \[m\], limited to the length of the path.
     pub fn length_at(&self, time: S) -> S {
-        let (end, travel) = (self.path.length(), self.time());
-        let elapsed = time.clamp(travel.lo, travel.hi) - self.start;
+        let end = self.path.length();
+        let elapsed = time.clamp(self.time.lo, self.time.hi) - self.time.lo;
         if elapsed >= self.profile.duration() { end } else { self.profile.length_at(elapsed).min(end) }
     }
 
     /// Speed at a time \[m/s\].
     pub fn speed_at(&self, time: S) -> S {
-        if self.time().contains(time) { self.profile.speed_at(time - self.start) } else { S::ZERO }
+        if self.time.contains(time) { self.profile.speed_at(time - self.time.lo) } else { S::ZERO }
     }
 
     /// Position of the centre at a time.
@@ -192,11 +186,10 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// When the travelled length lies in `length` \[s\]: rounded outward by [`Motion::time_excess`] at most, but not
     /// beyond [`Motion::time`].
     pub fn time_in(&self, length: Interval<S>) -> Interval<S> {
-        let travel = self.time();
-        let lo = if length.lo > S::ZERO { self.start + self.profile.first_time_at(length.lo) } else { travel.lo };
-        let hi =
-            if length.hi < self.path.length() { self.start + self.profile.last_time_at(length.hi) } else { travel.hi };
-        Interval::new(lo, hi).widen(self.time_slack(), travel)
+        let Interval { lo: start, hi: arrival } = self.time;
+        let lo = if length.lo > S::ZERO { start + self.profile.first_time_at(length.lo) } else { start };
+        let hi = if length.hi < self.path.length() { start + self.profile.last_time_at(length.hi) } else { arrival };
+        Interval::new(lo, hi).widen(self.time_slack(), self.time)
     }
 
     /// By how much a time of [`Motion::time_in`] is further out than the exact one, at most \[s\].
@@ -206,7 +199,18 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// What the sum of the start time and a time since then may be off.
     fn time_slack(&self) -> S {
-        let travel = self.time();
-        S::slack(travel.lo.abs().max(travel.hi.abs()))
+        S::slack(self.latest())
     }
+
+    /// The largest magnitude of a time of the motion \[s\].
+    fn latest(&self) -> S {
+        self.time.lo.abs().max(self.time.hi.abs())
+    }
+}
+
+/// From setting off to arrival, that rounded up.
+fn travel_time<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Result<Interval<S>, Invalid> {
+    in_range(start, "start time")?;
+    in_range(start + profile.duration(), "end time")?;
+    Ok(Interval::new(start, start.sum_up(profile.duration())))
 }
