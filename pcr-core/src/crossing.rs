@@ -6,6 +6,7 @@
 use crate::geometry::Direction;
 use crate::motion::Motion;
 use crate::pair::footprint::Footprint;
+use crate::pair::lengths::Lengths;
 use crate::pair::offset::{Carrier, Relative};
 use crate::region::PieceType;
 use crate::scalar::Scalar;
@@ -62,15 +63,11 @@ pub fn crossings<'a, S: Scalar>(
         let near = own.filter(move |(_, own)| own.bounds.expanded(margin).meets(their.bounds));
         near.flat_map(move |(i, own)| {
             let start = Footprint::of(own.start, their);
-            let (mut roots, mut count) = ([None; 2], 0);
-            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, |s| {
-                // Two equal roots are one crossing.
-                if count < roots.len() && !roots.contains(&Some(s)) {
-                    roots[count] = Some(s);
-                    count += 1;
-                }
-            });
-            let roots = roots.into_iter().flatten();
+            let mut roots = Lengths::new();
+            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, &mut roots);
+            let [a, b] = [0, 1].map(|place| roots.as_slice().get(place).copied());
+            // Two equal roots are one crossing.
+            let roots = a.into_iter().chain(b.filter(|_| a != b));
             roots.filter_map(move |s| Crossing::at(ego, other, [i, j], own, their, s))
         })
     })

@@ -7,6 +7,7 @@ use crate::pieces::{List, NONE, Piece, Pieces};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use core::cell::Cell;
+use core::cmp::Ordering;
 
 /// Entry of the table: a region of an unordered pair of agents. 8 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -151,9 +152,10 @@ where
     /// [`Full`] where the storage is too small.
     pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let mut ecm = Self::new(regions, pieces);
-        for first in 0..fleet.len() {
-            for second in first + 1..fleet.len() {
-                ecm.add_pair(fleet, [first, second])?;
+        let agents = || (0..fleet.len()).zip(fleet);
+        for (first, one) in agents() {
+            for (second, other) in agents().skip(first + 1) {
+                ecm.add_pair([first, second], Pair::new(one, other))?;
             }
         }
         Ok(ecm)
@@ -164,11 +166,18 @@ where
     /// # Errors
     /// [`Full`] where the storage is too small; the table is then as it was.
     pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
-        let partners = (0..fleet.len()).filter(|&partner| partner != agent);
-        for partner in partners {
-            if let Err(full) = self.add_pair(fleet, [agent.min(partner), agent.max(partner)]) {
+        let Some(own) = fleet.get(agent) else {
+            return Ok(());
+        };
+        for (partner, other) in (0..fleet.len()).zip(fleet) {
+            let added = match partner.cmp(&agent) {
+                Ordering::Less => self.add_pair([partner, agent], Pair::new(other, own)),
+                Ordering::Equal => Ok(()),
+                Ordering::Greater => self.add_pair([agent, partner], Pair::new(own, other)),
+            };
+            if added.is_err() {
                 self.remove(agent);
-                return Err(full);
+                return added;
             }
         }
         Ok(())
@@ -205,11 +214,8 @@ where
         outcome
     }
 
-    fn add_pair(&mut self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Full> {
-        let [Some(first), Some(second)] = agents.map(|agent| fleet.get(agent)) else {
-            return Ok(());
-        };
-        if let Err(full) = Pair::new(first, second).find(&mut self.pieces) {
+    fn add_pair(&mut self, agents: [usize; 2], pair: Pair<'_, S>) -> Result<(), Full> {
+        if let Err(full) = pair.find(&mut self.pieces) {
             let no_storage_helps = self.pieces.pair_is_full();
             self.pieces.take_back();
             return Err(if no_storage_helps { Full::Pair(agents) } else { full });

@@ -161,6 +161,7 @@ impl<S: Scalar> Interval<S> {
 
     /// Whether the two have a point in common.
     pub fn meets(self, other: Self) -> bool {
+        // `&`: most tests of boxes end here, and one branch is better foreseen than two.
         (self.lo <= other.hi) & (other.lo <= self.hi)
     }
 

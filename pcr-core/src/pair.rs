@@ -8,6 +8,7 @@ pub(crate) mod cells;
 pub(crate) mod events;
 pub(crate) mod footprint;
 mod laps;
+pub(crate) mod lengths;
 pub(crate) mod offset;
 
 use crate::error::Full;
@@ -17,6 +18,7 @@ use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 use cells::SegmentPair;
+use core::hint::select_unpredictable as select;
 use events::wraps;
 use footprint::Footprint;
 
@@ -229,7 +231,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 /// A part of a segment as lengths of the path. Its ends stay ends: neighbours meet in the same number.
 #[inline(never)]
 fn along_path<S: Scalar>(part: Interval<S>, segment: &Segment<S>) -> Interval<S> {
-    let at = |u: S| if u < segment.length { (u + segment.from).min(segment.to) } else { segment.to };
+    let at = |u: S| select(u < segment.length, (u + segment.from).min(segment.to), segment.to);
     Interval::new(at(part.lo), at(part.hi))
 }
 

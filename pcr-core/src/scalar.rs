@@ -87,6 +87,10 @@ pub trait Scalar:
     fn abs(self) -> Self {
         if self < Self::ZERO { -self } else { self }
     }
+    /// `-self` if `negated`. Which way an arc turns is as good as random to a processor: best without a branch.
+    fn negate_if(self, negated: bool) -> Self {
+        if negated { -self } else { self }
+    }
     /// The smaller of two numbers.
     fn min(self, rhs: Self) -> Self {
         if rhs < self { rhs } else { self }
@@ -145,7 +149,7 @@ pub trait Scalar:
         let (sin, cos) = half.sin_cos();
         let chord = radius.double().scale(sin);
         let across = chord.scale(sin);
-        let (along, across) = (chord.scale(cos), if right { -across } else { across });
+        let (along, across) = (chord.scale(cos), across.negate_if(right));
         let [cos, sin] = direction;
         [Self::combine(along, cos, across, -sin), Self::combine(along, sin, across, cos)]
     }

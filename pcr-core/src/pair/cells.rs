@@ -9,7 +9,7 @@
 //! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
 //! to rounding.
 
-use super::events::{Events, turning_points, wraps};
+use super::events::{Events, contact, turning_lengths, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -29,26 +29,42 @@ pub(crate) struct SegmentPair<'a, S: Scalar> {
     pub(crate) slack: S,
 }
 
+/// What is covered of the first segment, a bit a slab: no branch depends on what is as good as random.
+struct Slabs {
+    /// Anything.
+    any: u32,
+    /// Its start.
+    start: u32,
+    /// Its end.
+    end: u32,
+}
+
+/// A row of bits without its lowest run: adding the lowest bit carries that away.
+fn after_first_run(bits: u32) -> u32 {
+    bits & bits.wrapping_add(bits & bits.wrapping_neg())
+}
+
 impl<S: Scalar> SegmentPair<'_, S> {
     /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
-        let events = Events::of(self.first, self.second, self.radius, self.slack);
+        let mut events = Events::of(self.first, self.second, self.radius, self.slack);
+        // Taken from where it is needed: a processor that looks ahead has something to do while events are put in order.
+        let turning = turning_lengths(self.first, self.second, &events, self.radius, self.slack);
         let in_order = events.in_order();
-        // Events may coincide; a second segment of length 0 has one slab only.
-        let slabs = in_order.iter().zip(in_order.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
-        let slabs = slabs.filter(|slab| slab.lo < slab.hi || self.second.length == S::ZERO);
         let by_laps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
         let begin = pieces.last_pending();
         if by_laps {
-            self.find_laps(slabs, pieces)?;
+            self.find_laps(in_order, pieces)?;
         } else {
-            self.find_one_lap(slabs, pieces)?;
+            self.find_one_lap(in_order, pieces)?;
         }
         if pieces.last_pending() != begin {
-            turning_points(self.first, self.second, &events, self.radius, self.slack, |l, s| {
-                let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
-                self.turn_back(pieces, begin, slices, s, by_laps);
-            });
+            for &l in turning.as_slice() {
+                if let Some(s) = contact(self.first, l, self.second, self.radius + self.slack) {
+                    let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
+                    self.turn_back(pieces, begin, slices, s, by_laps);
+                }
+            }
         }
         Ok(())
     }
@@ -60,39 +76,68 @@ impl<S: Scalar> SegmentPair<'_, S> {
         matches!(segment.curve, Curve::Arc { radius, .. } if (radius - self.radius).abs() <= around)
     }
 
-    fn find_one_lap<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
-        &self,
-        slabs: impl Iterator<Item = Interval<S>>,
-        pieces: &mut Pieces<S, P>,
-    ) -> Result<(), Full> {
-        let mut open = None;
-        for slab in slabs {
-            let point = self.second.point_at(slab.middle());
-            let covered = Footprint::of(point, self.first).covered(point, self.first, self.radius);
-            open = match (open, covered) {
-                (None, None) => None,
-                (None, Some(first)) => Some((first.hull(self.slice_at_end(slab.lo)), slab)),
-                (Some((first, second)), Some(covered)) => Some((first.hull(covered), second.hull(slab))),
-                (Some((first, second)), None) => {
-                    self.push(first, second, pieces)?;
-                    None
-                }
-            };
-        }
-        match open {
-            Some((first, second)) => self.push(first, second, pieces),
-            None => Ok(()),
-        }
+    /// Whether this slab, between two neighbouring events, is one. Events may coincide; a second segment of length 0 has one
+    /// slab only.
+    pub(super) fn is_slab(&self, slab: Interval<S>) -> bool {
+        (slab.lo < slab.hi) | (self.second.length == S::ZERO)
     }
 
-    fn push<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
+    /// The pieces where one lap at most can be covered: runs of slabs.
+    fn find_one_lap<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
-        first: Interval<S>,
-        second: Interval<S>,
+        in_order: &[S],
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
-        let first = first.hull(self.slice_at_end(second.hi));
-        pieces.push(Piece::new(self.indices, Lap::Same, Share::Only, first, second)).map(|_| ())
+        let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
+        if after_first_run(any) != 0 {
+            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece.
+            let near = self.slabs(in_order, self.radius + self.slack).any;
+            let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
+            let mut gaps = between & !any;
+            while gaps != 0 {
+                let rest = after_first_run(gaps);
+                let gap = gaps ^ rest;
+                any |= if gap & !near == 0 { gap } else { 0 };
+                gaps = rest;
+            }
+        }
+        let event = |place: u32| in_order.get(place as usize).copied().unwrap_or(self.second.length);
+        while any != 0 {
+            let rest = after_first_run(any);
+            let run = any ^ rest;
+            let second = Interval::new(event(run.trailing_zeros()), event(u32::BITS - run.leading_zeros()));
+            let slices = self.slice_at_end(second.lo).hull(self.slice_at_end(second.hi));
+            let first = Interval::new(
+                if start & run != 0 { S::ZERO } else { slices.lo },
+                if end & run != 0 { self.first.length } else { slices.hi },
+            );
+            pieces.push(Piece::new(self.indices, Lap::Same, Share::Only, first, second))?;
+            any = rest;
+        }
+        Ok(())
+    }
+
+    /// What a disc of this radius covers in the middle of each slab.
+    #[inline(never)]
+    fn slabs(&self, in_order: &[S], radius: S) -> Slabs {
+        let mut slabs = Slabs { any: 0, start: 0, end: 0 };
+        let mut bit = 1_u32;
+        for neighbours in in_order.windows(2) {
+            let &[lo, hi] = neighbours else { break };
+            let slab = Interval::new(lo, hi);
+            if self.is_slab(slab) {
+                let point = self.second.point_at(slab.middle());
+                let covered = Footprint::of(point, self.first).covered(point, self.first, radius);
+                slabs.any |= if covered.any { bit } else { 0 };
+                slabs.start |= if covered.start { bit } else { 0 };
+                slabs.end |= if covered.end { bit } else { 0 };
+            } else {
+                // It separates nothing.
+                slabs.any |= (slabs.any << 1) & bit;
+            }
+            bit <<= 1;
+        }
+        slabs
     }
 
     /// The slice where a piece begins or ends. Inside the second segment it is a point, the foot.

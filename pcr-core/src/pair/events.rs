@@ -12,114 +12,79 @@
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
-//! ([`turning_points`]), or at an event. Superfluous events cost time and change nothing.
+//! ([`turning_lengths`]), or at an event. Superfluous events cost time and change nothing.
 
 use super::footprint::{Footprint, Reach};
+use super::lengths::Lengths;
 use super::offset::{Carrier, Relative, on_first_lap};
 use crate::geometry::Direction;
 use crate::scalar::{Scalar, Wide};
 use crate::segment::{Curve, Segment};
-use heapless::Vec;
-
-/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 4 for the whole circle and 2
-/// changes of lap.
-const MAX_EVENTS: usize = 16;
 
 /// Events of a pair of segments.
 pub(crate) struct Events<S> {
-    in_order: Vec<S, MAX_EVENTS>,
-    /// The ends of the first segment, seen from the second one.
-    ends: [Footprint<S>; 2],
+    in_order: Lengths<S>,
+    /// Lateral distances of the ends of the first segment from the second one \[m\].
+    offsets_of_ends: [S; 2],
 }
 
 impl<S: Scalar> Events<S> {
     /// The events along `second`, for discs whose radii add up to `radius`, distances right within `slack`.
     pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> Self {
-        let ends = [first.start, first.end].map(|end| Footprint::of(end, second));
-        let mut events = Self { in_order: Vec::new(), ends };
-        events.add(S::ZERO);
-        events.add(second.length);
-        let [start, end] = ends;
-        events.add_ends(&start, second, radius, slack);
+        let (start, end) = (Footprint::of(first.start, second), Footprint::of(first.end, second));
+        let mut in_order = Lengths::new();
+        in_order.add(S::ZERO, true);
+        in_order.add(second.length, true);
+        add_ends(&start, second, radius, slack, &mut in_order);
         if first.length > S::ZERO {
-            events.add_ends(&end, second, radius, slack);
+            add_ends(&end, second, radius, slack, &mut in_order);
         }
         let normal = Relative::new(second, Carrier::from(first), &start);
-        normal.lengths_at(&[radius, -radius], S::ZERO, slack.half(), |s| events.add(s));
+        normal.lengths_at(&[radius, -radius], S::ZERO, slack.half(), &mut in_order);
         if let Curve::Arc { radius: own, .. } = first.curve {
             let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
             if wraps || ring.is_some() {
                 let diameter = middle_diameter(first, own);
                 let centre = Footprint::of(diameter.start, second);
                 if let Some(ring) = ring {
-                    events.add_ends(&centre, second, ring, slack);
+                    add_ends(&centre, second, ring, slack, &mut in_order);
                     // Where it covers most, √|ϱ² - R²| from the centre, R without its slack: a path through the centre is
                     // normal to the contact there, but P3 cannot tell whether there is one.
-                    events.add_ends(&centre, second, (ring + slack).times(own + radius).sqrt(), slack);
+                    let most = (ring + slack).times(own + radius).sqrt();
+                    add_ends(&centre, second, most, slack, &mut in_order);
                 }
                 if wraps {
                     let diameter = Relative::new(second, diameter, &centre);
-                    diameter.lengths_at(&[S::ZERO], S::ZERO, S::ZERO, |s| events.add(s));
+                    diameter.lengths_at(&[S::ZERO], S::ZERO, S::ZERO, &mut in_order);
                 }
             }
         }
-        events
+        Self { in_order, offsets_of_ends: [start.offset, end.offset] }
     }
 
     /// The events in increasing order, the ends of the segment among them.
-    pub(crate) fn in_order(&self) -> &[S] {
-        &self.in_order
-    }
-
-    /// Inserts an event at its place.
-    fn add(&mut self, s: S) {
-        // The capacity is the most that `of` can add.
-        if self.in_order.push(s).is_ok() {
-            let mut events = self.in_order.iter_mut().rev();
-            let Some(mut place) = events.next() else {
-                return;
-            };
-            for before in events {
-                if *before <= *place {
-                    break;
-                }
-                core::mem::swap(before, place);
-                place = before;
-            }
-        }
-    }
-
-    fn add_ends(&mut self, footprint: &Footprint<S>, second: &Segment<S>, radius: S, slack: S) {
-        ends(footprint, second, radius, slack).into_iter().flatten().for_each(|s| self.add(s));
+    pub(crate) fn in_order(&mut self) -> &[S] {
+        self.in_order.sort();
+        self.in_order.as_slice()
     }
 }
 
-/// Where a contact with `first` is normal to `second`, as lengths along the two. Contacts from beyond the centre of
-/// `second` are left out: there an interval is shortest. The ends of `first` that touch it are among
-/// them: rounding may have taken a contact just beyond one of them.
-pub(crate) fn turning_points<S: Scalar>(
+/// The lengths of `first` at which a contact with it may be normal to `second`. Contacts from beyond the centre of `second`
+/// are left out: there an interval is shortest. The ends of `first` that touch it are among them: rounding may have taken a
+/// contact just beyond one of them.
+pub(crate) fn turning_lengths<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
     events: &Events<S>,
     radius: S,
     slack: S,
-    mut found: impl FnMut(S, S),
-) {
-    let mut contact = |l: S, footprint: Footprint<S>| {
-        let s = on_first_lap(footprint.foot(second), second, S::ZERO);
-        // Rounding makes roots where there are none; what is no contact is no end of an interval either.
-        if S::ZERO <= s && s <= second.length && footprint.offset.abs() <= radius + slack {
-            found(l, s);
-        }
-    };
-    for (l, end) in [S::ZERO, first.length].into_iter().zip(events.ends) {
-        // Further out it is not rounding that keeps the contact from the segment.
-        let offset = end.offset.abs();
-        if radius - slack <= offset && offset <= radius + slack.half() {
-            contact(l, end);
-        }
-    }
-    let mut add = |l: S| contact(l, Footprint::of(first.point_at(l), second));
+) -> Lengths<S> {
+    let mut lengths = Lengths::new();
+    // Further out it is not rounding that keeps the contact from the segment.
+    let touches = |offset: S| (radius - slack <= offset) & (offset <= radius + slack.half());
+    let [start, end] = events.offsets_of_ends;
+    lengths.add(S::ZERO, touches(start.abs()));
+    lengths.add(first.length, touches(end.abs()));
     let start = Footprint::of(second.start, first);
     let relative = Relative::new(first, Carrier::from(second), &start);
     let ring = match second.curve {
@@ -127,13 +92,22 @@ pub(crate) fn turning_points<S: Scalar>(
         _ => None,
     };
     match ring {
-        None => relative.lengths_at(&[radius, -radius], S::ZERO, S::ZERO, add),
+        None => relative.lengths_at(&[radius, -radius], S::ZERO, S::ZERO, &mut lengths),
         Some((ring, own)) => {
-            relative.lengths_at(&[relative.outward(radius)], S::ZERO, S::ZERO, &mut add);
+            relative.lengths_at(&[relative.outward(radius)], S::ZERO, S::ZERO, &mut lengths);
             let centre = Footprint::of(middle_diameter(second, own).start, first);
-            ends(&centre, first, ring, slack).into_iter().flatten().for_each(add);
+            add_ends(&centre, first, ring, slack, &mut lengths);
         }
     }
+    lengths
+}
+
+/// The length of `second` whose normal meets `first` at `l`, if there is contact: rounding makes roots where there are none,
+/// and what is no contact is no end of an interval either.
+pub(crate) fn contact<S: Scalar>(first: &Segment<S>, l: S, second: &Segment<S>, reach: S) -> Option<S> {
+    let footprint = Footprint::of(first.point_at(l), second);
+    let s = on_first_lap(footprint.foot(second), second, S::ZERO);
+    (S::ZERO <= s && s <= second.length && footprint.offset.abs() <= reach).then_some(s)
 }
 
 /// Distance from the centre of an arc at which the disc touches its circle from inside, or begins to cover all of it:
@@ -143,20 +117,20 @@ fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
     (own <= radius || ring.double().double() < own).then_some(ring)
 }
 
-/// The lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from
+/// Adds the lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from
 /// being that near it is the foot, and of a circle that is nearer everywhere the other end of the diameter: a slab that only
 /// just is covered, by rounding too, ends there.
-fn ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S) -> [Option<S>; 2] {
+fn add_ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S, lengths: &mut Lengths<S>) {
     let (foot, half) = match footprint.reach(segment, radius) {
         Reach::Around { foot, half } => (foot, half),
         Reach::Nothing if footprint.offset.abs() <= radius + slack => (footprint.foot(segment), S::ZERO),
         Reach::Whole => (footprint.foot(segment), segment.circumference.half()),
-        Reach::Nothing => return [None; 2],
+        Reach::Nothing => return,
     };
-    [foot - half, foot + half].map(|u| {
+    for u in [foot - half, foot + half] {
         let u = on_first_lap(u, segment, S::ZERO);
-        (S::ZERO <= u && u <= segment.length).then_some(u)
-    })
+        lengths.add(u, (S::ZERO <= u) & (u <= segment.length));
+    }
 }
 
 /// Whether both ends of an arc can be covered while its middle is not: two laps at once.
@@ -171,7 +145,7 @@ pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S) -> bool {
 fn middle_diameter<S: Scalar>(arc: &Segment<S>, radius: S) -> Carrier<S> {
     let middle = arc.point_at(arc.length.half());
     let heading = Direction::<S>::at(arc.heading_at(arc.length.half()));
-    let start = middle + heading.vector(S::ZERO, if arc.mirrored() { -radius } else { radius });
+    let start = middle + heading.vector(S::ZERO, radius.negate_if(arc.mirrored()));
     let direction = Direction { cos: -heading.sin, sin: heading.cos };
     Carrier { start, direction, curve: Curve::Line }
 }

@@ -47,6 +47,17 @@ pub(crate) enum Reach<S> {
     Whole,
 }
 
+/// What a disc covers of a segment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Covered {
+    /// The start of the segment.
+    pub(crate) start: bool,
+    /// The end of the segment.
+    pub(crate) end: bool,
+    /// Anything at all.
+    pub(crate) any: bool,
+}
+
 impl<S: Scalar> Footprint<S> {
     /// Cost: two square roots and a division on an arc, none on a line.
     pub(crate) fn of(point: Point<S>, segment: &Segment<S>) -> Self {
@@ -56,7 +67,7 @@ impl<S: Scalar> Footprint<S> {
         match segment.curve {
             Curve::Line => Self { x, y, distance: S::ZERO, offset: y },
             Curve::Arc { radius, .. } => {
-                let y = if segment.mirrored() { -y } else { y };
+                let y = y.negate_if(segment.mirrored());
                 let below = radius - y;
                 let distance = (x.times(x) + below.times(below)).sqrt();
                 let squares = y.times(radius.double() - y) - x.times(x);
@@ -85,34 +96,22 @@ impl<S: Scalar> Footprint<S> {
         }
     }
 
-    /// Some of what a disc about the point covers of a segment of which it covers one lap at most: the ends that it
-    /// covers, else the foot; `None` if it covers nothing. No square root, no arctangent but for the foot.
-    pub(crate) fn covered(&self, point: Point<S>, segment: &Segment<S>, r: S) -> Option<Interval<S>> {
-        if self.offset.abs() > r {
-            return None;
-        }
+    /// What a disc about the point covers of a segment of which it covers one lap at most. No square root, no arctangent.
+    pub(crate) fn covered(&self, point: Point<S>, segment: &Segment<S>, r: S) -> Covered {
         let square = r.times(r);
         let start = self.x.times(self.x) + self.y.times(self.y) <= square;
         let end = (point - segment.end).norm_squared() <= square;
-        let (zero, length) = (S::ZERO, segment.length);
-        match (start, end) {
-            (true, true) => Some(Interval::new(zero, length)),
-            (true, false) => Some(Interval::new(zero, zero)),
-            (false, true) => Some(Interval::new(length, length)),
-            (false, false) => self.foot_is_on(segment).then(|| {
-                let foot = self.foot(segment).clamp(zero, length);
-                Interval::new(foot, foot)
-            }),
-        }
+        let near = self.offset.abs() <= r;
+        Covered { start: near & start, end: near & end, any: near & (start | end | self.foot_is_on(segment)) }
     }
 
     /// Whether the foot lies on the segment, of half a turn at most.
     fn foot_is_on(&self, segment: &Segment<S>) -> bool {
         match segment.curve {
-            Curve::Line => S::ZERO <= self.x && self.x <= segment.length,
+            Curve::Line => (S::ZERO <= self.x) & (self.x <= segment.length),
             Curve::Arc { radius, .. } => {
                 let turn = segment.turn_at_end();
-                S::ZERO <= self.x && S::combine(radius - self.y, turn.sin, self.x, -turn.cos) >= S::ZERO
+                (S::ZERO <= self.x) & (S::combine(radius - self.y, turn.sin, self.x, -turn.cos) >= S::ZERO)
             }
         }
     }

@@ -35,12 +35,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// The pieces of the slabs, joined where they are connected.
     pub(super) fn find_laps<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
-        slabs: impl Iterator<Item = Interval<S>>,
+        in_order: &[S],
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
         let mut open = [NONE; Lap::ALL.len()];
         let mut before = Slab { covered: false, foot: S::ZERO };
-        for range in slabs {
+        let slabs = in_order.iter().zip(in_order.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
+        for range in slabs.filter(|&slab| self.is_slab(slab)) {
             let middle = self.section(range.middle());
             let slab = Slab { covered: middle.reach != Reach::Nothing, foot: middle.foot(self.first) };
             if before.covered || slab.covered {

@@ -16,9 +16,11 @@
 //! the offset beyond the centre is the circle of radius `R - ϱ`, included.
 
 use super::footprint::Footprint;
+use super::lengths::Lengths;
 use crate::geometry::{Direction, Point};
 use crate::scalar::{Angle, Scalar, Sector, Wide};
 use crate::segment::{Curve, Segment, Turn};
+use core::hint::select_unpredictable as select;
 
 /// An infinite line or a full circle: start, direction there, shape.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +60,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
         let base = start.direction(segment);
         let bend = match carrier.curve {
             Curve::Line => None,
-            Curve::Arc { radius, turn } => Some(if mirror == (turn == Turn::Right) { radius } else { -radius }),
+            Curve::Arc { radius, turn } => Some(radius.negate_if(mirror != (turn == Turn::Right))),
         };
         Self { segment, start, base, cos: towards.dot(base), sin: towards.cross(base), bend }
     }
@@ -71,70 +73,93 @@ impl<'a, S: Scalar> Relative<'a, S> {
         }
     }
 
-    /// The lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
+    /// Adds the lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
     /// the carrier.
     ///
     /// Where the segment only just misses an offset, by `doubt`, this may be rounding: then the length is found at which it
     /// comes nearest to it. A slab that would be judged by its middle alone, by rounding, is cut there.
-    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, doubt: S, mut found: impl FnMut(S)) {
-        let mut foot = None;
+    pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, doubt: S, found: &mut Lengths<S>) {
         // What rounding does to a distance whatever the extent: it may take a contact from P3 that P1 has not, and then
         // nobody would tell of it. An event too many is harmless.
         let doubt = doubt + S::slack(S::ZERO);
+        match self.segment.curve {
+            Curve::Line => self.lengths_of_line(offsets, margin, doubt, found),
+            Curve::Arc { radius, .. } => self.lengths_of_arc(radius, offsets, margin, doubt, found),
+        }
+    }
+
+    /// J is a line: `2 T = u`.
+    fn lengths_of_line(&self, offsets: &[S], margin: S, doubt: S, found: &mut Lengths<S>) {
+        let Self { segment, cos, sin, bend, .. } = *self;
+        let n = self.start.offset;
+        let foot = self.start.foot(segment);
+        let mut add = |root: S| {
+            let u = foot + root;
+            found.add(u, (-margin <= u) & (u <= segment.length + margin));
+        };
         for &c in offsets {
-            let Some(roots) = self.roots(c, margin, doubt) else {
-                continue;
-            };
-            for root in roots {
-                let Some(u) = root else {
-                    continue;
-                };
-                let foot = *foot.get_or_insert_with(|| self.start.foot(self.segment));
-                let u = on_first_lap(foot + u, self.segment, margin);
-                if -margin <= u && u <= self.segment.length + margin {
-                    found(u);
+            let lateral = c + n.scale(cos);
+            match bend {
+                // SS: (c + n cos α) / sin α, the one division by a sine.
+                None => {
+                    if let Some(u) = lateral.quotient_unit(sin) {
+                        add(u);
+                    }
+                }
+                // I is an arc: u² - 2 ϱ sin α u + ϱ G = 0.
+                Some(bend) => {
+                    let doubt = (bend.abs() + c.abs()).times(doubt).double();
+                    let g = Self::constant(bend, lateral, n, c);
+                    if let Some([a, b]) = S::quadratic_roots(-bend.scale(sin), g, doubt) {
+                        add(a);
+                        add(b);
+                    }
                 }
             }
         }
     }
 
-    /// The lengths of the segment's carrier, from the base, at which it has the offset `c`; on an arc those on the segment
-    /// and some more.
-    fn roots(&self, c: S, margin: S, doubt: S) -> Option<[Option<S>; 2]> {
-        let Self { cos, sin, bend, .. } = *self;
+    /// J is an arc: `T = r τ`. What lies beyond its ends may be left out.
+    fn lengths_of_arc(&self, r: S, offsets: &[S], margin: S, doubt: S, found: &mut Lengths<S>) {
+        let Self { segment, cos, sin, bend, .. } = *self;
         let n = self.start.offset;
-        let lateral = c + n.scale(cos);
-        let Curve::Arc { radius: r, .. } = self.segment.curve else {
-            // J is a line: 2 T = u.
-            return match bend {
-                // SS: (c + n cos α) / sin α, the one division by a sine.
-                None => Some([Some(lateral.quotient_unit(sin)?), None]),
-                // I is an arc: u² - 2 ϱ sin α u + ϱ G = 0.
+        let sector = if margin > S::ZERO { Sector::all() } else { segment.sector(self.base) };
+        let mut foot = None;
+        let mut add = |angle: Option<S::Angle>| {
+            if let Some(angle) = angle {
+                let foot = *foot.get_or_insert_with(|| self.start.foot(segment));
+                let u = on_first_lap(foot + angle.arc_length(r), segment, margin);
+                found.add(u, (-margin <= u) & (u <= segment.length + margin));
+            }
+        };
+        for &c in offsets {
+            let lateral = c + n.scale(cos);
+            let angles = match bend {
+                // I is a line, equation times r / 2: G = 2 lateral.
+                None => {
+                    let far = lateral - r.scale(cos).double();
+                    S::half_tangent_roots(
+                        r.times(far),
+                        -r.times(r.scale(sin)),
+                        r.times(lateral),
+                        r.times(doubt),
+                        sector,
+                    )
+                }
+                // Both are arcs, equation times ϱ (κ_I = 1/ϱ).
                 Some(bend) => {
-                    let doubt = (bend.abs() + c.abs()).times(doubt).double();
                     let g = Self::constant(bend, lateral, n, c);
-                    S::quadratic_roots(-bend.scale(sin), g, doubt).map(|roots| roots.map(Some))
+                    let centre = n + bend.scale(cos) - r;
+                    let a = g - r.double().times(centre.double());
+                    let doubt = (bend.abs() + c.abs()).times(doubt).double();
+                    S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g, doubt, sector)
                 }
             };
-        };
-        // J is an arc: T = r τ.
-        let sector = if margin > S::ZERO { Sector::all() } else { self.segment.sector(self.base) };
-        let angles = match bend {
-            // I is a line, equation times r / 2: G = 2 lateral.
-            None => {
-                let far = lateral - r.scale(cos).double();
-                S::half_tangent_roots(r.times(far), -r.times(r.scale(sin)), r.times(lateral), r.times(doubt), sector)?
+            if let Some([a, b]) = angles {
+                add(a);
+                add(b);
             }
-            // Both are arcs, equation times ϱ (κ_I = 1/ϱ).
-            Some(bend) => {
-                let g = Self::constant(bend, lateral, n, c);
-                let centre = n + bend.scale(cos) - r;
-                let a = g - r.double().times(centre.double());
-                let doubt = (bend.abs() + c.abs()).times(doubt).double();
-                S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g, doubt, sector)?
-            }
-        };
-        Some(angles.map(|angle| angle.map(|angle| angle.arc_length(r))))
+        }
     }
 
     /// `ϱ G = 2 ϱ (c + n cos α) + n² - c²`.
@@ -144,14 +169,10 @@ impl<'a, S: Scalar> Relative<'a, S> {
 }
 
 /// A length along a circle, less than one lap away, moved onto its first lap unless it is within the margin of it.
-/// Lines have one lap only.
+/// Lines have one lap only, and a circumference of 0: nothing moves.
 #[inline(never)]
 pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>, margin: S) -> S {
-    if length < -margin {
-        length + segment.circumference
-    } else if length > segment.circumference + margin && segment.circumference > S::ZERO {
-        length - segment.circumference
-    } else {
-        length
-    }
+    let lap = segment.circumference;
+    let length = select(length > lap + margin, length - lap, length);
+    select(length < -margin, length + lap, length)
 }

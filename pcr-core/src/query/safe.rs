@@ -166,7 +166,7 @@ fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>>
 /// The lengths of the second segment from which some of the first one is within the radius, distances right within
 /// `slack`.
 fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
-    let events = Events::of(first, second, radius, slack);
+    let mut events = Events::of(first, second, radius, slack);
     let events = events.in_order();
     let mut parts = [None; PARTS];
     let mut places = parts.iter_mut();

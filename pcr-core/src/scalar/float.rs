@@ -38,7 +38,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, sin_cos: $sin_cos:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, sin_cos: $sin_cos:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -61,6 +61,9 @@ macro_rules! impl_float {
             }
             fn abs(self) -> Self {
                 $t::abs(self)
+            }
+            fn negate_if(self, negated: bool) -> Self {
+                $t::from_bits(self.to_bits() ^ (<$bits>::from(negated) << ($bits::BITS - 1)))
             }
             fn sum(self, rhs: Self) -> (Self, Self) {
                 // Knuth's; exact for every order of magnitudes.
@@ -111,11 +114,12 @@ macro_rules! impl_float {
                 // τ = q/a and τ = g/q, left as fractions: a = 0 is the far end of the diameter (τ = ∞).
                 let q = -(b + Wide::<$t>::sqrt(discriminant).copysign(b));
                 let angle = |n: $t, m: $t| {
-                    let (n, m) = if m < 0.0 { (-n, -m) } else { (n, m) };
                     // The cosine and sine of 2 atan(n/m), and their common denominator.
                     let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
                     let inside = cos * sector.cos + sin * sector.sin >= norm * sector.least;
-                    inside.then(|| Radians(2.0 * $atan2(n, m)))
+                    inside.then(|| {
+                        Radians(2.0 * $atan2($t::from_bits(n.to_bits() ^ m.to_bits() ^ m.abs().to_bits()), m.abs()))
+                    })
                 };
                 // By doubt alone they are one: -b/a = -g/b, by the larger one of what is in doubt.
                 let two = discriminant >= 0.0;
@@ -219,8 +223,8 @@ macro_rules! impl_float {
 
 // `slack` in unit roundoffs of the extent; `tolerance` 2^-32 and 2^-16 of it; `split` is 1 more than the power
 // of 2 that halves a significand.
-impl_float!(f64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, sin_cos: trig::sin_cos_f64);
-impl_float!(f32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, sin_cos: trig::sin_cos_f32);
+impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, sin_cos: trig::sin_cos_f64);
+impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, sin_cos: trig::sin_cos_f32);
 
 #[cfg(feature = "std")]
 extern crate std;

@@ -3,6 +3,8 @@
 //! libm's `f32` sine and cosine compute in `f64`, which a single-precision FPU does not have, and its arctangents
 //! divide twice. The polynomials are those of Cephes (Moshier 1989) for `f32` and of fdlibm (Sun 1993) for `f64`.
 
+use core::hint::select_unpredictable as select;
+
 /// Sine and cosine: reduced by quarter turns, in parts (Cody and Waite), to `[-π/4, π/4]`. The polynomials are
 /// `(sin r / r - 1) / r²` and `(cos r - 1 + r²/2) / r⁴` of `r²`.
 macro_rules! sin_cos {
@@ -18,9 +20,11 @@ macro_rules! sin_cos {
             let z = r * r;
             let sin = r + r * (z * $sin(z));
             let cos = (1.0 - 0.5 * z) + z * (z * $cos(z));
-            let (sin, cos) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
-            let signed = |value: $t, quarters| $t::from_bits(value.to_bits() ^ ((quarters & 2) << (SIGN - 1)));
-            (signed(sin, quarters), signed(cos, quarters.wrapping_add(1)))
+            // In bits: which quarter it is nobody foresees.
+            let (sin, cos) = (sin.to_bits(), cos.to_bits());
+            let exchanged = (sin ^ cos) & (quarters & 1).wrapping_neg();
+            let signed = |value, quarters| $t::from_bits(value ^ ((quarters & 2) << (SIGN - 1)));
+            (signed(sin ^ exchanged, quarters), signed(cos ^ exchanged, quarters.wrapping_add(1)))
         }
     };
 }
@@ -34,14 +38,16 @@ macro_rules! atan2 {
             use core::$t::consts::{FRAC_PI_2, FRAC_PI_4, PI};
             const TAN_PI_8: $t = 0.414_213_562_373_095_03_f64 as $t;
             let steep = y.abs() > x.abs();
-            let (small, large) = if steep { (x.abs(), y.abs()) } else { (y.abs(), x.abs()) };
-            let (n, m, eighth) =
-                if small > TAN_PI_8 * large { (small - large, small + large, FRAC_PI_4) } else { (small, large, 0.0) };
+            let (small, large) = (select(steep, x.abs(), y.abs()), select(steep, y.abs(), x.abs()));
+            // Without branches: in which octant it is nobody foresees.
+            let beyond = select(small > TAN_PI_8 * large, 1.0, 0.0);
+            let (n, m) = (small - beyond * large, large + beyond * small);
             let t = if m > 0.0 { n / m } else { 0.0 };
             let z = t * t;
-            let octant = eighth + (t - t * (z * $polynomial(z)));
-            let quadrant = if steep { FRAC_PI_2 - octant } else { octant };
-            let half = if x.is_sign_negative() { PI - quadrant } else { quadrant };
+            let octant = beyond * FRAC_PI_4 + (t - t * (z * $polynomial(z)));
+            let quadrant = select(steep, FRAC_PI_2 - octant, octant);
+            let backward = (x.to_bits() >> (8 * size_of::<$t>() - 1)).wrapping_neg();
+            let half = $t::from_bits(PI.to_bits() & backward) + quadrant.copysign(x);
             half.copysign(y)
         }
     };

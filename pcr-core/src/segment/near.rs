@@ -1,0 +1,79 @@
+//! Whether and where two segments may come near each other, by boxes in the frames of both and by circles: what rejects most
+//! pairs before any closed form.
+
+use super::{Curve, Segment};
+use crate::geometry::Interval;
+use crate::scalar::{Scalar, Unit};
+
+impl<S: Scalar> Segment<S> {
+    /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do, and the
+    /// circles of arcs come as near to the box of the other.
+    pub(crate) fn near(&self, other: &Self, reach: S) -> bool {
+        let (cos, sin) = (self.direction.dot(other.direction).abs(), self.direction.cross(other.direction).abs());
+        let apart = other.middle - self.middle;
+        let separated = |a: &Self, b: &Self| {
+            apart.along(a.direction).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach
+                || apart.across(a.direction).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach
+        };
+        !separated(self, other)
+            && !separated(other, self)
+            && self.circle_near(other, reach)
+            && other.circle_near(self, reach)
+    }
+
+    /// Where it may come nearer than `reach` to another segment, as lengths along it: the part of a line that is as near to
+    /// the box of the other, the whole of an arc.
+    pub(crate) fn beside(&self, other: &Self, reach: S) -> Option<Interval<S>> {
+        let whole = Interval::new(S::ZERO, self.length);
+        if self.curve != Curve::Line {
+            return Some(whole);
+        }
+        // At u it is within x + u c of the middle, on the axis on which x is where it starts and c its slope.
+        let within = |x: S, slope: S::Unit, half: S| {
+            let ends = [-half - x, half - x].map(|way| way.quotient_unit(slope));
+            let [Some(a), Some(b)] = ends else { return whole };
+            Interval::new(a.min(b), a.max(b))
+        };
+        let from = self.start - other.middle;
+        let along = within(from.along(other.direction), other.direction.dot(self.direction), other.half[0] + reach);
+        let across = within(from.across(other.direction), other.direction.cross(self.direction), other.half[1] + reach);
+        let part = whole.common(along).common(across);
+        (part.lo <= part.hi).then_some(part)
+    }
+
+    /// Whether the circle of an arc may come nearer than `reach` to the box of another segment.
+    fn circle_near(&self, other: &Self, reach: S) -> bool {
+        let Curve::Arc { radius, .. } = self.curve else {
+            return true;
+        };
+        // A centre far away is not known any better.
+        let reach = reach + S::slack(radius.double());
+        let centre = self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()));
+        let apart = other.middle - centre;
+        let (along, across) = (apart.along(other.direction).abs(), apart.across(other.direction).abs());
+        let [half_along, half_across] = other.half;
+        let squares = |x: S, y: S| x.times(x) + y.times(y);
+        let nearest = squares((along - half_along).max(S::ZERO), (across - half_across).max(S::ZERO));
+        let farthest = squares(along + half_along, across + half_across);
+        let (outside, inside) = (radius + reach, (radius - reach).max(S::ZERO));
+        nearest <= outside.times(outside) && farthest >= inside.times(inside)
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use crate::{Point, Pose, Radians, Segment, Turn};
+
+    #[test]
+    fn near_is_never_wrong_about_segments_that_touch() {
+        let start = Segment::standing(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.3) }).unwrap();
+        for k in 0..200 {
+            let k = f64::from(k);
+            let own = start.then_arc(0.7, Turn::Right, 0.02 * k).unwrap();
+            let other = own.then_arc(0.4, Turn::Left, 1.0 + 0.001 * k).unwrap();
+            assert!(own.near(&other, 1e-12) && other.near(&own, 1e-12));
+            let away = start.then_line(5.0).unwrap().then_line(1.0).unwrap();
+            assert!(!own.near(&away, 0.5));
+        }
+    }
+}
