@@ -21,6 +21,7 @@ pub struct Motion<'a, S: Scalar> {
     bounds: Bounds<S>,
     extent: S,
     drift: S,
+    lag: S,
     top_speed: S,
 }
 
@@ -43,8 +44,9 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let arcs = arcs.fold(0_usize, |count, _| count.saturating_add(1));
         let drift = S::drift(arcs, extent);
         let top_speed = profile.top_speed();
+        let lag = S::lag(top_speed, profile.duration());
         let (margin, lateness) = (S::ZERO, S::ZERO);
-        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, top_speed })
+        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed })
     }
 
     /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
@@ -158,7 +160,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
     pub(crate) fn lag(&self) -> S {
-        S::lag(self.top_speed, self.profile.duration())
+        self.lag
     }
 
     /// How far the agent goes at its top speed in a time that holds all of its motion and the time 0 \[m\].

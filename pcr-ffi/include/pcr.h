@@ -106,7 +106,7 @@ typedef struct PcrPhase {
  */
 typedef struct PcrMotion {
   size_t pointers[4];
-  float opaque[12];
+  float opaque[13];
 } PcrMotion;
 
 /*

@@ -174,7 +174,7 @@ pub struct PcrPhase {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMotion {
     pointers: [usize; 4],
-    opaque: [f32; 12],
+    opaque: [f32; 13],
 }
 
 /// Room for a region in the table; each serves both agents of its pair.
@@ -241,7 +241,7 @@ impl PcrPhase {
 
 impl PcrMotion {
     /// A free slot.
-    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [0.0; 12] };
+    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [0.0; 13] };
 }
 
 impl PcrEntry {

@@ -77,6 +77,7 @@ fn arithmetic<S: Scalar>() {
         Scalar::double(a),
     ));
     any((Scalar::abs(a), Scalar::min(a, b), Scalar::max(a, b), Scalar::clamp(number(), a, b), Scalar::quotient(a, b)));
+    any(Scalar::negate_if(a, any(true)));
     any((Scalar::quotient_unit(a, unit::<S>()), S::unit_vector(a, b, number()), Scalar::difference(a, b, wide::<S>())));
     any((Scalar::slack(a), S::quadratic_roots(a, wide::<S>(), wide::<S>())));
     let ramp = Ramp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
