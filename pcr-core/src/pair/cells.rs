@@ -91,7 +91,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
         if after_first_run(any) != 0 {
             // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece.
-            let near = self.slabs(in_order, self.radius + self.slack).any;
+            let near = self.slabs(in_order, self.radius + self.slack.half()).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
             let mut gaps = between & !any;
             while gaps != 0 {
