@@ -58,12 +58,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
         } else {
             self.find_one_lap(in_order, pieces)?;
         }
-        if pieces.last_pending() != begin {
-            for &l in turning.as_slice() {
-                if let Some(s) = contact(self.first, l, self.second, self.radius + self.slack) {
-                    let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
-                    self.turn_back(pieces, begin, slices, s, by_laps);
-                }
+        if pieces.last_pending() == begin {
+            return Ok(());
+        }
+        for &l in turning.as_slice() {
+            if let Some(s) = contact(self.first, l, self.second, self.radius + self.slack) {
+                let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
+                self.turn_back(pieces, begin, slices, s, by_laps);
             }
         }
         Ok(())
@@ -90,7 +91,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
     ) -> Result<(), Full> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
         if after_first_run(any) != 0 {
-            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece.
+            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece. Half a
+            // slack: the middle of a slab is nearer than the middle of the gap, and R + ε must not be passed there.
             let near = self.slabs(in_order, self.radius + self.slack.half()).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
             let mut gaps = between & !any;

@@ -62,7 +62,7 @@ impl<S: Scalar> Events<S> {
         Self { in_order, offsets_of_ends: [start.offset, end.offset] }
     }
 
-    /// The events in increasing order, the ends of the segment among them.
+    /// Puts the events in increasing order, the ends of the segment among them.
     pub(crate) fn in_order(&mut self) -> &[S] {
         self.in_order.sort();
         self.in_order.as_slice()
