@@ -23,7 +23,7 @@ figure() {
   read -r pairs pieces < <("$work" "$job" "$fleet" 0)
   printf '%9d  %s: %s\n' "$once" "$fleet" "$what"
   case $job:$pieces in
-    conflicts:*) printf '%9d  ... per pair of agents\n' $((once / pairs)) ;;
+    conflicts:* | pairs:*) printf '%9d  ... per pair of agents\n' $((once / pairs)) ;;
     table:0) printf '%9d  ... per pair of agents that cannot meet\n' $((once / pairs)) ;;
     table:*) printf '%9d  ... per piece of either direction\n' $((once / pieces)) ;;
   esac
@@ -33,7 +33,8 @@ figure() {
   echo "# instructions, f64, $(rustc -V), $(uname -m)"
   for fleet in paper12 table6-100 scattered; do
     figure table $fleet "all regions, both directions"
-    figure conflicts $fleet "when the agents of each pair are in contact"
+    figure conflicts $fleet "when agents are in contact"
+    figure pairs $fleet "when agents are in contact, pair by pair"
   done
   figure exchange table6-100 "exchange of one agent"
 } | tee /dev/stderr >instructions.new

@@ -4,7 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{fleet, scattered};
-use pcr_core::{Encounter, Interval, Motion};
+use pcr_core::{Bounds, BroadPhase, Encounter, Interval, Motion};
 use pcr_host::fleet::{Fleet, Format};
 use std::hint::black_box;
 
@@ -23,7 +23,14 @@ fn bench<S: Format>(c: &mut Criterion, name: &str, fleet: &Fleet<S>) {
     let time = span(&motions);
     let mut group = c.benchmark_group("conflicts");
     group.throughput(Throughput::Elements((motions.len() * (motions.len() - 1) / 2) as u64));
+    let mut boxes = vec![Bounds::default(); motions.len() * (1 + 16)];
     group.bench_function(BenchmarkId::new(format!("{name}, when"), S::NAME), |b| {
+        b.iter(|| {
+            let broad_phase = BroadPhase::new(&mut boxes[..], black_box(&motions), time);
+            broad_phase.map_or(0, |broad_phase| broad_phase.contacts().count())
+        })
+    });
+    group.bench_function(BenchmarkId::new(format!("{name}, when, pair by pair"), S::NAME), |b| {
         b.iter(|| pairs(black_box(&motions)).map(|pair| pair.contacts(time).count()).sum::<usize>())
     });
     group.bench_function(BenchmarkId::new(format!("{name}, when and how deep"), S::NAME), |b| {

@@ -1,11 +1,11 @@
 //! Does one job again and again, for profilers: `work JOB FLEET TIMES`.
 //!
-//! The jobs are `table` (all regions of the fleet), `exchange` (those of its first agent) and `conflicts` (when the
-//! agents of each pair are in contact). Fleets are `scattered`, 100 agents that cannot meet, and the files of
+//! The jobs are `table` (all regions of the fleet), `exchange` (those of its first agent), `conflicts` (when agents are in
+//! contact) and `pairs` (the same without a broad phase, pair by pair). Fleets are `scattered`, 100 agents that cannot meet, and the files of
 //! `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
 
 use pcr_benches::{Storage, fleet, scattered};
-use pcr_core::{Encounter, Interval, Motion};
+use pcr_core::{Bounds, BroadPhase, Encounter, Interval, Motion};
 use std::hint::black_box;
 use std::process::ExitCode;
 
@@ -15,8 +15,8 @@ fn main() -> ExitCode {
         [job, name, times] => (job.as_str(), name.as_str(), times.parse()),
         _ => ("", "", "".parse()),
     };
-    let (Ok(times), "table" | "exchange" | "conflicts"): (Result<u32, _>, _) = (times, job) else {
-        eprintln!("work table|exchange|conflicts FLEET TIMES");
+    let (Ok(times), "table" | "exchange" | "conflicts" | "pairs"): (Result<u32, _>, _) = (times, job) else {
+        eprintln!("work table|exchange|conflicts|pairs FLEET TIMES");
         return ExitCode::from(2);
     };
     let fleet = if name == "scattered" { scattered::<f64>(10) } else { fleet::<f64>(name) };
@@ -25,16 +25,21 @@ fn main() -> ExitCode {
     let mut storage = Storage::of(&motions);
     println!("{} {}", motions.len() * (motions.len() - 1) / 2, 2 * storage.pieces.len());
     let first = motions[0];
+    let mut boxes = vec![Bounds::default(); motions.len() * (1 + 16)];
     let mut exchanged = storage.clone();
     let mut exchanged = exchanged.table(&motions);
     for _ in 0..times {
         black_box(match job {
             "table" => storage.table(black_box(&motions)).len(),
             "exchange" => usize::from(exchanged.replace(&mut motions, 0, black_box(first)).is_ok()),
-            _ => {
+            "pairs" => {
                 let fleet = black_box(&motions);
                 let pairs = (0..fleet.len()).flat_map(|i| (i + 1..fleet.len()).map(move |j| (&fleet[i], &fleet[j])));
                 pairs.map(|(a, b)| Encounter::new(a, b).contacts(time).count()).sum()
+            }
+            _ => {
+                let broad_phase = BroadPhase::new(&mut boxes[..], black_box(&motions), time);
+                broad_phase.map_or(0, |broad_phase| broad_phase.contacts().count())
             }
         });
     }

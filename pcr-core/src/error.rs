@@ -43,7 +43,7 @@ impl fmt::Display for Invalid {
 
 impl core::error::Error for Invalid {}
 
-/// The table has no room for what was to be stored. What was there is intact.
+/// There is no room for what was to be stored. What was there is intact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -57,6 +57,8 @@ pub enum Full {
     Pair([usize; 2]),
     /// The fleet has more than 65535 agents.
     Agents,
+    /// Each agent of a [`BroadPhase`](crate::BroadPhase) needs two boxes at least.
+    Boxes,
 }
 
 impl fmt::Display for Full {
@@ -66,6 +68,7 @@ impl fmt::Display for Full {
             Self::Regions => f.write_str("there is no room for another region"),
             Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 65535 pieces"),
             Self::Agents => f.write_str("the fleet has more than 65535 agents"),
+            Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
         }
     }
 }

@@ -18,7 +18,7 @@
 //! pieces     their fixed-capacity store                     Piece
 //! region     connected regions in path-time space (t, l)    RegionRef
 //! ecm        all regions of a fleet                         Ecm
-//! query      conflicts, safe intervals, delays, waits       Encounter, safe_intervals, earliest_start
+//! query      conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
 //! plan       start delays and speeds by priorities          plan_delays, plan_speed, plan_speeds
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
@@ -48,6 +48,7 @@ mod plan;
 mod profile;
 mod query;
 mod region;
+mod runs;
 mod segment;
 
 pub use crossing::{Crossing, crossings};
@@ -61,8 +62,8 @@ pub use pieces::Piece;
 pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
-    Approach, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start, first_conflict,
-    least_duration, safe_intervals, safe_lengths,
+    Approach, BroadPhase, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start,
+    first_conflict, least_duration, safe_intervals, safe_lengths,
 };
 pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]

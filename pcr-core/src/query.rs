@@ -7,6 +7,7 @@
 //! contact     when two discs are in contact                      Encounter, Contacts
 //! clearance   how near they come                                 Approach
 //! conflict    both: from when to when, where, how deep           Conflict, Conflicts, first_conflict
+//! broad_phase who of a fleet can be in contact, and when         BroadPhase
 //! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
 //! bracket     the end of what is forbidden                        (internal)
 //! delay       delays that lead to a conflict                     earliest_start
@@ -15,6 +16,7 @@
 //! ```
 
 mod bracket;
+mod broad_phase;
 mod chord;
 mod clearance;
 mod conflict;
@@ -26,6 +28,7 @@ mod safe;
 mod stretch;
 mod windows;
 
+pub use broad_phase::BroadPhase;
 pub use clearance::Approach;
 pub use conflict::{Conflict, Conflicts, Met, first_conflict};
 pub use contact::{Contacts, Encounter};

@@ -1,12 +1,12 @@
 //! Conflicts of two given motions against an oracle that halves time until the way travelled decides.
 
-use pcr_core::{Approach, Conflict, Encounter, Interval};
+use pcr_core::{Approach, Bounds, BroadPhase, Conflict, Encounter, Interval};
 use pcr_fixed::Q16;
 use pcr_host::fleet::Format;
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::contact::Meeting;
-use pcr_tests::oracle::line::nearest;
+use pcr_tests::oracle::line::{Intervals, nearest};
 use pcr_tests::settings::settings;
 use proptest::prelude::*;
 
@@ -34,16 +34,18 @@ fn audited<S: Format>(driven: &[Driven; 2]) -> Result<(), TestCaseError> {
     let bound = steps_bound(&truth, during, tolerance);
     prop_assert!(f64::from(contacts.steps()) <= bound, "{} steps of {bound}", contacts.steps());
 
-    // Nothing is missed, nothing is invented.
-    let truly = truth.contacts(during, tolerance);
-    for contact in truly.inner.iter().map(|&(begin, end)| [begin, end]) {
-        prop_assert!(within(contact, &reported, slip), "{contact:?} is missing in {reported:?}");
-    }
-    let possible: Vec<[f64; 2]> = truly.outer.iter().map(|&(begin, end)| [begin, end]).collect();
-    for (k, &contact) in reported.iter().enumerate() {
-        prop_assert!(within(contact, &possible, slip + 2e-9 / truth.speed), "{contact:?} is not in {possible:?}");
-        prop_assert!(during[0] <= contact[0] && contact[0] <= contact[1] && contact[1] <= during[1]);
-        prop_assert!(k == 0 || reported[k - 1][1] <= contact[0], "in order");
+    let contacts = truth.contacts(during, tolerance);
+    audited_contacts(&truth, &contacts, &reported, during, slip)?;
+    // In parts of the time, and with room for boxes to spare.
+    let fleet = [ego, other];
+    for (room, parts) in [(2 * 2, 1), (2 * 6, 4), (2 * 17 + 1, 16), (99, 32)] {
+        let broad_phase = BroadPhase::new(vec![Bounds::default(); room], &fleet, time).unwrap();
+        prop_assert_eq!(broad_phase.parts(), parts);
+        let found: Vec<_> = broad_phase.contacts().collect();
+        prop_assert!(found.iter().all(|&(agents, _)| agents == [0, 1]));
+        let found: Vec<[f64; 2]> =
+            found.iter().map(|(_, contact)| [contact.lo.to_f64(), contact.hi.to_f64()]).collect();
+        audited_contacts(&truth, &contacts, &found, during, slip)?;
     }
     // Where, and how deep.
     let conflicts: Vec<Conflict<S>> = encounter.conflicts(time).collect();
@@ -60,6 +62,26 @@ fn audited<S: Format>(driven: &[Driven; 2]) -> Result<(), TestCaseError> {
         }
     }
     audited_approach(&truth, &encounter.closest(time), during, tolerance)?;
+    Ok(())
+}
+
+/// Nothing is missed, nothing is invented.
+fn audited_contacts(
+    truth: &Meeting,
+    contacts: &Intervals,
+    reported: &[[f64; 2]],
+    during: [f64; 2],
+    slip: f64,
+) -> Result<(), TestCaseError> {
+    for contact in contacts.inner.iter().map(|&(begin, end)| [begin, end]) {
+        prop_assert!(within(contact, reported, slip), "{contact:?} is missing in {reported:?}");
+    }
+    let possible: Vec<[f64; 2]> = contacts.outer.iter().map(|&(begin, end)| [begin, end]).collect();
+    for (k, &contact) in reported.iter().enumerate() {
+        prop_assert!(within(contact, &possible, slip + 2e-9 / truth.speed), "{contact:?} is not in {possible:?}");
+        prop_assert!(during[0] <= contact[0] && contact[0] <= contact[1] && contact[1] <= during[1]);
+        prop_assert!(k == 0 || reported[k - 1][1] <= contact[0], "in order");
+    }
     Ok(())
 }
 

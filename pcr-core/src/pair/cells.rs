@@ -14,6 +14,7 @@ use super::footprint::{Footprint, Lap, Reach, Share};
 use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
+use crate::runs::Runs;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
@@ -37,11 +38,6 @@ struct Slabs {
     start: u32,
     /// Its end.
     end: u32,
-}
-
-/// A row of bits without its lowest run: adding the lowest bit carries that away.
-fn after_first_run(bits: u32) -> u32 {
-    bits & bits.wrapping_add(bits & bits.wrapping_neg())
 }
 
 impl<S: Scalar> SegmentPair<'_, S> {
@@ -90,23 +86,17 @@ impl<S: Scalar> SegmentPair<'_, S> {
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
-        if after_first_run(any) != 0 {
+        if Runs(any).rest() != 0 {
             // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece. Half a
             // slack: the middle of a slab is nearer than the middle of the gap, and R + ε must not be passed there.
             let near = self.slabs(in_order, self.radius + self.slack.half()).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
-            let mut gaps = between & !any;
-            while gaps != 0 {
-                let rest = after_first_run(gaps);
-                let gap = gaps ^ rest;
+            for gap in Runs(between & !any) {
                 any |= if gap & !near == 0 { gap } else { 0 };
-                gaps = rest;
             }
         }
         let event = |place: u32| in_order.get(place as usize).copied().unwrap_or(self.second.length);
-        while any != 0 {
-            let rest = after_first_run(any);
-            let run = any ^ rest;
+        for run in Runs(any) {
             let second = Interval::new(event(run.trailing_zeros()), event(u32::BITS - run.leading_zeros()));
             let slices = self.slice_at_end(second.lo).hull(self.slice_at_end(second.hi));
             let first = Interval::new(
@@ -114,7 +104,6 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 if end & run != 0 { self.first.length } else { slices.hi },
             );
             pieces.push(Piece::new(self.indices, Lap::Same, Share::Only, first, second))?;
-            any = rest;
         }
         Ok(())
     }

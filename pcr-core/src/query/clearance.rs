@@ -36,7 +36,7 @@ impl<S: Scalar> Encounter<'_, S> {
             Some(separation(*place))
         });
         let bound = places.fold(best.separation, S::min) + self.tolerance().half();
-        let mut windows = Windows::new([self.ego, self.other], during);
+        let mut windows = Windows::new([self.ego, self.other], during, self.pad());
         while let Some(window) = windows.next(best.separation.min(bound) + self.pad()) {
             self.closest_in(&window, bound, &mut best);
         }

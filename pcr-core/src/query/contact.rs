@@ -90,7 +90,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     pub fn contacts(&self, during: Interval<S>) -> Contacts<'a, S> {
         let reach = self.radius() + self.pad;
         let apart = !self.ego.bounds().expanded(reach).meets(self.other.bounds());
-        let windows = (!apart).then(|| Windows::new([self.ego, self.other], during));
+        let windows = (!apart).then(|| Windows::new([self.ego, self.other], during, self.pad));
         Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
     }
 }

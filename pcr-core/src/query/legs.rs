@@ -65,9 +65,33 @@ pub(crate) struct Stage<'a, S: Scalar> {
     stand: Option<S>,
 }
 
+/// The places of the first and of the last stage that are in an interval of time; `slack` is what rounding may do to a
+/// length \[m\].
+pub(crate) fn places<S: Scalar>(motion: &Motion<'_, S>, during: Interval<S>, slack: S) -> [usize; 2] {
+    let (travel, segments) = (motion.time(), motion.path().segments());
+    let after = segments.len().wrapping_add(1);
+    let first = if during.lo <= travel.lo {
+        0
+    } else if during.lo >= travel.hi {
+        after
+    } else {
+        let length = motion.length_at(during.lo) - slack;
+        segments.partition_point(|segment| segment.to < length).wrapping_add(1)
+    };
+    let last = if during.hi >= travel.hi {
+        after
+    } else if during.hi < travel.lo {
+        0
+    } else {
+        let length = motion.length_at(during.hi) + slack;
+        segments.partition_point(|segment| segment.from <= length)
+    };
+    [first, last]
+}
+
 impl<'a, S: Scalar> Stage<'a, S> {
-    /// The first stage from a place on whose box meets another one.
-    pub(crate) fn in_box(motion: &'a Motion<'a, S>, place: usize, around: &Bounds<S>) -> Option<Self> {
+    /// The first stage from a place on, up to the `last` one, whose box meets another one.
+    pub(crate) fn in_box(motion: &'a Motion<'a, S>, [place, last]: [usize; 2], around: &Bounds<S>) -> Option<Self> {
         let segments = motion.path().segments();
         let stands_in = |point: Point<S>| around.x.contains(point.x) && around.y.contains(point.y);
         let stage = |place, segment, stand| Some(Self { motion, place, segment, stand });
@@ -76,13 +100,14 @@ impl<'a, S: Scalar> Stage<'a, S> {
             return stage(0, first, Some(S::ZERO));
         }
         let skipped = place.saturating_sub(1);
-        let mut rest = segments.get(skipped..)?.iter();
+        let mut rest = segments.get(skipped..last.min(segments.len()))?.iter();
         if let Some(on) = rest.position(|segment| around.meets(segment.bounds)) {
             let on = skipped.wrapping_add(on);
             return stage(on.wrapping_add(1), segments.get(on)?, None);
         }
-        let (last, after) = (segments.last()?, segments.len().wrapping_add(1));
-        if place <= after && stands_in(last.end) { stage(after, last, Some(motion.path().length())) } else { None }
+        let (end, after) = (segments.last()?, segments.len().wrapping_add(1));
+        let stands = place <= after && last == after && stands_in(end.end);
+        if stands { stage(after, end, Some(motion.path().length())) } else { None }
     }
 
     /// Box around it \[m\].

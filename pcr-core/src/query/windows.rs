@@ -5,7 +5,7 @@
 
 use crate::geometry::{Interval, Vector};
 use crate::motion::Motion;
-use crate::query::legs::{Leg, Stage};
+use crate::query::legs::{Leg, Stage, places};
 use crate::scalar::{Scalar, Wide};
 
 /// A leg of each agent, while both last.
@@ -55,9 +55,11 @@ pub(crate) struct Windows<'a, S: Scalar> {
     during: Interval<S>,
     /// Whether that was of length 0: so is its window then.
     instant: bool,
-    /// The stages that are compared next, and the first one of the other that is not over before.
+    /// The stages that are compared next.
     stages: [usize; 2],
-    first: usize,
+    /// The last stage of the ego that is not later, the first one of the other that is not over before, and its last one.
+    last: usize,
+    others: [usize; 2],
     /// What is left of the time that two stages share.
     rest: Option<(Interval<S>, [Stage<'a, S>; 2])>,
     /// The phases of both, or some before them.
@@ -65,10 +67,10 @@ pub(crate) struct Windows<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> Windows<'a, S> {
-    pub(crate) fn new(motions: [&'a Motion<'a, S>; 2], during: Interval<S>) -> Self {
-        // Without the stands that are over before.
-        let stages = motions.map(|motion| usize::from(motion.time().lo < during.lo));
-        Self { motions, during, instant: during.lo == during.hi, stages, first: stages[1], rest: None, phases: [0; 2] }
+    pub(crate) fn new(motions: [&'a Motion<'a, S>; 2], during: Interval<S>, slack: S) -> Self {
+        let [[first, last], others] = motions.map(|motion| places(motion, during, slack));
+        let (instant, stages) = (during.lo == during.hi, [first, others[0]]);
+        Self { motions, during, instant, stages, last, others, rest: None, phases: [0; 2] }
     }
 
     /// The next window in which the two may come nearer than `reach`.
@@ -88,13 +90,14 @@ impl<'a, S: Scalar> Windows<'a, S> {
     /// The next two stages that may come nearer than `reach` at the same time, and when both last.
     fn meeting(&mut self, reach: S) -> Option<(Interval<S>, [Stage<'a, S>; 2])> {
         let [ego, other] = self.motions;
+        let near = other.bounds().expanded(reach);
         loop {
-            let own = Stage::in_box(ego, self.stages[0], &other.bounds().expanded(reach))?;
+            let own = Stage::in_box(ego, [self.stages[0], self.last], &near)?;
             if own.place() > self.stages[0] {
-                self.stages = [own.place(), self.first];
+                self.stages = [own.place(), self.others[0]];
             }
             let around = own.bounds().expanded(reach);
-            while let Some(their) = Stage::in_box(other, self.stages[1], &around) {
+            while let Some(their) = Stage::in_box(other, [self.stages[1], self.others[1]], &around) {
                 self.stages[1] = their.place().wrapping_add(1);
                 let Some(part) = own.beside(&their, reach) else { continue };
                 let Some(their_part) = their.beside(&own, reach) else { continue };
@@ -103,7 +106,7 @@ impl<'a, S: Scalar> Windows<'a, S> {
                     return Some((time, [own, their]));
                 }
             }
-            self.stages = [own.place().wrapping_add(1), self.first];
+            self.stages = [own.place().wrapping_add(1), self.others[0]];
         }
     }
 }

@@ -12,11 +12,10 @@ impl<S: Scalar> Segment<S> {
         let (cos, sin) = (self.direction.dot(other.direction).abs(), self.direction.cross(other.direction).abs());
         let apart = other.middle - self.middle;
         let separated = |a: &Self, b: &Self| {
-            apart.along(a.direction).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach
-                || apart.across(a.direction).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach
+            (apart.along(a.direction).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach)
+                | (apart.across(a.direction).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach)
         };
-        !separated(self, other)
-            && !separated(other, self)
+        !(separated(self, other) | separated(other, self))
             && self.circle_near(other, reach)
             && other.circle_near(self, reach)
     }

@@ -3,7 +3,7 @@
 use super::{Answer, Field, Found, Method, Number, Question, Regions};
 use crate::fleet::{HostEcm, build_ecm};
 use crate::rows::{Row, rows};
-use pcr_core::{Encounter, Interval, Motion, Piece, Region, RegionRef};
+use pcr_core::{Bounds, BroadPhase, Encounter, Interval, Motion, Piece, Region, RegionRef};
 use pcr_fixed::Q16;
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -25,6 +25,12 @@ impl Cores {
 
 /// Collision regions in the format `S`.
 struct Map<S>(Cores, PhantomData<S>);
+
+/// Parts of the time in which pairs are sorted out.
+const PARTS: usize = 16;
+
+/// Two agents, and when they are in contact.
+type Contact<S> = ([usize; 2], Interval<S>);
 
 /// Conflicts in the format `S`.
 struct Conflicts<S>(Cores, PhantomData<S>);
@@ -142,21 +148,19 @@ impl<S: Number> Method for Conflicts<S> {
         let motions = S::motions(field)?;
         let during = field.horizon.map(S::from_f64);
         let during = Interval::new(during[0], during[1]);
-        let of =
-            |first: usize| (first + 1..motions.len()).flat_map(move |second| pair(motions, [first, second], during));
+        let boxes = vec![Bounds::default(); motions.len() * (1 + PARTS)];
+        let broad_phase = BroadPhase::new(boxes, motions, during).ok()?;
+        let found = |(agents, time): Contact<S>| Found { agents, begin: time.lo.to_f64(), end: Some(time.hi.to_f64()) };
         Some(Answer::Conflicts(match self.0 {
-            Cores::One => (0..motions.len()).flat_map(of).collect(),
-            Cores::All => (0..motions.len()).into_par_iter().flat_map_iter(of).collect(),
+            Cores::One => broad_phase.contacts().map(found).collect(),
+            Cores::All => {
+                let candidates: Vec<Contact<S>> = broad_phase.candidates().collect();
+                let contacts = candidates.into_par_iter().flat_map_iter(|(agents, during)| {
+                    let contacts = Encounter::new(&motions[agents[0]], &motions[agents[1]]).contacts(during);
+                    contacts.map(move |time| (agents, time))
+                });
+                contacts.map(found).collect()
+            }
         }))
     }
-}
-
-fn pair<'f, S: Number>(
-    motions: &'f [Motion<'_, S>],
-    agents: [usize; 2],
-    during: Interval<S>,
-) -> impl Iterator<Item = Found> + 'f {
-    let encounter = Encounter::new(&motions[agents[0]], &motions[agents[1]]);
-    let contacts = encounter.contacts(during);
-    contacts.map(move |time| Found { agents, begin: time.lo.to_f64(), end: Some(time.hi.to_f64()) })
 }

@@ -39,7 +39,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
 const WORDS: &str = "First all collision regions, both directions of every pair: *area off* is the area of the symmetric difference to the \
 regions by the definition (found by halving), as a part of theirs; kept is what the answer takes, for sampled maps a time and a \
 length in single precision for each point. Then the conflicts of the motions as they are: missed and invented ones, and the largest error of a \
-begin or end. Casts tell the first time of a pair only.\n";
+begin or end. Casts tell the first time of a pair only. Pairs are sorted out first: here by boxes in space and time, which the others could \
+have as well, elsewhere by boxes of paths and of their pieces.\n";
 
 fn find<'c>(comparison: &'c Comparison, question: Question, name: &str) -> Option<&'c Row> {
     comparison.rows.iter().find(|row| row.question == question && row.method == name)

@@ -11,7 +11,7 @@ use core::hint::black_box as any;
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid, Limits,
+    Bounds, BroadPhase, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid, Limits,
     Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region, RegionRef,
     Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_departure, earliest_start, excess,
     first_conflict, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
@@ -196,6 +196,10 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any(conflict);
         any(Encounter::blocked(&pair, interval(), interval()).last());
         any(Encounter::blocked_lengths(&pair, interval()).last());
+    }
+    if let Ok(broad_phase) = BroadPhase::new(any(&mut [][..]), fleet, interval()) {
+        any((BroadPhase::parts(&broad_phase), BroadPhase::candidates(&broad_phase).last()));
+        any(BroadPhase::contacts(&broad_phase).last());
     }
     any(safe_intervals(fleet, any(0), interval(), interval()).last());
     any(safe_lengths(fleet, any(0), interval()).last());

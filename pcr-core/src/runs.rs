@@ -1,0 +1,38 @@
+//! Runs of ones in a row of bits: neighbouring cells of a line that have something in common.
+
+/// The runs of a row, each as the bits of it alone, the lowest first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Runs(pub(crate) u32);
+
+impl Runs {
+    /// The row without its lowest run: adding the lowest bit carries that away.
+    pub(crate) fn rest(self) -> u32 {
+        self.0 & self.0.wrapping_add(self.0 & self.0.wrapping_neg())
+    }
+}
+
+impl Iterator for Runs {
+    type Item = u32;
+
+    fn next(&mut self) -> Option<u32> {
+        let rest = self.rest();
+        let run = self.0 ^ rest;
+        self.0 = rest;
+        (run != 0).then_some(run)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Runs;
+
+    #[test]
+    fn runs_come_one_by_one_up_to_the_highest_bit() {
+        let mut runs = Runs(0b1100_0000_0000_0000_0000_0000_0110_1110);
+        assert_eq!(runs.next(), Some(0b1110));
+        assert_eq!(runs.next(), Some(0b110_0000));
+        assert_eq!(runs.next(), Some(0b11 << 30));
+        assert_eq!(runs.next(), None);
+        assert_eq!((Runs(u32::MAX).next(), Runs(u32::MAX).rest()), (Some(u32::MAX), 0));
+    }
+}
