@@ -9,8 +9,9 @@
 //! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
 //! to rounding.
 
-use super::events::{Events, contact, turning_lengths, wraps};
+use super::events::{add_events, add_turning_lengths, contact, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
+use super::lengths::Lengths;
 use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
@@ -43,10 +44,12 @@ struct Slabs {
 impl<S: Scalar> SegmentPair<'_, S> {
     /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
-        let mut events = Events::of(self.first, self.second, self.radius, self.slack);
+        let (mut events, mut turning) = (Lengths::new(), Lengths::new());
+        let ends = add_events(self.first, self.second, self.radius, self.slack, &mut events);
         // Taken from where it is needed: a processor that looks ahead has something to do while events are put in order.
-        let turning = turning_lengths(self.first, self.second, &events, self.radius, self.slack);
-        let in_order = events.in_order();
+        add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);
+        events.sort();
+        let in_order = events.as_slice();
         let by_laps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
         let begin = pieces.last_pending();
         if by_laps {

@@ -1,7 +1,7 @@
 //! Where, along the second segment, the part of the first one that the disc covers can change its structure,
 //! and where it can be extreme.
 //!
-//! Between two neighbouring [`Events`] the number of covered intervals is constant and their ends move continuously.
+//! Between two neighbouring [events](add_events) the number of covered intervals is constant and their ends move continuously.
 //! They are
 //!
 //! - the ends of the second segment;
@@ -12,7 +12,7 @@
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
-//! ([`turning_lengths`]), or at an event. Superfluous events cost time and change nothing.
+//! ([`add_turning_lengths`]), or at an event. Superfluous events cost time and change nothing.
 
 use super::footprint::{Footprint, Reach};
 use super::lengths::Lengths;
@@ -21,68 +21,58 @@ use crate::geometry::Direction;
 use crate::scalar::{Scalar, Wide};
 use crate::segment::{Curve, Segment};
 
-/// Events of a pair of segments.
-pub(crate) struct Events<S> {
-    in_order: Lengths<S>,
-    /// Lateral distances of the ends of the first segment from the second one \[m\].
-    offsets_of_ends: [S; 2],
-}
-
-impl<S: Scalar> Events<S> {
-    /// The events along `second`, for discs whose radii add up to `radius`, distances right within `slack`.
-    pub(crate) fn of(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> Self {
-        let (start, end) = (Footprint::of(first.start, second), Footprint::of(first.end, second));
-        let mut in_order = Lengths::new();
-        in_order.add(S::ZERO, true);
-        in_order.add(second.length, true);
-        add_ends(&start, second, radius, slack, &mut in_order);
-        if first.length > S::ZERO {
-            add_ends(&end, second, radius, slack, &mut in_order);
-        }
-        let normal = Relative::new(second, Carrier::from(first), &start);
-        normal.lengths_at(&[radius, -radius], S::ZERO, slack.half(), &mut in_order);
-        if let Curve::Arc { radius: own, .. } = first.curve {
-            let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
-            if wraps || ring.is_some() {
-                let diameter = middle_diameter(first, own);
-                let centre = Footprint::of(diameter.start, second);
-                if let Some(ring) = ring {
-                    add_ends(&centre, second, ring, slack, &mut in_order);
-                    // Where it covers most, √|ϱ² - R²| from the centre, R without its slack: a path through the centre is
-                    // normal to the contact there, but P3 cannot tell whether there is one.
-                    let most = (ring + slack).times(own + radius).sqrt();
-                    add_ends(&centre, second, most, slack, &mut in_order);
-                }
-                if wraps {
-                    let diameter = Relative::new(second, diameter, &centre);
-                    diameter.lengths_at(&[S::ZERO], S::ZERO, S::ZERO, &mut in_order);
-                }
-            }
-        }
-        Self { in_order, offsets_of_ends: [start.offset, end.offset] }
-    }
-
-    /// Puts the events in increasing order, the ends of the segment among them.
-    pub(crate) fn in_order(&mut self) -> &[S] {
-        self.in_order.sort();
-        self.in_order.as_slice()
-    }
-}
-
-/// The lengths of `first` at which a contact with it may be normal to `second`. Contacts from beyond the centre of `second`
-/// are left out: there an interval is shortest. The ends of `first` that touch it are among them: rounding may have taken a
-/// contact just beyond one of them.
-pub(crate) fn turning_lengths<S: Scalar>(
+/// Adds the events along `second`, its ends among them, for discs whose radii add up to `radius`, distances right within
+/// `slack`. Returns the lateral distances of the ends of `first` from `second` \[m\].
+pub(crate) fn add_events<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
-    events: &Events<S>,
     radius: S,
     slack: S,
-) -> Lengths<S> {
-    let mut lengths = Lengths::new();
+    events: &mut Lengths<S>,
+) -> [S; 2] {
+    let (start, end) = (Footprint::of(first.start, second), Footprint::of(first.end, second));
+    events.add(S::ZERO, true);
+    events.add(second.length, true);
+    add_ends(&start, second, radius, slack, events);
+    if first.length > S::ZERO {
+        add_ends(&end, second, radius, slack, events);
+    }
+    let normal = Relative::new(second, Carrier::from(first), &start);
+    normal.lengths_at(&[radius, -radius], S::ZERO, slack.half(), events);
+    if let Curve::Arc { radius: own, .. } = first.curve {
+        let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
+        if wraps || ring.is_some() {
+            let diameter = middle_diameter(first, own);
+            let centre = Footprint::of(diameter.start, second);
+            if let Some(ring) = ring {
+                add_ends(&centre, second, ring, slack, events);
+                // Where it covers most, √|ϱ² - R²| from the centre, R without its slack: a path through the centre is
+                // normal to the contact there, but P3 cannot tell whether there is one.
+                let most = (ring + slack).times(own + radius).sqrt();
+                add_ends(&centre, second, most, slack, events);
+            }
+            if wraps {
+                let diameter = Relative::new(second, diameter, &centre);
+                diameter.lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
+            }
+        }
+    }
+    [start.offset, end.offset]
+}
+
+/// Adds the lengths of `first` at which a contact with it may be normal to `second`. Contacts from beyond the centre of `second`
+/// are left out: there an interval is shortest. The ends of `first` that touch it, by their distances from it, are among them:
+/// rounding may have taken a contact just beyond one of them.
+pub(crate) fn add_turning_lengths<S: Scalar>(
+    first: &Segment<S>,
+    second: &Segment<S>,
+    [start, end]: [S; 2],
+    radius: S,
+    slack: S,
+    lengths: &mut Lengths<S>,
+) {
     // Further out it is not rounding that keeps the contact from the segment.
     let touches = |offset: S| (radius - slack <= offset) & (offset <= radius + slack.half());
-    let [start, end] = events.offsets_of_ends;
     lengths.add(S::ZERO, touches(start.abs()));
     lengths.add(first.length, touches(end.abs()));
     let start = Footprint::of(second.start, first);
@@ -92,14 +82,13 @@ pub(crate) fn turning_lengths<S: Scalar>(
         _ => None,
     };
     match ring {
-        None => relative.lengths_at(&[radius, -radius], S::ZERO, S::ZERO, &mut lengths),
+        None => relative.lengths_at(&[radius, -radius], S::ZERO, S::ZERO, lengths),
         Some((ring, own)) => {
-            relative.lengths_at(&[relative.outward(radius)], S::ZERO, S::ZERO, &mut lengths);
+            relative.lengths_at(&[relative.outward(radius)], S::ZERO, S::ZERO, lengths);
             let centre = Footprint::of(middle_diameter(second, own).start, first);
-            add_ends(&centre, first, ring, slack, &mut lengths);
+            add_ends(&centre, first, ring, slack, lengths);
         }
     }
-    lengths
 }
 
 /// The length of `second` whose normal meets `first` at `l`, if there is contact: rounding makes roots where there are none,

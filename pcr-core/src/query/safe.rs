@@ -9,8 +9,9 @@ use crate::geometry::{Interval, Pose};
 use crate::intervals::{gaps, union};
 use crate::motion::Motion;
 use crate::pair::Pair;
-use crate::pair::events::Events;
+use crate::pair::events::add_events;
 use crate::pair::footprint::Footprint;
+use crate::pair::lengths::Lengths;
 use crate::query::contact::Encounter;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -166,8 +167,10 @@ fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>>
 /// The lengths of the second segment from which some of the first one is within the radius, distances right within
 /// `slack`.
 fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
-    let mut events = Events::of(first, second, radius, slack);
-    let events = events.in_order();
+    let mut events = Lengths::new();
+    add_events(first, second, radius, slack, &mut events);
+    events.sort();
+    let events = events.as_slice();
     let mut parts = [None; PARTS];
     let mut places = parts.iter_mut();
     let mut place: Option<&mut Option<Interval<S>>> = None;
