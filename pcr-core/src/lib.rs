@@ -35,6 +35,7 @@
 
 pub mod scalar;
 
+mod bits;
 mod crossing;
 mod ecm;
 mod error;
@@ -48,7 +49,6 @@ mod plan;
 mod profile;
 mod query;
 mod region;
-mod runs;
 mod segment;
 
 pub use crossing::{Crossing, crossings};

@@ -11,12 +11,13 @@ mod laps;
 pub(crate) mod lengths;
 pub(crate) mod offset;
 
+use crate::bits::Ones;
 use crate::error::Full;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
-use crate::segment::Segment;
+use crate::segment::{ROW, Segment, in_box};
 use cells::SegmentPair;
 use core::hint::select_unpredictable as select;
 use events::wraps;
@@ -60,16 +61,14 @@ impl<'a, S: Scalar> Pair<'a, S> {
                 continue;
             }
             let around = other.bounds.expanded(reach);
-            for (i, own) in (0..u16::MAX).zip(self.first.path().segments()) {
-                if around.meets(own.bounds) && own.near(other, reach) {
-                    let pair = SegmentPair {
-                        first: own,
-                        second: other,
-                        indices: [i, j],
-                        radius: self.radius,
-                        slack: self.slack,
-                    };
-                    pair.find(pieces)?;
+            for (row, begin) in self.first.path().segments().chunks(ROW).zip((0..u16::MAX).step_by(ROW)) {
+                for place in Ones(in_box(row, around)) {
+                    let Some(own) = row.get(place as usize) else { break };
+                    if own.near(other, reach) {
+                        let indices = [begin.wrapping_add(place as u16), j];
+                        let (radius, slack) = (self.radius, self.slack);
+                        SegmentPair { first: own, second: other, indices, radius, slack }.find(pieces)?;
+                    }
                 }
             }
         }

@@ -11,6 +11,8 @@
 
 mod near;
 
+pub(crate) use near::{ROW, in_box};
+
 use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
 use crate::scalar::{Angle, Scalar, Sector, Unit};

@@ -12,10 +12,10 @@
 use super::events::{add_events, add_turning_lengths, contact, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
 use super::lengths::Lengths;
+use crate::bits::Runs;
 use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
-use crate::runs::Runs;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 

@@ -6,11 +6,11 @@
 //! and [`Encounter::tolerance`] of the agent with itself, so that agents whose boxes do not meet are in no contact. The
 //! parts in which the boxes of a pair meet are bits of a word, and runs of them are looked at by [`Encounter::contacts`].
 
+use crate::bits::Runs;
 use crate::error::Full;
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
 use crate::query::contact::Encounter;
-use crate::runs::Runs;
 use crate::scalar::Scalar;
 use crate::segment::Curve;
 use core::hint::select_unpredictable as select;

@@ -2,8 +2,22 @@
 //! pairs before any closed form.
 
 use super::{Curve, Segment};
-use crate::geometry::Interval;
+use crate::geometry::{Bounds, Interval};
 use crate::scalar::{Scalar, Unit};
+use core::hint::select_unpredictable as select;
+
+/// Segments whose boxes are compared at once.
+pub(crate) const ROW: usize = u32::BITS as usize;
+
+/// Which of a row of segments have boxes that meet another one, a bit each.
+pub(crate) fn in_box<S: Scalar>(row: &[Segment<S>], around: Bounds<S>) -> u32 {
+    let (mut meeting, mut bit) = (0, 1);
+    for segment in row {
+        meeting |= select(around.meets(segment.bounds), bit, 0);
+        bit <<= 1;
+    }
+    meeting
+}
 
 impl<S: Scalar> Segment<S> {
     /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do, and the

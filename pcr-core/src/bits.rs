@@ -1,4 +1,19 @@
-//! Runs of ones in a row of bits: neighbouring cells of a line that have something in common.
+//! Rows of bits: which of a few neighbours have something in common. Tests whose outcome is as good as random to a processor
+//! are written as bits first, without a branch, and looked at then.
+
+/// The places of the ones in a row, the lowest first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ones(pub(crate) u32);
+
+impl Iterator for Ones {
+    type Item = u32;
+
+    fn next(&mut self) -> Option<u32> {
+        let place = self.0.trailing_zeros();
+        self.0 &= self.0.wrapping_sub(1);
+        (place < u32::BITS).then_some(place)
+    }
+}
 
 /// The runs of a row, each as the bits of it alone, the lowest first.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +39,13 @@ impl Iterator for Runs {
 
 #[cfg(test)]
 mod tests {
-    use super::Runs;
+    use super::{Ones, Runs};
+
+    #[test]
+    fn ones_come_one_by_one_up_to_the_highest_bit() {
+        let mut ones = Ones(0b1000_0000_0000_0000_0000_0000_0000_0101);
+        assert_eq!([(); 4].map(|()| ones.next()), [Some(0), Some(2), Some(31), None]);
+    }
 
     #[test]
     fn runs_come_one_by_one_up_to_the_highest_bit() {
