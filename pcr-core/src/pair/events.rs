@@ -32,7 +32,6 @@ pub(crate) fn add_events<S: Scalar>(
 ) -> [S; 2] {
     let (start, end) = (Footprint::of(first.start, second), Footprint::of(first.end, second));
     events.add(S::ZERO, true);
-    events.add(second.length, true);
     add_ends(&start, second, radius, slack, events);
     if first.length > S::ZERO {
         add_ends(&end, second, radius, slack, events);
@@ -57,6 +56,8 @@ pub(crate) fn add_events<S: Scalar>(
             }
         }
     }
+    // Last, where it belongs: fewer are out of order.
+    events.add(second.length, true);
     [start.offset, end.offset]
 }
 

@@ -69,7 +69,7 @@ impl<S: Scalar> Segment<S> {
         let nearest = squares((along - half_along).max(S::ZERO), (across - half_across).max(S::ZERO));
         let farthest = squares(along + half_along, across + half_across);
         let (outside, inside) = (radius + reach, (radius - reach).max(S::ZERO));
-        nearest <= outside.times(outside) && farthest >= inside.times(inside)
+        (nearest <= outside.times(outside)) & (farthest >= inside.times(inside))
     }
 }
 
