@@ -64,7 +64,7 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, Full> {
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
         let halvings = room.saturating_sub(1).checked_ilog2().ok_or(Full::Boxes)?.min(5);
-        let parts = 1_u32 << halvings;
+        let parts = 1_u32.wrapping_shl(halvings);
         let row = (parts as usize).wrapping_add(1);
         for (motion, row) in fleet.iter().zip(boxes.as_mut().chunks_exact_mut(row)) {
             let [all, row @ ..] = row else { break };
@@ -83,7 +83,7 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
 impl<'a, S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'a, S, B> {
     /// Into how many parts the time is cut.
     pub fn parts(&self) -> u32 {
-        1 << self.halvings
+        1_u32.wrapping_shl(self.halvings)
     }
 
     /// The pairs of agents that may be in contact, the lower index first, and from when to when \[s\]: in increasing order of
@@ -122,12 +122,12 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'a, S, B> {
 /// Where a part of so often halved an interval begins; the last one ends where the interval does.
 fn place_in<S: Scalar>(interval: Interval<S>, part: u32, halvings: u32) -> S {
     let Interval { mut lo, mut hi } = interval;
-    if part >> halvings != 0 {
+    if part.wrapping_shr(halvings) != 0 {
         return hi;
     }
     for bit in (0..halvings).rev() {
         let middle = Interval::new(lo, hi).middle();
-        let upper = part >> bit & 1 != 0;
+        let upper = part.wrapping_shr(bit) & 1 != 0;
         (lo, hi) = (select(upper, middle, lo), select(upper, hi, middle));
     }
     lo
