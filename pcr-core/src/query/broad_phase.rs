@@ -80,12 +80,14 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
     }
 }
 
-impl<'a, S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'a, S, B> {
+impl<S: Scalar, B> BroadPhase<'_, S, B> {
     /// Into how many parts the time is cut.
     pub fn parts(&self) -> u32 {
         1_u32.wrapping_shl(self.halvings)
     }
+}
 
+impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
     /// The pairs of agents that may be in contact, the lower index first, and from when to when \[s\]: in increasing order of
     /// the agents, then of the time. At no other time they are in contact.
     ///
