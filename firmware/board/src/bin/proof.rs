@@ -11,10 +11,11 @@ use core::hint::black_box as any;
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, BroadPhase, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid, Limits,
-    Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region, RegionRef,
-    Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_departure, earliest_start, excess,
-    first_conflict, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
+    Bounds, BroadPhase, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid,
+    Limits, Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region,
+    RegionRef, Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_departure, earliest_start,
+    excess, first_conflict, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths,
+    union,
 };
 
 #[entry]
