@@ -63,7 +63,7 @@ pub fn crossings<'a, S: Scalar>(
         let near = own.filter(move |(_, own)| own.bounds.expanded(margin).meets(their.bounds));
         near.flat_map(move |(i, own)| {
             let start = Footprint::of(own.start, their);
-            let mut roots = Lengths::new();
+            let mut roots = Lengths::new(S::ZERO);
             Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, &mut roots);
             let [a, b] = [0, 1].map(|place| roots.as_slice().get(place).copied());
             // Two equal roots are one crossing.

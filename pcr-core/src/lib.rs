@@ -39,6 +39,7 @@ mod bits;
 mod crossing;
 mod ecm;
 mod error;
+mod few;
 mod geometry;
 mod intervals;
 mod motion;

@@ -134,15 +134,14 @@ pub trait Scalar:
     /// Both roots of `u² + 2 b u + g = 0`, `None` if they are not real. A double root where an error of `doubt` in `g`
     /// would make one.
     fn quadratic_roots(b: Self, g: Self::Wide, doubt: Self::Wide) -> Option<[Self; 2]>;
-    /// Both angles `2 atan τ` in `[-π, π]` with `a τ² + 2 b τ + g = 0`, `None` if they are not real. One root where only
-    /// an error of `doubt` in both `a` and `g` would make it real. Angles outside of the sector may be left out.
+    /// Tells `found` the angles `φ + 2 atan τ` for all real `τ` of the equations `a τ² + 2 b τ + g = 0`, each given as
+    /// `[a, b, g, doubt]`; `φ` is the angle of `sector.from`, and what lies outside of the sector may be left out. One root
+    /// where only an error of `doubt` in both `a` and `g` would make it real. At most two equations; angles in `[-π, π]`.
     fn half_tangent_roots(
-        a: Self::Wide,
-        b: Self::Wide,
-        g: Self::Wide,
-        doubt: Self::Wide,
+        equations: impl Iterator<Item = [Self::Wide; 4]>,
         sector: Sector<Self::Unit>,
-    ) -> Option<[Option<Self::Angle>; 2]>;
+        found: impl FnMut(Self::Angle),
+    );
     /// The vector from the start of an arc to its point after twice the angle `half`, `2ϱ sin(h) e(ϑ ± h)`: `direction` is
     /// `(cos ϑ, sin ϑ)` at the start. Fixed point rounds once.
     fn chord(radius: Self, half: Self::Angle, right: bool, direction: [Self::Unit; 2]) -> [Self; 2] {
@@ -197,23 +196,23 @@ pub struct Ramp<S> {
     pub length: S,
 }
 
-/// The angles whose cosine to a direction is `least` or more: where on its circle an arc lies. It tells without an
-/// arctangent which angles need one.
+/// From where an angle is counted, and which ones are of interest: those whose cosine to a direction is `least` or more,
+/// where on its circle an arc lies. It tells without an arctangent which angles need one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sector<U> {
-    /// Cosine of its middle.
-    pub cos: U,
-    /// Sine of its middle.
-    pub sin: U,
-    /// Cosine of half its width, less [`Unit::COARSE`] or more.
+    /// Cosine and sine of the angle that is counted from.
+    pub from: [U; 2],
+    /// Cosine and sine of the middle.
+    pub middle: [U; 2],
+    /// Cosine of half the width, less [`Unit::COARSE`] or more.
     pub least: U,
 }
 
 impl<U: Unit> Sector<U> {
     /// All angles.
-    pub fn all() -> Self {
-        Self { cos: U::ONE, sin: U::ZERO, least: -U::ONE - U::COARSE }
+    pub fn all(from: [U; 2]) -> Self {
+        Self { from, middle: [U::ONE, U::ZERO], least: -U::ONE - U::COARSE }
     }
 }
 
@@ -281,6 +280,10 @@ pub trait Angle<S: Scalar>:
     fn sin_cos(self) -> (S::Unit, S::Unit);
     /// Angle of the vector `(x, y)` in `[-π, π]`; 0 for the zero vector.
     fn atan2(y: S, x: S) -> Self;
+    /// Those of two vectors.
+    fn atan2_each([y, v]: [S; 2], [x, u]: [S; 2]) -> [Self; 2] {
+        [Self::atan2(y, x), Self::atan2(v, u)]
+    }
     /// Signed length of the arc of this radius that subtends the angle.
     fn arc_length(self, radius: S) -> S;
     /// Length of a full circle of this radius, at most [`Scalar::LIMIT`] times a small constant.

@@ -280,10 +280,10 @@ impl<S: Scalar> Segment<S> {
         self.half_turn.plus(self.half_turn)
     }
 
-    /// Where an arc lies as seen from its centre, from the angle of the (mirrored) direction `from`.
+    /// Where an arc lies as seen from its centre, for angles that are counted from the (mirrored) direction `from`.
     pub(crate) fn sector(&self, from: Direction<S>) -> Sector<S::Unit> {
         let least = self.half_turn.cos - S::Unit::COARSE;
-        Sector { cos: from.dot(self.half_turn), sin: from.cross(self.half_turn), least }
+        Sector { from: [from.cos, from.sin], middle: [self.half_turn.cos, self.half_turn.sin], least }
     }
 
     /// Vector from the start to the point after `u` metres.

@@ -146,13 +146,11 @@ impl<const F: u32> Scalar for Q<F> {
         Some([-b - root, -b + root])
     }
     fn half_tangent_roots(
-        a: Product<F>,
-        b: Product<F>,
-        g: Product<F>,
-        doubt: Product<F>,
+        equations: impl Iterator<Item = [Product<F>; 4]>,
         sector: Sector<Sine>,
-    ) -> Option<[Option<Turns>; 2]> {
-        roots::half_tangent(a.to_bits(), b.to_bits(), g.to_bits(), doubt.to_bits(), sector)
+        found: impl FnMut(Turns),
+    ) {
+        roots::half_tangent(equations.map(|equation| equation.map(Product::to_bits)), sector, found);
     }
     fn chord(radius: Self, half: Turns, right: bool, direction: [Sine; 2]) -> [Self; 2] {
         let (sin, cos) = Angle::<Self>::sin_cos(half);

@@ -6,46 +6,57 @@ use crate::trigonometry::atan2;
 use crate::turns::Turns;
 use pcr_core::scalar::Sector;
 
-/// Both angles `2 atan τ` with `a τ² + 2 b τ + g = 0`, `None` if they are not real even for an `a` and a `g` that are
-/// off by `doubt`.
+/// The angles `φ + 2 atan τ` with `a τ² + 2 b τ + g = 0`, φ where the sector counts from, for equations `[a, b, g, doubt]`: where
+/// they are real, or would be for an `a` and a `g` that are off by `doubt`.
 ///
 /// The coefficients are products of 64 bits, of three different sizes if the two circles are: each keeps 31 bits of its
 /// own, which is a relative error of 2⁻³⁰ in each, and no product of more than 64 bits is formed. The angles are right to
-/// 2⁻³⁰ of a turn for the coefficients so perturbed. One root, and a division an angle.
-pub(crate) fn half_tangent(a: i64, b: i64, g: i64, doubt: i64, sector: Sector<Sine>) -> Option<[Option<Turns>; 2]> {
-    let [a, b, g, doubt] = [a, b, g, doubt].map(|coefficient| Scaled::new(coefficient, 0));
+/// 2⁻³⁰ of a turn for the coefficients so perturbed. One root an equation, and a division an angle.
+pub(crate) fn half_tangent(
+    equations: impl Iterator<Item = [i64; 4]>,
+    sector: Sector<Sine>,
+    mut found: impl FnMut(Turns),
+) {
+    let mut from = None;
+    for equation in equations {
+        for [n, m] in half_tangents(equation).into_iter().flatten() {
+            let (n, m) = if m.is_negative() { (n.minus(), m.minus()) } else { (n, m) };
+            let [n, m] = n.aligned(m);
+            if may_lie_in(sector, n, m) {
+                let [cos, sin] = sector.from.map(Sine::to_bits);
+                let half = Turns::from_bits(atan2(n, m));
+                found(*from.get_or_insert_with(|| Turns::from_bits(atan2(sin, cos))) + half + half);
+            }
+        }
+    }
+}
+
+/// The real `τ` with `a τ² + 2 b τ + g = 0`, as fractions: a = 0 is half a turn.
+fn half_tangents(equation: [i64; 4]) -> [Option<[Scaled; 2]>; 2] {
+    let [a, b, g, doubt] = equation.map(|coefficient| Scaled::new(coefficient, 0));
     let discriminant = b.times(b).plus(a.times(g).minus());
     if discriminant.is_negative() {
         let within_doubt = !discriminant.plus(doubt.times(a.plus(g).magnitude())).is_negative();
         // τ = -b/a = -g/b, by the larger one of the coefficients that are in doubt.
         let larger = !a.magnitude().plus(g.magnitude().minus()).is_negative();
-        let double = || if larger { angle(b.minus(), a, sector) } else { angle(g, b.minus(), sector) };
-        return within_doubt.then(|| [double(), None]);
+        return [within_doubt.then_some(if larger { [b.minus(), a] } else { [g, b.minus()] }), None];
     }
-    // τ = q/a and τ = g/q with the sign that adds magnitudes, left as fractions: a = 0 is half a turn.
+    // τ = q/a and τ = g/q with the sign that adds magnitudes.
     let root = discriminant.sqrt();
     let q = if b.is_negative() { root.plus(b.minus()) } else { root.plus(b).minus() };
-    Some([angle(q, a, sector), angle(g, q, sector)])
+    [Some([q, a]), Some([g, q])]
 }
 
-/// `2 atan(n / m)` if it lies in the sector.
-fn angle(n: Scaled, m: Scaled, sector: Sector<Sine>) -> Option<Turns> {
-    let (n, m) = if m.is_negative() { (n.minus(), m.minus()) } else { (n, m) };
-    let [n, m] = n.aligned(m);
-    may_lie_in(sector, n, m).then(|| {
-        let half = Turns::from_bits(atan2(n, m));
-        half + half
-    })
-}
-
-/// Whether `2 atan(n / m)` may lie in the sector. In so few bits that no product has more than 32: the cosine is off by 2⁻¹⁰
-/// at most.
+/// Whether the angle may lie in the sector. In so few bits that no product has more than 32: cosines are off by less
+/// than 2⁻⁹.
 fn may_lie_in(sector: Sector<Sine>, n: i32, m: i32) -> bool {
     let [n, m] = [n, m].map(|term| term >> 16);
-    // The cosine and sine of the angle, and their common denominator.
-    let [cos, sin, norm] = [m * m - n * n, 2 * (m * n), m * m + n * n].map(|square| square >> 16);
     let unit = |sine: Sine| sine.to_bits() >> (Sine::FRACTION_BITS - 14);
-    cos * unit(sector.cos) + sin * unit(sector.sin) >= norm * unit(sector.least)
+    // The cosine and sine of 2 atan(n / m), and their common denominator.
+    let [cos, sin, norm] = [m * m - n * n, 2 * (m * n), m * m + n * n].map(|square| square >> 15);
+    let ([base_cos, base_sin], [middle_cos, middle_sin]) = (sector.from.map(unit), sector.middle.map(unit));
+    let [x, y] = [cos * base_cos - sin * base_sin, sin * base_cos + cos * base_sin].map(|product| product >> 14);
+    x * middle_cos + y * middle_sin >= norm * unit(sector.least)
 }
 
 #[cfg(test)]
@@ -58,13 +69,16 @@ mod tests {
     fn roots_that_are_real_by_doubt_alone_are_one() {
         let (unit, off) = (1_i64 << 30, 1_i64 << 12);
         for (a, b, g) in [(unit, unit, unit + off), (unit + off, -unit, unit), (-unit - off, unit, -unit)] {
-            let [Some(root), None] = half_tangent(a, b, g, 2 * off, Sector::all()).expect("real by doubt") else {
-                panic!("two roots: {a} {b} {g}");
+            let roots = |doubt| {
+                let mut roots = Vec::new();
+                half_tangent([[a, b, g, doubt]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| roots.push(root));
+                roots
             };
+            let [root] = roots(2 * off)[..] else { panic!("not one root: {a} {b} {g}") };
             // τ = ±1, right to what the doubt of a coefficient is worth.
             let quarter = if (a < 0) == (b < 0) { -Turns::QUARTER } else { Turns::QUARTER };
             assert!((root - quarter).to_bits().abs() <= 1 << 14, "{root:?}");
-            assert_eq!(half_tangent(a, b, g, off / 4, Sector::all()), None);
+            assert_eq!(roots(off / 4), []);
         }
     }
 
@@ -74,14 +88,14 @@ mod tests {
         let sine = |x: f64| Sine::from_bits((x * f64::from(1 << 30)) as i32);
         let (mut kept, mut left_out) = (0, 0);
         for k in 0..720 {
-            let angle = f64::from(k - 360).to_radians() / 2.0;
+            let (angle, from) = (f64::from(k - 360).to_radians() / 2.0, f64::from(k * 7).to_radians());
             let (n, m) = ((angle / 2.0).sin(), (angle / 2.0).cos());
             let [n, m] = [n, m].map(|x| (x * 2_147_483_000.0) as i32);
             for middle in (0..360).step_by(7).map(|degree| f64::from(degree).to_radians()) {
                 for half in (0..180).step_by(5).map(|degree| f64::from(degree).to_radians()) {
                     let sector = Sector {
-                        cos: sine(middle.cos()),
-                        sin: sine(middle.sin()),
+                        from: [sine(from.cos()), sine(from.sin())],
+                        middle: [sine((from + middle).cos()), sine((from + middle).sin())],
                         least: sine(half.cos()) - Sine::COARSE,
                     };
                     let above = (angle - middle).cos() - half.cos();

@@ -44,7 +44,7 @@ struct Slabs {
 impl<S: Scalar> SegmentPair<'_, S> {
     /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
-        let (mut events, mut turning) = (Lengths::new(), Lengths::new());
+        let (mut events, mut turning) = (Lengths::new(S::ZERO), Lengths::new(S::ZERO));
         let ends = add_events(self.first, self.second, self.radius, self.slack, &mut events);
         // Taken from where it is needed: a processor that looks ahead has something to do while events are put in order.
         add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);

@@ -81,8 +81,7 @@ impl<S: Scalar> Footprint<S> {
         let Curve::Arc { radius, .. } = segment.curve else {
             return self.x;
         };
-        let foot = S::Angle::atan2(self.x, radius - self.y).arc_length(radius);
-        if foot < (segment.length - segment.circumference).half() { foot + segment.circumference } else { foot }
+        near_middle(S::Angle::atan2(self.x, radius - self.y).arc_length(radius), segment)
     }
 
     /// Direction of the carrier at the foot, in the (mirrored) frame of the start of the segment.
@@ -131,9 +130,15 @@ impl<S: Scalar> Footprint<S> {
         }
         let near = (r - offset).times(r + offset).sqrt();
         let far = (diameter - r).times(diameter + r).sqrt();
-        let half = S::Angle::atan2(near, far).arc_length(radius).double();
-        Reach::Around { foot: self.foot(segment), half }
+        let [foot, half] = S::Angle::atan2_each([self.x, near], [radius - self.y, far]);
+        let half = half.arc_length(radius).double();
+        Reach::Around { foot: near_middle(foot.arc_length(radius), segment), half }
     }
+}
+
+/// The lap of a length along a circle, within half a turn of its start, that is nearest to the middle of the segment.
+fn near_middle<S: Scalar>(foot: S, segment: &Segment<S>) -> S {
+    if foot < (segment.length - segment.circumference).half() { foot + segment.circumference } else { foot }
 }
 
 /// Which of the intervals that a disc cuts out of a circle: its foot, moved by so many laps.

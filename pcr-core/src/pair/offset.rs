@@ -121,30 +121,15 @@ impl<'a, S: Scalar> Relative<'a, S> {
 
     /// J is an arc: `T = r τ`. What lies beyond its ends may be left out.
     fn lengths_of_arc(&self, r: S, offsets: &[S], margin: S, doubt: S, found: &mut Lengths<S>) {
-        let Self { segment, cos, sin, bend, .. } = *self;
+        let Self { segment, base, cos, sin, bend, .. } = *self;
         let n = self.start.offset;
-        let sector = if margin > S::ZERO { Sector::all() } else { segment.sector(self.base) };
-        let mut foot = None;
-        let mut add = |angle: Option<S::Angle>| {
-            if let Some(angle) = angle {
-                let foot = *foot.get_or_insert_with(|| self.start.foot(segment));
-                let u = on_first_lap(foot + angle.arc_length(r), segment, margin);
-                found.add(u, (-margin <= u) & (u <= segment.length + margin));
-            }
-        };
-        for &c in offsets {
+        let equations = offsets.iter().map(|&c| {
             let lateral = c + n.scale(cos);
-            let angles = match bend {
+            match bend {
                 // I is a line, equation times r / 2: G = 2 lateral.
                 None => {
                     let far = lateral - r.scale(cos).double();
-                    S::half_tangent_roots(
-                        r.times(far),
-                        -r.times(r.scale(sin)),
-                        r.times(lateral),
-                        r.times(doubt),
-                        sector,
-                    )
+                    [r.times(far), -r.times(r.scale(sin)), r.times(lateral), r.times(doubt)]
                 }
                 // Both are arcs, equation times ϱ (κ_I = 1/ϱ).
                 Some(bend) => {
@@ -152,14 +137,15 @@ impl<'a, S: Scalar> Relative<'a, S> {
                     let centre = n + bend.scale(cos) - r;
                     let a = g - r.double().times(centre.double());
                     let doubt = (bend.abs() + c.abs()).times(doubt).double();
-                    S::half_tangent_roots(a, -r.double().times(bend.scale(sin)), g, doubt, sector)
+                    [a, -r.double().times(bend.scale(sin)), g, doubt]
                 }
-            };
-            if let Some([a, b]) = angles {
-                add(a);
-                add(b);
             }
-        }
+        });
+        let sector = if margin > S::ZERO { Sector::all([base.cos, base.sin]) } else { segment.sector(base) };
+        S::half_tangent_roots(equations, sector, |angle| {
+            let u = on_first_lap(angle.arc_length(r), segment, margin);
+            found.add(u, (-margin <= u) & (u <= segment.length + margin));
+        });
     }
 
     /// `ϱ G = 2 ϱ (c + n cos α) + n² - c²`.

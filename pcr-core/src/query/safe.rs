@@ -167,7 +167,7 @@ fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>>
 /// The lengths of the second segment from which some of the first one is within the radius, distances right within
 /// `slack`.
 fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
-    let mut events = Lengths::new();
+    let mut events = Lengths::new(S::ZERO);
     add_events(first, second, radius, slack, &mut events);
     events.sort();
     let events = events.as_slice();

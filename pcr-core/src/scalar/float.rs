@@ -5,6 +5,7 @@
 //! `f64`.
 
 use super::{Angle, Ramp, Scalar, Sector, Unit, Wide, trig};
+use crate::few::Few;
 use core::ops::{Add, Neg, Sub};
 
 /// Angle in radians.
@@ -38,7 +39,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, sin_cos: $sin_cos:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, atan2_each: $atan2_each:path, sin_cos: $sin_cos:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -101,31 +102,35 @@ macro_rules! impl_float {
                 Some([q, if q == 0.0 { 0.0 } else { g / q }])
             }
             fn half_tangent_roots(
-                a: $t,
-                b: $t,
-                g: $t,
-                doubt: $t,
+                equations: impl Iterator<Item = [$t; 4]>,
                 sector: Sector<$t>,
-            ) -> Option<[Option<Radians<$t>>; 2]> {
-                let discriminant = b * b - a * g;
-                if discriminant < 0.0 && discriminant + doubt * (a + g).abs() < 0.0 {
-                    return None;
+                mut found: impl FnMut(Radians<$t>),
+            ) {
+                let mut vectors = Few::<_, 4>::new([0.0; 2]);
+                let ([base_cos, base_sin], [middle_cos, middle_sin]) = (sector.from, sector.middle);
+                for [a, b, g, doubt] in equations {
+                    let discriminant = b * b - a * g;
+                    // τ = q/a and τ = g/q, left as fractions: a = 0 is the far end of the diameter (τ = ∞).
+                    let q = -(b + Wide::<$t>::sqrt(discriminant).copysign(b));
+                    let mut add = |n: $t, m: $t, real: bool| {
+                        // The cosine and sine of 2 atan(n/m), and their common denominator.
+                        let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
+                        let (x, y) = (cos * base_cos - sin * base_sin, sin * base_cos + cos * base_sin);
+                        vectors.add([y, x], real & (x * middle_cos + y * middle_sin >= norm * sector.least));
+                    };
+                    // By doubt alone they are one: -b/a = -g/b, by the larger one of what is in doubt.
+                    let (two, larger) = (discriminant >= 0.0, a.abs() > g.abs());
+                    let one = discriminant + doubt * (a + g).abs() >= 0.0;
+                    add(q, a, two | (one & larger));
+                    add(g, q, two | (one & !larger));
                 }
-                // τ = q/a and τ = g/q, left as fractions: a = 0 is the far end of the diameter (τ = ∞).
-                let q = -(b + Wide::<$t>::sqrt(discriminant).copysign(b));
-                let angle = |n: $t, m: $t| {
-                    // The cosine and sine of 2 atan(n/m), and their common denominator.
-                    let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
-                    let inside = cos * sector.cos + sin * sector.sin >= norm * sector.least;
-                    inside.then(|| {
-                        Radians(2.0 * $atan2($t::from_bits(n.to_bits() ^ m.to_bits() ^ m.abs().to_bits()), m.abs()))
-                    })
-                };
-                // By doubt alone they are one: -b/a = -g/b, by the larger one of what is in doubt.
-                let two = discriminant >= 0.0;
-                let first = if two || a.abs() > g.abs() { angle(q, a) } else { None };
-                let second = if two || a.abs() <= g.abs() { angle(g, q) } else { None };
-                Some([first, second])
+                for vectors in vectors.as_slice().chunks(2) {
+                    match *vectors {
+                        [[y, x], [v, u]] => $atan2_each([y, v], [x, u]).map(|angle| found(Radians(angle))),
+                        [[y, x]] => [found(Radians($atan2(y, x))), ()],
+                        _ => return,
+                    };
+                }
             }
             fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed
@@ -211,6 +216,9 @@ macro_rules! impl_float {
             fn atan2(y: $t, x: $t) -> Self {
                 Radians($atan2(y, x))
             }
+            fn atan2_each(y: [$t; 2], x: [$t; 2]) -> [Self; 2] {
+                $atan2_each(y, x).map(Radians)
+            }
             fn arc_length(self, radius: $t) -> $t {
                 self.0 * radius
             }
@@ -223,8 +231,8 @@ macro_rules! impl_float {
 
 // `slack` in unit roundoffs of the extent; `tolerance` 2^-32 and 2^-16 of it; `split` is 1 more than the power
 // of 2 that halves a significand.
-impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, sin_cos: trig::sin_cos_f64);
-impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, sin_cos: trig::sin_cos_f32);
+impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, atan2_each: trig::atan2_each_f64, sin_cos: trig::sin_cos_f64);
+impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, atan2_each: trig::atan2_each_f32, sin_cos: trig::sin_cos_f32);
 
 #[cfg(feature = "std")]
 extern crate std;
@@ -261,12 +269,17 @@ mod tests {
     #[test]
     fn half_tangent_roots_reach_the_far_end_of_the_diameter() {
         // τ² - 1 = 0: ± a quarter turn; a = 0: τ = ∞ is half a turn.
-        let half_tangents = |a, b, g| f64::half_tangent_roots(a, b, g, 0.0, Sector::all()).unwrap().map(Option::unwrap);
+        let half_tangents = |a, b, g| {
+            let mut angles = std::vec::Vec::new();
+            let sector = Sector::all([1.0, 0.0]);
+            f64::half_tangent_roots([[a, b, g, 0.0]].into_iter(), sector, |angle| angles.push(angle.0));
+            angles
+        };
         let quarter = core::f64::consts::FRAC_PI_2;
-        let [r, s] = half_tangents(1.0, 0.0, -1.0);
-        assert!((r.0.abs() - quarter).abs() < 1e-15 && (r.0 + s.0).abs() < 1e-15);
-        let [r, s] = half_tangents(0.0, 1.0, 0.0);
-        assert!((r.0.abs() - 2.0 * quarter).abs() < 1e-15 && s.0 == 0.0);
+        let roots = half_tangents(1.0, 0.0, -1.0);
+        assert!(roots.len() == 2 && (roots[0].abs() - quarter).abs() < 1e-15 && (roots[0] + roots[1]).abs() < 1e-15);
+        let roots = half_tangents(0.0, 1.0, 0.0);
+        assert!(roots.len() == 2 && (roots[0].abs() - 2.0 * quarter).abs() < 1e-15 && roots[1] == 0.0);
     }
 
     #[test]

@@ -94,27 +94,26 @@ impl Scalar for Micro {
         Some([Self(q), Self(if q == 0.0 { 0.0 } else { g.0 / q })])
     }
     fn half_tangent_roots(
-        a: Self,
-        b: Self,
-        g: Self,
-        doubt: Self,
+        equations: impl Iterator<Item = [Self; 4]>,
         sector: Sector<f32>,
-    ) -> Option<[Option<Radians<Self>>; 2]> {
-        let discriminant = b.0 * b.0 - a.0 * g.0;
-        if discriminant < 0.0 && discriminant + doubt.0 * (a.0 + g.0).abs() < 0.0 {
-            return None;
+        mut found: impl FnMut(Radians<Self>),
+    ) {
+        let ([base_cos, base_sin], [middle_cos, middle_sin]) = (sector.from, sector.middle);
+        for [a, b, g, doubt] in equations.map(|equation| equation.map(|coefficient| coefficient.0)) {
+            let discriminant = b * b - a * g;
+            let (two, one) = (discriminant >= 0.0, discriminant + doubt * (a + g).abs() >= 0.0);
+            if !(two | one) {
+                continue;
+            }
+            let q = -(b + sqrt(discriminant).copysign(b));
+            for (n, m, real) in [(q, a, two || a.abs() > g.abs()), (g, q, two || a.abs() <= g.abs())] {
+                let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
+                let (x, y) = (cos * base_cos - sin * base_sin, sin * base_cos + cos * base_sin);
+                if real && x * middle_cos + y * middle_sin >= norm * sector.least {
+                    found(Radians(Self(atan2(y, x))));
+                }
+            }
         }
-        let q = -(b.0 + sqrt(discriminant.max(0.0)).copysign(b.0));
-        let angle = |n: f32, m: f32| {
-            let (n, m) = if m < 0.0 { (-n, -m) } else { (n, m) };
-            let (cos, sin, norm) = (m * m - n * n, 2.0 * (m * n), m * m + n * n);
-            let inside = cos * sector.cos + sin * sector.sin >= norm * sector.least;
-            inside.then(|| Radians(Self(2.0 * atan2(n, m))))
-        };
-        let two = discriminant >= 0.0;
-        let first = if two || a.0.abs() > g.0.abs() { angle(q, a.0) } else { None };
-        let second = if two || a.0.abs() <= g.0.abs() { angle(g.0, q) } else { None };
-        Some([first, second])
     }
     fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
         Self((ramp.slow.0 + 0.5 * ramp.acceleration.0 * elapsed.0) * elapsed.0)

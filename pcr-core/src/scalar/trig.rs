@@ -34,6 +34,7 @@ macro_rules! sin_cos {
 macro_rules! atan2 {
     ($(#[$doc:meta])* $name:ident($t:ident), polynomial: $polynomial:expr) => {
         $(#[$doc])*
+        #[inline]
         pub(super) fn $name(y: $t, x: $t) -> $t {
             use core::$t::consts::{FRAC_PI_2, FRAC_PI_4, PI};
             const TAN_PI_8: $t = 0.414_213_562_373_095_03_f64 as $t;
@@ -51,6 +52,17 @@ macro_rules! atan2 {
             half.copysign(y)
         }
     };
+}
+
+/// Two arctangents: where a processor computes two at once they take the time of one.
+#[inline(never)]
+pub(super) fn atan2_each_f64([y, v]: [f64; 2], [x, u]: [f64; 2]) -> [f64; 2] {
+    [atan2_f64(y, x), atan2_f64(v, u)]
+}
+
+/// Two arctangents.
+pub(super) fn atan2_each_f32([y, v]: [f32; 2], [x, u]: [f32; 2]) -> [f32; 2] {
+    [atan2_f32(y, x), atan2_f32(v, u)]
 }
 
 /// A polynomial by its coefficients, the constant first.

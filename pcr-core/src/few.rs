@@ -1,0 +1,52 @@
+//! A few things in a fixed room.
+//!
+//! Whether a root lies on its segment is as good as random to a processor: a thing is written first and counted then, so
+//! that no branch depends on it.
+
+/// At most `N` things.
+pub(crate) struct Few<T, const N: usize> {
+    places: [T; N],
+    count: usize,
+}
+
+impl<T: Copy, const N: usize> Few<T, N> {
+    /// None yet; the room is filled with `anything`.
+    pub(crate) fn new(anything: T) -> Self {
+        Self { places: [anything; N], count: 0 }
+    }
+
+    /// Adds a thing if it `counts` and there is room for it.
+    pub(crate) fn add(&mut self, thing: T, counts: bool) {
+        if let Some(place) = self.places.get_mut(self.count) {
+            *place = thing;
+            // There is a place at it: no overflow.
+            self.count = self.count.wrapping_add(usize::from(counts));
+        }
+    }
+
+    /// Those that were added.
+    pub(crate) fn as_slice(&self) -> &[T] {
+        self.places.get(..self.count).unwrap_or_default()
+    }
+
+    /// Those that were added.
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [T] {
+        self.places.get_mut(..self.count).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Few;
+
+    #[test]
+    fn what_counts_is_kept_and_there_is_room_for_so_many_and_no_more() {
+        let mut few = Few::<_, 4>::new(0);
+        for (thing, counts) in [(3, true), (1, true), (7, false), (2, true), (1, true), (9, true), (8, false)] {
+            few.add(thing, counts);
+        }
+        assert_eq!(few.as_slice(), [3, 1, 2, 1]);
+        few.as_mut_slice().sort_unstable();
+        assert_eq!(few.as_slice(), [1, 1, 2, 3]);
+    }
+}
