@@ -39,7 +39,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, atan2_each: $atan2_each:path, sin_cos: $sin_cos:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, atan2_each: $atan2_each:path, angles: $angles:path, sin_cos: $sin_cos:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -124,13 +124,7 @@ macro_rules! impl_float {
                     add(q, a, two | (one & larger));
                     add(g, q, two | (one & !larger));
                 }
-                for vectors in vectors.as_slice().chunks(2) {
-                    match *vectors {
-                        [[y, x], [v, u]] => $atan2_each([y, v], [x, u]).map(|angle| found(Radians(angle))),
-                        [[y, x]] => [found(Radians($atan2(y, x))), ()],
-                        _ => return,
-                    };
-                }
+                $angles(vectors.as_slice(), |angle| found(Radians(angle)));
             }
             fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed
@@ -231,8 +225,8 @@ macro_rules! impl_float {
 
 // `slack` in unit roundoffs of the extent; `tolerance` 2^-32 and 2^-16 of it; `split` is 1 more than the power
 // of 2 that halves a significand.
-impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, atan2_each: trig::atan2_each_f64, sin_cos: trig::sin_cos_f64);
-impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, atan2_each: trig::atan2_each_f32, sin_cos: trig::sin_cos_f32);
+impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, atan2_each: trig::atan2_each_f64, angles: trig::angles_f64, sin_cos: trig::sin_cos_f64);
+impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, atan2_each: trig::atan2_each_f32, angles: trig::angles_f32, sin_cos: trig::sin_cos_f32);
 
 #[cfg(feature = "std")]
 extern crate std;

@@ -34,7 +34,6 @@ macro_rules! sin_cos {
 macro_rules! atan2 {
     ($(#[$doc:meta])* $name:ident($t:ident), polynomial: $polynomial:expr) => {
         $(#[$doc])*
-        #[inline]
         pub(super) fn $name(y: $t, x: $t) -> $t {
             use core::$t::consts::{FRAC_PI_2, FRAC_PI_4, PI};
             const TAN_PI_8: $t = 0.414_213_562_373_095_03_f64 as $t;
@@ -63,6 +62,22 @@ pub(super) fn atan2_each_f64([y, v]: [f64; 2], [x, u]: [f64; 2]) -> [f64; 2] {
 /// Two arctangents.
 pub(super) fn atan2_each_f32([y, v]: [f32; 2], [x, u]: [f32; 2]) -> [f32; 2] {
     [atan2_f32(y, x), atan2_f32(v, u)]
+}
+
+/// Tells `found` the angles of vectors `[y, x]`, two at a time.
+pub(super) fn angles_f64(vectors: &[[f64; 2]], mut found: impl FnMut(f64)) {
+    for vectors in vectors.chunks(2) {
+        match *vectors {
+            [[y, x], [v, u]] => atan2_each_f64([y, v], [x, u]).into_iter().for_each(&mut found),
+            [[y, x]] => found(atan2_f64(y, x)),
+            _ => {}
+        }
+    }
+}
+
+/// Tells `found` the angles of vectors `[y, x]`, one at a time.
+pub(super) fn angles_f32(vectors: &[[f32; 2]], mut found: impl FnMut(f32)) {
+    vectors.iter().for_each(|&[y, x]| found(atan2_f32(y, x)));
 }
 
 /// A polynomial by its coefficients, the constant first.
