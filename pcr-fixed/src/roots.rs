@@ -61,8 +61,11 @@ fn may_lie_in(sector: Sector<Sine>, n: i32, m: i32) -> bool {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
     use pcr_core::scalar::Unit;
+    use std::vec::Vec;
 
     /// Between two different ones there would be a gap that is none.
     #[test]
@@ -71,7 +74,9 @@ mod tests {
         for (a, b, g) in [(unit, unit, unit + off), (unit + off, -unit, unit), (-unit - off, unit, -unit)] {
             let roots = |doubt| {
                 let mut roots = Vec::new();
-                half_tangent([[a, b, g, doubt]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| roots.push(root));
+                half_tangent([[a, b, g, doubt]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| {
+                    roots.push(root)
+                });
                 roots
             };
             let [root] = roots(2 * off)[..] else { panic!("not one root: {a} {b} {g}") };

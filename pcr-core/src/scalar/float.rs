@@ -4,7 +4,8 @@
 //! the FPU of a Cortex-M only replace the square root, which is correctly rounded everywhere. `f32` never computes in
 //! `f64`.
 
-use super::{Angle, Ramp, Scalar, Sector, Unit, Wide, trig};
+use super::trig::Trig;
+use super::{Angle, Ramp, Scalar, Sector, Unit, Wide};
 use crate::few::Few;
 use core::ops::{Add, Neg, Sub};
 
@@ -39,7 +40,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path, atan2: $atan2:path, atan2_each: $atan2_each:path, angles: $angles:path, sin_cos: $sin_cos:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -124,7 +125,7 @@ macro_rules! impl_float {
                     add(q, a, two | (one & larger));
                     add(g, q, two | (one & !larger));
                 }
-                $angles(vectors.as_slice(), |angle| found(Radians(angle)));
+                Trig::angles(vectors.as_slice(), |angle| found(Radians(angle)));
             }
             fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed
@@ -205,13 +206,13 @@ macro_rules! impl_float {
                 (Radians(sum), Radians(rest))
             }
             fn sin_cos(self) -> ($t, $t) {
-                $sin_cos(self.0)
+                Trig::sin_cos(self.0)
             }
             fn atan2(y: $t, x: $t) -> Self {
-                Radians($atan2(y, x))
+                Radians(Trig::atan2(y, x))
             }
             fn atan2_each(y: [$t; 2], x: [$t; 2]) -> [Self; 2] {
-                $atan2_each(y, x).map(Radians)
+                Trig::atan2_each(y, x).map(Radians)
             }
             fn arc_length(self, radius: $t) -> $t {
                 self.0 * radius
@@ -225,8 +226,8 @@ macro_rules! impl_float {
 
 // `slack` in unit roundoffs of the extent; `tolerance` 2^-32 and 2^-16 of it; `split` is 1 more than the power
 // of 2 that halves a significand.
-impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64, atan2: trig::atan2_f64, atan2_each: trig::atan2_each_f64, angles: trig::angles_f64, sin_cos: trig::sin_cos_f64);
-impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32, atan2: trig::atan2_f32, atan2_each: trig::atan2_each_f32, angles: trig::angles_f32, sin_cos: trig::sin_cos_f32);
+impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
+impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
 
 #[cfg(feature = "std")]
 extern crate std;

@@ -9,7 +9,8 @@
 //! arctangent one polynomial; `docs/firmware.md` has the figures. This type is for those who use micromath already
 //! and want what its functions can be made to guarantee.
 
-use super::{Angle, Radians, Ramp, Scalar, Sector, Wide, trig};
+use super::trig::Trig;
+use super::{Angle, Radians, Ramp, Scalar, Sector, Wide};
 use core::ops::{Add, Neg, Sub};
 use micromath::F32Ext;
 
@@ -172,7 +173,7 @@ impl Angle<Micro> for Radians<Micro> {
         (Radians(sum), Radians(rest))
     }
     fn sin_cos(self) -> (f32, f32) {
-        trig::sin_cos_f32(self.0.0)
+        Trig::sin_cos(self.0.0)
     }
     fn atan2(y: Micro, x: Micro) -> Self {
         Radians(Micro(atan2(y.0, x.0)))
@@ -207,7 +208,7 @@ fn atan2(y: f32, x: f32) -> f32 {
     let (y, x) = if x.abs().max(y.abs()) < SMALL { (LARGER * y, LARGER * x) } else { (y, x) };
     // The angle between the guess and the vector, less a third of its cube: of 2.8e-3 that is 7e-9.
     let guess = F32Ext::atan2(y, x);
-    let (sin, cos) = trig::sin_cos_f32(guess);
+    let (sin, cos) = Trig::sin_cos(guess);
     (guess + (y * cos - x * sin) / (x * cos + y * sin)).clamp(-PI, PI)
 }
 

@@ -5,12 +5,62 @@
 
 use core::hint::select_unpredictable as select;
 
+/// A floating-point number with these functions of its own.
+///
+/// Two arctangents at once take the time of one where a processor has lanes and the compiler is shown both: a matter of
+/// desktops, hence of `f64`.
+pub(super) trait Trig: Copy {
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+    /// Angle of the vector `(x, y)`.
+    fn atan2(y: Self, x: Self) -> Self;
+    /// Angles of two vectors.
+    fn atan2_each([y, v]: [Self; 2], [x, u]: [Self; 2]) -> [Self; 2] {
+        [Self::atan2(y, x), Self::atan2(v, u)]
+    }
+    /// Tells `found` the angles of vectors `[y, x]`.
+    fn angles(vectors: &[[Self; 2]], found: impl FnMut(Self)) {
+        vectors.iter().map(|&[y, x]| Self::atan2(y, x)).for_each(found);
+    }
+}
+
+impl Trig for f32 {
+    fn sin_cos(self) -> (f32, f32) {
+        sin_cos_f32(self)
+    }
+    fn atan2(y: f32, x: f32) -> f32 {
+        atan2_f32(y, x)
+    }
+}
+
+impl Trig for f64 {
+    fn sin_cos(self) -> (f64, f64) {
+        sin_cos_f64(self)
+    }
+    fn atan2(y: f64, x: f64) -> f64 {
+        atan2_f64(y, x)
+    }
+    #[inline(never)]
+    fn atan2_each([y, v]: [f64; 2], [x, u]: [f64; 2]) -> [f64; 2] {
+        [atan2_f64(y, x), atan2_f64(v, u)]
+    }
+    fn angles(vectors: &[[f64; 2]], mut found: impl FnMut(f64)) {
+        for vectors in vectors.chunks(2) {
+            match *vectors {
+                [[y, x], [v, u]] => Self::atan2_each([y, v], [x, u]).into_iter().for_each(&mut found),
+                [[y, x]] => found(atan2_f64(y, x)),
+                _ => {}
+            }
+        }
+    }
+}
+
 /// Sine and cosine: reduced by quarter turns, in parts (Cody and Waite), to `[-π/4, π/4]`. The polynomials are
 /// `(sin r / r - 1) / r²` and `(cos r - 1 + r²/2) / r⁴` of `r²`.
 macro_rules! sin_cos {
     ($(#[$doc:meta])* $name:ident($t:ident), quarter: $quarter:expr, sin: $sin:expr, cos: $cos:expr) => {
         $(#[$doc])*
-        pub(super) fn $name(x: $t) -> ($t, $t) {
+        fn $name(x: $t) -> ($t, $t) {
             // Half of what has no more room for a fraction: a sum with it is rounded, its last bits are the integer's.
             const ROUND: $t = 1.5 / $t::EPSILON;
             const SIGN: u32 = 8 * size_of::<$t>() as u32 - 1;
@@ -34,7 +84,7 @@ macro_rules! sin_cos {
 macro_rules! atan2 {
     ($(#[$doc:meta])* $name:ident($t:ident), polynomial: $polynomial:expr) => {
         $(#[$doc])*
-        pub(super) fn $name(y: $t, x: $t) -> $t {
+        fn $name(y: $t, x: $t) -> $t {
             use core::$t::consts::{FRAC_PI_2, FRAC_PI_4, PI};
             const TAN_PI_8: $t = 0.414_213_562_373_095_03_f64 as $t;
             let steep = y.abs() > x.abs();
@@ -51,33 +101,6 @@ macro_rules! atan2 {
             half.copysign(y)
         }
     };
-}
-
-/// Two arctangents: where a processor computes two at once they take the time of one.
-#[inline(never)]
-pub(super) fn atan2_each_f64([y, v]: [f64; 2], [x, u]: [f64; 2]) -> [f64; 2] {
-    [atan2_f64(y, x), atan2_f64(v, u)]
-}
-
-/// Two arctangents.
-pub(super) fn atan2_each_f32([y, v]: [f32; 2], [x, u]: [f32; 2]) -> [f32; 2] {
-    [atan2_f32(y, x), atan2_f32(v, u)]
-}
-
-/// Tells `found` the angles of vectors `[y, x]`, two at a time.
-pub(super) fn angles_f64(vectors: &[[f64; 2]], mut found: impl FnMut(f64)) {
-    for vectors in vectors.chunks(2) {
-        match *vectors {
-            [[y, x], [v, u]] => atan2_each_f64([y, v], [x, u]).into_iter().for_each(&mut found),
-            [[y, x]] => found(atan2_f64(y, x)),
-            _ => {}
-        }
-    }
-}
-
-/// Tells `found` the angles of vectors `[y, x]`, one at a time.
-pub(super) fn angles_f32(vectors: &[[f32; 2]], mut found: impl FnMut(f32)) {
-    vectors.iter().for_each(|&[y, x]| found(atan2_f32(y, x)));
 }
 
 /// A polynomial by its coefficients, the constant first.
@@ -118,7 +141,7 @@ sin_cos!(
 );
 
 /// Sine and cosine, absolute error below 2e-16.
-pub(super) fn sin_cos_f64(x: f64) -> (f64, f64) {
+fn sin_cos_f64(x: f64) -> (f64, f64) {
     if x.abs() < 1e6 { near_sin_cos_f64(x) } else { libm::sincos(x) }
 }
 
