@@ -3,8 +3,8 @@
 //! `time` is that of a fleet; the throughput line counts pairs of agents, so that its inverse is the time of one.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use pcr_benches::{fleet, scattered};
-use pcr_core::{Bounds, BroadPhase, Encounter, Interval, Motion};
+use pcr_benches::{boxes, fleet, scattered};
+use pcr_core::{BroadPhase, Encounter, Interval, Motion};
 use pcr_host::fleet::{Fleet, Format};
 use std::hint::black_box;
 
@@ -23,7 +23,7 @@ fn bench<S: Format>(c: &mut Criterion, name: &str, fleet: &Fleet<S>) {
     let time = span(&motions);
     let mut group = c.benchmark_group("conflicts");
     group.throughput(Throughput::Elements((motions.len() * (motions.len() - 1) / 2) as u64));
-    let mut boxes = vec![Bounds::default(); motions.len() * (1 + 16)];
+    let mut boxes = boxes(&motions);
     group.bench_function(BenchmarkId::new(format!("{name}, when"), S::NAME), |b| {
         b.iter(|| {
             let broad_phase = BroadPhase::new(&mut boxes[..], black_box(&motions), time);

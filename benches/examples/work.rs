@@ -1,11 +1,11 @@
 //! Does one job again and again, for profilers: `work JOB FLEET TIMES`.
 //!
 //! The jobs are `table` (all regions of the fleet), `exchange` (those of its first agent), `conflicts` (when agents are in
-//! contact) and `pairs` (the same without a broad phase, pair by pair). Fleets are `scattered`, 100 agents that cannot meet, and the files of
-//! `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
+//! contact) and `pairs` (the same without a broad phase, pair by pair). Fleets are `scattered`, 100 agents that cannot meet,
+//! and the files of `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
 
-use pcr_benches::{Storage, fleet, scattered};
-use pcr_core::{Bounds, BroadPhase, Encounter, Interval, Motion};
+use pcr_benches::{Storage, boxes, fleet, scattered};
+use pcr_core::{BroadPhase, Encounter, Interval, Motion};
 use std::hint::black_box;
 use std::process::ExitCode;
 
@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     let mut storage = Storage::of(&motions);
     println!("{} {}", motions.len() * (motions.len() - 1) / 2, 2 * storage.pieces.len());
     let first = motions[0];
-    let mut boxes = vec![Bounds::default(); motions.len() * (1 + 16)];
+    let mut boxes = boxes(&motions);
     let mut exchanged = storage.clone();
     let mut exchanged = exchanged.table(&motions);
     for _ in 0..times {

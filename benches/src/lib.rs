@@ -1,6 +1,6 @@
 //! Fleets and tables that the benchmarks share.
 
-use pcr_core::{Ecm, Motion, Piece, Region, Scalar};
+use pcr_core::{Bounds, Ecm, Motion, Piece, Region, Scalar};
 use pcr_host::fleet::{Fleet, Format, build_ecm};
 use pcr_host::scenario::Scenario;
 use std::path::Path;
@@ -60,6 +60,11 @@ pub fn scattered<S: Format>(columns: u32) -> Fleet<S> {
         )
     });
     from_json(&format!(r#"{{"agents":[{}]}}"#, agents.collect::<Vec<_>>().join(",")))
+}
+
+/// Room for a broad phase of 16 parts.
+pub fn boxes<S: Scalar>(fleet: &[Motion<'_, S>]) -> Vec<Bounds<S>> {
+    vec![Bounds::default(); fleet.len() * (1 + 16)]
 }
 
 /// Storage that holds exactly the table of a fleet.

@@ -1,6 +1,18 @@
 //! Rows of bits: which of a few neighbours have something in common. Tests whose outcome is as good as random to a processor
 //! are written as bits first, without a branch, and looked at then.
 
+use core::hint::select_unpredictable as select;
+
+/// A row of flags as bits, the first one the lowest.
+pub(crate) fn row(flags: impl Iterator<Item = bool>) -> u32 {
+    let (mut row, mut bit) = (0, 1);
+    for flag in flags {
+        row |= select(flag, bit, 0);
+        bit <<= 1;
+    }
+    row
+}
+
 /// The places of the ones in a row, the lowest first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ones(pub(crate) u32);
@@ -39,7 +51,14 @@ impl Iterator for Runs {
 
 #[cfg(test)]
 mod tests {
-    use super::{Ones, Runs};
+    use super::{Ones, Runs, row};
+
+    #[test]
+    fn the_first_flag_is_the_lowest_bit() {
+        assert_eq!(row([true, false, false, true].into_iter()), 0b1001);
+        assert_eq!(row([true; 32].into_iter()), u32::MAX);
+        assert_eq!(row([].into_iter()), 0);
+    }
 
     #[test]
     fn ones_come_one_by_one_up_to_the_highest_bit() {

@@ -270,6 +270,14 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
+    /// How far so long a part of it may be from its chord: `w² / 8ϱ` at most, the error of linear interpolation over length.
+    pub(crate) fn bulge(&self, way: S) -> S {
+        match self.curve {
+            Curve::Line => S::ZERO,
+            Curve::Arc { radius, .. } => way.portion(way, radius.double().double().double()),
+        }
+    }
+
     /// Whether it bends to the right: coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
         matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })

@@ -6,14 +6,16 @@
 //! and [`Encounter::tolerance`] of the agent with itself, so that agents whose boxes do not meet are in no contact. The
 //! parts in which the boxes of a pair meet are bits of a word, and runs of them are looked at by [`Encounter::contacts`].
 
-use crate::bits::Runs;
+use crate::bits::{self, Runs};
 use crate::error::Full;
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
 use crate::query::contact::Encounter;
 use crate::scalar::Scalar;
-use crate::segment::Curve;
 use core::hint::select_unpredictable as select;
+
+/// What the bits of a word can tell of.
+const MOST_PARTS: usize = u32::BITS as usize;
 
 /// A fleet during an interval of time, as boxes in space and time.
 ///
@@ -63,18 +65,22 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
     /// [`Full::Boxes`] where there is room for less than two boxes an agent.
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, Full> {
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
-        let halvings = room.saturating_sub(1).checked_ilog2().ok_or(Full::Boxes)?.min(5);
+        let halvings = room.saturating_sub(1).checked_ilog2().ok_or(Full::Boxes)?.min(MOST_PARTS.ilog2());
         let parts = 1_u32.wrapping_shl(halvings);
+        let mut ends = [during.hi; MOST_PARTS];
+        for (part, end) in (1..parts).zip(&mut ends) {
+            *end = place_in(during, part, halvings);
+        }
         let row = (parts as usize).wrapping_add(1);
         for (motion, row) in fleet.iter().zip(boxes.as_mut().chunks_exact_mut(row)) {
             let [all, row @ ..] = row else { break };
-            let encounter = Encounter::new(motion, motion);
-            let margin = motion.radius() + encounter.tolerance();
+            let margin = motion.radius() + Encounter::new(motion, motion).tolerance();
             let mut way = Way::starting(motion, during.lo);
-            for (part, place) in (1..=parts).zip(&mut *row) {
-                *place = way.until(place_in(during, part, halvings)).expanded(margin);
+            *all = Bounds::around(way.point, way.point);
+            for (place, &end) in row.iter_mut().zip(&ends) {
+                *place = way.until(end).expanded(margin);
+                *all = all.hull(*place);
             }
-            *all = row.iter().copied().reduce(Bounds::hull).unwrap_or_default();
         }
         Ok(Self { fleet, boxes, during, halvings })
     }
@@ -112,12 +118,19 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
     ///
     /// Cost: that of [`BroadPhase::candidates`], and of [`Encounter::contacts`] for each.
     pub fn contacts(&self) -> impl Iterator<Item = ([usize; 2], Interval<S>)> {
-        self.candidates().flat_map(move |(agents, during)| {
-            let [first, second] = agents.map(|agent| self.fleet.get(agent));
-            let encounter = first.zip(second).map(|(first, second)| Encounter::new(first, second));
-            let contacts = encounter.map(|encounter| encounter.contacts(during));
-            contacts.into_iter().flatten().map(move |time| (agents, time))
-        })
+        self.candidates().flat_map(move |(agents, during)| self.contacts_of(agents, during))
+    }
+
+    /// Those of one of the [`BroadPhase::candidates`]: candidates may be looked at in any order, on several cores as well.
+    pub fn contacts_of(
+        &self,
+        agents: [usize; 2],
+        during: Interval<S>,
+    ) -> impl Iterator<Item = ([usize; 2], Interval<S>)> + use<'_, S, B> {
+        let [first, second] = agents.map(|agent| self.fleet.get(agent));
+        let encounter = first.zip(second).map(|(first, second)| Encounter::new(first, second));
+        let contacts = encounter.map(|encounter| encounter.contacts(during));
+        contacts.into_iter().flatten().map(move |time| (agents, time))
     }
 }
 
@@ -141,12 +154,7 @@ fn meeting<S: Scalar>(own: &[Bounds<S>], other: &[Bounds<S>]) -> u32 {
     if !all.meets(*their) {
         return 0;
     }
-    let (mut meeting, mut bit) = (0, 1);
-    for (own, other) in own.iter().zip(other) {
-        meeting |= select(own.meets(*other), bit, 0);
-        bit <<= 1;
-    }
-    meeting
+    bits::row(own.iter().zip(other).map(|(own, other)| own.meets(*other)))
 }
 
 /// The way of an agent, followed from one time to the next.
@@ -169,23 +177,17 @@ impl<'a, S: Scalar> Way<'a, S> {
     fn until(&mut self, time: S) -> Bounds<S> {
         let (path, from) = (self.motion.path(), self.length);
         let to = self.motion.length_at(time).max(from);
-        let mut bounds: Option<Bounds<S>> = None;
-        let mut bulge = S::ZERO;
+        let (mut bounds, mut bulge) = (Bounds::around(self.point, self.point), S::ZERO);
         for segment in path.segments().get(self.place..).unwrap_or_default() {
-            let end = segment.point_at(to - segment.from);
-            let chord = Bounds::around(self.point, end);
-            bounds = Some(bounds.map_or(chord, |bounds| bounds.hull(chord)));
-            self.point = end;
-            if let Curve::Arc { radius, .. } = segment.curve {
-                let way = to.min(segment.to) - from.max(segment.from);
-                bulge = bulge.max(way.portion(way, radius.double().double().double()));
-            }
+            self.point = segment.point_at(to - segment.from);
+            bounds = bounds.hull(Bounds::around(self.point, self.point));
+            bulge = bulge.max(segment.bulge(to.min(segment.to) - from.max(segment.from)));
             if to <= segment.to {
                 break;
             }
             self.place = self.place.wrapping_add(1);
         }
         self.length = to;
-        bounds.unwrap_or_default().expanded(bulge)
+        bounds.expanded(bulge)
     }
 }

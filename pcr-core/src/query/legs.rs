@@ -7,7 +7,7 @@ use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
 use crate::profile::Phase;
 use crate::scalar::{Scalar, Wide};
-use crate::segment::{Curve, Segment};
+use crate::segment::Segment;
 
 /// Part of a motion at constant acceleration on one segment, or a stand.
 #[derive(Clone, Copy, Debug)]
@@ -42,10 +42,7 @@ impl<S: Scalar> Leg<'_, S> {
     /// acceleration, over length the curvature.
     pub(crate) fn deviation(&self, way: S, duration: S) -> S {
         let eighth = |length: S| length.half().half().half();
-        let bend = match self.segment.curve {
-            Curve::Line => S::ZERO,
-            Curve::Arc { radius, .. } => way.portion(way, radius.double().double().double()),
-        };
+        let bend = self.segment.bulge(way);
         let Some(phase) = self.phase else {
             return bend;
         };

@@ -55,11 +55,10 @@ pub(crate) struct Windows<'a, S: Scalar> {
     during: Interval<S>,
     /// Whether that was of length 0: so is its window then.
     instant: bool,
-    /// The stages that are compared next.
-    stages: [usize; 2],
-    /// The last stage of the ego that is not later, the first one of the other that is not over before, and its last one.
-    last: usize,
-    others: [usize; 2],
+    /// The stages that are left, from the first to the last: of the ego, and of the other for the next one of the ego.
+    left: [[usize; 2]; 2],
+    /// The first stage of the other that is not over before.
+    first_of_other: usize,
     /// What is left of the time that two stages share.
     rest: Option<(Interval<S>, [Stage<'a, S>; 2])>,
     /// The phases of both, or some before them.
@@ -68,9 +67,9 @@ pub(crate) struct Windows<'a, S: Scalar> {
 
 impl<'a, S: Scalar> Windows<'a, S> {
     pub(crate) fn new(motions: [&'a Motion<'a, S>; 2], during: Interval<S>, slack: S) -> Self {
-        let [[first, last], others] = motions.map(|motion| places(motion, during, slack));
-        let (instant, stages) = (during.lo == during.hi, [first, others[0]]);
-        Self { motions, during, instant, stages, last, others, rest: None, phases: [0; 2] }
+        let left = motions.map(|motion| places(motion, during, slack));
+        let (instant, first_of_other) = (during.lo == during.hi, left[1][0]);
+        Self { motions, during, instant, left, first_of_other, rest: None, phases: [0; 2] }
     }
 
     /// The next window in which the two may come nearer than `reach`.
@@ -92,13 +91,13 @@ impl<'a, S: Scalar> Windows<'a, S> {
         let [ego, other] = self.motions;
         let near = other.bounds().expanded(reach);
         loop {
-            let own = Stage::in_box(ego, [self.stages[0], self.last], &near)?;
-            if own.place() > self.stages[0] {
-                self.stages = [own.place(), self.others[0]];
+            let own = Stage::in_box(ego, self.left[0], &near)?;
+            if own.place() > self.left[0][0] {
+                self.go_on(own.place());
             }
             let around = own.bounds().expanded(reach);
-            while let Some(their) = Stage::in_box(other, [self.stages[1], self.others[1]], &around) {
-                self.stages[1] = their.place().wrapping_add(1);
+            while let Some(their) = Stage::in_box(other, self.left[1], &around) {
+                self.left[1][0] = their.place().wrapping_add(1);
                 let Some(part) = own.beside(&their, reach) else { continue };
                 let Some(their_part) = their.beside(&own, reach) else { continue };
                 let time = own.time_in(part, self.during).common(their.time_in(their_part, self.during));
@@ -106,7 +105,12 @@ impl<'a, S: Scalar> Windows<'a, S> {
                     return Some((time, [own, their]));
                 }
             }
-            self.stages = [own.place().wrapping_add(1), self.others[0]];
+            self.go_on(own.place().wrapping_add(1));
         }
+    }
+
+    /// Goes on with a stage of the ego, and all of the other.
+    fn go_on(&mut self, place: usize) {
+        (self.left[0][0], self.left[1][0]) = (place, self.first_of_other);
     }
 }

@@ -265,16 +265,16 @@ mod tests {
     fn half_tangent_roots_reach_the_far_end_of_the_diameter() {
         // τ² - 1 = 0: ± a quarter turn; a = 0: τ = ∞ is half a turn.
         let half_tangents = |a, b, g| {
-            let mut angles = std::vec::Vec::new();
+            let mut angles = Few::<f64, 2>::new(0.0);
             let sector = Sector::all([1.0, 0.0]);
-            f64::half_tangent_roots([[a, b, g, 0.0]].into_iter(), sector, |angle| angles.push(angle.0));
-            angles
+            f64::half_tangent_roots([[a, b, g, 0.0]].into_iter(), sector, |angle| angles.add(angle.0, true));
+            <[f64; 2]>::try_from(angles.as_slice()).unwrap()
         };
         let quarter = core::f64::consts::FRAC_PI_2;
-        let roots = half_tangents(1.0, 0.0, -1.0);
-        assert!(roots.len() == 2 && (roots[0].abs() - quarter).abs() < 1e-15 && (roots[0] + roots[1]).abs() < 1e-15);
-        let roots = half_tangents(0.0, 1.0, 0.0);
-        assert!(roots.len() == 2 && (roots[0].abs() - 2.0 * quarter).abs() < 1e-15 && roots[1] == 0.0);
+        let [r, s] = half_tangents(1.0, 0.0, -1.0);
+        assert!((r.abs() - quarter).abs() < 1e-15 && (r + s).abs() < 1e-15);
+        let [r, s] = half_tangents(0.0, 1.0, 0.0);
+        assert!((r.abs() - 2.0 * quarter).abs() < 1e-15 && s == 0.0);
     }
 
     #[test]

@@ -2,21 +2,16 @@
 //! pairs before any closed form.
 
 use super::{Curve, Segment};
+use crate::bits;
 use crate::geometry::{Bounds, Interval};
 use crate::scalar::{Scalar, Unit};
-use core::hint::select_unpredictable as select;
 
 /// Segments whose boxes are compared at once.
 pub(crate) const ROW: usize = u32::BITS as usize;
 
 /// Which of a row of segments have boxes that meet another one, a bit each.
 pub(crate) fn in_box<S: Scalar>(row: &[Segment<S>], around: Bounds<S>) -> u32 {
-    let (mut meeting, mut bit) = (0, 1);
-    for segment in row {
-        meeting |= select(around.meets(segment.bounds), bit, 0);
-        bit <<= 1;
-    }
-    meeting
+    bits::row(row.iter().map(|segment| around.meets(segment.bounds)))
 }
 
 impl<S: Scalar> Segment<S> {

@@ -3,7 +3,7 @@
 use super::{Answer, Field, Found, Method, Number, Question, Regions};
 use crate::fleet::{HostEcm, build_ecm};
 use crate::rows::{Row, rows};
-use pcr_core::{Bounds, BroadPhase, Encounter, Interval, Motion, Piece, Region, RegionRef};
+use pcr_core::{Bounds, BroadPhase, Interval, Motion, Piece, Region, RegionRef};
 use pcr_fixed::Q16;
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -155,11 +155,8 @@ impl<S: Number> Method for Conflicts<S> {
             Cores::One => broad_phase.contacts().map(found).collect(),
             Cores::All => {
                 let candidates: Vec<Contact<S>> = broad_phase.candidates().collect();
-                let contacts = candidates.into_par_iter().flat_map_iter(|(agents, during)| {
-                    let contacts = Encounter::new(&motions[agents[0]], &motions[agents[1]]).contacts(during);
-                    contacts.map(move |time| (agents, time))
-                });
-                contacts.map(found).collect()
+                let contacts = candidates.into_par_iter();
+                contacts.flat_map_iter(|(agents, during)| broad_phase.contacts_of(agents, during)).map(found).collect()
             }
         }))
     }
