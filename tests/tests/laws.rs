@@ -150,11 +150,17 @@ fn half_tangents<S: Format>(dice: &mut Dice) {
         return;
     }
     let [a, b, g] = [m.times(k), -(n.times(k) + l.times(m)).half(), n.times(l)];
-    let roots = S::half_tangent_roots(a, b, g, S::Wide::ZERO, Sector::all()).expect("real");
-    let found = roots.map(|root| S::radians(root.expect("in the sector of all angles")));
-    for exact in [2.0 * nx.atan2(mx), 2.0 * lx.atan2(kx)] {
+    // Counted from any direction.
+    let angle = dice.range(-PI, PI);
+    let from = S::Angle::atan2(S::from_f64(8.0 * angle.sin()), S::from_f64(8.0 * angle.cos()));
+    let ((sin, cos), from) = (from.sin_cos(), S::radians(from));
+    let mut found = Vec::new();
+    let equation = [a, b, g, S::Wide::ZERO];
+    S::half_tangent_roots([equation].into_iter(), Sector::all([cos, sin]), |angle| found.push(S::radians(angle)));
+    assert_eq!(found.len(), 2, "in the sector of all angles");
+    for exact in [from + 2.0 * nx.atan2(mx), from + 2.0 * lx.atan2(kx)] {
         let off = |angle: f64| (angle - exact - TAU * ((angle - exact) / TAU).round()).abs();
-        assert!(found.into_iter().any(|angle| off(angle) < slack::<S>(4.0)), "{}: {exact} in {found:?}", S::NAME);
+        assert!(found.iter().any(|&angle| off(angle) < slack::<S>(4.0)), "{}: {exact} in {found:?}", S::NAME);
     }
 }
 

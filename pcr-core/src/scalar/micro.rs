@@ -199,13 +199,21 @@ fn sqrt(x: f32) -> f32 {
 /// Angle of the vector `(x, y)`, absolute error below 5e-7 rad; 0 for the zero vector.
 fn atan2(y: f32, x: f32) -> f32 {
     use core::f32::consts::PI;
-    /// Below it micromath's squares would lose their digits.
+    /// Below it micromath's squares would lose their digits, above its inverse they overflow.
     const SMALL: f32 = 1e-12;
     const LARGER: f32 = 1e24;
     if x == 0.0 && y == 0.0 {
         return 0.0;
     }
-    let (y, x) = if x.abs().max(y.abs()) < SMALL { (LARGER * y, LARGER * x) } else { (y, x) };
+    let most = x.abs().max(y.abs());
+    let scale = if most < SMALL {
+        LARGER
+    } else if most > 1.0 / SMALL {
+        1.0 / LARGER
+    } else {
+        1.0
+    };
+    let (y, x) = (scale * y, scale * x);
     // The angle between the guess and the vector, less a third of its cube: of 2.8e-3 that is 7e-9.
     let guess = F32Ext::atan2(y, x);
     let (sin, cos) = Trig::sin_cos(guess);
@@ -233,7 +241,7 @@ mod tests {
         let mut worst = 0.0_f64;
         for step in 0..200_003_u32 {
             let (sin, cos) = libm::sincos(f64::from(step) * 3.141_6e-5);
-            let length = libm::exp10(f64::from(step % 33) - 20.0);
+            let length = libm::exp10(f64::from(step % 61) - 30.0);
             let (y, x) = ((length * sin) as f32, (length * cos) as f32);
             worst = worst.max((f64::from(atan2(y, x)) - libm::atan2(f64::from(y), f64::from(x))).abs());
         }
