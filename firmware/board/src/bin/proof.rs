@@ -83,9 +83,12 @@ fn arithmetic<S: Scalar>() {
     any((Scalar::slack(a), S::quadratic_roots(a, wide::<S>(), wide::<S>())));
     let ramp = Ramp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
     any((S::ramp_length(any(ramp), a), S::ramp_time(any(ramp), a)));
-    let sector = Sector { cos: unit::<S>(), sin: unit::<S>(), least: unit::<S>() };
-    any(S::half_tangent_roots(wide::<S>(), wide::<S>(), wide::<S>(), wide::<S>(), any(sector)));
-    any(Sector::<S::Unit>::all());
+    let [from, middle] = [[unit::<S>(), unit::<S>()], [unit::<S>(), unit::<S>()]];
+    let equations = [[wide::<S>(); 4], [wide::<S>(); 4]];
+    S::half_tangent_roots(equations.into_iter(), any(Sector { from, middle, least: unit::<S>() }), |angle| {
+        any(angle);
+    });
+    any(Sector::<S::Unit>::all(from));
     any((Scalar::portion(a, b, number()), S::tolerance(a)));
     any((Scalar::sum(a, b), Scalar::advance(a, b, number(), unit::<S>()), Scalar::sum_up(a, b)));
     any((S::drift(any(0), a), S::lag(a, b)));
@@ -107,7 +110,7 @@ fn arithmetic<S: Scalar>() {
     any((p + q, p - q, -p, p < q, Angle::is_finite(p), Angle::sin_cos(p), Angle::arc_length(p, a)));
     any((Angle::subtended_rest(p, a, b), Angle::sum(p, q)));
     any((S::Angle::subtended(a, b), S::Angle::half_subtended(a, b)));
-    any((S::Angle::atan2(a, b), S::Angle::circumference(a)));
+    any((S::Angle::atan2(a, b), S::Angle::atan2_each([a, b], [b, a]), S::Angle::circumference(a)));
 }
 
 #[inline(never)]
@@ -201,6 +204,7 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
     if let Ok(broad_phase) = BroadPhase::new(any(&mut [][..]), fleet, interval()) {
         any((BroadPhase::parts(&broad_phase), BroadPhase::candidates(&broad_phase).last()));
         any(BroadPhase::contacts(&broad_phase).last());
+        any(BroadPhase::contacts_of(&broad_phase, any([0; 2]), interval()).last());
     }
     any(safe_intervals(fleet, any(0), interval(), interval()).last());
     any(safe_lengths(fleet, any(0), interval()).last());
