@@ -96,11 +96,24 @@ fn a_fleet_has_the_contacts_of_its_pairs_however_many_the_parts() {
             assert_eq!(broad_phase.parts() as usize, parts);
             let found: Vec<_> = broad_phase.contacts().collect();
             assert_eq!(found.len(), known.len());
-            for (found, known) in found.iter().zip(&known) {
-                // Both are within the tolerance of some 1e-8 m; discs in contact come and go at 1 cm/s and more here.
-                let off = (found.1.lo - known.1.lo).abs().max((found.1.hi - known.1.hi).abs());
-                assert!(found.0 == known.0 && off < 1e-6, "{found:?} is not {known:?}");
+            for ((agents, found), (pair, known)) in found.iter().zip(&known) {
+                assert!(agents == pair && found.meets(*known), "{agents:?} {found:?} is not {pair:?} {known:?}");
+                // Either tells a time at which the discs are apart by the tolerance at most.
+                let [one, other] = pair.map(|agent| &motions[agent]);
+                let apart = |time| (one.position_at(time) - other.position_at(time)).norm_squared().sqrt();
+                for (found, known) in [(found.lo, known.lo), (found.hi, known.hi)] {
+                    let off = (apart(found) - apart(known)).abs();
+                    assert!(off <= 2.0 * Encounter::new(one, other).tolerance(), "{pair:?}: {off} at {found}");
+                }
             }
+            // In any order.
+            let mut shared: Vec<_> = broad_phase.candidates().collect();
+            shared.reverse();
+            let mut shared: Vec<_> =
+                shared.into_iter().flat_map(|(agents, time)| broad_phase.contacts_of(agents, time)).collect();
+            shared.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.lo.total_cmp(&b.1.lo)));
+            assert_eq!(shared, found);
+            assert_eq!(broad_phase.contacts_of([0, motions.len()], time).count(), 0);
             // The more parts, the fewer pairs are left.
             let before = std::mem::replace(&mut candidates, pairs_of(&broad_phase));
             assert!(candidates <= before && (parts < 16 || candidates < most / 2), "{candidates} of {most} at {parts}");

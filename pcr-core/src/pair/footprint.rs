@@ -59,7 +59,7 @@ pub(crate) struct Covered {
 }
 
 impl<S: Scalar> Footprint<S> {
-    /// Cost: two square roots and a division on an arc, none on a line.
+    /// Cost: a square root and a division on an arc, none on a line.
     pub(crate) fn of(point: Point<S>, segment: &Segment<S>) -> Self {
         let from_start = point - segment.start;
         let x = from_start.along(segment.direction);

@@ -121,7 +121,11 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
         self.candidates().flat_map(move |(agents, during)| self.contacts_of(agents, during))
     }
 
-    /// Those of one of the [`BroadPhase::candidates`]: candidates may be looked at in any order, on several cores as well.
+    /// When two agents of the fleet, by their places in it, are in contact during an interval of time \[s\]: of one of the
+    /// [`BroadPhase::candidates`], which may be looked at in any order, on several cores as well. Never for an agent that
+    /// the fleet does not have.
+    ///
+    /// Cost: that of [`Encounter::contacts`].
     pub fn contacts_of(
         &self,
         agents: [usize; 2],

@@ -154,7 +154,7 @@ impl<S: Number> Method for Conflicts<S> {
         Some(Answer::Conflicts(match self.0 {
             Cores::One => broad_phase.contacts().map(found).collect(),
             Cores::All => {
-                let candidates: Vec<Contact<S>> = broad_phase.candidates().collect();
+                let candidates: Vec<_> = broad_phase.candidates().collect();
                 let contacts = candidates.into_par_iter();
                 contacts.flat_map_iter(|(agents, during)| broad_phase.contacts_of(agents, during)).map(found).collect()
             }
