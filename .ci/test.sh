@@ -2,7 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests peers release fuzz
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests release fuzz
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,7 +11,8 @@ step() { printf '\n== %s\n' "$*"; }
 style() {
   step "format and lints"
   cargo fmt --all --check
-  cargo clippy --workspace --all-targets --locked -- -D warnings
+  peer_libraries
+  cargo clippy --workspace --all-targets --features pcr-tests/peers --locked -- -D warnings
   if git grep -lE 'allow\(.*unsafe_code' -- '*.rs' | grep -vx pcr-core/src/scalar/vsqrt.rs; then
     echo "unsafe code outside pcr-core/src/scalar/vsqrt.rs" >&2
     return 1
@@ -20,21 +21,25 @@ style() {
 
 docs() {
   step "documentation"
-  RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+  RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features pcr-tests/peers --locked
 }
 
 tests() {
-  step "tests, debug: overflow checks and assertions on"
-  cargo test --workspace --locked
+  step "tests, debug: overflow checks and assertions on, methods of other libraries in comparisons"
+  peer_libraries
+  cargo test --workspace --features pcr-tests/peers --locked
 }
+
+# Where cargo builds.
+target() { cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/'; }
 
 release() {
   step "tests, release"
   cargo test --workspace --release --locked
   step "plans of 100000 random fleets by either method, checked by the oracle"
-  cargo run --quiet --release --locked -p pcr-tests --example fleets -- 0 100000
-  step "benchmarks, one pass each"
-  cargo bench --workspace --locked -- --test
+  "$(target)/release/examples/fleets" 0 100000
+  step "benchmarks, one pass each, as the tests are built"
+  cargo bench --workspace --profile release --locked -- --test
   step "instructions of the library's jobs"
   benches/instructions.sh
 }
@@ -82,7 +87,7 @@ features() {
   fi
 }
 
-# Libraries for C++ that comparisons can do without: where they cannot be installed, the tests name what is left out.
+# Libraries for C++ that comparisons can do without: where they cannot be installed, it says what is left out.
 peer_libraries() {
   local packages=() library
   command -v c++ >/dev/null || packages+=(g++)
@@ -96,14 +101,6 @@ peer_libraries() {
     if { apt-get update && apt-get install -y --no-install-recommends "${packages[@]}"; } >/dev/null 2>&1; then return; fi
   fi
   echo "LEFT OUT of comparisons, not installed: ${packages[*]}"
-}
-
-peers() {
-  step "methods of other libraries in comparisons"
-  peer_libraries
-  cargo clippy -p pcr-host -p pcr-tests --features pcr-tests/peers --all-targets --locked -- -D warnings
-  cargo test -p pcr-host --features peers --lib --locked compare::
-  cargo test -p pcr-tests --features peers --test compare --locked -- --show-output
 }
 
 no_std() {
@@ -134,7 +131,7 @@ fuzz() {
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests peers release fuzz}; do
+for part in ${*:-style docs features no_std c firmware tests release fuzz}; do
   "$part"
 done
 step "all passed"

@@ -8,12 +8,16 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let numbers: Vec<u64> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
     let (first, count) = (numbers.first().copied().unwrap_or(0), numbers.get(1).copied().unwrap_or(1_000));
-    for (name, method) in [("delay", Method::Delay), ("speed", Method::Speed)] {
-        if arguments.len() > 2 && arguments[2] != name {
-            continue;
+    std::thread::scope(|scope| {
+        for (name, method) in [("delay", Method::Delay), ("speed", Method::Speed)] {
+            if arguments.len() > 2 && arguments[2] != name {
+                continue;
+            }
+            scope.spawn(move || {
+                let mut tally = Tally::default();
+                (first..first + count).for_each(|seed| audit(seed, method, &mut tally));
+                println!("{name}, {count} fleets from seed {first}: {tally:?}");
+            });
         }
-        let mut tally = Tally::default();
-        (first..first + count).for_each(|seed| audit(seed, method, &mut tally));
-        println!("{name}, {count} fleets from seed {first}: {tally:?}");
-    }
+    });
 }

@@ -1,5 +1,8 @@
 //! Certified intervals of a function of one variable that changes no faster than its argument.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 /// Where `f <= 0`: intervals that are sure, and intervals that may be.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intervals {
@@ -49,21 +52,50 @@ fn append(intervals: &mut Vec<(f64, f64)>, a: f64, b: f64) {
 /// Whether the function is at most `margin` anywhere in `[lo, hi]`, as far as steps of `tolerance` can tell: `false`
 /// is certain.
 pub fn reaches(f: impl Fn(f64) -> f64, lo: f64, hi: f64, margin: f64, tolerance: f64) -> bool {
-    let mut stack = vec![(lo, hi)];
-    let mut spent = 0;
-    while let Some((a, b)) = stack.pop() {
+    let part = |a, b| Part { value: f(0.5 * (a + b)), a, b };
+    // The lowest one first: in order of place a valley that only just reaches the margin would be cut all over its sides.
+    let mut parts = BinaryHeap::from([part(lo, hi)]);
+    let mut spent = 1;
+    while let Some(Part { value, a, b }) = parts.pop() {
         let half = 0.5 * (b - a);
-        let value = f(a + half);
-        spent += 1;
-        if value <= margin || value - half <= margin && (half <= tolerance || spent >= SEARCH) {
+        if value - half > margin {
+            continue;
+        }
+        if value <= margin || half <= tolerance || spent >= SEARCH {
             return true;
         }
-        if value - half <= margin {
-            stack.extend([(a + half, b), (a, a + half)]);
-        }
+        parts.extend([part(a, a + half), part(a + half, b)]);
+        spent += 2;
     }
     false
 }
+
+/// A part of the range with the value in its middle, the lowest one the greatest.
+struct Part {
+    value: f64,
+    a: f64,
+    b: f64,
+}
+
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.value.total_cmp(&self.value)
+    }
+}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
 
 /// About the least value in `[lo, hi]`: for messages, nothing is decided with it.
 pub fn nearest(f: impl Fn(f64) -> f64, lo: f64, hi: f64) -> f64 {
