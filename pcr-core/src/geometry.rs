@@ -186,7 +186,7 @@ impl<S: Scalar> Interval<S> {
     }
 
     /// Both ends moved apart by `by`, but not out of `[lo, hi]` of `within`.
-    #[inline(never)]
+    #[cfg_attr(not(feature = "std"), inline(never))]
     pub(crate) fn widen(self, by: S, within: Self) -> Self {
         Self { lo: (self.lo - by).clamp(within.lo, within.hi), hi: (self.hi + by).clamp(within.lo, within.hi) }
     }

@@ -28,7 +28,8 @@
 //!
 //! # Features
 //! - `libm` (default): `f32` and `f64`;
-//! - `std`: square roots by the standard library, the same bits in less time;
+//! - `std`: square roots by the standard library, and copies of what is called often, for which a host has room: the same bits in
+//!   less time;
 //! - `micromath`: `scalar::Micro`, `f32` on the refined approximations of that crate;
 //! - `defmt`, `serde`: their traits on the public data types.
 #![no_std]

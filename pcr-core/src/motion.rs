@@ -169,6 +169,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// λ: length travelled at a time \[m\], limited to the length of the path.
+    #[cfg_attr(feature = "std", inline(always))]
     pub fn length_at(&self, time: S) -> S {
         let end = self.path.length();
         let elapsed = time.clamp(self.time.lo, self.time.hi) - self.time.lo;

@@ -228,7 +228,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 }
 
 /// A part of a segment as lengths of the path. Its ends stay ends: neighbours meet in the same number.
-#[inline(never)]
+#[cfg_attr(not(feature = "std"), inline(never))]
 fn along_path<S: Scalar>(part: Interval<S>, segment: &Segment<S>) -> Interval<S> {
     let at = |u: S| select(u < segment.length, (u + segment.from).min(segment.to), segment.to);
     Interval::new(at(part.lo), at(part.hi))

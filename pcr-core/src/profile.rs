@@ -338,6 +338,7 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
     }
 
     /// Inverse of λ: last time since the start at which `length` \[m\] is not exceeded; waits are over. O(log phases).
+    #[cfg_attr(feature = "std", inline(always))]
     pub fn last_time_at(self, length: S) -> S {
         let index = self.phases.partition_point(|phase| phase.length.lo <= length);
         match index.checked_sub(1).and_then(|last| self.phases.get(last)) {

@@ -156,7 +156,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
 
 /// A length along a circle, less than one lap away, moved onto its first lap unless it is within the margin of it.
 /// Lines have one lap only, and a circumference of 0: nothing moves.
-#[inline(never)]
+#[cfg_attr(not(feature = "std"), inline(never))]
 pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>, margin: S) -> S {
     let lap = segment.circumference;
     let length = select(length > lap + margin, length - lap, length);

@@ -32,6 +32,7 @@ impl<S: Scalar> Instant<S> {
 }
 
 impl<S: Scalar> Window<'_, S> {
+    #[cfg_attr(feature = "std", inline(always))]
     pub(crate) fn at(&self, time: S) -> Instant<S> {
         let [a, b] = &self.legs;
         let lengths = [a.length_at(time), b.length_at(time)];

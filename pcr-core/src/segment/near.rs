@@ -17,6 +17,7 @@ pub(crate) fn in_box<S: Scalar>(row: &[Segment<S>], around: Bounds<S>) -> u32 {
 impl<S: Scalar> Segment<S> {
     /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do, and the
     /// circles of arcs come as near to the box of the other.
+    #[cfg_attr(feature = "std", inline(always))]
     pub(crate) fn near(&self, other: &Self, reach: S) -> bool {
         let (cos, sin) = (self.direction.dot(other.direction).abs(), self.direction.cross(other.direction).abs());
         let apart = other.middle - self.middle;
