@@ -116,4 +116,16 @@ mod tests {
         }
         assert!(!reaches(|x| x.abs() + 1e-6, -1.0, 1.0, 0.0, 1e-9));
     }
+
+    #[test]
+    fn the_bottom_of_a_flat_valley_is_found_without_cutting_its_sides() {
+        let spent = std::cell::Cell::new(0);
+        let valley = |x: f64| {
+            spent.set(spent.get() + 1);
+            0.5 * (x - 0.1234) * (x - 0.1234)
+        };
+        assert!(reaches(valley, -0.7, 1.3, 1e-14, 1e-15));
+        assert!(spent.get() < 200, "{} evaluations", spent.get());
+        assert!(!reaches(|x| valley(x) + 1e-4, -0.7, 1.3, 0.0, 1e-9));
+    }
 }
