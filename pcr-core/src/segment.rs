@@ -64,7 +64,8 @@ pub struct Segment<S: Scalar> {
     pub(crate) to: S,
     rest: Rest<S>,
     pub(crate) bounds: Bounds<S>,
-    /// Middle and half extents of the box along and across `direction` \[m\].
+    /// Direction of the chord, and of the tightest box: its middle, and its half extents along and across \[m\].
+    axis: Direction<S>,
     middle: Point<S>,
     half: [S; 2],
 }
@@ -109,6 +110,7 @@ impl<S: Scalar> Segment<S> {
             to: S::ZERO,
             rest: Rest::NOTHING,
             bounds: Bounds::around(pose.position, pose.position),
+            axis: Direction::X,
             middle: pose.position,
             half: [S::ZERO; 2],
         })
@@ -124,7 +126,7 @@ impl<S: Scalar> Segment<S> {
         let mut line = self.then(Curve::Line, S::ZERO, length);
         line.advance();
         line.bounds = Bounds::around(line.start, line.end);
-        line.middle = line.start + line.direction.vector(length.half(), S::ZERO);
+        line.middle = line.start + line.axis.vector(length.half(), S::ZERO);
         line.half = [length.half(), S::ZERO];
         line.checked()
     }
@@ -154,13 +156,12 @@ impl<S: Scalar> Segment<S> {
         let (heading, rounding) = arc.heading.sum(sweep);
         (arc.heading_at_end, arc.rest.heading) = heading.sum(rounding + (rest + arc.rest.heading));
         arc.advance();
-        arc.bounds = arc.arc_bounds(arc.start, arc.end, arc.direction, Direction::at(arc.heading_at_end));
-        // The same box in the frame of the start.
-        let chord = arc.end - arc.start;
-        let end = Point::new(chord.along(arc.direction), chord.across(arc.direction));
-        let own = arc.arc_bounds(Point::new(S::ZERO, S::ZERO), end, Direction::X, Direction::at(sweep));
-        arc.middle = arc.start + arc.direction.vector(own.x.middle(), own.y.middle());
-        arc.half = [own.x.length().half(), own.y.length().half()];
+        arc.bounds = arc.arc_bounds();
+        let along = (arc.end - arc.start).along(arc.axis).half();
+        let bulge = (arc.point_at(length.half()) - arc.start).across(arc.axis).half();
+        arc.middle = arc.start + arc.axis.vector(along, bulge);
+        // Beyond half a turn it is wider than its chord.
+        arc.half = [if arc.half_turn.cos < S::Unit::ZERO { radius } else { along }, bulge.abs()];
         arc.checked()
     }
 
@@ -182,10 +183,11 @@ impl<S: Scalar> Segment<S> {
     fn then(&self, curve: Curve<S>, circumference: S, length: S) -> Self {
         let (to, rounding) = self.to.sum(length);
         let (to, rest) = to.sum(rounding + self.rest.length);
+        let direction = Direction::at(self.heading_at_end).turned_by(self.rest.heading);
         Self {
             start: self.end,
             end: self.end,
-            direction: Direction::at(self.heading_at_end).turned_by(self.rest.heading),
+            direction,
             heading: self.heading_at_end,
             heading_at_end: self.heading_at_end,
             curve,
@@ -196,6 +198,7 @@ impl<S: Scalar> Segment<S> {
             to,
             rest: Rest { length: rest, ..self.rest },
             bounds: Bounds::default(),
+            axis: direction,
             middle: self.end,
             half: [S::ZERO; 2],
         }
@@ -203,20 +206,18 @@ impl<S: Scalar> Segment<S> {
 
     /// Puts the end where the length leads from the start, over the chord.
     fn advance(&mut self) {
-        let (length, toward) = match self.curve {
-            Curve::Line => (self.length, self.direction),
+        let length = match self.curve {
+            Curve::Line => self.length,
             Curve::Arc { radius, .. } => {
                 let (sin, cos) = S::Angle::half_subtended(self.length, radius).sin_cos();
                 self.half_turn = Direction { cos, sin };
-                (
-                    radius.double().scale(sin),
-                    self.direction.plus(Direction { cos, sin: if self.mirrored() { -sin } else { sin } }),
-                )
+                self.axis = self.direction.plus(Direction { cos, sin: if self.mirrored() { -sin } else { sin } });
+                radius.double().scale(sin)
             }
         };
         let rest = self.rest.position;
-        (self.end.x, self.rest.position.x) = self.start.x.advance(rest.x, length, toward.cos);
-        (self.end.y, self.rest.position.y) = self.start.y.advance(rest.y, length, toward.sin);
+        (self.end.x, self.rest.position.x) = self.start.x.advance(rest.x, length, self.axis.cos);
+        (self.end.y, self.rest.position.y) = self.start.y.advance(rest.y, length, self.axis.sin);
     }
 
     fn checked(self) -> Result<Self, Invalid> {
@@ -304,13 +305,14 @@ impl<S: Scalar> Segment<S> {
         Vector { x, y }
     }
 
-    /// Box of an arc with these ends and directions there. Below half a turn a coordinate is extreme at an end, or
-    /// on the axis where the other component of the heading changes its sign; from half a turn on the
-    /// whole circle is taken.
-    fn arc_bounds(&self, start: Point<S>, end: Point<S>, leaving: Direction<S>, arriving: Direction<S>) -> Bounds<S> {
+    /// Box of an arc. Below half a turn a coordinate is extreme at an end, or on the axis where the other component of the
+    /// heading changes its sign; from half a turn on the whole circle is taken.
+    fn arc_bounds(&self) -> Bounds<S> {
+        let (start, end) = (self.start, self.end);
         let Curve::Arc { radius, turn } = self.curve else {
             return Bounds::around(start, end);
         };
+        let (leaving, arriving) = (self.direction, Direction::<S>::at(self.heading_at_end));
         let left = match turn {
             Turn::Left => radius,
             Turn::Right => -radius,
@@ -379,6 +381,23 @@ mod tests {
                 assert_eq!(bounds.hull(seen), bounds, "holds");
                 if arc.length.double() < arc.circumference {
                     assert!((bounds.x.length() - seen.x.length()) < 1e-5, "touches");
+                }
+            }
+        }
+    }
+
+    /// By its sides, also where it is nearly straight.
+    #[test]
+    fn the_box_along_the_chord_holds_the_arc_and_touches_it() {
+        for k in 1..64 {
+            for (turn, radius) in [(Turn::Left, 1.5), (Turn::Right, 1.5), (Turn::Left, 1e9)] {
+                let arc = origin(0.3 * f64::from(k)).then_arc(radius, turn, 0.147 * f64::from(k)).unwrap();
+                let points = (0..=1000).map(|n| arc.point_at(arc.length * f64::from(n) / 1000.0) - arc.middle);
+                let seen = points.map(|way| Point::new(way.along(arc.axis), way.across(arc.axis)));
+                let seen = seen.map(|p| Bounds::around(p, p)).reduce(Bounds::hull).unwrap();
+                for (seen, half) in [(seen.x, arc.half[0]), (seen.y, arc.half[1])] {
+                    assert!((seen.lo + half).abs() < 1e-5 && (seen.hi - half).abs() < 1e-5, "touches: {seen:?} {half}");
+                    assert!(seen.lo >= -half - 4e-15 && seen.hi <= half + 4e-15, "holds: {seen:?} {half}");
                 }
             }
         }

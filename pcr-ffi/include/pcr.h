@@ -91,7 +91,7 @@ typedef struct PcrFleet {
  Room for a segment of a path: one a leg, or one for an agent that stands.
  */
 typedef struct PcrSegment {
-  float opaque[28];
+  float opaque[30];
 } PcrSegment;
 
 /*

@@ -159,7 +159,7 @@ pub struct PcrConflict {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrSegment {
-    opaque: [f32; 28],
+    opaque: [f32; 30],
 }
 
 /// Room for a phase of a profile: three an agent, or one a stretch.
@@ -231,7 +231,7 @@ impl PcrFleet {
 
 impl PcrSegment {
     /// A free slot.
-    pub const EMPTY: Self = Self { opaque: [0.0; 28] };
+    pub const EMPTY: Self = Self { opaque: [0.0; 30] };
 }
 
 impl PcrPhase {

@@ -1,4 +1,4 @@
-//! Whether and where two segments may come near each other, by boxes in the frames of both and by circles: what rejects most
+//! Whether and where two segments may come near each other, by boxes along the chords of both and by circles: what rejects most
 //! pairs before any closed form.
 
 use super::{Curve, Segment};
@@ -15,15 +15,15 @@ pub(crate) fn in_box<S: Scalar>(row: &[Segment<S>], around: Bounds<S>) -> u32 {
 }
 
 impl<S: Scalar> Segment<S> {
-    /// Whether it may come nearer than `reach` to another segment: the boxes of both in both their frames do, and the
+    /// Whether it may come nearer than `reach` to another segment: the boxes along the chords of both do, and the
     /// circles of arcs come as near to the box of the other.
     #[cfg_attr(feature = "std", inline(always))]
     pub(crate) fn near(&self, other: &Self, reach: S) -> bool {
-        let (cos, sin) = (self.direction.dot(other.direction).abs(), self.direction.cross(other.direction).abs());
+        let (cos, sin) = (self.axis.dot(other.axis).abs(), self.axis.cross(other.axis).abs());
         let apart = other.middle - self.middle;
         let separated = |a: &Self, b: &Self| {
-            (apart.along(a.direction).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach)
-                | (apart.across(a.direction).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach)
+            (apart.along(a.axis).abs() > a.half[0] + b.half[0].scale(cos) + b.half[1].scale(sin) + reach)
+                | (apart.across(a.axis).abs() > a.half[1] + b.half[0].scale(sin) + b.half[1].scale(cos) + reach)
         };
         !(separated(self, other) | separated(other, self))
             && self.circle_near(other, reach)
@@ -44,8 +44,8 @@ impl<S: Scalar> Segment<S> {
             Interval::new(a.min(b), a.max(b))
         };
         let from = self.start - other.middle;
-        let along = within(from.along(other.direction), other.direction.dot(self.direction), other.half[0] + reach);
-        let across = within(from.across(other.direction), other.direction.cross(self.direction), other.half[1] + reach);
+        let along = within(from.along(other.axis), other.axis.dot(self.direction), other.half[0] + reach);
+        let across = within(from.across(other.axis), other.axis.cross(self.direction), other.half[1] + reach);
         let part = whole.common(along).common(across);
         (part.lo <= part.hi).then_some(part)
     }
@@ -59,7 +59,7 @@ impl<S: Scalar> Segment<S> {
         let reach = reach + S::slack(radius.double());
         let centre = self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()));
         let apart = other.middle - centre;
-        let (along, across) = (apart.along(other.direction).abs(), apart.across(other.direction).abs());
+        let (along, across) = (apart.along(other.axis).abs(), apart.across(other.axis).abs());
         let [half_along, half_across] = other.half;
         let squares = |x: S, y: S| x.times(x) + y.times(y);
         let nearest = squares((along - half_along).max(S::ZERO), (across - half_across).max(S::ZERO));
