@@ -1,16 +1,9 @@
 //! Rows of bits: which of a few neighbours have something in common. Tests whose outcome is as good as random to a processor
 //! are written as bits first, without a branch, and looked at then.
 
-use core::hint::select_unpredictable as select;
-
 /// A row of flags as bits, the first one the lowest.
-pub(crate) fn row(flags: impl Iterator<Item = bool>) -> u32 {
-    let (mut row, mut bit) = (0, 1);
-    for flag in flags {
-        row |= select(flag, bit, 0);
-        bit <<= 1;
-    }
-    row
+pub(crate) fn row(flags: impl DoubleEndedIterator<Item = bool>) -> u32 {
+    flags.rev().fold(0, |row, flag| row << 1 | u32::from(flag))
 }
 
 /// The places of the ones in a row, the lowest first.

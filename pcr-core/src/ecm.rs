@@ -1,13 +1,15 @@
 //! The extended collision map: all collision regions of a fleet, both directions of every pair.
 
+use crate::bits::{self, Ones};
 use crate::error::Full;
 use crate::motion::Motion;
 use crate::pair::Pair;
 use crate::pieces::{List, NONE, Piece, Pieces};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
+use crate::segment::ROW;
 use core::cell::Cell;
-use core::cmp::Ordering;
+use core::ops::Range;
 
 /// Entry of the table: a region of an unordered pair of agents. 8 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -152,11 +154,8 @@ where
     /// [`Full`] where the storage is too small.
     pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let mut ecm = Self::new(regions, pieces);
-        let agents = || (0..fleet.len()).zip(fleet);
-        for (first, one) in agents() {
-            for (second, other) in agents().skip(first + 1) {
-                ecm.add_pair([first, second], Pair::new(one, other))?;
-            }
+        for agent in 0..fleet.len() {
+            ecm.add_pairs(fleet, agent, agent.saturating_add(1)..fleet.len())?;
         }
         Ok(ecm)
     }
@@ -166,21 +165,12 @@ where
     /// # Errors
     /// [`Full`] where the storage is too small; the table is then as it was.
     pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
-        let Some(own) = fleet.get(agent) else {
-            return Ok(());
-        };
-        for (partner, other) in (0..fleet.len()).zip(fleet) {
-            let added = match partner.cmp(&agent) {
-                Ordering::Less => self.add_pair([partner, agent], Pair::new(other, own)),
-                Ordering::Equal => Ok(()),
-                Ordering::Greater => self.add_pair([agent, partner], Pair::new(own, other)),
-            };
-            if added.is_err() {
-                self.remove(agent);
-                return added;
-            }
+        let mut partners = [0..agent, agent.saturating_add(1)..fleet.len()].into_iter();
+        let added = partners.try_for_each(|partners| self.add_pairs(fleet, agent, partners));
+        if added.is_err() {
+            self.remove(agent);
         }
-        Ok(())
+        added
     }
 
     /// Removes the regions of one agent with all others. O(regions).
@@ -212,6 +202,26 @@ where
             self.insert(fleet, agent)?;
         }
         outcome
+    }
+
+    /// Adds the regions of an agent with others, all of them before or after it in the fleet.
+    fn add_pairs(&mut self, fleet: &[Motion<'_, S>], agent: usize, partners: Range<usize>) -> Result<(), Full> {
+        let (Some(own), Some(others)) = (fleet.get(agent), fleet.get(partners.clone())) else {
+            return Ok(());
+        };
+        let swept = own.swept();
+        for (row, begin) in others.chunks(ROW).zip(partners.step_by(ROW)) {
+            for place in Ones(bits::row(row.iter().map(|other| swept.meets(other.swept())))) {
+                let (Some(other), partner) = (row.get(place as usize), begin.wrapping_add(place as usize)) else {
+                    break;
+                };
+                let lower = partner < agent;
+                let (agents, first, second) =
+                    if lower { ([partner, agent], other, own) } else { ([agent, partner], own, other) };
+                self.add_pair(agents, Pair::new(first, second))?;
+            }
+        }
+        Ok(())
     }
 
     fn add_pair(&mut self, agents: [usize; 2], pair: Pair<'_, S>) -> Result<(), Full> {

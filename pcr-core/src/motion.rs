@@ -148,6 +148,13 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds
     }
 
+    /// Box around all that the disc sweeps, twice what rounding may do to a distance included \[m\]: agents whose boxes do
+    /// not meet have no region.
+    pub(crate) fn swept(&self) -> Bounds<S> {
+        let slack = S::slack(self.extent) + self.drift + self.lag;
+        self.bounds.expanded(self.radius + slack.double())
+    }
+
     /// Largest coordinate or length that belongs to the motion, plus its radius \[m\]: what errors grow with.
     pub fn extent(&self) -> S {
         self.extent

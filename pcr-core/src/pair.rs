@@ -53,9 +53,6 @@ impl<'a, S: Scalar> Pair<'a, S> {
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
         let reach = self.radius + self.slack;
         let first = self.first.bounds().expanded(reach);
-        if !first.meets(self.second.bounds()) {
-            return Ok(());
-        }
         for (j, other) in (0..u16::MAX).zip(self.second.path().segments()) {
             if !first.meets(other.bounds) {
                 continue;

@@ -61,6 +61,34 @@ fn rows_are_in_the_order_of_the_agents_and_complete() {
     }
 }
 
+/// More of them than are compared at once.
+#[test]
+fn an_agent_that_crosses_seventy_others_has_a_region_with_each() {
+    let line = |x, y, heading, length| {
+        format!(
+            r#"{{"id":0,"radius":0.2,"v_max":1,"a_max":1,"start":{{"x":{x},"y":{y},"heading":{heading}}},"path":[{{"kind":"line","length":{length}}}]}}"#
+        )
+    };
+    for place in [0, 31, 32, 33, 70] {
+        let mut agents: Vec<_> = (0..70).map(|k| line(f64::from(k), -1.0, std::f64::consts::FRAC_PI_2, 2.0)).collect();
+        agents.insert(place, line(-1.0, 0.0, 0.0, 72.0));
+        let numbered: Vec<_> =
+            (0..).zip(&agents).map(|(id, agent)| agent.replace(r#""id":0"#, &format!(r#""id":{id}"#))).collect();
+        let scenario = Scenario::from_json(&format!(r#"{{"agents":[{}]}}"#, numbered.join(","))).unwrap();
+        let fleet = Fleet::<f64>::new(&scenario).unwrap();
+        let mut motions = fleet.motions();
+        let mut ecm = build_ecm(&motions).unwrap();
+        let others = |ecm: &HostEcm<f64>, motions: &[Motion<'_, f64>]| -> Vec<usize> {
+            ecm.row(motions, place).map(|region| region.other()).collect()
+        };
+        let all: Vec<_> = (0..=70).filter(|&other| other != place).collect();
+        assert_eq!((others(&ecm, &motions), ecm.len()), (all.clone(), 70));
+        let own = motions[place];
+        ecm.replace(&mut motions, place, own).unwrap();
+        assert_eq!((others(&ecm, &motions), ecm.len()), (all, 70));
+    }
+}
+
 #[test]
 fn agents_that_are_not_there_have_no_regions() {
     let fleet = twelve();
