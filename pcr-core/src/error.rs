@@ -53,7 +53,7 @@ pub enum Full {
     Pieces,
     /// More regions are needed.
     Regions,
-    /// These two agents have more than 65535 pieces with each other; no storage is large enough.
+    /// These two agents have more than 32767 pieces with each other; no storage is large enough.
     Pair([usize; 2]),
     /// The fleet has more than 65535 agents.
     Agents,
@@ -66,7 +66,7 @@ impl fmt::Display for Full {
         match self {
             Self::Pieces => f.write_str("there is no room for another piece"),
             Self::Regions => f.write_str("there is no room for another region"),
-            Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 65535 pieces"),
+            Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 32767 pieces"),
             Self::Agents => f.write_str("the fleet has more than 65535 agents"),
             Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
         }

@@ -15,6 +15,12 @@ use core::marker::PhantomData;
 /// No piece: the end of a list.
 pub(crate) const NONE: u32 = u32::MAX;
 
+/// Set in the group of a piece that has been joined: others are in it.
+const JOINED: u16 = 1 << 15;
+
+/// Most groups of a pair.
+const GROUPS: u16 = JOINED - 1;
+
 /// The part of a collision region that one closed form describes: one segment against one segment.
 ///
 /// It holds the lengths along both paths between which it lies; between them it is bounded by the slices
@@ -114,7 +120,7 @@ impl<S, P> Pieces<S, P> {
 
     /// Whether no more pieces of this pair can be told apart.
     pub(crate) const fn pair_is_full(&self) -> bool {
-        self.pending.groups == u16::MAX
+        self.pending.groups == GROUPS
     }
 
     /// The last pending piece, or [`NONE`].
@@ -140,7 +146,10 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
     pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, Full> {
         let Pending { first, last, groups } = self.pending;
         let index = if self.free == NONE { self.fresh } else { self.free };
-        let groups = groups.checked_add(1).ok_or(Full::Pieces)?;
+        if groups == GROUPS {
+            return Err(Full::Pieces);
+        }
+        let groups = groups.wrapping_add(1);
         let slots = self.slots.as_mut();
         let slot = slots.get_mut(index as usize).ok_or(Full::Pieces)?;
         if self.free == NONE {
@@ -163,8 +172,8 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         self.slots.as_mut().get_mut(index as usize)
     }
 
-    /// Makes two pending pieces, and all that were joined with them, parts of one region; [`NONE`] is
-    /// joined with nothing. O(pending pieces).
+    /// Makes two pending pieces, and all that were joined with them, parts of one region; [`NONE`] is joined with nothing.
+    /// O(1) where one of them is alone as yet, else O(pending pieces).
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let slots = self.slots.as_mut();
         let group = |index: u32| slots.get(index as usize).map(|piece| piece.group);
@@ -172,6 +181,15 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
             return;
         };
         if kept == gone {
+            return;
+        }
+        if kept & gone & JOINED == 0 {
+            let group = JOINED | if gone & JOINED == 0 { kept } else { gone };
+            for index in [a, b] {
+                if let Some(piece) = slots.get_mut(index as usize) {
+                    piece.group = group;
+                }
+            }
             return;
         }
         let mut index = self.pending.first;
@@ -281,6 +299,33 @@ mod tests {
         assert_eq!(members(&pieces, regions[0])[..], [0]);
         assert_eq!(members(&pieces, regions[1])[..], [1, 3, 4, 5]);
         assert_eq!(members(&pieces, regions[2])[..], [2]);
+    }
+
+    #[test]
+    fn whatever_is_joined_in_whatever_order_is_one_region() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % 24
+        };
+        for joins in 0..400 {
+            let mut pieces = Pieces::new([Piece::EMPTY; 24]);
+            (0..24).for_each(|k| assert_eq!(pieces.push(piece(k)), Ok(u32::from(k))));
+            let mut groups: [u32; 24] = core::array::from_fn(|k| k as u32);
+            for _ in 0..joins % 40 {
+                let (a, b) = (random(), random());
+                pieces.join(a, b);
+                let [kept, gone] = [a, b].map(|index| groups[index as usize]);
+                groups.iter_mut().filter(|group| **group == gone).for_each(|group| *group = kept);
+            }
+            while let Some(head) = pieces.take_region() {
+                let all: heapless::Vec<u16, 24> =
+                    (0..24).filter(|&k| groups[usize::from(k)] == groups[head as usize]).collect();
+                assert_eq!(members(&pieces, head), all);
+                all.iter().for_each(|&k| groups[usize::from(k)] = 24 + u32::from(k));
+            }
+            assert!(groups.iter().all(|&group| group >= 24));
+        }
     }
 
     #[test]

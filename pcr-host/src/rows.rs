@@ -32,7 +32,7 @@ impl<'a, S: Format> Row<'a, S> {
     /// The row of `ego` with these agents.
     ///
     /// # Errors
-    /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 65535 pieces.
+    /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 32767 pieces.
     pub fn new(motions: &[Motion<'a, S>], ego: usize, others: &[u32]) -> Result<Self, Full> {
         let mut row = Self::default();
         row.fill(motions, ego, others)?;

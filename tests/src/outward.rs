@@ -205,7 +205,7 @@ impl<S: Format> Checked<S> {
         let ecm = match build_ecm(&motions) {
             Ok(ecm) => ecm,
             // Long paths that meet all along, most of their segments in a piece or two: what no storage can hold.
-            Err(Full::Pair(_)) if 2 * pairs_of_segments > usize::from(u16::MAX) => return Ok(false),
+            Err(Full::Pair(_)) if 2 * pairs_of_segments > (1 << 15) => return Ok(false),
             Err(full) => return Err(full.to_string()),
         };
         let excess = excess(&motions[0], &motions[1]).to_f64();
