@@ -10,9 +10,11 @@ use crate::bits::{self, Runs};
 use crate::error::Full;
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
-use crate::query::contact::Encounter;
+use crate::query::contact::{Contacts, Encounter};
 use crate::scalar::Scalar;
 use core::hint::select_unpredictable as select;
+use core::iter::{self, Take};
+use core::slice::ChunksExact;
 
 /// What the bits of a word can tell of.
 const MOST_PARTS: usize = u32::BITS as usize;
@@ -78,7 +80,7 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
             let mut way = Way::starting(motion, during.lo);
             *all = Bounds::around(way.point, way.point);
             for (place, &end) in row.iter_mut().zip(&ends) {
-                *place = way.until(end).expanded(margin);
+                *place = way.until(end, margin);
                 *all = all.hull(*place);
             }
         }
@@ -99,18 +101,18 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
     ///
     /// Cost: a comparison of boxes a pair of agents, and one a part for pairs whose ways meet.
     pub fn candidates(&self) -> impl Iterator<Item = ([usize; 2], Interval<S>)> {
-        let rows =
-            || (0..self.fleet.len()).zip(self.boxes.as_ref().chunks_exact((self.parts() as usize).wrapping_add(1)));
-        let pairs = rows().flat_map(move |(first, own)| {
-            rows().skip(first.wrapping_add(1)).map(move |(second, other)| ([first, second], meeting(own, other)))
-        });
-        pairs.flat_map(move |(agents, parts)| {
-            Runs(parts).map(move |run| {
-                let ends = [run.trailing_zeros(), u32::BITS.wrapping_sub(run.leading_zeros())];
-                let [lo, hi] = ends.map(|part| place_in(self.during, part, self.halvings));
-                (agents, Interval::new(lo, hi))
-            })
-        })
+        let rows = self.boxes.as_ref().chunks_exact((self.parts() as usize).wrapping_add(1));
+        let rows = rows.take(self.fleet.len());
+        Meetings {
+            during: self.during,
+            halvings: self.halvings,
+            own: &[],
+            others: [].chunks_exact(1).take(0),
+            agents: [0; 2],
+            runs: Runs(0),
+            rows,
+            next: 0,
+        }
     }
 
     /// When the agents of each pair are in contact \[s\], in increasing order of the agents, then of the time: what
@@ -118,7 +120,18 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
     ///
     /// Cost: that of [`BroadPhase::candidates`], and of [`Encounter::contacts`] for each.
     pub fn contacts(&self) -> impl Iterator<Item = ([usize; 2], Interval<S>)> {
-        self.candidates().flat_map(move |(agents, during)| self.contacts_of(agents, during))
+        let (mut candidates, mut current) = (self.candidates(), None);
+        iter::from_fn(move || {
+            loop {
+                if let Some((agents, contacts)) = &mut current
+                    && let Some(time) = Contacts::next(contacts)
+                {
+                    return Some((*agents, time));
+                }
+                let (agents, during) = candidates.next()?;
+                current = self.encounter(agents).map(|encounter| (agents, encounter.contacts(during)));
+            }
+        })
     }
 
     /// When two agents of the fleet, by their places in it, are in contact during an interval of time \[s\]: of one of the
@@ -131,10 +144,53 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
         agents: [usize; 2],
         during: Interval<S>,
     ) -> impl Iterator<Item = ([usize; 2], Interval<S>)> + use<'_, S, B> {
+        let mut contacts = self.encounter(agents).map(|encounter| encounter.contacts(during));
+        iter::from_fn(move || Some((agents, contacts.as_mut()?.next()?)))
+    }
+}
+
+impl<'a, S: Scalar, B> BroadPhase<'a, S, B> {
+    fn encounter(&self, agents: [usize; 2]) -> Option<Encounter<'a, S>> {
         let [first, second] = agents.map(|agent| self.fleet.get(agent));
-        let encounter = first.zip(second).map(|(first, second)| Encounter::new(first, second));
-        let contacts = encounter.map(|encounter| encounter.contacts(during));
-        contacts.into_iter().flatten().map(move |time| (agents, time))
+        Some(Encounter::new(first?, second?))
+    }
+}
+
+/// The pairs of agents whose boxes meet.
+struct Meetings<'a, S: Scalar> {
+    during: Interval<S>,
+    halvings: u32,
+    /// Boxes of the agents from the `next` one on.
+    rows: Take<ChunksExact<'a, Bounds<S>>>,
+    next: usize,
+    /// Boxes of the first agent of the pair, and of those that come after the second one.
+    own: &'a [Bounds<S>],
+    others: Take<ChunksExact<'a, Bounds<S>>>,
+    agents: [usize; 2],
+    /// The parts in which their boxes meet, as far as they were not told yet.
+    runs: Runs,
+}
+
+impl<S: Scalar> Iterator for Meetings<'_, S> {
+    type Item = ([usize; 2], Interval<S>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(run) = self.runs.next() {
+                let ends = [run.trailing_zeros(), u32::BITS.wrapping_sub(run.leading_zeros())];
+                let [lo, hi] = ends.map(|part| place_in(self.during, part, self.halvings));
+                return Some((self.agents, Interval::new(lo, hi)));
+            }
+            if let Some(other) = self.others.next() {
+                self.agents[1] = self.agents[1].wrapping_add(1);
+                self.runs = Runs(meeting(self.own, other));
+            } else {
+                self.own = self.rows.next()?;
+                self.others = self.rows.clone();
+                self.agents = [self.next; 2];
+                self.next = self.next.wrapping_add(1);
+            }
+        }
     }
 }
 
@@ -177,8 +233,8 @@ impl<'a, S: Scalar> Way<'a, S> {
         Self { motion, place, length, point: motion.path().point_at(length) }
     }
 
-    /// A box around the way up to a time.
-    fn until(&mut self, time: S) -> Bounds<S> {
+    /// A box around the way up to a time, and `margin` more.
+    fn until(&mut self, time: S, margin: S) -> Bounds<S> {
         let (path, from) = (self.motion.path(), self.length);
         let to = self.motion.length_at(time).max(from);
         let (mut bounds, mut bulge) = (Bounds::around(self.point, self.point), S::ZERO);
@@ -192,6 +248,6 @@ impl<'a, S: Scalar> Way<'a, S> {
             self.place = self.place.wrapping_add(1);
         }
         self.length = to;
-        bounds.expanded(bulge)
+        bounds.expanded(bulge + margin)
     }
 }

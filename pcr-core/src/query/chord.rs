@@ -43,6 +43,15 @@ impl<S: Scalar> Chord<S> {
         (lo <= self.length && hi >= S::ZERO).then(|| Interval::new(lo.max(S::ZERO), hi.min(self.length)))
     }
 
+    /// Whether the relative position, in a circle at the begin of the chord, stays there until the chord enters a circle that
+    /// is smaller by `error`. With ξ and y as for [`clears`], (ϱ - y)² - |chord|² is not negative at either place, and concave
+    /// if L² is 8 ϱ e + 16 e² at least, as the second derivative of y² is 32 e² at most.
+    pub(crate) fn dives(&self, radius: S, error: S) -> bool {
+        let square = |length: S| length.times(length);
+        square(self.foot) + square(self.offset) <= square(radius)
+            && square(self.length) >= error.times(radius + error.double()).double().double().double()
+    }
+
     /// Where the chord is nearest to the origin, and how near \[m\].
     pub(crate) fn nearest(&self) -> (S, S) {
         let at = self.foot.clamp(S::ZERO, self.length);
@@ -73,12 +82,86 @@ pub(crate) fn clears<S: Scalar>([from, to]: [Vector<S>; 2], radius: S, error: S,
 }
 
 /// Whether the relative position stays in a circle between two places inside, as [`clears`] tells of one that stays
-/// outside: 2 ϱ y is to be no more than ϱ² - |chord|², which is L² ξ (1 - ξ) at least.
+/// outside: 2 ϱ y is to be no more than ϱ² - |chord|² = d₀ (1 - ξ) + d₁ ξ + L² ξ (1 - ξ), which is at least d₀ + d₁ + L² times
+/// ξ (1 - ξ).
 pub(crate) fn keeps<S: Scalar>([from, to]: [Vector<S>; 2], radius: S, error: S) -> bool {
     let square = radius.times(radius);
-    let inside = |end: Vector<S>| end.norm_squared() <= square;
-    inside(from) && inside(to) && error <= radius && {
-        let length = between(from, to).norm_squared();
-        length >= error.times(radius).double().double().double()
+    let [near, far] = [from, to].map(|end| end.norm_squared());
+    near <= square && far <= square && error <= radius && {
+        let depths = (square - near) + (square - far);
+        depths + between(from, to).norm_squared() >= error.times(radius).double().double().double()
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+
+    const PARTS: u32 = 200;
+
+    /// Relative motions that deviate from their chord by `error` in the middle, to a side: their ends, the error, and how
+    /// far they are from the origin at each of so many parts of the way.
+    fn motions() -> impl Iterator<Item = ([Vector<f64>; 2], f64, impl Fn(f64) -> f64)> {
+        let mut state = 7_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..20_000).map(move |_| {
+            let mut vector = |scale: f64| {
+                let (sin, cos) = libm::sincos(core::f64::consts::TAU * random());
+                let length = scale * random();
+                Vector { x: length * cos, y: length * sin }
+            };
+            let (from, to, side) = (vector(2.0), vector(2.0), vector(0.4));
+            let at = move |part: f64| {
+                let bend = 4.0 * part * (1.0 - part);
+                let [x, y] =
+                    [(from.x, to.x, side.x), (from.y, to.y, side.y)].map(|(a, b, c)| a + part * (b - a) + bend * c);
+                (x * x + y * y).sqrt()
+            };
+            ([from, to], side.norm_squared().sqrt(), at)
+        })
+    }
+
+    /// Largest and least distance up to a part of the way.
+    fn distances(at: impl Fn(f64) -> f64, until: f64) -> (f64, f64) {
+        let distances = (0..=PARTS).map(|k| at(until * f64::from(k) / f64::from(PARTS)));
+        distances.fold((0.0_f64, f64::MAX), |(most, least), distance| (most.max(distance), least.min(distance)))
+    }
+
+    #[test]
+    fn what_keeps_stays_inside_and_what_clears_outside() {
+        let (mut kept, mut deep, mut cleared) = (0, 0, 0);
+        for (ends, error, at) in motions() {
+            let (most, least) = distances(&at, 1.0);
+            if keeps(ends, 1.0, error) {
+                assert!(most <= 1.0 + 1e-15, "{ends:?} {error}");
+                kept += 1;
+                // By the depth of its ends alone.
+                deep += u32::from(between(ends[0], ends[1]).norm_squared() < 8.0 * error);
+            }
+            if clears(ends, 1.0, error, 1e-12) {
+                assert!(least >= 1.0 - 1e-15, "{ends:?} {error}");
+                cleared += 1;
+            }
+        }
+        assert!(kept > 2000 && deep > 200 && cleared > 1000, "{kept} {deep} {cleared}");
+    }
+
+    #[test]
+    fn what_dives_stays_inside_until_it_is_deep() {
+        let mut dived = 0;
+        for (ends, error, at) in motions() {
+            let chord = Chord::between(ends[0], ends[1]);
+            if let Some(deep) = chord.within(1.0 - error)
+                && deep.lo > 0.0
+                && chord.dives(1.0, error)
+            {
+                assert!(distances(&at, deep.hi / chord.length).0 <= 1.0 + 1e-15, "{ends:?} {error}");
+                dived += 1;
+            }
+        }
+        assert!(dived > 200, "{dived}");
     }
 }
