@@ -58,7 +58,7 @@ impl Trig for f64 {
 /// Sine and cosine: reduced by quarter turns, in parts (Cody and Waite), to `[-π/4, π/4]`. The polynomials are
 /// `(sin r / r - 1) / r²` and `(cos r - 1 + r²/2) / r⁴` of `r²`.
 macro_rules! sin_cos {
-    ($(#[$doc:meta])* $name:ident($t:ident), quarter: $quarter:expr, sin: $sin:expr, cos: $cos:expr) => {
+    ($(#[$doc:meta])* $name:ident($t:ident), quarter: $quarter:expr, polynomials: $polynomials:expr) => {
         $(#[$doc])*
         fn $name(x: $t) -> ($t, $t) {
             // Half of what has no more room for a fraction: a sum with it is rounded, its last bits are the integer's.
@@ -68,8 +68,8 @@ macro_rules! sin_cos {
             let (quarters, k) = (shifted.to_bits(), shifted - ROUND);
             let r = $quarter.into_iter().fold(x, |r, part: $t| r - k * part);
             let z = r * r;
-            let sin = r + r * (z * $sin(z));
-            let cos = (1.0 - 0.5 * z) + z * (z * $cos(z));
+            let [sin, cos] = $polynomials(z);
+            let (sin, cos) = (r + r * (z * sin), (1.0 - 0.5 * z) + z * (z * cos));
             // In bits: which quarter it is nobody foresees.
             let (sin, cos) = (sin.to_bits(), cos.to_bits());
             let exchanged = (sin ^ cos) & (quarters & 1).wrapping_neg();
@@ -114,35 +114,58 @@ macro_rules! horner {
 horner!(horner_f32, f32);
 horner!(horner_f64, f64);
 
+/// Two polynomials side by side, which a processor with lanes takes at once.
+fn horner_each<const N: usize>(x: f64, coefficients: [[f64; 2]; N]) -> [f64; 2] {
+    let sums = coefficients.into_iter().rev().reduce(|[a, b], [c, d]| [a * x + c, b * x + d]);
+    sums.unwrap_or_default()
+}
+
 sin_cos!(
     /// Absolute error below 1.2e-7 for `|x| <= 128`: twenty turns.
     sin_cos_f32(f32),
     quarter: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
-    sin: |z| horner_f32(z, [-1.666_665_5e-1, 8.332_161e-3, -1.951_529_6e-4]),
-    cos: |z| horner_f32(z, [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5])
+    polynomials: |z| {
+        let sin = horner_f32(z, [-1.666_665_5e-1, 8.332_161e-3, -1.951_529_6e-4]);
+        [sin, horner_f32(z, [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5])]
+    }
 );
 
 sin_cos!(
     /// Absolute error below 2e-16 for `|x|` up to a million; beyond that libm reduces.
     near_sin_cos_f64(f64),
     quarter: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
-    sin: |z: f64| {
+    polynomials: |z: f64| {
         let w = z * z;
-        let odd = horner_f64(w, [8.333_333_333_322_49e-3, 2.755_731_370_707_007e-6, 1.589_690_995_211_55e-10]);
-        let even = horner_f64(w, [-1.666_666_666_666_663_2e-1, -1.984_126_982_985_795e-4, -2.505_076_025_340_686_3e-8]);
-        even + z * odd
-    },
-    cos: |z: f64| {
-        let w = z * z;
-        let odd = horner_f64(w, [-1.388_888_888_887_411e-3, -2.755_731_435_139_066_3e-7, -1.135_964_755_778_819_5e-11]);
-        let even = horner_f64(w, [4.166_666_666_666_66e-2, 2.480_158_728_947_673e-5, 2.087_572_321_298_175e-9]);
-        even + z * odd
+        let even = horner_each(
+            w,
+            [
+                [-1.666_666_666_666_663_2e-1, 4.166_666_666_666_66e-2],
+                [-1.984_126_982_985_795e-4, 2.480_158_728_947_673e-5],
+                [-2.505_076_025_340_686_3e-8, 2.087_572_321_298_175e-9],
+            ],
+        );
+        let odd = horner_each(
+            w,
+            [
+                [8.333_333_333_322_49e-3, -1.388_888_888_887_411e-3],
+                [2.755_731_370_707_007e-6, -2.755_731_435_139_066_3e-7],
+                [1.589_690_995_211_55e-10, -1.135_964_755_778_819_5e-11],
+            ],
+        );
+        [even[0] + z * odd[0], even[1] + z * odd[1]]
     }
 );
 
 /// Sine and cosine, absolute error below 2e-16.
 fn sin_cos_f64(x: f64) -> (f64, f64) {
-    if x.abs() < 1e6 { near_sin_cos_f64(x) } else { libm::sincos(x) }
+    if x.abs() < 1e6 { near_sin_cos_f64(x) } else { far_sin_cos_f64(x) }
+}
+
+/// Apart, as its reduction would take a frame on the stack from the near ones, too.
+#[cold]
+#[inline(never)]
+fn far_sin_cos_f64(x: f64) -> (f64, f64) {
+    libm::sincos(x)
 }
 
 atan2!(
