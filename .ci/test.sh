@@ -64,6 +64,8 @@ features() {
     done
     cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
   done
+  step "pcr-host without pictures as PNG"
+  cargo clippy -q -p pcr-host --locked --no-default-features -- -D warnings
   step "defmt::Format on all public types"
   local source name missing=""
   for source in pcr-core/src pcr-fixed/src; do

@@ -14,7 +14,7 @@
 //! locks       a page in which the edges of a layout show what they block
 //! template    pages with everything in them
 //! svg         the writer of SVG files
-//! raster      SVG to PNG
+//! raster      SVG to PNG (feature `png`)
 //! ```
 
 mod axis;
@@ -28,6 +28,7 @@ mod overview;
 mod page;
 pub(crate) mod palette;
 pub(crate) mod plot;
+#[cfg(feature = "png")]
 mod raster;
 mod scene;
 mod svg;
@@ -40,7 +41,6 @@ use crate::locks::Locks;
 use crate::scenario::Scenario;
 pub use layout::Ground;
 pub(crate) use overlay::{Bar, Overlay};
-use raster::Raster;
 use scene::Scene;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -54,7 +54,7 @@ use std::{fs, io, thread};
 /// - `workspace`: the paths, with the discs at their starts and ends,
 /// - `ecm-<id>` for every agent: its extended collision map with its trajectory,
 ///
-/// all but the first as `.svg` and `.png`. The workspace is drawn on the `ground`, if there is one.
+/// all but the first as `.svg`, with the feature `png` also as `.png`. The workspace is drawn on the `ground`, if there is one.
 ///
 /// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
 /// in a fixed order. The same scenario gives the same bytes in every run.
@@ -90,19 +90,18 @@ pub fn write(
 }
 
 /// Writes the pictures of a layout and its locks into a directory, which is created where it does not exist: `locks.html`,
-/// in which an edge shows its corridor and what it blocks, and for each level `layout.svg` and `layout.png`, from the second
+/// in which an edge shows its corridor and what it blocks, and for each level `layout.svg` (and `layout.png`), from the second
 /// level on with its number. Returns the files.
 ///
 /// # Errors
 /// Those of writing files.
 pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
-    let raster = Raster::new();
+    let formats = Formats::new();
     for level in 0..imported.layout.levels.len() {
         let svg = Ground { imported, level }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
-        let png = raster.png(&svg)?;
-        files.extend([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)]);
+        files.extend(formats.files(&name, svg)?);
     }
     fs::create_dir_all(directory)?;
     let write = |(name, content): (String, Vec<u8>)| {
@@ -154,15 +153,40 @@ enum Picture {
 type Files = Vec<(String, Vec<u8>)>;
 
 impl Picture {
-    fn draw(self, scene: &Scene<'_>, raster: &Raster) -> io::Result<Files> {
+    fn draw(self, scene: &Scene<'_>, formats: &Formats) -> io::Result<Files> {
         let (name, svg) = match self {
             Self::Page => return Ok(vec![("index.html".to_owned(), page::page(scene).into_bytes())]),
             Self::Overview => ("overview".to_owned(), overview::picture(scene)),
             Self::Workspace => ("workspace".to_owned(), workspace::picture(scene)),
             Self::Map(ego) => (format!("ecm-{}", scene.id(ego)), map::picture(scene, ego)),
         };
-        let png = raster.png(&svg)?;
-        Ok(vec![(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)])
+        formats.files(&name, svg)
+    }
+}
+
+/// What a picture is written as.
+struct Formats {
+    #[cfg(feature = "png")]
+    raster: raster::Raster,
+}
+
+impl Formats {
+    fn new() -> Self {
+        Self {
+            #[cfg(feature = "png")]
+            raster: raster::Raster::new(),
+        }
+    }
+
+    /// The files of a picture.
+    fn files(&self, name: &str, svg: String) -> io::Result<Files> {
+        #[cfg(feature = "png")]
+        let png = self.raster.png(&svg)?;
+        Ok(vec![
+            (format!("{name}.svg"), svg.into_bytes()),
+            #[cfg(feature = "png")]
+            (format!("{name}.png"), png),
+        ])
     }
 }
 
@@ -174,12 +198,12 @@ fn draw_all(
 ) -> io::Result<()> {
     let workers = thread::available_parallelism().map_or(1, usize::from).min(pictures.len());
     let next = AtomicUsize::new(0);
-    let raster = Raster::new();
+    let formats = Formats::new();
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for _ in 0..workers {
             let sender = sender.clone();
-            let (next, raster) = (&next, &raster);
+            let (next, formats) = (&next, &formats);
             scope.spawn(move || {
                 loop {
                     let place = next.fetch_add(1, Ordering::Relaxed);
@@ -187,7 +211,7 @@ fn draw_all(
                         break;
                     };
                     // Nobody listens any more after an error.
-                    if sender.send((place, picture.draw(scene, raster))).is_err() {
+                    if sender.send((place, picture.draw(scene, formats))).is_err() {
                         break;
                     }
                 }
@@ -198,7 +222,7 @@ fn draw_all(
     })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests {
     use super::*;
     use serde_json::{Value, json};
