@@ -330,9 +330,10 @@ fn pictures_are_listed_and_there() {
     let expected = format!("Pictures: {} files in {}; begin with ", files.len(), pictures.display());
     let first = printed.strip_prefix(&expected).unwrap_or_else(|| panic!("{printed}")).trim_end();
     assert!(std::path::Path::new(first).is_file(), "{first}");
-    for name in ["ecm-1.svg", "ecm-2.png", "workspace.svg"] {
+    for name in ["ecm-1.svg", "ecm-2.svg", "workspace.svg"] {
         assert!(pictures.join(name).is_file(), "{name}");
     }
+    assert_eq!(pictures.join("ecm-2.png").is_file(), cfg!(feature = "png"));
 }
 
 #[test]
