@@ -47,7 +47,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         self.slack.double()
     }
 
-    /// Adds the pieces of the pair to the pending ones, joined where they are connected, as lengths along the paths.
+    /// Adds the pieces of the pair to the pending ones, joined where they are connected, as lengths along the paths. Whether the
+    /// boxes of both paths meet has been asked before ([`Motion::swept`]).
     ///
     /// Cost: a box test a pair of segments, and a few hundred operations a pair of segments that meet.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
