@@ -9,6 +9,7 @@
 //!
 //! which keeps its relative accuracy for every radius, nearly straight arcs included.
 
+mod boxes;
 mod near;
 
 pub(crate) use near::{ROW, in_box};
@@ -156,12 +157,7 @@ impl<S: Scalar> Segment<S> {
         let (heading, rounding) = arc.heading.sum(sweep);
         (arc.heading_at_end, arc.rest.heading) = heading.sum(rounding + (rest + arc.rest.heading));
         arc.advance();
-        arc.bounds = arc.arc_bounds();
-        let along = (arc.end - arc.start).along(arc.axis).half();
-        let bulge = (arc.point_at(length.half()) - arc.start).across(arc.axis).half();
-        arc.middle = arc.start + arc.axis.vector(along, bulge);
-        // Beyond half a turn it is wider than its chord.
-        arc.half = [if arc.half_turn.cos < S::Unit::ZERO { radius } else { along }, bulge.abs()];
+        arc.enclose(radius, turn);
         arc.checked()
     }
 
@@ -304,39 +300,6 @@ impl<S: Scalar> Segment<S> {
         let [x, y] = S::chord(radius, half, self.mirrored(), [self.direction.cos, self.direction.sin]);
         Vector { x, y }
     }
-
-    /// Box of an arc. Below half a turn a coordinate is extreme at an end, or on the axis where the other component of the
-    /// heading changes its sign; from half a turn on the whole circle is taken.
-    fn arc_bounds(&self) -> Bounds<S> {
-        let (start, end) = (self.start, self.end);
-        let Curve::Arc { radius, turn } = self.curve else {
-            return Bounds::around(start, end);
-        };
-        let (leaving, arriving) = (self.direction, Direction::<S>::at(self.heading_at_end));
-        let left = match turn {
-            Turn::Left => radius,
-            Turn::Right => -radius,
-        };
-        let centre = start + leaving.vector(S::ZERO, left);
-        let low = Point::new(centre.x - radius, centre.y - radius);
-        let high = Point::new(centre.x + radius, centre.y + radius);
-        let mut bounds = Bounds::around(start, end);
-        if self.length.double() >= self.circumference {
-            return bounds.hull(Bounds::around(low, high));
-        }
-        let negative = |unit: S::Unit| unit < S::Unit::ZERO;
-        match (negative(leaving.cos), negative(arriving.cos)) {
-            (false, true) => bounds.x.hi = bounds.x.hi.max(high.x),
-            (true, false) => bounds.x.lo = bounds.x.lo.min(low.x),
-            _ => {}
-        }
-        match (negative(leaving.sin), negative(arriving.sin)) {
-            (false, true) => bounds.y.hi = bounds.y.hi.max(high.y),
-            (true, false) => bounds.y.lo = bounds.y.lo.min(low.y),
-            _ => {}
-        }
-        bounds
-    }
 }
 
 #[cfg(all(test, feature = "libm"))]
@@ -368,39 +331,6 @@ mod tests {
         assert_eq!((next.start, next.from), (line.end, 2.0));
         assert!((next.end.x - 2.0).abs() < 1e-15 && (next.end.y - 3.0).abs() < 1e-15);
         assert_eq!(line.turned(Radians(f64::NAN)), Err(Invalid::NonFinite("turn")));
-    }
-
-    #[test]
-    fn boxes_hold_the_arc_and_touch_it() {
-        for k in 0..64 {
-            for turn in [Turn::Left, Turn::Right] {
-                let arc = origin(0.1 * f64::from(k)).then_arc(1.5, turn, 0.14 * f64::from(k)).unwrap();
-                let points = (0..=1000).map(|n| arc.point_at(arc.length * f64::from(n) / 1000.0));
-                let seen = points.map(|p| Bounds::around(p, p)).reduce(Bounds::hull).unwrap();
-                let bounds = arc.bounds;
-                assert_eq!(bounds.hull(seen), bounds, "holds");
-                if arc.length.double() < arc.circumference {
-                    assert!((bounds.x.length() - seen.x.length()) < 1e-5, "touches");
-                }
-            }
-        }
-    }
-
-    /// By its sides, also where it is nearly straight.
-    #[test]
-    fn the_box_along_the_chord_holds_the_arc_and_touches_it() {
-        for k in 1..64 {
-            for (turn, radius) in [(Turn::Left, 1.5), (Turn::Right, 1.5), (Turn::Left, 1e9)] {
-                let arc = origin(0.3 * f64::from(k)).then_arc(radius, turn, 0.147 * f64::from(k)).unwrap();
-                let points = (0..=1000).map(|n| arc.point_at(arc.length * f64::from(n) / 1000.0) - arc.middle);
-                let seen = points.map(|way| Point::new(way.along(arc.axis), way.across(arc.axis)));
-                let seen = seen.map(|p| Bounds::around(p, p)).reduce(Bounds::hull).unwrap();
-                for (seen, half) in [(seen.x, arc.half[0]), (seen.y, arc.half[1])] {
-                    assert!((seen.lo + half).abs() < 1e-5 && (seen.hi - half).abs() < 1e-5, "touches: {seen:?} {half}");
-                    assert!(seen.lo >= -half - 4e-15 && seen.hi <= half + 4e-15, "holds: {seen:?} {half}");
-                }
-            }
-        }
     }
 
     #[test]
