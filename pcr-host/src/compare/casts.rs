@@ -71,7 +71,7 @@ impl Piece {
         Self {
             time,
             at,
-            heading: way.heading + way.curvature * (from - way.from),
+            heading: way.direction[1].atan2(way.direction[0]) + way.curvature * (from - way.from),
             curvature: way.curvature,
             speed: length / (time[1] - time[0]),
             bounds: hull(hull(EMPTY, at, sagitta), way.at(to - way.from), sagitta),

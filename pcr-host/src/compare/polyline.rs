@@ -2,7 +2,7 @@
 //! a tolerance, and discs grown by it; then two discs on two lines, in closed form. That is what planners for many
 //! agents do that know lines only.
 
-use super::track::{Point, Track, near};
+use super::track::{EMPTY, Point, Track, hull, near};
 use super::{Answer, Field, Found, Method, Question};
 
 /// With the largest distance from the path \[m\].
@@ -30,7 +30,8 @@ impl Method for Polyline {
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
         let knots: Vec<Vec<Knot>> =
             field.tracks.iter().map(|track| knots(track, self.tolerance, field.horizon)).collect();
-        let bounds: Vec<[f64; 4]> = field.tracks.iter().map(Track::bounds).collect();
+        let bound = |knots: &Vec<Knot>| knots.iter().fold(EMPTY, |bounds, knot| hull(bounds, knot.at, 0.0));
+        let bounds: Vec<[f64; 4]> = knots.iter().map(bound).collect();
         let mut found = Vec::new();
         for (first, a) in field.tracks.iter().enumerate() {
             for (second, b) in field.tracks.iter().enumerate().skip(first + 1) {

@@ -26,8 +26,8 @@ pub(crate) struct Way {
     /// \[m\]
     pub(crate) length: f64,
     pub(crate) start: Point,
-    /// \[rad\]
-    pub(crate) heading: f64,
+    /// Heading at its start, as a unit vector.
+    pub(crate) direction: Point,
     /// Left positive \[1/m\].
     pub(crate) curvature: f64,
 }
@@ -48,12 +48,23 @@ pub(crate) struct Phase {
 }
 
 impl Way {
+    fn new(from: f64, length: f64, start: Point, heading: f64, curvature: f64) -> Self {
+        let (sin, cos) = heading.sin_cos();
+        Self { from, length, start, direction: [cos, sin], curvature }
+    }
+
     /// Position at a length from its start \[m\], by the chord.
     pub(crate) fn at(&self, length: f64) -> Point {
+        let [x, y] = self.direction;
         let half = 0.5 * self.curvature * length;
-        let chord = if half == 0.0 { length } else { length * half.sin() / half };
-        let (sin, cos) = (self.heading + half).sin_cos();
-        [self.start[0] + chord * cos, self.start[1] + chord * sin]
+        let [along, across] = if half == 0.0 {
+            [length, 0.0]
+        } else {
+            let (sin, cos) = half.sin_cos();
+            let chord = length * sin / half;
+            [chord * cos, chord * sin]
+        };
+        [self.start[0] + along * x - across * y, self.start[1] + along * y + across * x]
     }
 }
 
@@ -93,13 +104,13 @@ impl Track {
                 PathSegment::Arc { radius, sweep } => (radius * sweep.abs(), sweep.signum() / radius),
             };
             if length > 0.0 {
-                let way = Way { from, length, start, heading, curvature };
+                let way = Way::new(from, length, start, heading, curvature);
                 ways.push(way);
                 (start, heading, from) = (way.at(length), heading + curvature * length, from + length);
             }
         }
         if ways.is_empty() {
-            ways.push(Way { from, length: 0.0, start, heading, curvature: 0.0 });
+            ways.push(Way::new(from, 0.0, start, heading, 0.0));
         }
         let phases = phases(agent, from);
         let end = phases.last().map_or(agent.t_start, Phase::end);
