@@ -98,14 +98,15 @@ int main() {
       knot.y = peer::number();
     }
   }
-  const peer::Clock clock;
-  for (Agent& agent : agents) agent.bound();
-  std::vector<peer::Contact> contacts;
-  for (std::size_t first = 0; first < agents.size(); ++first) {
-    for (std::size_t second = first + 1; second < agents.size(); ++second) {
-      const double time = first_contact(agents[first], agents[second]);
-      if (std::isfinite(time)) contacts.push_back({first, second, time, NAN});
+  peer::report([&agents] {
+    for (Agent& agent : agents) agent.bound();
+    std::vector<peer::Contact> contacts;
+    for (std::size_t first = 0; first < agents.size(); ++first) {
+      for (std::size_t second = first + 1; second < agents.size(); ++second) {
+        const double time = first_contact(agents[first], agents[second]);
+        if (std::isfinite(time)) contacts.push_back({first, second, time, NAN});
+      }
     }
-  }
-  clock.report(contacts);
+    return contacts;
+  });
 }

@@ -60,34 +60,35 @@ int main() {
       at[2] = 0.0;
     }
   }
-  const peer::Clock clock;
-  std::vector<std::shared_ptr<Mesh>> meshes;
-  for (const Agent& agent : agents) meshes.push_back(cylinder(sides, agent.radius, height));
-  const fcl::CollisionRequestd request;
-  const fcl::Vector3d above(0.0, 0.0, up);
-  std::vector<peer::Contact> contacts;
-  for (std::size_t first = 0; first < agents.size(); ++first) {
-    for (std::size_t second = first + 1; second < agents.size(); ++second) {
-      const Agent &a = agents[first], &b = agents[second];
-      const double reach = a.radius + b.radius;
-      bool open = false;
-      for (std::size_t k = 0; k < samples; ++k) {
-        const fcl::Vector3d way = b.at[k] - a.at[k];
-        bool touch = std::abs(way[0]) <= reach && std::abs(way[1]) <= reach;
-        if (touch) {
-          const fcl::Transform3d own(fcl::Translation3d(a.at[k])), other(fcl::Translation3d(b.at[k] + above));
-          fcl::CollisionResultd result;
-          touch = fcl::collide(meshes[first].get(), own, meshes[second].get(), other, request, result) > 0;
+  peer::report([&] {
+    std::vector<std::shared_ptr<Mesh>> meshes;
+    for (const Agent& agent : agents) meshes.push_back(cylinder(sides, agent.radius, height));
+    const fcl::CollisionRequestd request;
+    const fcl::Vector3d above(0.0, 0.0, up);
+    std::vector<peer::Contact> contacts;
+    for (std::size_t first = 0; first < agents.size(); ++first) {
+      for (std::size_t second = first + 1; second < agents.size(); ++second) {
+        const Agent &a = agents[first], &b = agents[second];
+        const double reach = a.radius + b.radius;
+        bool open = false;
+        for (std::size_t k = 0; k < samples; ++k) {
+          const fcl::Vector3d way = b.at[k] - a.at[k];
+          bool touch = std::abs(way[0]) <= reach && std::abs(way[1]) <= reach;
+          if (touch) {
+            const fcl::Transform3d own(fcl::Translation3d(a.at[k])), other(fcl::Translation3d(b.at[k] + above));
+            fcl::CollisionResultd result;
+            touch = fcl::collide(meshes[first].get(), own, meshes[second].get(), other, request, result) > 0;
+          }
+          const double sample = static_cast<double>(k);
+          if (touch && open) {
+            contacts.back().end = sample;
+          } else if (touch) {
+            contacts.push_back({first, second, sample, sample});
+          }
+          open = touch;
         }
-        const double sample = static_cast<double>(k);
-        if (touch && open) {
-          contacts.back().end = sample;
-        } else if (touch) {
-          contacts.push_back({first, second, sample, sample});
-        }
-        open = touch;
       }
     }
-  }
-  clock.report(contacts);
+    return contacts;
+  });
 }

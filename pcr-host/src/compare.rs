@@ -54,7 +54,7 @@ use pcr_core::{Interval, Motion};
 use pcr_fixed::Q16;
 use serde::Serialize;
 use std::hint::black_box;
-use stopwatch::Stopwatch;
+use stopwatch::{Stopwatch, steady};
 
 /// A fleet, in every form that a method starts from.
 #[derive(Debug)]
@@ -160,9 +160,8 @@ pub(crate) trait Method: Sync {
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>>;
     /// The time that the answer takes \[s\], and the answer.
     fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
-        let clock = Stopwatch::start();
-        let answer = black_box(self.answer(black_box(field)));
-        (if self.is_parallel() { clock.wall() } else { clock.elapsed() }, answer)
+        let clock = if self.is_parallel() { Stopwatch::wall } else { Stopwatch::elapsed };
+        steady(clock, || self.answer(black_box(field)))
     }
 }
 

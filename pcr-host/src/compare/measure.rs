@@ -1,4 +1,4 @@
-//! Times, in rounds: in each round every method is run once, one after the other, so that what slows the machine down
+//! Times, in rounds: in each round all methods run, one after the other, so that what slows the machine down
 //! for a while slows all of them down. A ratio is the median of the ratios of the rounds.
 
 use super::errors::{Errors, Truth, errors};

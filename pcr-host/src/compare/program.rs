@@ -2,7 +2,7 @@
 //! installed. They read numbers, and write the time that the work took, then the contacts; starting them and
 //! carrying the numbers does not count.
 
-use super::stopwatch::Stopwatch;
+use super::stopwatch::{Stopwatch, steady};
 use super::{Answer, Field, Found, Method, Question};
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -102,9 +102,7 @@ impl Method for Peer {
     }
 
     fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
-        let clock = Stopwatch::start();
-        let input = (self.input)(field);
-        let made = clock.elapsed();
+        let (made, input) = steady(Stopwatch::elapsed, || (self.input)(field));
         match self.program.contacts(&input, |time| (self.in_time)(field, time)) {
             Ok((work, answer)) => (made + work, Some(answer)),
             Err(_) => (made, None),

@@ -27,7 +27,8 @@ pub(super) fn preamble(extent: Extent) -> String {
         **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} (of {cores} if \
         nothing waits). **Libraries in C++**: {libraries}. Times are medians. What is claimed is *ratios*: in each round all methods run one after \
         the other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; \
-        sampling, flattening and meshes are part of its time. Methods run on one core where nothing else is said, and work of more than \
+        sampling, flattening and meshes are part of its time. What takes less than 5 ms is repeated for as long in each round, after a first \
+        time that does not count, so that it is not measured with the caches that the others have left. Methods run on one core where nothing else is said, and work of more than \
         40 ms counts by the time that the processor spent on it, so that other work on the machine does not count.\n"
     )
 }

@@ -2,7 +2,7 @@
 
 use super::{Extent, Fleets, Problem, Section, picture};
 use crate::compare::measure::median;
-use crate::compare::stopwatch::Stopwatch;
+use crate::compare::stopwatch::{Stopwatch, steady};
 use crate::fleet::{Fleet, build_ecm};
 use crate::picture::plot::{Chart, Series};
 use crate::report::figures::{share, time};
@@ -65,10 +65,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
 }
 
 /// \[ms\]
-fn timed(work: impl FnOnce() -> usize) -> f64 {
-    let clock = Stopwatch::start();
-    black_box(work());
-    1e3 * clock.elapsed()
+fn timed(work: impl FnMut() -> usize) -> f64 {
+    1e3 * steady(Stopwatch::elapsed, work).0
 }
 
 /// Pairs whose boxes come within the sum of their radii: what the table does first.

@@ -2,7 +2,7 @@
 
 use super::{Extent, Fleets, Problem, Section, picture};
 use crate::check::Verdict;
-use crate::compare::stopwatch::Stopwatch;
+use crate::compare::stopwatch::{Stopwatch, steady};
 use crate::fleet::build_ecm;
 use crate::footprint::Footprint;
 use crate::import::Imported;
@@ -94,8 +94,7 @@ fn row(imported: &Imported, name: &str, agents: usize) -> Result<(String, [crate
 }
 
 /// Time of one core \[ms\].
-fn timed<E>(work: impl FnOnce() -> Result<(), E>) -> Result<f64, E> {
-    let clock = Stopwatch::start();
-    work()?;
-    Ok(1e3 * clock.elapsed())
+fn timed<E>(work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+    let (time, outcome) = steady(Stopwatch::elapsed, work);
+    outcome.map(|()| 1e3 * time)
 }
