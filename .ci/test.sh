@@ -2,7 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests release fuzz
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests instructions fuzz
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -27,19 +27,17 @@ docs() {
 }
 
 tests() {
-  step "tests, debug: overflow checks and assertions on, methods of other libraries in comparisons"
+  step "tests: optimized, overflow checks and assertions on, methods of other libraries in comparisons"
   peer_libraries
-  cargo test --workspace --features pcr-tests/peers --locked
-}
-
-release() {
-  step "tests, release"
-  cargo test --workspace --release --locked
+  cargo test --workspace --profile checked --features pcr-tests/peers --locked
   step "plans of 100000 random fleets by either method, checked by the oracle"
   # Built with the tests; `cargo run` would build what it depends on with other features.
-  "${CARGO_TARGET_DIR:-target}/release/examples/fleets" 0 100000
+  "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
   step "benchmarks, one pass each, as the tests are built"
-  cargo bench --workspace --profile release --locked -- --test
+  cargo bench --workspace --profile checked --features pcr-tests/peers --locked -- --test
+}
+
+instructions() {
   step "instructions of the library's jobs"
   benches/instructions.sh
 }
@@ -133,7 +131,7 @@ fuzz() {
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests release fuzz}; do
+for part in ${*:-style docs features no_std c firmware tests instructions fuzz}; do
   "$part"
 done
 step "all passed"
