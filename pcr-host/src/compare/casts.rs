@@ -39,11 +39,18 @@ impl Method for Casts {
 
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
         let pieces: Vec<Vec<Piece>> = field.tracks.iter().map(|track| pieces(track, field.horizon)).collect();
+        let corners = |piece: &Piece| [[piece.bounds[0], piece.bounds[1]], [piece.bounds[2], piece.bounds[3]]];
+        let bound = |pieces: &Vec<Piece>| {
+            pieces.iter().flat_map(corners).fold(EMPTY, |bounds, corner| hull(bounds, corner, 0.0))
+        };
+        let bounds: Vec<[f64; 4]> = pieces.iter().map(bound).collect();
         let mut found = Vec::new();
         for (first, a) in field.tracks.iter().enumerate() {
             for (second, b) in field.tracks.iter().enumerate().skip(first + 1) {
-                let begin = first_contact(&pieces[first], &pieces[second], [a.radius, b.radius]);
-                found.extend(begin.map(|begin| Found { agents: [first, second], begin, end: None }));
+                if near(bounds[first], bounds[second], a.radius + b.radius) {
+                    let begin = first_contact(&pieces[first], &pieces[second], [a.radius, b.radius]);
+                    found.extend(begin.map(|begin| Found { agents: [first, second], begin, end: None }));
+                }
             }
         }
         Some(Answer::Conflicts(found))
