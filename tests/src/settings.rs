@@ -2,10 +2,10 @@
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// Settings of a property with this many cases in a release run, one in `debug_part` of them in a debug run. They follow
+/// Settings of a property with this many cases in an optimized run, one in `debug_part` of them in another. They follow
 /// from the seed alone: a failure is the same everywhere.
 pub fn settings(release: u32, debug_part: u32, seed: u64) -> Config {
-    let cases = if cfg!(not(optimized)) { release / debug_part } else { release };
+    let cases = if cfg!(optimized) { release } else { release / debug_part };
     Config {
         cases,
         failure_persistence: None,

@@ -54,7 +54,7 @@ fn leaves_out_no_contact<S: Format>(seeds: u64) {
     assert!(overlaps > 100 && left_out > overlaps, "{overlaps} overlaps, {left_out} left out");
 }
 
-const SEEDS: u64 = if cfg!(not(optimized)) { 50 } else { 1_000 };
+const SEEDS: u64 = if cfg!(optimized) { 1_000 } else { 50 };
 
 #[test]
 fn no_contact_is_left_out_in_floating_point() {

@@ -70,7 +70,7 @@ fn deep(a: &Driven, b: &Driven, during: [f64; 2], tolerance: f64) -> bool {
 
 #[test]
 fn the_first_conflict_with_a_row_is_that_of_the_definition() {
-    let cases = if cfg!(not(optimized)) { 100 } else { 2_000 };
+    let cases = if cfg!(optimized) { 2_000 } else { 100 };
     first_of_rows::<f64>(cases);
     first_of_rows::<f32>(cases);
     first_of_rows::<Q16>(cases);

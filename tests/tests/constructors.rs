@@ -282,7 +282,7 @@ macro_rules! in_format {
 
             proptest! {
                 #![proptest_config(ProptestConfig {
-                    cases: if cfg!(not(optimized)) { 4_000 } else { 40_000 },
+                    cases: if cfg!(optimized) { 40_000 } else { 4_000 },
                     failure_persistence: None,
                     rng_seed: RngSeed::Fixed(40),
                     ..ProptestConfig::default()

@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 const F32_EXCESS: f64 = 2e-6;
 
 /// Samples of each region.
-const SAMPLES: u32 = if cfg!(not(optimized)) { 8 } else { 32 };
+const SAMPLES: u32 = if cfg!(optimized) { 32 } else { 8 };
 
 /// The pairs, in numbers of the format.
 fn pairs<S: Format>() -> impl Iterator<Item = (String, Disc, Disc)> {
@@ -86,7 +86,7 @@ fn fixed_point_contains_the_f64_regions_and_is_within_those_of_a_larger_radius()
 fn contains_and_is_within<S: Format>(allowed: impl Fn(f64) -> (f64, f64)) -> usize {
     let mut refused = 0;
     // A debug run takes some of them.
-    for (name, ego, other) in pairs::<S>().step_by(if cfg!(not(optimized)) { 5 } else { 1 }) {
+    for (name, ego, other) in pairs::<S>().step_by(if cfg!(optimized) { 1 } else { 5 }) {
         let Ok(small) = Audit::<S>::new(&ego, &other) else {
             refused += 1;
             continue;

@@ -9,7 +9,7 @@ use pcr_tests::generators::Dice;
 use std::f64::consts::{PI, TAU};
 
 /// Samples of each law.
-const SAMPLES: u64 = if cfg!(not(optimized)) { 400 } else { 20_000 };
+const SAMPLES: u64 = if cfg!(optimized) { 20_000 } else { 400 };
 
 fn samples() -> impl Iterator<Item = Dice> {
     (0..SAMPLES).map(Dice::seeded)

@@ -16,10 +16,10 @@ const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
 const FORK: [Point; 4] = [[-0.4, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.4, 0.3]];
 
 /// A route graph with one-way edges.
-const GRAPH: &str = if cfg!(not(optimized)) { SAMPLE } else { WAREHOUSE };
+const GRAPH: &str = if cfg!(optimized) { WAREHOUSE } else { SAMPLE };
 
 /// Poses of each edge, and of each turn.
-const POSES: usize = if cfg!(not(optimized)) { 6 } else { 16 };
+const POSES: usize = if cfg!(optimized) { 16 } else { 6 };
 
 fn read(format: Format, text: &str, footprint: Option<Footprint>) -> Imported {
     let radius = footprint.as_ref().map_or(0.5, Footprint::reach);

@@ -15,7 +15,7 @@ use pcr_tests::outward::{Checked, Seen, run, run_on_all_processors};
 
 /// Cases of a format that are checked: more than a million in all in a release run, less in a debug run.
 const fn cases(release: u64) -> u64 {
-    if cfg!(not(optimized)) { 1_000 } else { release }
+    if cfg!(optimized) { release } else { 1_000 }
 }
 
 fn holds<S: Format>(first: u64, cases: u64, held: f64) {

@@ -13,11 +13,10 @@ use pcr_tests::settings::settings;
 use proptest::prelude::*;
 
 /// Samples along each side of the rectangle of lengths.
-const SAMPLES: usize = if cfg!(not(optimized)) { 12 } else { 24 };
+const SAMPLES: usize = if cfg!(optimized) { 24 } else { 12 };
 
 /// What the oracle may spend on the components of a pair.
-const EFFORT: Effort =
-    Effort { resolution: 2e-2, boxes: if cfg!(not(optimized)) { 4_000 } else { 20_000 }, range: 1e-5 };
+const EFFORT: Effort = Effort { resolution: 2e-2, boxes: if cfg!(optimized) { 20_000 } else { 4_000 }, range: 1e-5 };
 
 /// What it may spend on finding out whether the number of components is critical.
 const GLANCE: Effort = Effort { resolution: 3e-2, boxes: 3_000, range: f64::INFINITY };

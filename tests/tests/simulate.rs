@@ -7,7 +7,7 @@ use pcr_host::simulate::{
 };
 use std::f64::consts::{PI, TAU};
 
-const SEEDS: u64 = if cfg!(not(optimized)) { 3 } else { 100 };
+const SEEDS: u64 = if cfg!(optimized) { 100 } else { 3 };
 
 /// Overlaps up to this depth \[m\] are rounding.
 const ROUNDING: f64 = 1e-9;
