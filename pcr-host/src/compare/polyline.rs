@@ -30,6 +30,7 @@ impl Method for Polyline {
     fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
         let knots: Vec<Vec<Knot>> =
             field.tracks.iter().map(|track| knots(track, self.tolerance, field.horizon)).collect();
+        // Between its knots a path is within the tolerance of the box, which the reach of a pair holds.
         let bound = |knots: &Vec<Knot>| knots.iter().fold(EMPTY, |bounds, knot| hull(bounds, knot.at, 0.0));
         let bounds: Vec<[f64; 4]> = knots.iter().map(bound).collect();
         let mut found = Vec::new();

@@ -65,3 +65,26 @@ fn spent() -> Option<f64> {
     let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
     Some(1e-9 * nanoseconds)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How often work is done, and the time that counts, if a clock shows this.
+    fn runs(clock: fn(&Stopwatch) -> f64) -> (u32, f64) {
+        let mut count = 0;
+        let (time, last) = steady(clock, || {
+            count += 1;
+            count
+        });
+        assert_eq!(last, count, "what it made the last time");
+        (count, time)
+    }
+
+    #[test]
+    fn long_work_is_done_once_and_short_work_again_and_again() {
+        assert_eq!(runs(|_| SHORT), (1, SHORT));
+        assert_eq!(runs(|_| 0.3 * SHORT), (1 + 4, 0.3 * SHORT / 4.0));
+        assert_eq!(runs(|_| 0.0), (1 + MOST as u32, 0.0));
+    }
+}
