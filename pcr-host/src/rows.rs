@@ -129,7 +129,7 @@ pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(&Row<'a, S>)
 }
 
 /// Agents that a thread takes at once, neighbours of one another.
-const STRETCH: usize = 64;
+const STRETCH: usize = 16;
 
 /// All rows, by their agents, computed on all cores.
 ///
