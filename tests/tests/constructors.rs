@@ -5,7 +5,7 @@ use pcr_core::{
 };
 use pcr_host::fleet::{Format, build_ecm};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+use proptest::test_runner::{RngAlgorithm, RngSeed};
 
 /// Numbers that are no numbers, or hardly.
 const GARBAGE: [f64; 22] = [
@@ -284,6 +284,8 @@ macro_rules! in_format {
                 #![proptest_config(ProptestConfig {
                     cases: if cfg!(optimized) { 40_000 } else { 4_000 },
                     failure_persistence: None,
+                    // Every number begins a generator of its own, which takes ChaCha longer than what is tested.
+                    rng_algorithm: RngAlgorithm::XorShift,
                     rng_seed: RngSeed::Fixed(40),
                     ..ProptestConfig::default()
                 })]
