@@ -34,7 +34,7 @@ tests() {
   # Built with the tests; `cargo run` would build what it depends on with other features.
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
   step "benchmarks, one pass each, as the tests are built"
-  cargo bench --workspace --profile checked --features pcr-tests/peers --locked -- --test
+  cargo bench --workspace --bench '*' --profile checked --features pcr-tests/peers --locked -- --test
 }
 
 instructions() {

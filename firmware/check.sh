@@ -56,7 +56,6 @@ build() {
   ./cross.sh "$target" build --locked --release --quiet --no-default-features --features "$format" "${bins[@]}"
 }
 
-
 # The proof of the proof: with one division more it does not link.
 control() {
   local target=$1 format=$2
