@@ -128,7 +128,7 @@ pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(&Row<'a, S>)
     })
 }
 
-/// Agents that a thread takes at once, neighbours of one another.
+/// Fewest agents that a thread takes at once, neighbours of one another: few enough that a fleet of 100 has some for every core.
 const STRETCH: usize = 16;
 
 /// All rows, by their agents, computed on all cores.
