@@ -55,7 +55,7 @@ mod segment;
 
 pub use crossing::{Crossing, crossings};
 pub use ecm::{Ecm, Region};
-pub use error::{Full, Invalid};
+pub use error::{Full, Invalid, Mismatch, Unchanged};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
@@ -65,7 +65,7 @@ pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, pl
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
     Approach, BroadPhase, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start,
-    first_conflict, least_duration, safe_intervals, safe_lengths,
+    first_conflict, first_overlap, least_duration, safe_intervals, safe_lengths,
 };
 pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]

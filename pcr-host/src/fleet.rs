@@ -311,7 +311,7 @@ pub(crate) fn table_of<S: Scalar>(
 ) -> Result<HostEcm<S>, Full> {
     grown(storage, |regions, pieces| {
         let mut ecm = Ecm::new(regions, pieces);
-        ecm.insert(motions, agent).map(|()| ecm)
+        ecm.fill_row(motions, agent).map(|()| ecm)
     })
 }
 

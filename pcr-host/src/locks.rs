@@ -177,7 +177,7 @@ fn extents(places: &[Place<'_>]) -> Result<BTreeMap<[usize; 2], Vec<Extents>>, I
     let ecm = build_ecm(&motions).map_err(|full| refused(&full))?;
     let mut extents: BTreeMap<[usize; 2], Vec<Extents>> = BTreeMap::new();
     for (k, disc) in discs.iter().enumerate() {
-        for region in ecm.row(&motions, k).filter(|region| region.other() > k) {
+        for region in ecm.row(&motions, k).expect("the table of the fleet").filter(|region| region.other() > k) {
             let Some(other) = discs.get(region.other()) else { continue };
             let [Some((a, own)), Some((b, their))] = [rides.get(disc.agent), rides.get(other.agent)] else { continue };
             if a != b {

@@ -187,7 +187,8 @@ impl Planner<'_> {
             order
         };
         let longest = || sorted(&|agent| self.motions[agent].time().length());
-        let crowded = || sorted(&|agent| self.ecm.row(self.motions, agent).count() as f64);
+        let crowded =
+            || sorted(&|agent| self.ecm.row(self.motions, agent).expect("the table of the fleet").count() as f64);
         Ok(match priority {
             Priority::Given(given) => {
                 let mut order = given.iter().map(place).collect::<Result<Vec<usize>, Failure>>()?;

@@ -219,7 +219,7 @@ impl<S: Format> Checked<S> {
                 routes,
                 radius: self.radius,
                 doubt: self.doubt,
-                regions: ecm.pair(&motions, ego, other).collect(),
+                regions: ecm.pair(&motions, ego, other).expect("the table of the fleet").collect(),
                 excess,
             };
             seen.regions += view.regions.len() as u64;

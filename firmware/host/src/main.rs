@@ -61,7 +61,7 @@ fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let mut out = io::stdout().lock();
     out.write_all(dump::HEADING)?;
-    for region in ecm.regions(&fleet) {
+    for region in ecm.regions(&fleet)? {
         out.write_all(dump::region(&region).as_bytes())?;
     }
     writeln!(out, "{} regions, {} pieces", ecm.len(), ecm.pieces())?;

@@ -221,7 +221,7 @@ where
     for ego in 0..fleet.len() {
         link.ask(&Request::Row { ego: u16::try_from(ego)? })?;
         let mut row = 0;
-        for region in ecm.row(&fleet, ego) {
+        for region in ecm.row(&fleet, ego)? {
             same(&link.hear()?, &Answer::Region(RegionRecord::of(&region)))?;
             for piece in region.pieces() {
                 same(&link.hear()?, &Answer::Piece(PieceRecord::of(&piece)))?;
@@ -271,7 +271,7 @@ where
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;
     for agent in 0..fleet.len() {
-        let answer = match earliest_start(ecm.row(&fleet, agent), S::ZERO) {
+        let answer = match earliest_start(ecm.row(&fleet, agent)?, S::ZERO) {
             Some(delay) => {
                 fleet[agent] = fleet[agent].delayed(delay)?;
                 planned += 1;

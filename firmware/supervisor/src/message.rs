@@ -4,7 +4,7 @@ use crate::agent::Agent;
 use crate::frame::Damage;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Encounter, Full, Interval, Invalid, Motion, PieceRef, RegionRef};
+use pcr_core::{Encounter, Full, Interval, Invalid, Mismatch, Motion, PieceRef, RegionRef};
 use serde::{Deserialize, Serialize};
 
 /// A request to the supervisor. Each is answered before the next is read.
@@ -174,6 +174,8 @@ pub enum Refusal {
     NoSuchAgent,
     /// However late the agent sets off, it meets another one.
     NoPlan,
+    /// The table is not that of the agents: it is to be computed first.
+    NotComputed,
 }
 
 /// [`Invalid`] without its words.
@@ -236,6 +238,15 @@ impl From<Invalid> for Refusal {
 impl From<Full> for Refusal {
     fn from(_: Full) -> Self {
         Self::TableFull
+    }
+}
+
+impl From<Mismatch> for Refusal {
+    fn from(mismatch: Mismatch) -> Self {
+        match mismatch {
+            Mismatch::NoSuchAgent(_) => Self::NoSuchAgent,
+            _ => Self::NotComputed,
+        }
     }
 }
 

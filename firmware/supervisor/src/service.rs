@@ -65,7 +65,7 @@ impl<S: Number> Service<S> {
 
     fn empty_table(&mut self) {
         self.computed = false;
-        (0..AGENTS).for_each(|agent| self.table.remove(agent));
+        self.table.clear();
     }
 
     fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Answer<S> {
@@ -81,15 +81,8 @@ impl<S: Number> Service<S> {
     fn compute(&mut self) -> Result<(), Refusal> {
         self.empty_table();
         let motions = self.fleet.motions();
-        // Agent by agent, each against those before it.
-        let outcome = (0..motions.len()).try_for_each(|agent| {
-            let fleet = motions.get(..=agent).unwrap_or_default();
-            self.table.insert(fleet, agent)
-        });
+        let outcome = self.table.fill(&motions);
         drop(motions);
-        if outcome.is_err() {
-            self.empty_table();
-        }
         self.computed = outcome.is_ok();
         Ok(outcome?)
     }
@@ -101,7 +94,7 @@ impl<S: Number> Service<S> {
         }
         let (agent, motions) = (usize::from(agent), self.fleet.motions());
         let motion = motions.get(agent).ok_or(Refusal::NoSuchAgent)?;
-        let delay = earliest_start(self.table.row(&motions, agent), S::ZERO).ok_or(Refusal::NoPlan)?;
+        let delay = earliest_start(self.table.row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
         let time = motion.delayed(delay)?.time();
         drop(motions);
         // The table is of paths: it stays as it is.
@@ -111,8 +104,12 @@ impl<S: Number> Service<S> {
 
     fn row(&self, ego: usize, mut send: impl FnMut(Answer<S>)) {
         let motions = self.fleet.motions();
+        let regions = match self.table.row(&motions, ego) {
+            Ok(regions) => regions,
+            Err(mismatch) => return send(Answer::Refused(mismatch.into())),
+        };
         let mut count = 0_u16;
-        for region in self.table.row(&motions, ego) {
+        for region in regions {
             send(Answer::Region(RegionRecord::of(&region)));
             region.pieces().for_each(|piece| send(Answer::Piece(PieceRecord::of(&piece))));
             count = count.saturating_add(1);

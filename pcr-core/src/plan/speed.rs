@@ -159,7 +159,7 @@ impl<S: core::fmt::Debug> core::error::Error for NoSpeedPlan<S> {}
 ///
 /// let mut stations = [const { Station::EMPTY }; 32];
 /// let drive = Drive::rest_to_rest(limits);
-/// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0), &mut stations)?;
+/// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0)?, &mut stations)?;
 /// let planned = Motion::new(paths[0].as_path(), plan.profile.as_profile(), 0.25, plan.start)?;
 /// // It passes behind the other one, R √2 / v later.
 /// assert!((planned.time().hi - fleet[0].time().hi - 0.5 * 2.0_f64.sqrt()).abs() < 1e-6);
@@ -190,6 +190,7 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     // Contacts are those of agents in time.
     if !search.regions.clone().any(|region| region.is_uncertain()) {
         search.tighten(ego, &mut plan)?;
+        search.check(ego, &plan)?;
     }
     Ok(plan)
 }

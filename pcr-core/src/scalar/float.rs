@@ -58,6 +58,11 @@ macro_rules! impl_float {
             fn scale(self, by: $t) -> Self {
                 self * by
             }
+            fn digest(self) -> u32 {
+                // All bits of `f32`, the halves of `f64` on one another: a shift by 0 or 32.
+                let bits = u64::from(self.to_bits());
+                (bits ^ (bits >> 32)) as u32
+            }
             fn half(self) -> Self {
                 0.5 * self
             }

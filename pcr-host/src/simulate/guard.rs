@@ -58,7 +58,7 @@ impl Guard {
         let mut orders = Vec::new();
         for (other, at) in now.iter().enumerate() {
             for ego in 0..other {
-                for region in self.ecm.pair(&motions, ego, other) {
+                for region in self.ecm.pair(&motions, ego, other).expect("the table of the fleet") {
                     let (own, their) = (region.length(), region.other_length());
                     if now.get(ego).is_some_and(|ego| ego.lo > own.hi) || at.lo > their.hi {
                         continue;

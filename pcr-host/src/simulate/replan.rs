@@ -130,7 +130,7 @@ impl Problem<'_> {
         }
         let brakes = speed_that_stops(robot).powi(2) / (2.0 * robot.limits.acceleration);
         let (fleet, ecm) = row(motion, others)?;
-        let entries = ecm.row(&fleet, 0).map(|region| region.length().lo - BEFORE);
+        let entries = ecm.row(&fleet, 0).expect("the table of the fleet").map(|region| region.length().lo - BEFORE);
         let mut stops: Vec<f64> = entries.filter(|&length| length > brakes).chain([brakes]).collect();
         stops.sort_by(f64::total_cmp);
         stops.dedup();
@@ -152,7 +152,7 @@ impl Problem<'_> {
         let further = to_rest(0.0, onward.length(), robot.limits)?;
         let onward = Drive::new(onward, 0.0, &further, stops_at)?;
         let (fleet, ecm) = row(onward.motion(robot.radius)?, others)?;
-        let wait = earliest_start(ecm.row(&fleet, 0), 0.0)?;
+        let wait = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)?;
         pieces.push((wait, 0.0));
         pieces.extend(further);
         pieces.retain(|(duration, _)| *duration > 0.0);

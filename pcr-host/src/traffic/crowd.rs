@@ -49,7 +49,7 @@ impl Crowd {
             let pair: Vec<Motion<'_, f64>> =
                 std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
             let ecm = build_ecm_of(&pair, 0).ok()?;
-            for region in ecm.row(&pair, 0) {
+            for region in ecm.row(&pair, 0).expect("the table of the fleet") {
                 let Some((other, _)) = others.get(region.other().wrapping_sub(1)) else { continue };
                 let [goes_after, goes_before] = sides(&region);
                 marks[0][*other] |= goes_after;

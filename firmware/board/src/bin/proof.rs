@@ -14,7 +14,7 @@ use pcr_core::{
     Bounds, BroadPhase, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid,
     Limits, Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region,
     RegionRef, Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_departure, earliest_start,
-    excess, first_conflict, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths,
+    excess, first_conflict, first_overlap, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths,
     union,
 };
 
@@ -204,10 +204,10 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
     if let Ok(broad_phase) = BroadPhase::new(any(&mut [][..]), fleet, interval()) {
         any((BroadPhase::parts(&broad_phase), BroadPhase::candidates(&broad_phase).last()));
         any(BroadPhase::contacts(&broad_phase).last());
-        any(BroadPhase::contacts_of(&broad_phase, any([0; 2]), interval()).last());
+        any(BroadPhase::contacts_of(&broad_phase, any([0; 2]), interval())).into_iter().flatten().for_each(drop);
     }
-    any(safe_intervals(fleet, any(0), interval(), interval()).last());
-    any(safe_lengths(fleet, any(0), interval()).last());
+    any(safe_intervals(fleet, any(0), interval(), interval())).into_iter().flatten().for_each(drop);
+    any(safe_lengths(fleet, any(0), interval())).into_iter().flatten().for_each(drop);
 }
 
 #[inline(never)]
@@ -216,23 +216,27 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
     let mut ecm = any(Ecm::<S, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8]));
     for &agent in agents {
         any(Ecm::insert(&mut ecm, fleet, agent).is_ok());
-        any(Ecm::remove(&mut ecm, agent));
+        any(Ecm::remove(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::fill_row(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::fill(&mut ecm, fleet).is_ok());
+        Ecm::clear(any(&mut ecm));
         if let Some(&motion) = any(fleet.first()) {
             any(Ecm::replace(&mut ecm, fleet, agent, motion).is_ok());
         }
         plans(&ecm, fleet, agent);
         any((Ecm::len(&ecm), Ecm::is_empty(&ecm), Ecm::pieces(&ecm)));
-        Ecm::regions(&ecm, fleet).for_each(|region| regions(&region));
-        Ecm::row(&ecm, fleet, agent).for_each(|region| regions(&region));
-        Ecm::pair(&ecm, fleet, agent, any(agent)).for_each(|region| regions(&region));
+        any(Ecm::regions(&ecm, fleet)).into_iter().flatten().for_each(|region| regions(&region));
+        any(Ecm::row(&ecm, fleet, agent)).into_iter().flatten().for_each(|region| regions(&region));
+        any(Ecm::pair(&ecm, fleet, agent, any(agent))).into_iter().flatten().for_each(|region| regions(&region));
     }
 }
 
 #[inline(never)]
 fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_, S>], agent: usize) {
-    let row = Ecm::row(ecm, fleet, agent);
+    let Ok(row) = Ecm::row(ecm, fleet, agent) else { return };
     let Some(motion) = any(fleet.first()) else { return };
     any(first_conflict(motion, row.clone(), interval()));
+    any(first_overlap(motion, row.clone(), interval()));
     let limits = Limits { speed: number(), acceleration: number() };
     let drive = Drive { start: number(), goal: number(), ..Drive::rest_to_rest(limits) };
     any((drive, Drive::of(motion)));
