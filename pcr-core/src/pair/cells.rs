@@ -152,10 +152,10 @@ impl<S: Scalar> SegmentPair<'_, S> {
     fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, l: S) {
         let point = self.first.point_at(l);
         let footprint = Footprint::of(point, self.second);
-        let reach = self.radius + self.slack;
-        if footprint.offset.abs() > reach {
+        if footprint.offset.abs() > self.radius + self.slack {
             return;
         }
+        let reach = self.radius + self.slack.half();
         let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
         let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
         let turn = [Some(Interval::new(l, l)), None];
