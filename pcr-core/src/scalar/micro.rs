@@ -24,9 +24,9 @@ pub struct Micro(
 );
 
 impl Micro {
-    /// Slack in unit roundoffs of the extent: twice that of `f32`, for roots that are right to 1.5 last digits instead of
-    /// 0.5.
-    const SLACK: f32 = 24.0;
+    /// Slack in unit roundoffs of the extent: that of `f32`, and more for roots that are right to 1.5 last digits instead of
+    /// 0.5 and angles that are right to 7 roundoffs instead of 6.
+    const SLACK: f32 = 74.0;
 }
 
 impl Add for Micro {
@@ -135,6 +135,9 @@ impl Scalar for Micro {
     }
     fn portion(self, part: Self, whole: Self) -> Self {
         Self(self.0.portion(part.0, whole.0))
+    }
+    fn rounding(of: Self) -> Self {
+        Self(f32::rounding(of.0))
     }
     fn slack(extent: Self) -> Self {
         Self(0.5 * Self::SLACK * f32::EPSILON * extent.0)
