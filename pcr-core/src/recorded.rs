@@ -278,7 +278,7 @@ fn the_kernels_are_those_that_were_proved() {
     let offset = place(footprint.offset);
     assert_eq!(offset, all);
 
-    let before = length();
+    let (before, footprint_y) = (length(), y.0);
     let radius = input("r", 1.75);
     footprint.reach(&arc, radius);
     // What follows the last root are angles.
@@ -288,12 +288,18 @@ fn the_kernels_are_those_that_were_proved() {
 
     on_tape(Tape::clear);
     let ramp = Ramp {
-        slow: input("v", 1.0),
+        slow: input("v", 1.1),
         fast: input("w", 2.0),
-        acceleration: input("a", 0.5),
+        acceleration: input("a", 0.3),
         duration: input("t", 2.0),
         length: input("l", 3.0),
     };
-    N::ramp_length(ramp, input("e", 1.0));
+    let way = N::ramp_length(ramp, input("e", 1.25));
     assert_recorded("ramp", &lines(0, length(), &[]));
+
+    // The bodies of `float.rs` above are still those: the same operations have the same bits.
+    let floats = Ramp { slow: 1.1, fast: 2.0, acceleration: 0.3, duration: 2.0, length: 3.0 };
+    assert_eq!(way.0.to_bits(), f64::ramp_length(floats, 1.25).to_bits());
+    let below: f64 = 3.1 - footprint_y;
+    assert_eq!(f64::difference(3.1, below, 0.7).to_bits(), N::difference(N(3.1, 0), N(below, 0), N(0.7, 0)).0.to_bits());
 }

@@ -228,7 +228,7 @@ macro_rules! impl_float {
 }
 
 /// Slack in unit roundoffs of the extent: the sum of the worst cases, docs/errors.md.
-const SLACK: u8 = 68;
+const SLACK: u8 = 64;
 
 // `tolerance` 2^-32 and 2^-16 of the extent; `split` is 1 more than the power of 2 that halves a significand.
 impl_float!(f64, bits: u64, limit: 1e12, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
