@@ -72,3 +72,6 @@ pub use region::{PieceRef, PieceType, RegionRef, excess};
 pub use scalar::Radians;
 pub use scalar::Scalar;
 pub use segment::{Curve, Segment, Turn};
+
+#[cfg(all(test, feature = "libm"))]
+mod recorded;

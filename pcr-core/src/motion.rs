@@ -38,15 +38,18 @@ impl<'a, S: Scalar> Motion<'a, S> {
         positive(radius, "radius")?;
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
-        let extent = bounds.extent().max(path.length()) + radius;
+        let extent = bounds.extent().max(path.length()) + radius.double();
         let gap = (profile.length() - path.length()).abs();
         if gap > S::slack(extent) {
             return Err(Invalid::LengthMismatch);
         }
-        let arcs = path.segments().iter().filter(|segment| segment.curve() != Curve::Line);
         // `count` would check for overflow.
-        let arcs = arcs.fold(0_usize, |count, _| count.saturating_add(1));
-        let drift = S::drift(arcs, extent);
+        let (arcs, diameter) =
+            path.segments().iter().fold((0_usize, S::ZERO), |(arcs, most), segment| match segment.curve() {
+                Curve::Line => (arcs, most),
+                Curve::Arc { radius, .. } => (arcs.saturating_add(1), most.max(radius.double())),
+            });
+        let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
         // The agent is nowhere by more than that from where its profile says.
         let lag = S::lag(top_speed, profile.duration()) + gap;
@@ -103,7 +106,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// ```
     #[must_use]
     pub fn inflated(self) -> Self {
-        let (radius, extent) = (self.radius + self.margin, self.extent + self.margin);
+        let (radius, extent) = (self.radius + self.margin, self.extent + self.margin.double());
         Self { radius, extent, margin: S::ZERO, ..self }
     }
 
@@ -166,7 +169,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds.expanded(self.radius + slack.double())
     }
 
-    /// Largest coordinate or length that belongs to the motion, plus its radius \[m\]: what errors grow with.
+    /// Largest coordinate or length that belongs to the motion, plus the diameter of the disc \[m\]: what errors grow with.
     pub fn extent(&self) -> S {
         self.extent
     }
@@ -221,7 +224,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// What the sum of the start time and a time since then may be off.
     fn time_slack(&self) -> S {
-        S::slack(self.latest())
+        let rounding = S::rounding(self.latest());
+        rounding.double() + rounding
     }
 
     /// The largest magnitude of a time of the motion \[s\].

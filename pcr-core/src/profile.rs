@@ -73,7 +73,7 @@ impl<S: Scalar> Phase<S> {
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
             // The last digit of the acceleration counts for the whole duration.
-            if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
+            if after < -(S::rounding(before) + S::rounding(acceleration.abs()).times(duration).narrow()) {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;

@@ -157,24 +157,28 @@ pub trait Scalar:
     fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self;
     /// Time since the slow end of a ramp after which `length` is travelled: the inverse of [`Scalar::ramp_length`].
     fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self;
-    /// The residual that rounding may cause in a configuration of the given extent: every distance that the
-    /// kernels compare with a radius is right within this. `docs/errors.md` states it for each format.
+    /// The residual that rounding may cause in a configuration of the given extent, [`Motion::extent`](crate::Motion::extent):
+    /// every distance that the kernels compare with a radius is right within this. `docs/errors.md` derives it for each
+    /// format.
     fn slack(extent: Self) -> Self;
-    /// How far the end of a path of so many arcs may be off for what cannot be carried on from one to the next.
-    fn drift(arcs: usize, extent: Self) -> Self {
-        let _ = (arcs, extent);
+    /// What a sum, a product or a quotient of a few numbers of this magnitude may be off.
+    fn rounding(of: Self) -> Self;
+    /// How far a path of so many arcs may be off for what cannot be carried on from one to the next, and for the rounding
+    /// of angles; `span` is its extent and the largest diameter of an arc.
+    fn drift(arcs: usize, span: Self) -> Self {
+        let _ = (arcs, span);
         Self::ZERO
     }
-    /// How far the rounding of a difference of two times up to `time` moves an agent of this speed: not at all in a
-    /// format that adds exactly.
+    /// How far the rounding of times up to `time`, of the phases and of a query, moves an agent of this speed: not at all
+    /// in a format that adds exactly.
     fn lag(speed: Self, time: Self) -> Self {
         let _ = (speed, time);
         Self::ZERO
     }
     /// Where a search for a contact stops, in a configuration of the given extent: discs this near to one another may be
-    /// reported as touching. At least 16 slacks; a finer format has more, as it takes steps to come this near.
+    /// reported as touching. Not a bound on an error but a choice: it takes steps to come nearer. At least two slacks.
     fn tolerance(extent: Self) -> Self {
-        Self::slack(extent).double().double().double().double()
+        Self::slack(extent).double().double().double()
     }
 }
 

@@ -187,8 +187,7 @@ fn bounds<S: Format>() {
     let at = |extent: f64| S::slack(S::from_f64(extent));
     assert!(S::ZERO <= at(0.0) && at(0.0) <= at(1.0) && at(1.0) <= at(200.0) && S::ZERO < at(1.0));
     for extent in [0.0, 1.0, 200.0].map(S::from_f64) {
-        let slacks = S::slack(extent).double().double().double().double();
-        assert!(S::tolerance(extent) >= slacks);
+        assert!(S::tolerance(extent) >= S::slack(extent).double());
         assert!(S::ZERO <= S::drift(1, extent) && S::drift(1, extent) <= S::drift(9, extent));
     }
     let lag = |time: f64| S::lag(S::from_f64(1.5), S::from_f64(time));

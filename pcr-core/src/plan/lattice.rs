@@ -73,7 +73,7 @@ impl<S: Scalar> Edge<S> {
         }
         let ramp = (fast - slow).quotient(acceleration);
         let mut way = (slow + fast).times(ramp).half().narrow();
-        let rounding = S::slack(length);
+        let rounding = S::rounding(length);
         if way > length + rounding.double() {
             return None;
         }
@@ -224,7 +224,7 @@ fn cells<S: Scalar>(length: S, cell: S, most: usize) -> Option<(usize, S)> {
         }
     }
     // Each difference may be off by a rounding.
-    let rounding = S::slack(length);
+    let rounding = S::rounding(length);
     if cell - rest <= rounding {
         (count, rest) = (count.saturating_add(1), S::ZERO);
     } else if rest <= rounding {

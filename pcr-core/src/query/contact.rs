@@ -59,8 +59,8 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     pub fn new(ego: &'a Motion<'a, S>, other: &'a Motion<'a, S>) -> Self {
         let extent = ego.extent().max(other.extent());
         let quadruple = |length: S| length.double().double();
-        // The last digit of a time counts with the speed.
-        let pad = quadruple(S::slack(extent + ego.reach() + other.reach())) + ego.drift() + other.drift();
+        // The slack of both positions (docs/errors.md); the last digit of a time counts with the speed.
+        let pad = S::slack(extent + ego.reach() + other.reach()) + ego.drift() + other.drift();
         Self { ego, other, pad, tolerance: S::tolerance(extent).max(quadruple(pad)) }
     }
 
@@ -75,7 +75,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     }
 
     /// ε: contacts deeper than this are never missed, clearances above it never taken for a contact \[m\]. The larger
-    /// of [`Scalar::tolerance`] of the larger extent and 16 slacks of that extent and both ways at top speed since the
+    /// of [`Scalar::tolerance`] of the larger extent and 4 slacks of that extent and both ways at top speed since the
     /// time 0, with four times the [`Scalar::drift`] of both; 2e-10 of the extent in `f64` unless times are beyond 1e5
     /// extents.
     pub fn tolerance(&self) -> S {
