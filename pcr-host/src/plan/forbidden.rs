@@ -154,5 +154,5 @@ fn without_loads(scenario: &Scenario) -> Scenario {
         true => agent.clone(),
         false => Agent { radius: agent.reach(), footprint: None, loads: Vec::new(), ..agent.clone() },
     });
-    Scenario { name: scenario.name.clone(), agents: agents.collect() }
+    Scenario::new(scenario.name.clone(), agents.collect())
 }

@@ -103,9 +103,10 @@ impl Problem<'_> {
         for &place in order {
             let robot = self.robots.get(place).ok_or(place)?;
             let planned =
-                drives.iter().zip(self.robots).filter_map(|(drive, robot)| drive.as_ref()?.motion(robot.radius));
-            let standing = self.obstacles.iter().filter_map(|(drive, radius)| drive.motion(*radius));
-            let others: Vec<Motion<'_, f64>> = planned.chain(standing).collect();
+                drives.iter().zip(self.robots).filter_map(|(drive, robot)| Some((drive.as_ref()?, robot.radius)));
+            let standing = self.obstacles.iter().map(|(drive, radius)| (drive, *radius));
+            let others = planned.chain(standing).map(|(drive, radius)| drive.motion(radius));
+            let others: Vec<Motion<'_, f64>> = others.collect::<Option<_>>().ok_or(place)?;
             let drive = self.best(robot, &others).ok_or(place)?;
             drives[place] = Some(drive);
         }

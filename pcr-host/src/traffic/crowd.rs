@@ -22,7 +22,7 @@ pub(super) struct Crowd {
 impl Crowd {
     /// Adds an agent if there still is an order for all; returns whether there is.
     pub(super) fn add(&mut self, agent: &Agent) -> bool {
-        let alone = Scenario { name: String::new(), agents: vec![agent.clone()] };
+        let alone = Scenario::new("", vec![agent.clone()]);
         // What cannot be computed with is not in anybody's way, and no mission.
         let Ok(bodies) = Bodies::<f64>::new(&alone) else { return false };
         // Most that fail do so by one disc of each already.

@@ -59,7 +59,7 @@ impl Copies {
             routes.take(AGENTS).map(|route| moved(route, offset)).collect::<Vec<_>>()
         });
         let named = copies.take(agents).zip(1..).map(|(agent, id)| Agent { id, ..agent });
-        Scenario { name: format!("{agents} agents in copies of a warehouse"), agents: named.collect() }
+        Scenario::new(format!("{agents} agents in copies of a warehouse"), named.collect())
     }
 }
 
