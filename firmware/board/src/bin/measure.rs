@@ -41,7 +41,7 @@ fn run() -> Option<()> {
         added.ok()?;
         constructors = constructors.saturating_add(count);
     }
-    let fleet = store.motions();
+    let fleet = store.motions().ok()?;
     let (mut build, mut worst) = (0_u32, 0_u32);
     for agent in 0..fleet.len() {
         let motions = fleet.get(..=agent)?;
