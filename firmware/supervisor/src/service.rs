@@ -26,6 +26,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
         Self { fleet: Store::new(), table, computed: false, built_in }
     }
 
+    // What it calls is not inlined: the stack of the one would lie under that of the other.
     /// Answers a request: one call of `send` for each answer. `next` is the sequence number that a greeting tells.
     pub fn answer(&mut self, request: Request<S>, next: u16, mut send: impl FnMut(Answer<S>)) {
         let outcome = match request {
@@ -65,12 +66,14 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
         Answer::Fleet { agents: short(self.fleet.len()) }
     }
 
+    #[inline(never)]
     fn add<Q: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, Q>) -> Result<Answer<S>, Refusal> {
         let index = self.fleet.len();
         self.fleet.add(agent).map_err(|invalid| Refusal::agent(index, invalid))?;
         Ok(self.changed())
     }
 
+    #[inline(never)]
     fn load(&mut self) -> Result<Answer<S>, Refusal> {
         self.clear();
         let built_in = self.built_in;
@@ -81,16 +84,19 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
         loaded.map(|()| self.changed())
     }
 
+    #[inline(never)]
     fn replace(&mut self, index: usize, agent: &Agent<S>) -> Result<Answer<S>, Refusal> {
         self.fleet.replace(index, agent).map_err(|rejected| Refusal::change(index, rejected))?;
         Ok(self.changed())
     }
 
+    #[inline(never)]
     fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
         self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
         Ok(self.changed())
     }
 
+    #[inline(never)]
     fn compute(&mut self) -> Result<Answer<S>, Refusal> {
         self.computed = false;
         self.table.fill(&motions(&self.fleet)?)?;
@@ -110,6 +116,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
     }
 
     /// When the agent moves now.
+    #[inline(never)]
     fn replan(&mut self, agent: usize) -> Result<Interval<S>, Refusal> {
         let motions = self.computed(agent)?;
         let delay = earliest_start(self.table.row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
@@ -118,6 +125,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
         self.fleet.delay(agent, delay).map_err(|rejected| Refusal::change(agent, rejected))
     }
 
+    #[inline(never)]
     fn row(&self, ego: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
         let motions = self.computed(ego)?;
         let mut count = 0_u16;
@@ -129,6 +137,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
         Ok(Answer::End { count })
     }
 
+    #[inline(never)]
     fn conflicts(&self, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
         let motions = motions(&self.fleet)?;
         let mut count = 0_u16;
