@@ -309,7 +309,8 @@ fn replan<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn 
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;
     for agent in 0..fleet.len() {
-        let answer = match earliest_start(ecm.row(&fleet, agent)?, S::ZERO) {
+        let delay = earliest_start(ecm.row(&fleet, agent)?, S::ZERO);
+        let answer = match delay {
             Some(delay) => {
                 fleet[agent] = fleet[agent].delayed(delay)?;
                 planned += 1;

@@ -4,7 +4,7 @@ use crate::agent::{Agent, Step};
 use crate::fleet::{Motions, Store};
 use crate::message::{Answer, ConflictRecord, PieceRecord, Refusal, RegionRecord, Request, short, text};
 use crate::number::Number;
-use pcr_core::{Ecm, Interval, Piece, Region, earliest_start};
+use pcr_core::{Ecm, Full, Interval, Motion, Piece, Region, earliest_start};
 
 /// A fleet and its table, made to be a `static`: at most `A` agents with `N` segments in all, those of an agent that comes
 /// in the place of another one included while both are there, `R` regions and `P` pieces of them.
@@ -99,26 +99,30 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
     #[inline(never)]
     fn compute(&mut self) -> Result<Answer<S>, Refusal> {
         self.computed = false;
-        self.table.fill(&motions(&self.fleet)?)?;
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        fill(&mut self.table, &motions)?;
+        drop(motions);
         self.computed = true;
         Ok(Answer::Computed { regions: short(self.table.len()), pieces: short(self.table.pieces()) })
     }
 
-    /// The motions of a fleet whose table there is, and that has this agent.
-    fn computed(&self, agent: usize) -> Result<Motions<'_, S, A>, Refusal> {
+    /// Puts the motions of the fleet, whose table there is and that has this agent, where they are to be.
+    fn put_computed<'a>(&'a self, agent: usize, motions: &mut Motions<'a, S, A>) -> Result<(), Refusal> {
         if agent >= self.fleet.len() {
             return Err(Refusal::NoSuchAgent { agent: short(agent) });
         }
         if !self.computed {
             return Err(Refusal::NotComputed);
         }
-        motions(&self.fleet)
+        put(&self.fleet, motions)
     }
 
     /// When the agent moves now.
     #[inline(never)]
     fn replan(&mut self, agent: usize) -> Result<Interval<S>, Refusal> {
-        let motions = self.computed(agent)?;
+        let mut motions = Motions::new();
+        self.put_computed(agent, &mut motions)?;
         let delay = earliest_start(self.table.row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
         drop(motions);
         // The table is of paths: it stays as it is.
@@ -127,7 +131,8 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
 
     #[inline(never)]
     fn row(&self, ego: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
-        let motions = self.computed(ego)?;
+        let mut motions = Motions::new();
+        self.put_computed(ego, &mut motions)?;
         let mut count = 0_u16;
         for region in self.table.row(&motions, ego)? {
             send(Answer::Region(RegionRecord::of(&region)));
@@ -139,7 +144,8 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
 
     #[inline(never)]
     fn conflicts(&self, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
-        let motions = motions(&self.fleet)?;
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
         let mut count = 0_u16;
         for first in 0..motions.len() {
             for second in first.saturating_add(1)..motions.len() {
@@ -153,6 +159,19 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
     }
 }
 
-fn motions<S: Number, const A: usize, const N: usize>(fleet: &Store<S, A, N>) -> Result<Motions<'_, S, A>, Refusal> {
-    fleet.motions().map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+/// Puts the motions of a fleet where they are to be. What is returned would lie on the stack more than once.
+fn put<'a, S: Number, const A: usize, const N: usize>(
+    fleet: &'a Store<S, A, N>,
+    motions: &mut Motions<'a, S, A>,
+) -> Result<(), Refusal> {
+    fleet.put_motions(motions).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+}
+
+// By itself, with a stack of its own.
+#[inline(never)]
+fn fill<S: Number, const R: usize, const P: usize>(
+    table: &mut Ecm<S, [Region; R], [Piece<S>; P]>,
+    fleet: &[Motion<'_, S>],
+) -> Result<(), Full> {
+    table.fill(fleet)
 }

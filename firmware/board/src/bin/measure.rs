@@ -51,8 +51,8 @@ fn run() -> Option<()> {
         worst = worst.max(count);
     }
     let (motion, zero) = (fleet.get(AGENT)?, <Number as Scalar>::ZERO);
-    let (conflict, _) =
-        meter.count(|| black_box(table.row(&fleet, AGENT).map(|row| first_conflict(motion, row, motion.time())).is_ok()));
+    let (conflict, _) = meter
+        .count(|| black_box(table.row(&fleet, AGENT).map(|row| first_conflict(motion, row, motion.time())).is_ok()));
     let (replan, _) = meter.count(|| black_box(table.row(&fleet, AGENT).map(|row| earliest_start(row, zero)).is_ok()));
     let (regions, pairs) = (table.len() as u32, PAIRS);
     let mut ranges = 0_u32;

@@ -14,8 +14,8 @@ use pcr_core::{
     Bounds, BroadPhase, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Interval, Invalid,
     Limits, Motion, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Region,
     RegionRef, Scalar, Segment, SpeedPlan, Station, Turn, Vector, crossings, earliest_departure, earliest_start,
-    excess, first_conflict, first_overlap, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths,
-    union,
+    excess, first_conflict, first_overlap, gaps, least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals,
+    safe_lengths, union,
 };
 
 #[entry]
