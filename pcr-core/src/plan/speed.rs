@@ -111,14 +111,13 @@ impl<S> From<Invalid> for NoSpeedPlan<S> {
     }
 }
 
-impl<S: core::fmt::Debug> core::fmt::Display for NoSpeedPlan<S> {
+// The length is not told: what writes floating point can panic, for all that a linker knows.
+impl<S> core::fmt::Display for NoSpeedPlan<S> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::AtStart(other) => write!(f, "agent {other} of the fleet is met at the start"),
             Self::AtGoal(other) => write!(f, "agent {other} of the fleet blocks the goal for good"),
-            Self::Beyond { length, other } => {
-                write!(f, "there is no way further than {length:?} m because of agent {other} of the fleet")
-            }
+            Self::Beyond { other, .. } => write!(f, "agent {other} of the fleet blocks the way on"),
             Self::Invalid(invalid) => write!(f, "{invalid}"),
         }
     }

@@ -26,7 +26,7 @@ fn run() -> Option<()> {
     for agent in &AGENTS {
         store.add(agent).ok()?;
     }
-    let fleet = store.motions();
+    let fleet = store.motions().ok()?;
     table.fill(&fleet).ok()?;
     out::print(dump::HEADING);
     table.regions(&fleet).ok()?.for_each(|region| out::print(dump::region(&region).as_bytes()));

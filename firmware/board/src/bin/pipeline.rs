@@ -36,7 +36,7 @@ fn main() -> ! {
 #[inline(never)]
 fn job<'a>(store: &'a mut Parts, fleet: &mut Fleet<'a>, table: &mut Table, agents: &BuiltIn) -> Option<usize> {
     construct(store, agents).ok()?;
-    store.put_motions(fleet);
+    store.put_motions(fleet).ok()?;
     build(table, fleet).ok()?;
     Some(ask(table, fleet))
 }
