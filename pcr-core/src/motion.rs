@@ -166,7 +166,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
-    pub(crate) fn lag(&self) -> S {
+    pub fn lag(&self) -> S {
         self.lag
     }
 
