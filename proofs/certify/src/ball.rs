@@ -254,6 +254,23 @@ impl<R: Real> Ball<R> {
         -(-self).min(-other)
     }
 
+    /// A number that is one of two, or between them.
+    #[must_use]
+    pub fn between(self, other: Self) -> Self {
+        let (middle, apart) = ((self + other).half(), (self - other).half());
+        Self { mid: middle.mid, err: (middle.err + apart.mid.to_f64().abs() + apart.err) * UP }
+    }
+
+    /// The first number if it is certain that the answer is yes, the second one if it is certain that it is no.
+    #[must_use]
+    pub fn either(answer: Tri, yes: Self, no: Self) -> Self {
+        match answer {
+            Tri::Yes => yes,
+            Tri::No => no,
+            Tri::Doubt => yes.between(no),
+        }
+    }
+
     /// Square root of a number that is not negative: `|√a' - √a| = |a' - a| / (√a' + √a)`.
     #[must_use]
     pub fn sqrt(self) -> Self {

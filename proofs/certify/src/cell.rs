@@ -143,10 +143,10 @@ impl Claim {
     }
 
     fn fails_at<R: Real>(self, cell: &Part<R>, other: &Part<R>) -> Tri {
-        let Range { lo, hi } = other.nearest(cell.middle);
+        let distance = other.nearest(cell.middle);
         match self {
-            Self::Above(least) => Ball::of(least).above(hi),
-            Self::Within(most) => lo.above(Ball::of(most)),
+            Self::Above(least) => Ball::of(least).above(distance),
+            Self::Within(most) => distance.above(Ball::of(most)),
         }
     }
 
@@ -156,7 +156,7 @@ impl Claim {
         match self {
             Self::Above(least) => {
                 let least: Ball<R> = Ball::of(least);
-                let middle = near.lo - least;
+                let middle = near - least;
                 let rounding = middle.err;
                 let mut answer = middle.above(cell.half);
                 if !answer.is_certain() {
@@ -164,14 +164,14 @@ impl Claim {
                 }
                 if !answer.is_certain() {
                     let [off, _] = feet(cell, other);
-                    let ends = || other.ends.map(|end| cell.nearest(end).lo.above(least));
+                    let ends = || other.ends.map(|end| cell.nearest(end).above(least));
                     answer = answer.or(if off == Tri::No { Tri::No } else { off.and(ends()[0]).and(ends()[1]) });
                 }
                 (answer, rounding)
             }
             Self::Within(most) => {
                 let most: Ball<R> = Ball::of(most);
-                let middle = most - near.hi;
+                let middle = most - near;
                 let rounding = middle.err;
                 let mut answer = middle.above(cell.half);
                 for end in other.ends {
@@ -198,7 +198,7 @@ fn beside<R: Real>(cell: &Part<R>, other: &Part<R>) -> Range<R> {
             (lo, hi)
         }
         Some(circle) => {
-            let (near, far) = (cell.nearest(circle.centre).lo, cell.farthest(circle.centre));
+            let (near, far) = (cell.nearest(circle.centre), cell.farthest(circle.centre));
             (near - circle.radius, far - circle.radius)
         }
     };

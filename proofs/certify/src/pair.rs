@@ -138,12 +138,12 @@ impl Segments<'_> {
     ) -> Witness {
         let other = 1 - of;
         let mut here = self.stretches[of].placed.part([at, at]);
-        let range = near.exact().nearest(here.exact().middle);
+        let distance = near.exact().nearest(here.exact().middle);
         let foot = near.foot(here.exact().middle);
         let mut lengths = [0.0; 2];
         lengths[of] = self.stretches[of].on_path(at);
         lengths[other] = self.stretches[other].on_path(foot);
-        let clearance = (range.hi - radii.radius).to_f64();
+        let clearance = (distance - radii.radius).to_f64();
         Witness { promise, agents: pair.agents, lengths, clearance, excess: pair.excess }
     }
 

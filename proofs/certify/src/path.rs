@@ -133,8 +133,8 @@ fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
     if segment.length < 0.0 || segment.radius == Some(0.0) {
         return Err("a length below 0 or a radius of 0".into());
     }
-    // Half a last digit more than a turn is one.
-    if segment.radius.is_some_and(|radius| segment.length > 6.284 * radius.abs()) {
+    // A full turn rounded to the last digit of a format may be more: 13 digits for a radius of 2.
+    if segment.radius.is_some_and(|radius| segment.length > 7.0 * radius.abs()) {
         return Err("more than one turn".into());
     }
     if segment.from != sum || segment.to < segment.from {

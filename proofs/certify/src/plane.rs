@@ -131,12 +131,12 @@ impl<R: Real> Carrier<R> {
     }
 }
 
-/// A number that is not known, or the values of a function: not below the first, not above the second.
+/// The least and the greatest value of a function.
 #[derive(Clone, Copy, Debug)]
 pub struct Range<R> {
-    /// Lower bound.
+    /// The least one.
     pub lo: Ball<R>,
-    /// Upper bound.
+    /// The greatest one.
     pub hi: Ball<R>,
 }
 
@@ -207,9 +207,9 @@ impl<R: Real> Part<R> {
         self.ends.map(|end| (point - end).norm())
     }
 
-    /// Bounds on the least distance of a point from the part \[m\], equal but for rounding unless it is in doubt
-    /// whether the foot of the point lies on the part.
-    pub fn nearest(&self, point: Vector<R>) -> Range<R> {
+    /// The least distance of a point from the part \[m\]. Where it is in doubt whether the foot of the point lies on the part,
+    /// so is which of two distances it is.
+    pub fn nearest(&self, point: Vector<R>) -> Ball<R> {
         let (carrier, off) = match &self.circle {
             None => {
                 let from_middle = point - self.middle;
@@ -222,11 +222,10 @@ impl<R: Real> Part<R> {
             }
         };
         if off == Tri::No {
-            return Range { lo: carrier, hi: carrier };
+            return carrier;
         }
         let [a, b] = self.distances_of_ends(point);
-        let ends = a.min(b);
-        Range { lo: if off.is_certain() { ends } else { carrier }, hi: ends }
+        Ball::either(off, a.min(b), carrier)
     }
 
     /// Where on the part, as a length from its middle, about, the point nearest to another one lies \[m\]: for messages.
@@ -248,34 +247,25 @@ impl<R: Real> Part<R> {
         if a.to_f64() < b.to_f64() { -half } else { half }
     }
 
-    /// An upper bound on the greatest distance of a point from the part \[m\].
+    /// The greatest distance of a point from the part \[m\].
     pub fn farthest(&self, point: Vector<R>) -> Ball<R> {
-        if let Some(circle) = &self.circle {
-            let from_centre = point - circle.centre;
-            if !self.misses(circle, from_centre)[1].is_certain() {
-                return from_centre.norm() + circle.radius;
-            }
-        }
         let [a, b] = self.distances_of_ends(point);
-        a.max(b)
+        let ends = a.max(b);
+        let Some(circle) = &self.circle else { return ends };
+        let from_centre = point - circle.centre;
+        Ball::either(self.misses(circle, from_centre)[1], ends, from_centre.norm() + circle.radius)
     }
 
     /// The components of the part from `origin` in a direction of length 1: its extremes are at the ends and, on an arc,
     /// where the direction from the centre is the one asked for or its opposite.
     pub fn components(&self, origin: Vector<R>, direction: Vector<R>) -> Range<R> {
         let [a, b] = self.ends.map(|end| direction.dot(end - origin));
-        let (mut lo, mut hi) = (a.min(b), a.max(b));
-        if let Some(circle) = &self.circle {
-            let centre = direction.dot(circle.centre - origin);
-            let [with, against] = self.misses(circle, direction);
-            if !with.is_certain() {
-                hi = centre + circle.radius;
-            }
-            if !against.is_certain() {
-                lo = centre - circle.radius;
-            }
-        }
-        Range { lo, hi }
+        let (lo, hi) = (a.min(b), a.max(b));
+        let Some(circle) = &self.circle else { return Range { lo, hi } };
+        let centre = direction.dot(circle.centre - origin);
+        let [with, against] = self.misses(circle, direction);
+        let (least, most) = (centre - circle.radius, centre + circle.radius);
+        Range { lo: Ball::either(against, lo, least), hi: Ball::either(with, hi, most) }
     }
 
     /// How far the direction in which the points of the part are seen from `origin` may be from that of its middle \[rad\],
