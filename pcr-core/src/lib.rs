@@ -59,6 +59,7 @@ pub use error::{Full, Invalid, Mismatch, Unchanged};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
+pub use pair::footprint::Share;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
 pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};

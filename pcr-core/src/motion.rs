@@ -181,7 +181,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// How far the agent is from where it should be at a time, for the rounding of times, and for what the profile's length
     /// differs from the path's \[m\].
-    pub(crate) fn lag(&self) -> S {
+    pub fn lag(&self) -> S {
         self.lag
     }
 
