@@ -20,6 +20,7 @@
 //! speed       the fastest motion under changing limits
 //! route       the shortest way between nodes, corners rounded
 //! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
+//! useful      which of them do something with which files                  Kind
 //! warnings    what was wrong and was read nevertheless                     Warnings
 //! ```
 //!
@@ -43,6 +44,7 @@ mod speed;
 mod timed;
 mod trace;
 mod trajectory;
+mod useful;
 mod value;
 mod vda5050;
 mod vehicle;
@@ -52,7 +54,8 @@ mod xml;
 pub use layout::{Edge, Id, Layout, Node, Placed};
 pub(crate) use route::{Step, ride, turn};
 pub use trace::{KINK, TURN};
-pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
+pub use useful::Kind;
+pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
 
 use crate::scenario::{Agent, Scenario};

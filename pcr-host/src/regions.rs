@@ -72,6 +72,10 @@ pub enum Failure {
     Overfull([u64; 2]),
     /// There is no agent of the number asked for; these are there.
     NoSuchAgent(u64, Vec<u64>),
+    /// There is no agent of the label asked for; these are there.
+    NoSuchLabel(String, Vec<String>),
+    /// Several agents have the label asked for.
+    Ambiguous(String, Vec<u64>),
 }
 
 impl fmt::Display for Failure {
@@ -86,13 +90,21 @@ impl fmt::Display for Failure {
                 "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
             ),
             Self::NoSuchAgent(asked, there) => {
+                let there = there.iter().map(u64::to_string).collect();
+                Self::NoSuchLabel(asked.to_string(), there).fmt(f)
+            }
+            Self::NoSuchLabel(asked, there) => {
                 write!(f, "no agent {asked}; ")?;
-                let listed: Vec<String> = there.iter().take(LISTED).map(u64::to_string).collect();
+                let listed = there.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
                 match there.len() {
                     0 => f.write_str("there are none"),
-                    1..=LISTED => write!(f, "there are {}", listed.join(", ")),
-                    all => write!(f, "there are {all}: {}, ...", listed.join(", ")),
+                    1..=LISTED => write!(f, "there are {listed}"),
+                    all => write!(f, "there are {all}: {listed}, ..."),
                 }
+            }
+            Self::Ambiguous(asked, ids) => {
+                let ids = ids.iter().take(LISTED).map(u64::to_string).collect::<Vec<_>>().join(", ");
+                write!(f, "several agents are called {asked}; say which by its number: {ids}")
             }
         }
     }
@@ -125,6 +137,26 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
         },
         _ => Failure::Full(full),
     })
+}
+
+/// The number of the agent that is asked for by its number or, where there is no such number, by its label.
+///
+/// # Errors
+/// [`Failure::NoSuchAgent`] and, for texts, [`Failure::NoSuchLabel`] or, where several have it, [`Failure::Ambiguous`].
+pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, Failure> {
+    let number = asked.parse::<u64>().ok();
+    let ids = || scenario.agents.iter().map(|agent| agent.id);
+    if let Some(id) = number.filter(|number| ids().any(|id| id == *number)) {
+        return Ok(id);
+    }
+    let labelled: Vec<u64> =
+        scenario.agents.iter().filter(|agent| agent.label == asked).map(|agent| agent.id).collect();
+    match (labelled.as_slice(), number) {
+        ([id], _) => Ok(*id),
+        ([], Some(number)) => Err(Failure::NoSuchAgent(number, ids().collect())),
+        ([], None) => Err(Failure::NoSuchLabel(asked.to_owned(), scenario.agents.iter().map(Agent::called).collect())),
+        _ => Err(Failure::Ambiguous(asked.to_owned(), labelled)),
+    }
 }
 
 impl Answer {

@@ -138,15 +138,22 @@ pub struct Layout {
     pub nodes: Vec<Node>,
     /// The edges.
     pub edges: Vec<Edge>,
+    /// Other ids of nodes, with their places: names of ends of edges that are one node.
+    pub aliases: Vec<(String, usize)>,
+    /// Types of vehicles that the file tells apart.
+    pub vehicle_types: Vec<String>,
+    /// Vehicles that the file names.
+    pub vehicles: Vec<String>,
     /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
     pub corner_radius: Option<f64>,
 }
 
 impl Layout {
-    /// Place of the node of this id or, if there is none, of this name.
+    /// Place of the node of this id or, if there is none, of this other id or name.
     pub fn node(&self, name: &str) -> Option<usize> {
         let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);
-        by_id.or_else(|| self.nodes.iter().position(|node| node.name.as_deref() == Some(name)))
+        let by_alias = || self.aliases.iter().find(|(alias, _)| alias == name).map(|(_, place)| *place);
+        by_id.or_else(by_alias).or_else(|| self.nodes.iter().position(|node| node.name.as_deref() == Some(name)))
     }
 
     /// The level that has most nodes; among equals the first.

@@ -46,7 +46,8 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     for (k, value) in edges.into_iter().enumerate() {
         reader.edge(k, value);
     }
-    let Reader { layout, types, .. } = reader;
+    let Reader { mut layout, types, .. } = reader;
+    layout.vehicle_types = types.iter().filter(|name| !name.is_empty()).cloned().collect();
     if layout.nodes.is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
     }

@@ -25,6 +25,8 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     }
     let mut layout = Layout { levels: vec![String::new()], corner_radius: options.corner_radius, ..Layout::default() };
     layout.name = root.attribute("name").unwrap_or_default().to_owned();
+    let vehicles = children(root, "vehicle").filter_map(|vehicle| vehicle.attribute("name"));
+    layout.vehicles = vehicles.map(crate::scenario::label).filter(|name| !name.is_empty()).collect();
     let mut places = HashMap::new();
     for (k, point) in children(root, "point").enumerate() {
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
