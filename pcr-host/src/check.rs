@@ -5,7 +5,7 @@
 
 use crate::fleet::{Format, Refused};
 use crate::footprint::{Bodies, Disced};
-use crate::scenario::Scenario;
+use crate::scenario::{Labels, Scenario};
 use pcr_core::{Encounter, Interval, Motion};
 use serde::Serialize;
 
@@ -14,6 +14,9 @@ use serde::Serialize;
 pub struct Verdict {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// Sorted by their begin, then by the agents.
     pub conflicts: Vec<Conflict>,
     /// Every pair, if asked for.
@@ -110,12 +113,24 @@ impl Verdict {
         }
         // Stable: those that begin together stay in the order of the agents.
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
-        Ok(Self { name: scenario.name.clone(), conflicts, closest: closest.then_some(nearest), error: None })
+        Ok(Self {
+            name: scenario.name.clone(),
+            labels: Labels::of(scenario),
+            conflicts,
+            closest: closest.then_some(nearest),
+            error: None,
+        })
     }
 
     /// No answer, and why.
     pub fn refused(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, error: Some(error) }
+        Self {
+            name: name.to_owned(),
+            labels: Labels::default(),
+            conflicts: Vec::new(),
+            closest: None,
+            error: Some(error),
+        }
     }
 }
 

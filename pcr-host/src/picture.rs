@@ -227,6 +227,7 @@ fn draw_all(
 mod tests {
     use super::*;
     use serde_json::{Value, json};
+    use std::fs;
 
     /// Writes the pictures into a directory of its own, checks that all files are well formed, and returns them.
     fn pictures(test: &str, scenario: &Value) -> Vec<(String, Vec<u8>)> {

@@ -8,7 +8,7 @@ mod record;
 
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
 use crate::footprint::{Bodies, Disc, Disced};
-use crate::scenario::{Agent, Scenario};
+use crate::scenario::{Agent, Labels, Scenario};
 use pcr_core::{Full, Motion};
 use record::Work;
 pub use record::{Descriptor, Piece, Region, Slice};
@@ -20,6 +20,9 @@ use std::fmt;
 pub struct Answer {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// Number format of the computation.
     pub scalar: &'static str,
     /// Sorted by `i`, `j`, start time and start length.
@@ -192,6 +195,7 @@ impl Answer {
         let margin_regions = margins.then(|| regions(&inflated)).transpose()?;
         Ok(Self {
             name: scenario.name.clone(),
+            labels: Labels::of(scenario),
             scalar: S::NAME,
             regions: regions(&motions)?,
             margin_regions,
@@ -209,6 +213,7 @@ impl Answer {
     pub fn refused<S: Format>(name: &str, error: String) -> Self {
         Self {
             name: name.to_owned(),
+            labels: Labels::default(),
             scalar: S::NAME,
             regions: Vec::new(),
             margin_regions: None,

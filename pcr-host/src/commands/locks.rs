@@ -45,7 +45,7 @@ impl Arguments {
         let mut out = self.printed.out(false);
         match self.printed.form() {
             Form::Table => report::locks_table(&locks, &mut out)?,
-            Form::Json => report::locks_json(&locks, &mut out)?,
+            Form::Json => report::json(&locks, &mut out)?,
             Form::Csv => report::locks_csv(&locks, &mut out)?,
         }
         out.flush()?;

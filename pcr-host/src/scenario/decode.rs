@@ -157,7 +157,7 @@ impl Agent {
         let id = match (id, fields.required("id")?) {
             (Some(id), _) => id,
             (None, given) => {
-                return Err(fields.unexpected("id", given, "a whole number from 0, or a text that is none,"));
+                return Err(fields.unexpected("id", given, "a whole number from 0 or a name"));
             }
         };
         match fields.get("label").map(|label| (label, &label.data)) {

@@ -7,6 +7,7 @@ mod files;
 mod fixture;
 mod formats;
 mod habits;
+mod identity;
 mod import;
 mod lines;
 mod locks;

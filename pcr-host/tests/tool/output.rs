@@ -30,11 +30,15 @@ fn json_has_the_documented_keys_in_the_documented_order() {
         r#""crossings":[{"T":N,"L":N,"r_hat":N,"v":N,"theta":N}]}]"#
     );
     let plain = run(&["regions", &scenario, "--format", "json"]).ok();
-    let form = format!(r#"{{"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null}}"#);
+    let form = format!(
+        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null}}"#
+    );
     assert_eq!(skeleton(&plain), form + "\n");
     let sliced = run(&["regions", &scenario, "--format", "json", "--slices", "1", "--scalar", "f32"]).ok();
     let region = format!(r#"{region},"slices":[{{"t":N,"l":[[N,N]]}}]}}"#);
-    let form = format!(r#"{{"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null}}"#);
+    let form = format!(
+        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null}}"#
+    );
     assert_eq!(skeleton(&sliced), form + "\n");
 }
 
@@ -180,7 +184,10 @@ fn every_crossing_is_in_one_piece() {
 fn csv_reads_back_as_the_same_numbers() {
     let csv = run(&["regions", PAPER, "--format", "csv"]).ok();
     let mut lines = csv.lines();
-    assert_eq!(lines.next(), Some("name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin"));
+    assert_eq!(
+        lines.next(),
+        Some("name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin,i_label,j_label")
+    );
     let answer = run(&["regions", PAPER, "--format", "json"]).json();
     let regions = answer["regions"].as_array().unwrap();
     let lines: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
@@ -277,7 +284,12 @@ fn fleets_of_none_and_of_one_have_no_regions() {
         let name = format!("of-{}", agents.as_array().unwrap().len());
         let scenario = file("few", &format!("{name}.json"), json!({ "agents": agents }).to_string());
         let json = run(&["regions", &scenario, "--format", "json"]).ok();
-        assert_eq!(json, format!("{{\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null}}\n"));
+        assert_eq!(
+            json,
+            format!(
+                "{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null}}\n"
+            )
+        );
         assert_eq!(run(&["regions", &scenario]).ok(), format!("{name}: 0 collision regions, 0 crossings (f64)\n"));
         assert_eq!(run(&["regions", &scenario, "--format", "csv"]).ok().lines().count(), 1);
     }

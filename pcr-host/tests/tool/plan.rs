@@ -40,7 +40,7 @@ fn the_papers_agents_are_resolved_and_the_plan_is_free() {
     let check = run(&["check", &output]).ok();
     assert_eq!(check, "paper12: no conflicts\n");
     let csv = run(&["plan", PAPER, "--format", "csv"]).ok();
-    assert!(csv.starts_with("name,id,delay,t_end\npaper12,1,") && csv.lines().count() == 13, "{csv}");
+    assert!(csv.starts_with("name,id,delay,t_end,label\npaper12,1,") && csv.lines().count() == 13, "{csv}");
 }
 
 #[test]

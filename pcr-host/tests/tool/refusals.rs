@@ -36,11 +36,7 @@ fn values_out_of_range() {
 #[test]
 fn values_of_the_wrong_kind() {
     refused("/agents/1/id", json!(1), "agent 1, id: 1 is given to two agents");
-    refused(
-        "/agents/1/id",
-        json!(2.5),
-        "agent at place 2, id: 2.5 where a whole number from 0, or a text that is none, is expected",
-    );
+    refused("/agents/1/id", json!(2.5), "agent at place 2, id: 2.5 where a whole number from 0 or a name is expected");
     refused("/agents/1/start/x", json!("0"), "agent 2, start.x: \"0\" where a number is expected");
     refused(
         "/agents/1/path/0/kind",
