@@ -102,6 +102,8 @@ CORNERS = [(j, i, Fraction(1 - j, 2) + Fraction(1 - i, 2)) for j in (0, 1) for i
 
 def by_budget(claim):
     has = constant(claim["source"], claim["constant"])
+    if "shift_from" in claim:
+        has = Fraction(2) ** (claim["shift_from"] - int(has))
     needs = max(total(claim["sum"], corner) for corner in CORNERS)
     needs *= Fraction(str(claim.get("second_order", 1)))
     return needs <= has or f"{float(needs)} are needed, {float(has)} are allowed"

@@ -73,7 +73,8 @@ impl<S: Scalar> Phase<S> {
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
             // The last digits of accelerations count for the whole time so far.
-            if after < -(S::rounding(before) + S::rounding(acceleration.abs()).times(self.time.hi + duration).narrow()) {
+            if after < -(S::rounding(before) + S::rounding(acceleration.abs()).times(self.time.hi + duration).narrow())
+            {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;

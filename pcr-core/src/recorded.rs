@@ -301,5 +301,8 @@ fn the_kernels_are_those_that_were_proved() {
     let floats = Ramp { slow: 1.1, fast: 2.0, acceleration: 0.3, duration: 2.0, length: 3.0 };
     assert_eq!(way.0.to_bits(), f64::ramp_length(floats, 1.25).to_bits());
     let below: f64 = 3.1 - footprint_y;
-    assert_eq!(f64::difference(3.1, below, 0.7).to_bits(), N::difference(N(3.1, 0), N(below, 0), N(0.7, 0)).0.to_bits());
+    assert_eq!(
+        f64::difference(3.1, below, 0.7).to_bits(),
+        N::difference(N(3.1, 0), N(below, 0), N(0.7, 0)).0.to_bits()
+    );
 }
