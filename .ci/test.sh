@@ -2,7 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -35,6 +35,21 @@ tests() {
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
   step "benchmarks, one pass each, as the tests are built"
   cargo bench --workspace --bench '*' --profile checked --features pcr-tests/peers --locked -- --test
+}
+
+# A browser for the pages; a package of Debian, where there is none.
+browser() {
+  command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null && return
+  echo "installing chromium"
+  apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends chromium >/dev/null
+}
+
+pages() {
+  step "pages, in a real browser"
+  browser
+  # As the tests build it.
+  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
 }
 
 instructions() {
@@ -136,7 +151,7 @@ fuzz() {
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests instructions fuzz proofs}; do
+for part in ${*:-style docs features no_std c firmware tests pages instructions fuzz proofs}; do
   "$part"
 done
 step "all passed"

@@ -75,6 +75,66 @@ impl fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
+/// What was asked for does not go with the fleet, or the fleet not with its table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Mismatch {
+    /// The fleet has no such agent.
+    NoSuchAgent(usize),
+    /// The table was made of other agents: in number, paths, radii or order.
+    OtherFleet,
+    /// The table holds the regions of this agent only ([`Ecm::fill_row`](crate::Ecm::fill_row)).
+    OnlyRow(usize),
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
+            Self::OtherFleet => f.write_str("the table of regions is that of another fleet"),
+            Self::OnlyRow(agent) => write!(f, "the table holds the regions of agent {agent} only"),
+        }
+    }
+}
+
+impl core::error::Error for Mismatch {}
+
+/// Why a table was not changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Unchanged {
+    /// There is no room.
+    Full(Full),
+    /// It is not the table of the fleet, but for the agent.
+    Mismatch(Mismatch),
+}
+
+impl From<Full> for Unchanged {
+    fn from(full: Full) -> Self {
+        Self::Full(full)
+    }
+}
+
+impl From<Mismatch> for Unchanged {
+    fn from(mismatch: Mismatch) -> Self {
+        Self::Mismatch(mismatch)
+    }
+}
+
+impl fmt::Display for Unchanged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full(full) => full.fmt(f),
+            Self::Mismatch(mismatch) => mismatch.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for Unchanged {}
+
 /// `value` if it is finite and within the limits of its format.
 pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if !value.is_finite() {

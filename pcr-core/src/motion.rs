@@ -1,5 +1,6 @@
 //! An agent in motion: a disc, its path, and when it is where on it (Eq. 2, ρ ∘ λ).
 
+use crate::bits::digest;
 use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::path::PathRef;
@@ -23,6 +24,8 @@ pub struct Motion<'a, S: Scalar> {
     drift: S,
     lag: S,
     top_speed: S,
+    /// Checksum of the path.
+    digest: u32,
 }
 
 impl<'a, S: Scalar> Motion<'a, S> {
@@ -36,7 +39,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius.double();
-        if (profile.length() - path.length()).abs() > S::slack(extent) {
+        let gap = (profile.length() - path.length()).abs();
+        if gap > S::slack(extent) {
             return Err(Invalid::LengthMismatch);
         }
         // `count` would check for overflow.
@@ -47,9 +51,11 @@ impl<'a, S: Scalar> Motion<'a, S> {
             });
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        let lag = S::lag(top_speed, profile.duration());
+        // The agent is nowhere by more than that from where its profile says.
+        let lag = S::lag(top_speed, profile.duration()) + gap;
         let (margin, lateness) = (S::ZERO, S::ZERO);
-        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed })
+        let digest = path.digest();
+        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed, digest })
     }
 
     /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
@@ -151,6 +157,11 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds
     }
 
+    /// A checksum of the path and the radius, on which regions depend, in this place of a fleet.
+    pub(crate) fn digest(&self, place: usize) -> u32 {
+        digest(digest(self.digest, place as u32), self.radius.digest())
+    }
+
     /// Box around all that the disc sweeps, twice what rounding may do to a distance included \[m\]: agents whose boxes do
     /// not meet have no region.
     pub(crate) fn swept(&self) -> Bounds<S> {
@@ -168,8 +179,9 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.drift
     }
 
-    /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
-    pub(crate) fn lag(&self) -> S {
+    /// How far the agent is from where it should be at a time, for the rounding of times, and for what the profile's length
+    /// differs from the path's \[m\].
+    pub fn lag(&self) -> S {
         self.lag
     }
 

@@ -189,29 +189,32 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         }
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
-        // One interval of the second segment is connected, hence part of one region: that of its middle. It may go
-        // on beyond the piece. But where the whole circle is about to be covered rounding may show one interval for two:
-        // then each piece has its part.
-        let belongs = |slice: &Interval<S>| {
-            let middle = slice.middle();
-            let footprint = Footprint::of(other.point_at(middle - other.from), own);
-            let holds = |slices: [Option<Interval<S>>; 2]| {
-                slices.into_iter().flatten().any(|slice| along_path(slice, own).contains(l))
-            };
-            let at = |radius| footprint.reach(own, radius).intervals(own);
-            let mut slices = at(self.radius);
-            if !holds(slices) {
-                // Contact all along a circle: its middle, too, is covered by rounding alone, which may see it the other
-                // way round from here.
-                slices = at(self.radius + self.excess());
-            }
-            piece.second.contains(middle) && holds(self.share(piece, own, slices))
-        };
+        // An interval is connected, hence part of one region, that of each piece that it meets. But where two laps of the
+        // first segment may be covered, its next part may be that of another lap: then each piece has its own.
+        let wraps = wraps(own, self.radius);
         covered.map(|slice| {
             let slice = along_path(slice?, other);
-            let whole = piece.second.contains(slice.middle()) || !piece.second.meets(slice);
-            Some(if whole { slice } else { slice.common(piece.second) }).filter(belongs)
+            let part = slice.common(piece.second);
+            if !wraps { Some(slice) } else { Some(part).filter(|part| self.stands_for(piece, l, part.middle())) }
+                .filter(|_| slice.meets(piece.second))
         })
+    }
+
+    /// Whether a piece stands for the lap of the first path that is at the length `l` there, at `s` of the second one. What
+    /// none does, by rounding, is left out by none.
+    fn stands_for(&self, piece: &Piece<S>, l: S, s: S) -> bool {
+        let (Some(own), Some(other)) = self.segments(piece) else {
+            return false;
+        };
+        let footprint = Footprint::of(other.point_at(s - other.from), own);
+        let holds = |slices: [Option<Interval<S>>; 2]| {
+            slices.into_iter().flatten().any(|slice| along_path(slice, own).contains(l))
+        };
+        // What only just is covered of the second segment may not seem to be from here.
+        let at = |radius| footprint.reach(own, radius).intervals(own);
+        let near = at(self.radius);
+        let laps = if holds(near) { near } else { at(self.radius + self.excess()) };
+        holds(self.share(piece, own, laps)) || !holds(laps)
     }
 
     /// Of what is covered of the first segment, that which a piece stands for.

@@ -69,6 +69,8 @@ pub trait Scalar:
 
     /// Neither NaN nor infinite. Fixed-point formats are always finite.
     fn is_finite(self) -> bool;
+    /// Its bits, folded to 32: what tells one number from another in a checksum.
+    fn digest(self) -> u32;
     /// `self · rhs`, wide.
     fn times(self, rhs: Self) -> Self::Wide;
     /// `self · by`, rounded to nearest.
@@ -119,11 +121,10 @@ pub trait Scalar:
     /// `self / divisor` for dimensions that divide (a length by a speed). Saturates at a magnitude above
     /// [`Scalar::LIMIT`]; `0 / 0` is 0.
     fn quotient(self, divisor: Self) -> Self;
-    /// `self · part / whole` with `0 <= part <= whole` and a whole above 0. A format of constant absolute precision
-    /// should round once, at the end: a quotient on the way does not have the digits.
-    fn portion(self, part: Self, whole: Self) -> Self {
-        part.quotient(whole.quotient(self))
-    }
+    /// `self · part / whole` with a whole above 0. A format of constant absolute precision should round once, at the end: a
+    /// quotient on the way does not have the digits, and the product may be beyond what it holds. Where the part is larger than
+    /// the whole, it saturates as [`Scalar::quotient`] does.
+    fn portion(self, part: Self, whole: Self) -> Self;
     /// `self / divisor` for a sine or cosine, `None` where it is not below [`Scalar::LIMIT`].
     fn quotient_unit(self, divisor: Self::Unit) -> Option<Self>;
     /// The vector `(x, y)` of this norm, not zero, as a unit vector. A format of constant absolute precision takes the

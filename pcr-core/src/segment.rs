@@ -275,6 +275,11 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
+    /// Centre of an arc of this radius.
+    pub(crate) fn centre(&self, radius: S) -> Point<S> {
+        self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()))
+    }
+
     /// Whether it bends to the right: coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
         matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })

@@ -13,7 +13,7 @@ command -v cc >/dev/null || packages+=(gcc libc6-dev)
 if [ ${#packages[@]} -gt 0 ]; then
   echo "pcr-ffi: installing ${packages[*]}" >&2
   [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "pcr-ffi: please install ${packages[*]}" >&2; exit 2; }
-  { apt-get update && apt-get install -y --no-install-recommends "${packages[@]}"; } >&2
+  { apt-get -o DPkg::Lock::Timeout=600 update && apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "${packages[@]}"; } >&2
 fi
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
@@ -27,7 +27,7 @@ arm-none-eabi-gcc "${warnings[@]}" -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mf
   -fdata-sections -Wl,--gc-sections -nostartfiles -T pcr-ffi/c/m4.ld pcr-ffi/c/start.c pcr-ffi/c/crossing.c \
   "$built/$target/ffi/libpcr_ffi.a" --specs=nano.specs --specs=rdimon.specs -u _printf_float -lm -o "$build/crossing.elf"
 "$build/host" >"$build/host.out"
-timeout 60 qemu-system-arm -machine mps2-an386 -display none -monitor none -serial none \
+timeout 3600 qemu-system-arm -machine mps2-an386 -display none -monitor none -serial none \
   -semihosting-config enable=on,target=native -kernel "$build/crossing.elf" </dev/null >"$build/target.out"
 if [ "${1:-}" = --accept ]; then cp "$build/host.out" pcr-ffi/c/crossing.out; fi
 diff pcr-ffi/c/crossing.out "$build/host.out"

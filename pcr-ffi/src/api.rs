@@ -88,7 +88,7 @@ pub extern "C" fn pcr_fleet_regions(
         open_start: region.is_open_at_start(),
         open_end: region.is_open_at_end(),
     };
-    let regions = || copy(fleet.table().row(fleet.motions(), ego).map(record), out, count);
+    let regions = || copy(fleet.table().row(fleet.motions(), ego)?.map(record), out, count);
     status(fleet.motion(ego).and_then(|_| regions()))
 }
 
@@ -111,8 +111,10 @@ pub extern "C" fn pcr_fleet_slices(
         return PcrStatus::NonFinite;
     }
     let fleet = fleet(place);
-    let regions = fleet.table().pair(fleet.motions(), ego, other);
-    let slices = || copy(regions.flat_map(|region| region.slice_at(time)).map(interval), out, count);
+    let slices = || {
+        let regions = fleet.table().pair(fleet.motions(), ego, other)?;
+        copy(regions.flat_map(|region| region.slice_at(time)).map(interval), out, count)
+    };
     status(fleet.motion(ego).and_then(|_| fleet.motion(other)).and_then(|_| slices()))
 }
 

@@ -67,21 +67,7 @@ impl Fleet {
 
     /// Computes the table anew.
     pub(crate) fn build(&mut self) -> Result<(), PcrStatus> {
-        let (motions, table) = (self.motions.values(), &mut self.table);
-        for agent in 0..motions.len() {
-            table.remove(agent);
-        }
-        for agent in 1..=motions.len() {
-            // With those before it.
-            let fleet = motions.get(..agent).unwrap_or_default();
-            if let Err(full) = table.insert(fleet, agent - 1) {
-                for agent in 0..agent {
-                    table.remove(agent);
-                }
-                return Err(full.into());
-            }
-        }
-        Ok(())
+        Ok(self.table.fill(self.motions.values())?)
     }
 
     pub(crate) fn delay(&mut self, agent: usize, delay: f32) -> Result<(), PcrStatus> {

@@ -1,6 +1,6 @@
 //! The C types. SI units: metres, seconds, radians; left turns and counter-clockwise angles are positive.
 
-use pcr_core::{Full, Invalid};
+use pcr_core::{Full, Invalid, Mismatch};
 
 /// What a call comes to. Whatever fails leaves the fleet as it was; a table that became full is empty.
 #[repr(C)]
@@ -32,6 +32,8 @@ pub enum PcrStatus {
     TableFull,
     /// The buffer is too small; the count that is needed is told.
     BufferTooSmall,
+    /// The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
+    NotBuilt,
 }
 
 impl From<Invalid> for PcrStatus {
@@ -51,6 +53,15 @@ impl From<Invalid> for PcrStatus {
 impl From<Full> for PcrStatus {
     fn from(_: Full) -> Self {
         Self::TableFull
+    }
+}
+
+impl From<Mismatch> for PcrStatus {
+    fn from(mismatch: Mismatch) -> Self {
+        match mismatch {
+            Mismatch::NoSuchAgent(_) => Self::NoSuchAgent,
+            _ => Self::NotBuilt,
+        }
     }
 }
 

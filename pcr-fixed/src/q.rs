@@ -35,6 +35,9 @@ pub type Q12 = Q<12>;
 /// Largest bits that constructors accept: eight times that is what the kernels need (docs/errors-fixed.md).
 const LIMIT: i32 = 1 << 28;
 
+/// At which quotients saturate.
+const MOST: u64 = 2 * LIMIT as u64;
+
 /// The residual that rounding may cause, in last digits, in a small arena: 7.2 by docs/errors.md, and 0.8 for what
 /// [`Scalar::drift`] leaves out.
 const SLACK: i32 = 8;
@@ -94,6 +97,9 @@ impl<const F: u32> Scalar for Q<F> {
     fn is_finite(self) -> bool {
         true
     }
+    fn digest(self) -> u32 {
+        self.0 as u32
+    }
     fn times(self, rhs: Self) -> Product<F> {
         Product::from_bits(i64::from(self.0) * i64::from(rhs.0))
     }
@@ -108,7 +114,6 @@ impl<const F: u32> Scalar for Q<F> {
     }
     /// A length by a speed, a speed by an acceleration: what the constructor of a profile divides.
     fn quotient(self, divisor: Self) -> Self {
-        const MOST: u64 = 2 * LIMIT as u64;
         let (dividend, by) = (u64::from(self.0.unsigned_abs()) << F, divisor.0.unsigned_abs());
         let magnitude = if dividend == 0 {
             0
@@ -122,7 +127,9 @@ impl<const F: u32> Scalar for Q<F> {
     fn portion(self, part: Self, whole: Self) -> Self {
         let (magnitude, by) = (self.0.unsigned_abs(), whole.0.unsigned_abs());
         let product = u64::from(magnitude) * u64::from(part.0.unsigned_abs());
-        Self(signed(divide(product + u64::from(by >> 1), by), self.0 < 0))
+        let magnitude =
+            if product >= MOST * u64::from(by) { MOST as u32 } else { divide(product + u64::from(by >> 1), by) };
+        Self(signed(magnitude, (self.0 < 0) != (part.0 < 0)))
     }
     /// The one division of two lines that cross: their distance by the sine of their angle.
     fn quotient_unit(self, divisor: Sine) -> Option<Self> {

@@ -19,6 +19,8 @@ pub struct Verdict {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
     /// Why the scenario was refused.
     pub error: Option<String>,
 }
@@ -110,12 +112,18 @@ impl Verdict {
         }
         // Stable: those that begin together stay in the order of the agents.
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
-        Ok(Self { name: scenario.name.clone(), conflicts, closest: closest.then_some(nearest), error: None })
+        Ok(Self {
+            name: scenario.name.clone(),
+            conflicts,
+            closest: closest.then_some(nearest),
+            warnings: scenario.warnings.clone(),
+            error: None,
+        })
     }
 
     /// No answer, and why.
     pub fn refused(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, error: Some(error) }
+        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, warnings: Vec::new(), error: Some(error) }
     }
 }
 

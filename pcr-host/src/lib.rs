@@ -22,6 +22,8 @@
 //! progress   a line on the terminal about long work
 //! ```
 
+pub mod certificate;
+pub mod certify;
 pub mod check;
 pub mod compare;
 pub mod evaluate;

@@ -33,6 +33,8 @@ pub struct Locks {
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// The vehicle of a table of locks.
@@ -121,9 +123,11 @@ impl Locks {
             locks: Vec::new(),
             nodes: nodes.then(Vec::new),
             node_pairs: nodes.then(Vec::new),
+            warnings: layout.warnings.clone(),
         };
         for level in 0..layout.levels.len() {
-            let edges = layout.edges.iter().filter(|edge| layout.level(edge) == level);
+            // One that leads from level to level is on both.
+            let edges = layout.edges.iter().filter(|edge| layout.is_on(edge, level));
             let mut places: Vec<Place<'_>> =
                 edges.map(|edge| Place { at: At::Edge(edge), rides: rides.on(edge) }).collect();
             places.sort_by(|a, b| a.at.id().cmp(b.at.id()));
@@ -141,6 +145,8 @@ impl Locks {
             let ids = (&a.a, &a.b).cmp(&(&b.a, &b.b));
             ids.then(lengths(a)[0].total_cmp(&lengths(b)[0])).then(lengths(a)[1].total_cmp(&lengths(b)[1]))
         });
+        // Two that are both on two levels.
+        locks.locks.dedup();
         Ok(locks)
     }
 
@@ -171,13 +177,13 @@ fn extents(places: &[Place<'_>]) -> Result<BTreeMap<[usize; 2], Vec<Extents>>, I
     let rides: Vec<(usize, &Ride)> =
         places.iter().enumerate().flat_map(|(k, place)| place.rides.iter().map(move |ride| (k, ride))).collect();
     let agents = rides.iter().enumerate().map(|(k, (_, ride))| Agent { id: k as u64, ..ride.agent.clone() });
-    let scenario = import::checked(&Scenario { name: String::new(), agents: agents.collect() })?;
+    let scenario = import::checked(&Scenario::new("", agents.collect()))?;
     let Bodies { fleet, discs, .. } = Bodies::<f64>::new(&scenario).map_err(|problem| refused(&problem))?;
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| refused(&full))?;
     let mut extents: BTreeMap<[usize; 2], Vec<Extents>> = BTreeMap::new();
     for (k, disc) in discs.iter().enumerate() {
-        for region in ecm.row(&motions, k).filter(|region| region.other() > k) {
+        for region in ecm.row(&motions, k).expect("the table of the fleet").filter(|region| region.other() > k) {
             let Some(other) = discs.get(region.other()) else { continue };
             let [Some((a, own)), Some((b, their))] = [rides.get(disc.agent), rides.get(other.agent)] else { continue };
             if a != b {

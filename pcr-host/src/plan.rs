@@ -14,7 +14,7 @@ use crate::regions::{self, Failure};
 use crate::scenario::{MotionSpec, Scenario};
 pub(crate) use circle::sides;
 pub(crate) use forbidden::{Forbidden, Schedule};
-use pcr_core::{Encounter, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
+use pcr_core::{Drive, Encounter, Limits, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
 use serde::Serialize;
 
 /// How conflicts are avoided.
@@ -65,10 +65,12 @@ pub struct Plan {
     pub makespan: f64,
     /// Sum over the agents from their start in the file to their arrival \[s\].
     pub sum_of_costs: f64,
-    /// The sum of costs if nobody had to wait \[s\].
+    /// No plan by this method costs less \[s\]: the sum of costs if nobody else were there.
     pub lower_bound: f64,
     /// Who cannot be planned.
     pub unsolved: Vec<Unsolved>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// An agent of a plan.
@@ -104,6 +106,8 @@ impl Unsolved {
 
 /// Rounds of [`Priority::Best`] in which the agent that loses most is moved to the front.
 const ROUNDS: usize = 8;
+/// What rounding may take off the time of a motion, relative.
+const ROUNDING: f64 = 1e-9;
 /// Phases of a speed profile, at most.
 const PHASES: usize = 64;
 /// Stations along a path: 256 cells.
@@ -187,7 +191,8 @@ impl Planner<'_> {
             order
         };
         let longest = || sorted(&|agent| self.motions[agent].time().length());
-        let crowded = || sorted(&|agent| self.ecm.row(self.motions, agent).count() as f64);
+        let crowded =
+            || sorted(&|agent| self.ecm.row(self.motions, agent).expect("the table of the fleet").count() as f64);
         Ok(match priority {
             Priority::Given(given) => {
                 let mut order = given.iter().map(place).collect::<Result<Vec<usize>, Failure>>()?;
@@ -215,6 +220,14 @@ impl Planner<'_> {
         Some(core::iter::once(latest).chain(order.into_iter().filter(|&agent| agent != latest)).collect())
     }
 
+    /// The least time in which an agent can travel its path by this method \[s\].
+    fn least(&self, motion: &Motion<'_, f64>) -> f64 {
+        match self.method {
+            Method::Delay => motion.time().length(),
+            Method::Speed => fastest(Drive::of(motion), motion.path().length()),
+        }
+    }
+
     /// A plan by this order, or one that it leads to.
     fn plan(&self, mut order: Vec<usize>) -> Result<Answer, Failure> {
         let agents = self.motions.len();
@@ -236,8 +249,9 @@ impl Planner<'_> {
             agents: Vec::new(),
             makespan: 0.0,
             sum_of_costs: 0.0,
-            lower_bound: self.motions.iter().map(|motion| motion.time().length()).sum(),
+            lower_bound: self.motions.iter().map(|motion| self.least(motion)).sum(),
             unsolved: Vec::new(),
+            warnings: self.scenario.warnings.clone(),
         };
         if let Err(never) = outcome {
             plan.unsolved.push(self.unsolved(never));
@@ -250,6 +264,7 @@ impl Planner<'_> {
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);
             plan.unsolved.push(Unsolved { ids: vec![conflict.i, conflict.j], why });
+            (plan.agents, plan.makespan, plan.sum_of_costs) = (Vec::new(), 0.0, 0.0);
             return Ok((plan, None));
         }
         Ok((plan, Some(solved)))
@@ -302,6 +317,23 @@ impl Planner<'_> {
         }
         solved
     }
+}
+
+/// The least time from one speed to another over a length \[s\]: full acceleration, the largest speed, full deceleration.
+fn fastest(Drive { limits: Limits { speed, acceleration }, start, goal }: Drive<f64>, length: f64) -> f64 {
+    let squares = start * start + goal * goal;
+    let reached = (squares / 2.0 + acceleration * length).max(0.0).sqrt();
+    let peak = reached.min(speed).max(start).max(goal);
+    if peak <= 0.0 {
+        return 0.0;
+    }
+    // Without acceleration it goes at one speed.
+    let (ramps, ramped) = match acceleration > 0.0 {
+        true => ((2.0 * peak - start - goal) / acceleration, (2.0 * peak * peak - squares) / (2.0 * acceleration)),
+        false => (0.0, 0.0),
+    };
+    // Speeds and phases of a plan are rounded.
+    (ramps + (length - ramped).max(0.0) / peak) * (1.0 - ROUNDING)
 }
 
 impl Plan {

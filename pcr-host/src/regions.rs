@@ -30,6 +30,8 @@ pub struct Answer {
     /// The covers of the agents that have footprints, if any has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
     /// Why the scenario was refused.
     pub error: Option<String>,
 }
@@ -72,6 +74,10 @@ pub enum Failure {
     Overfull([u64; 2]),
     /// There is no agent of the number asked for; these are there.
     NoSuchAgent(u64, Vec<u64>),
+    /// The path of this robot, or its disc with the margins of a simulation, is out of range.
+    Robot(u64),
+    /// An obstacle of a simulation, by its centre \[m\], is out of range.
+    Obstacle([f64; 2]),
 }
 
 impl fmt::Display for Failure {
@@ -85,6 +91,8 @@ impl fmt::Display for Failure {
                 f,
                 "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
             ),
+            Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),
+            Self::Obstacle([x, y]) => write!(f, "obstacle at {x}, {y}: it is out of range"),
             Self::NoSuchAgent(asked, there) => {
                 write!(f, "no agent {asked}; ")?;
                 let listed: Vec<String> = there.iter().take(LISTED).map(u64::to_string).collect();
@@ -169,6 +177,7 @@ impl Answer {
                 .enumerate()
                 .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
                 .collect(),
+            warnings: scenario.warnings.clone(),
             error: None,
         })
     }
@@ -181,6 +190,7 @@ impl Answer {
             regions: Vec::new(),
             margin_regions: None,
             footprints: Vec::new(),
+            warnings: Vec::new(),
             error: Some(error),
         }
     }

@@ -27,6 +27,7 @@
 //!   from 1): what the vehicle carries there.
 //! - `{ "kind": "turn", "sweep": 1.57 }` in a path is a turn in place, an arc of 1 nm radius. With `v_max` and `a_max` it needs
 //!   `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\], and the vehicle comes to rest before and after it.
+//! - `"warnings": [ "..." ]` beside `agents` is what `pcr import` had to say about the file that the scenario is from.
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
@@ -53,12 +54,14 @@ use std::f64::consts::TAU;
 mod tests;
 
 /// A fleet as a file describes it. SI units, angles in radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scenario {
     /// Name, empty if the file gives none.
     pub name: String,
     /// The agents, in the order of the file.
     pub agents: Vec<Agent>,
+    /// What was read otherwise than it was written, if it comes from a file of another format.
+    pub warnings: Vec<String>,
 }
 
 /// One agent.
@@ -102,6 +105,11 @@ pub enum PathSegment {
 }
 
 impl Scenario {
+    /// Agents that nobody has to be warned about.
+    pub fn new(name: impl Into<String>, agents: Vec<Agent>) -> Self {
+        Self { name: name.into(), agents, warnings: Vec::new() }
+    }
+
     /// Gives this margin, from 0 \[m\], to every agent that has none.
     pub fn give_margin(&mut self, margin: f64) {
         for agent in self.agents.iter_mut().filter(|agent| agent.margin == 0.0) {

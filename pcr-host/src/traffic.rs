@@ -59,6 +59,8 @@ pub struct Traffic {
     pub missions: Vec<Travel>,
     /// Why agents have no plan, the first of each `ids`.
     pub unsolved: Vec<Unsolved>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// A mission and what became of it.
@@ -87,15 +89,14 @@ impl Traffic {
         let Drawn { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
         let layout = &imported.layout;
         let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
-        let missions = Scenario { name: layout.name.clone(), agents };
+        let missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
         let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
         let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
         let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
         let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
-        let at_once =
-            Scenario { name: missions.name.clone(), agents: kept.clone().map(|(agent, _)| agent.clone()).collect() };
+        let at_once = Scenario { agents: kept.clone().map(|(agent, _)| agent.clone()).collect(), ..missions.clone() };
         let later = kept.map(|(agent, delay)| Agent { t_start: delay, ..agent.clone() });
-        let plan = Scenario { name: missions.name.clone(), agents: later.collect() };
+        let plan = Scenario { agents: later.collect(), ..missions.clone() };
         let conflicts = |scenario: &Scenario| Verdict::of::<f64>(scenario, false).map(|found| found.conflicts.len());
         let travels: Vec<Travel> =
             drawn.iter().zip(&delays).map(|(mission, delay)| Travel::of(mission, imported, *delay)).collect();
@@ -118,6 +119,7 @@ impl Traffic {
             missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
             missions: travels,
             unsolved: out.iter().map(|out| Unsolved::of([id(out.agent), id(out.by)], out.always)).collect(),
+            warnings: layout.warnings.clone(),
         };
         Ok((traffic, [missions, plan]))
     }

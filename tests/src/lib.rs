@@ -2,6 +2,7 @@
 //! but the definition of a collision region.
 
 pub mod audit;
+pub mod certified;
 pub mod constants;
 pub mod disc;
 pub mod exact;

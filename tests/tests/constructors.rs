@@ -244,7 +244,7 @@ fn survives<S: Format>(numbers: &[f64]) -> bool {
         })
         .collect();
     let Ok(ecm) = build_ecm(&motions) else { return false };
-    for region in ecm.regions(&motions) {
+    for region in ecm.regions(&motions).expect("the table of the fleet") {
         let finite =
             |interval: Interval<S>| interval.lo.is_finite() && interval.hi.is_finite() && interval.lo <= interval.hi;
         assert!(finite(region.time()) && finite(region.length()) && finite(region.other_length()));

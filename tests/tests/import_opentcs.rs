@@ -66,3 +66,38 @@ fn vehicles_keep_the_velocity_of_a_path() {
     let scenario = scenario(Format::OpenTcs, DEMO, &options(&["Point-0001:Point-0003"]), &mut warnings).unwrap();
     assert!((scenario.agents[0].length() - 6.0).abs() < 1e-12);
 }
+
+#[test]
+fn a_plant_is_read_whole_or_refused() {
+    let point = |name: &str, x: i32, y: i32| format!("<point name=\"{name}\" positionX=\"{x}\" positionY=\"{y}\"/>");
+    let path = |name: &str, from: &str, to: &str, more: &str| {
+        format!("<path name=\"{name}\" sourcePoint=\"{from}\" destinationPoint=\"{to}\" length=\"4000\" {more}/>")
+    };
+    let points = [point("a", 0, 0), point("b", 4000, 0), point("c", 2000, -2000), point("d", 2000, 2000)].concat();
+    let read = |parts: &str, partial: bool| {
+        let options = Options { radius: Some(0.3), partial, ..Options::default() };
+        let text = format!("<model>{points}{parts}</model>");
+        layout(Format::OpenTcs, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    let twice = [path("p", "a", "b", ""), path("p", "c", "d", ""), path("p", "c", "d", "")].concat();
+    let imported = read(&twice, false).unwrap();
+    assert_eq!(imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["p", "p#2"]);
+    assert_eq!(pcr_host::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    let curved = "<path name=\"q\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"1\"><pathLayout connectionType=\"BEZIER\"/></path>";
+    let lost = [path("p", "a", "z", ""), curved.to_owned(), path("r", "a", "b", "maxVelocity=\"fast\"")].concat();
+    let expected = "path p, destinationPoint: there is no node z; path q: BEZIER with 0 control points is not read; \
+        path r, maxVelocity: \"fast\" where a number up to 1e10 is expected; --partial leaves that out";
+    assert_eq!(read(&lost, false).unwrap_err(), expected);
+    assert_eq!(read(&lost, true).unwrap().layout.edges.len(), 0);
+    let moved = [point("a", 5, 5), path("p", "a", "b", "")].concat();
+    assert!(read(&moved, false).unwrap_err().starts_with("path p, sourcePoint: there are several different nodes a"));
+    let scaled = |scale: &str| read(&format!("<visualLayout scaleX=\"{scale}\"/>"), false);
+    assert!(scaled("0").unwrap_err().starts_with("visualLayout, scaleX: 0 where a number above 0 is expected"));
+    assert!(scaled("x").is_err() && scaled("20").is_ok());
+    // What vehicles reach out to at a point is there to be seen, and not used.
+    let outline = "<point name=\"e\" positionX=\"9\" positionY=\"9\"><vehicleEnvelope key=\"k\"><vertex x=\"1\" y=\"1\"/></vehicleEnvelope></point>";
+    let warnings = read(outline, false).unwrap().layout.warnings;
+    assert!(warnings.iter().any(|line| line.starts_with("point e: its vehicleEnvelope is not read")), "{warnings:?}");
+    let reversed = read(&path("p", "a", "b", "maxReverseVelocity=\"500\" maxVelocity=\"1500\""), false).unwrap().layout;
+    assert_eq!((reversed.edges[0].two_way, reversed.edges[0].speed), (true, Some(1.5)));
+}

@@ -145,7 +145,12 @@ fn what_is_wrong_is_named() {
     let config = std::fs::read_to_string(fleet("office_tinyRobot").unwrap()).unwrap();
     assert_eq!(failed(&config), "it is the configuration of a fleet; give it beside a building, with --fleet");
     assert!(failed("a: [").starts_with("not YAML: "));
-    let (broken, warnings) = read(&TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1), &tiny(&[]));
-    assert_eq!(broken.layout.edges.len(), 21);
-    assert_eq!(warnings, ["lane L1/0: left out: there is no vertex 999"]);
+    let broken = TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1);
+    assert_eq!(failed(&broken), "lane L1/0: there is no vertex 999; --partial leaves that out");
+    let (rest, warnings) = read(&broken, &Options { partial: true, ..tiny(&[]) });
+    assert_eq!(rest.layout.edges.len(), 21);
+    assert_eq!(warnings, ["lane L1/0: there is no vertex 999: left out"]);
+    let typed = TRIPLE_H.replacen("bidirectional: [4, ", "bidirectional: [4, perhaps ", 1);
+    assert_ne!(typed, TRIPLE_H);
+    assert!(failed(&typed).starts_with("lane L1/0: bidirectional: \"perhaps "), "{}", failed(&typed));
 }

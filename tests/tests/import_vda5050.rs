@@ -71,6 +71,30 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
     assert_eq!(warnings, ["order square: 1 of 3 edges are not released and left out (--horizon)"]);
     let (scenario, warnings) = read(&text, &Options { horizon: true, ..options() }).unwrap();
     assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("SASAS", 0));
+    // The base ends at the first node or edge that is not released.
+    let mut order = square();
+    for list in ["nodes", "edges"] {
+        for part in order[list].as_array_mut().unwrap() {
+            part["released"] = json!(true);
+        }
+    }
+    assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), "SASAS");
+    for (list, id, structure) in
+        [("nodes", "n2", "S"), ("edges", "e1", "S"), ("nodes", "n3", "SAS"), ("edges", "e2", "SAS")]
+    {
+        let mut order = order.clone();
+        let parts = order[list].as_array_mut().unwrap();
+        let part = parts.iter_mut().find(|part| part["nodeId"] == *id || part["edgeId"] == *id).unwrap();
+        part["released"] = json!(false);
+        assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), structure, "{id}");
+        let part = order[list].as_array_mut().unwrap().iter_mut();
+        part.for_each(|part| part["released"] = json!("no"));
+        assert!(
+            read(&order.to_string(), &options())
+                .unwrap_err()
+                .ends_with("released: a text where true or false is expected")
+        );
+    }
     // 0.5 m/s on the first edge: 1 s up and down, and 7 s; then a quarter turn.
     let MotionSpec::Profile { pieces, .. } = &scenario.agents[0].motion else { panic!() };
     let durations: Vec<f64> = pieces.iter().take(3).map(|(duration, _)| duration.round()).collect();
@@ -121,9 +145,22 @@ fn states_tell_paths_with_or_without_times() {
     let (scenario, _) =
         read(&state(json!({ "plannedPath": { "trajectory": quarter(), "traversedNodes": [] } })), &options()).unwrap();
     assert_eq!(scenario.agents[0].structure(), "AA");
-    let (scenario, warnings) = read(&state(json!({})), &options()).unwrap();
+    // Where it goes is told by nodes only: it does not stand.
+    let lost = "state of r7: its way is told by nodeStates only, give its order instead";
+    assert_eq!(read(&state(json!({})), &options()).unwrap_err(), format!("{lost}; --partial leaves that out"));
+    let partial = Options { partial: true, ..options() };
+    let (scenario, warnings) = read(&state(json!({})), &partial).unwrap();
     assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [4.0, 0.0, 0.0]));
-    assert_eq!(warnings, ["state of r7: it tells no path; it is taken as standing where it is"]);
+    assert_eq!(warnings, [format!("{lost}: left out")]);
+    assert_eq!(scenario.warnings, warnings);
+    let (scenario, warnings) = read(&state(json!({ "nodeStates": [] })), &options()).unwrap();
+    assert_eq!((scenario.agents[0].path.len(), warnings.len()), (0, 0));
+    let both = state(json!({ "plannedPath": {}, "intermediatePath": {} }));
+    assert!(read(&both, &options()).unwrap_err().contains("its plannedPath, which goes on"));
+    let elsewhere =
+        json!({ "plannedPath": { "trajectory": quarter() }, "mobileRobotPosition": { "x": 3.0, "y": 0.0 } });
+    let (_, warnings) = read(&state(elsewhere), &options()).unwrap();
+    assert!(warnings[0].ends_with("it begins 1.000 m from where the vehicle is; it is taken as there"), "{warnings:?}");
     let point = |x: f64, y: f64, eta: &str| json!({ "x": x, "y": y, "eta": eta });
     let polyline = [
         point(6.0, 0.0, "2026-11-21T08:00:02Z"),

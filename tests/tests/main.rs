@@ -39,6 +39,7 @@ mod paper_grid;
 mod paper_misprint;
 mod paper_tables;
 mod plans;
+mod plans_bounds;
 mod plans_footprints;
 mod properties;
 mod regressions;

@@ -9,9 +9,10 @@
 //! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
 //! to rounding.
 
-use super::events::{add_events, add_turning_lengths, contact, wraps};
+use super::events::{add_events, add_turning_lengths, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
 use super::lengths::Lengths;
+use super::offset::on_first_lap;
 use crate::bits::Runs;
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -61,10 +62,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
             return Ok(());
         }
         for &l in turning.as_slice() {
-            if let Some(s) = contact(self.first, l, self.second, self.radius + self.slack) {
-                let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
-                self.turn_back(pieces, begin, slices, s, by_laps);
-            }
+            self.turn_back(pieces, begin, l);
         }
         Ok(())
     }
@@ -145,20 +143,29 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Interval::new(foot - half, foot + half).widen(S::ZERO, Interval::new(S::ZERO, self.first.length))
     }
 
-    /// Adds the slices at a turning point to the pieces after `begin` that cover it.
-    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
-        &self,
-        pieces: &mut Pieces<S, P>,
-        begin: u32,
-        slices: [Option<Interval<S>>; 2],
-        s: S,
-        by_laps: bool,
-    ) {
+    /// Adds a turning point to the pieces after `begin` whose second range comes within reach of it: by one of its ends, where
+    /// its foot `s` is not in it.
+    ///
+    /// The foot alone would not do: its error is not a few slacks but ϱ / |ϱ - R| times that beside the centre of an arc, and two
+    /// turning points on either side of a gap may be one by rounding, whose foot is in the gap. The distance is right
+    /// whatever the foot, and of all points of a range it is least at the foot or at an end.
+    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, l: S) {
+        let point = self.first.point_at(l);
+        let footprint = Footprint::of(point, self.second);
+        if footprint.offset.abs() > self.radius + self.slack {
+            return;
+        }
+        let reach = self.radius + self.slack.half();
+        let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
+        let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
+        let turn = [Some(Interval::new(l, l)), None];
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
-            if piece.second.contains(s) {
-                // With one lap there is no doubt whose end it is.
-                let own = if by_laps { piece.share.of(slices, self.first, piece.first) } else { slices };
+            let within = piece.second.contains(s);
+            if within || near(piece.second.lo) || near(piece.second.hi) {
+                // Of two laps the slices tell whose end it is.
+                let slices = if within && piece.share != Share::Only { self.slices(s) } else { [None; 2] };
+                let own = if slices == [None; 2] { turn } else { piece.share.of(slices, self.first, piece.first) };
                 for slice in own {
                     piece.first = slice.map_or(piece.first, |slice| piece.first.hull(slice));
                 }

@@ -209,7 +209,7 @@ impl<S: Scalar> Reach<S> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub(crate) enum Share {
+pub enum Share {
     /// The only one.
     Only,
     /// Of two, the one at the start of the segment. There are two where the gap between them lies inside the segment.

@@ -72,7 +72,7 @@ impl<S: Scalar> Edge<S> {
             return None;
         }
         let ramp = (fast - slow).quotient(acceleration);
-        let mut way = (slow + fast).times(ramp).narrow().half();
+        let mut way = (slow + fast).times(ramp).half().narrow();
         let rounding = S::rounding(length);
         if way > length + rounding.double() {
             return None;

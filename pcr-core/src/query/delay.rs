@@ -133,7 +133,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
 /// // At 1 m/s on crossing lines: R √2.
-/// let delay = earliest_start(ecm.row(&fleet, 0), 0.0).unwrap();
+/// let delay = earliest_start(ecm.row(&fleet, 0)?, 0.0).unwrap();
 /// assert!((delay - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```

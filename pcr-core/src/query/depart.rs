@@ -70,9 +70,9 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
 /// // 1 m from the start it waits as long as at the start; 0.4 m before the crossing the other would meet it standing.
-/// let wait = earliest_departure(ecm.row(&fleet, 0), 1.0, 0.0).unwrap();
+/// let wait = earliest_departure(ecm.row(&fleet, 0)?, 1.0, 0.0).unwrap();
 /// assert!((wait - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
-/// assert_eq!(earliest_departure(ecm.row(&fleet, 0), 1.6, 0.0), None);
+/// assert_eq!(earliest_departure(ecm.row(&fleet, 0)?, 1.6, 0.0), None);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn earliest_departure<'a, S: Scalar>(

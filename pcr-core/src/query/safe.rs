@@ -5,6 +5,7 @@
 //! whose middle something of the part is covered: closed forms. The other's motion turns lengths into times; an agent
 //! that stands before its start or after its arrival blocks all of that time.
 
+use crate::error::Mismatch;
 use crate::geometry::{Interval, Pose};
 use crate::intervals::{gaps, union};
 use crate::motion::Motion;
@@ -17,8 +18,8 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
-/// Parts of one segment that another one blocks, at most: the gaps between 14 events, no two of them neighbours.
-const PARTS: usize = 7;
+/// Parts of one segment that another one blocks, at most: the slabs between 16 events ([`Lengths`]), no two of them neighbours.
+const PARTS: usize = 8;
 
 impl<'a, S: Scalar> Encounter<'a, S> {
     /// When the other agent blocks a part of the ego's path \[m\], in an interval of time \[s\]: its disc is then within
@@ -100,6 +101,9 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 ///
 /// Cost: that of [`Encounter::blocked`] for every other agent, for each interval.
 ///
+/// # Errors
+/// [`Mismatch::NoSuchAgent`].
+///
 /// ```
 /// use pcr_core::{Interval, Motion, Path, Point, Pose, Profile, Radians, safe_intervals};
 /// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
@@ -110,7 +114,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
 ///
 /// // The middle of the path of agent 0 is blocked while agent 1 passes at 1 m/s, within 0.5 m of it at 3 s.
-/// let mut safe = safe_intervals(&fleet, 0, Interval::new(2.0, 2.0), Interval::new(0.0, 10.0));
+/// let mut safe = safe_intervals(&fleet, 0, Interval::new(2.0, 2.0), Interval::new(0.0, 10.0))?;
 /// let (before, after) = (safe.next().unwrap(), safe.next().unwrap());
 /// assert!(before.lo == 0.0 && (before.hi - 2.5).abs() < 1e-12 && (after.lo - 3.5).abs() < 1e-12 && after.hi == 10.0);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
@@ -120,40 +124,48 @@ pub fn safe_intervals<'a, S: Scalar>(
     ego: usize,
     length: Interval<S>,
     during: Interval<S>,
-) -> impl Iterator<Item = Interval<S>> + Clone {
-    gaps(union(encounters(fleet, ego).flat_map(move |pair| pair.blocked(length, during))), during)
+) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
+    let pairs = encounters(fleet, ego)?;
+    Ok(gaps(union(pairs.flat_map(move |pair| pair.blocked(length, during))), during))
 }
 
 /// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the dual
-/// of [`safe_intervals`], at the same cost.
+/// of [`safe_intervals`], at the same cost and with the same error.
 pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
     during: Interval<S>,
-) -> impl Iterator<Item = Interval<S>> + Clone {
+) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
+    let pairs = encounters(fleet, ego)?;
     let length = fleet.get(ego).map_or(S::ZERO, |ego| ego.path().length());
-    let blocked = union(encounters(fleet, ego).flat_map(move |pair| pair.blocked_lengths(during)));
-    gaps(blocked, Interval::new(S::ZERO, length))
+    let blocked = union(pairs.flat_map(move |pair| pair.blocked_lengths(during)));
+    Ok(gaps(blocked, Interval::new(S::ZERO, length)))
 }
 
 /// The ego with every other agent.
-fn encounters<'a, S: Scalar>(fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = Encounter<'a, S>> + Clone {
-    let own = fleet.get(ego);
+fn encounters<'a, S: Scalar>(
+    fleet: &'a [Motion<'a, S>],
+    ego: usize,
+) -> Result<impl Iterator<Item = Encounter<'a, S>> + Clone, Mismatch> {
+    let own = fleet.get(ego).ok_or(Mismatch::NoSuchAgent(ego))?;
     // `enumerate` would check its counter for overflow.
     let others = (0..fleet.len()).zip(fleet).filter(move |&(other, _)| other != ego);
-    others.filter_map(move |(_, other)| Some(Encounter::new(own?, other)))
+    Ok(others.map(move |(_, other)| Encounter::new(own, other)))
 }
 
 /// The part of a segment between these lengths of its path, if there is any.
 fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
-    let own = Interval::new(segment.from, segment.from + segment.length);
+    // Not `from` + `length`, which is another number in floating point: a joint, and the end of the path, is on a segment.
+    let own = Interval::new(segment.from, segment.to);
     if !own.meets(part) {
         return None;
     }
     if part.lo <= own.lo && own.hi <= part.hi {
         return Some(*segment);
     }
-    let (from, to) = (part.lo.max(own.lo) - own.lo, part.hi.min(own.hi) - own.lo);
+    let along = |length: S| (length - own.lo).min(segment.length);
+    let from = along(part.lo.max(own.lo));
+    let to = if part.hi < own.hi { along(part.hi) } else { segment.length };
     let pose = Pose { position: segment.point_at(from), heading: segment.heading_at(from) };
     let length = to - from;
     let cut = Segment::standing(pose).and_then(|start| match segment.curve {

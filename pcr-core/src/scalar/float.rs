@@ -58,6 +58,11 @@ macro_rules! impl_float {
             fn scale(self, by: $t) -> Self {
                 self * by
             }
+            fn digest(self) -> u32 {
+                // All bits of `f32`, the halves of `f64` on one another: a shift by 0 or 32.
+                let bits = u64::from(self.to_bits());
+                (bits ^ (bits >> 32)) as u32
+            }
             fn half(self) -> Self {
                 0.5 * self
             }
@@ -151,8 +156,9 @@ macro_rules! impl_float {
                 2.0 * $t::EPSILON * of
             }
             fn lag(speed: Self, time: Self) -> Self {
-                // One roundoff of the time in what has elapsed of it, two at either end of a phase, two where a stop is.
-                3.5 * $t::EPSILON * speed * time
+                // One roundoff of the time in what has elapsed of it, two at either end of a phase, two where a stop is, one
+                // of a phase that takes no time.
+                4.0 * $t::EPSILON * speed * time
             }
         }
 

@@ -68,6 +68,9 @@ impl Scalar for Micro {
     fn scale(self, by: f32) -> Self {
         Self(self.0 * by)
     }
+    fn digest(self) -> u32 {
+        self.0.to_bits()
+    }
     fn half(self) -> Self {
         Self(0.5 * self.0)
     }

@@ -108,7 +108,7 @@ impl<S: Number> Regions for Whole<'_, '_, S> {
     }
 
     fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]> {
-        slice(self.table.pair(self.motions, ego, other), time)
+        slice(self.table.pair(self.motions, ego, other).expect("the table of the fleet"), time)
     }
 }
 
@@ -123,7 +123,7 @@ impl<S: Number> Regions for Rows<'_, S> {
 
     fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]> {
         let row = self.0.get(ego.min(other));
-        row.map_or(Vec::new(), |row| slice(row.pair(ego, other), time))
+        row.map_or(Vec::new(), |row| slice(row.pair(ego, other).expect("the row of one of them"), time))
     }
 }
 
@@ -156,7 +156,8 @@ impl<S: Number> Method for Conflicts<S> {
             Cores::All => {
                 let candidates: Vec<_> = broad_phase.candidates().collect();
                 let contacts = candidates.into_par_iter();
-                contacts.flat_map_iter(|(agents, during)| broad_phase.contacts_of(agents, during)).map(found).collect()
+                let of = |(agents, during)| broad_phase.contacts_of(agents, during).expect("agents of the fleet");
+                contacts.flat_map_iter(of).map(found).collect()
             }
         }))
     }

@@ -111,7 +111,7 @@ fn pairs(clearance: f64) -> [Scenario; KINDS] {
     let reach = RADII[0] + RADII[1] + clearance;
     let line = |length| PathSegment::Line { length };
     let arc = |radius, sweep| PathSegment::Arc { radius, sweep };
-    let of = |name: &str, agents: [Agent; 2]| Scenario { name: name.into(), agents: agents.into() };
+    let of = |name: &str, agents: [Agent; 2]| Scenario::new(name, agents.into());
     let east = |t_start| agent(0, t_start, [-4.0, 0.0, 0.0], line(8.0));
     [
         of("opposite lines", [east(0.123), agent(1, 0.0, [4.0, reach, PI], line(8.0))]),

@@ -208,7 +208,7 @@ pub(super) fn scenario(
     let mut agents = Vec::new();
     let mut levels = Vec::new();
     for (k, route) in options.routes.iter().enumerate() {
-        let asked = Asked::parse(route, |name| layout.node(name))?;
+        let asked = Asked::parse(route, |name| layout.nodes_called(name))?;
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
         let agent = mission(layout, vehicle, k as u64 + 1, asked.ends).map_err(|error| refused(&error))?;
         let agent = agent.ok_or_else(|| refused(&"there is no way from node to node"))?;
@@ -218,7 +218,7 @@ pub(super) fn scenario(
     if levels.windows(2).any(|pair| pair[0] != pair[1]) {
         warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
     }
-    Ok(Scenario { name: layout.name.clone(), agents })
+    Ok(Scenario::new(layout.name.clone(), agents))
 }
 
 /// The agent that travels the shortest way between two nodes from the time 0, if there is one.

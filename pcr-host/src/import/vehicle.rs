@@ -93,6 +93,9 @@ pub struct Options {
     /// Travel the horizon of an order as well, not only its base (VDA 5050)
     #[arg(long)]
     pub horizon: bool,
+    /// Read what can be read of a layout; without it, a file is refused for anything that would be left out
+    #[arg(long)]
+    pub partial: bool,
 }
 
 /// Largest value of an option: beyond it nothing is a vehicle.
@@ -124,7 +127,13 @@ impl Options {
             self.corner_radius,
             self.tolerance,
         ];
-        numbers.iter().any(Option::is_some) || !self.routes.is_empty() || self.vehicle.is_some() || self.fleet.is_some()
+        numbers.iter().any(Option::is_some)
+            || !self.routes.is_empty()
+            || self.vehicle.is_some()
+            || self.fleet.is_some()
+            || self.graph.is_some()
+            || self.horizon
+            || self.partial
     }
 
     pub(super) fn tolerance(&self) -> f64 {
@@ -178,25 +187,40 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons.
-    pub(super) fn parse(text: &str, node: impl Fn(&str) -> Option<usize>) -> Result<Self, ImportError> {
-        let ends = |text: &str| {
-            text.match_indices(':')
-                .find_map(|(colon, _)| Some([node(text.get(..colon)?)?, node(text.get(colon + 1..)?)?]))
+    /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons and `@`, as long as it can be read in one way only.
+    pub(super) fn parse(text: &str, nodes: impl Fn(&str) -> Vec<usize>) -> Result<Self, ImportError> {
+        let refused = |problem: String| Err(ImportError::new(format!("route {text}: {problem}")));
+        let splits = |text: &str| -> Vec<[String; 2]> {
+            let split = |(colon, _)| Some([text.get(..colon)?.to_owned(), text.get(colon + 1..)?.to_owned()]);
+            let names = text.match_indices(':').filter_map(split);
+            names.filter(|names| names.iter().all(|name| !nodes(name).is_empty())).collect()
         };
-        let timed = || {
-            let (text, time) = text.rsplit_once('@')?;
+        let timed = text.rsplit_once('@').and_then(|(names, time)| {
             let time = time.parse::<f64>().ok().filter(|time| time.abs() <= MOST)?;
-            Some(Self { ends: ends(text)?, time })
-        };
-        if let Some(asked) = ends(text).map(|ends| Self { ends, time: 0.0 }).or_else(timed) {
-            return Ok(asked);
+            Some((names, time))
+        });
+        let mut readings: Vec<([String; 2], f64)> = splits(text).into_iter().map(|names| (names, 0.0)).collect();
+        readings.extend(timed.into_iter().flat_map(|(text, time)| splits(text).into_iter().map(move |it| (it, time))));
+        match readings.as_slice() {
+            [(names, time)] => {
+                let mut ends = [0; 2];
+                for (end, name) in ends.iter_mut().zip(names) {
+                    match nodes(name)[..] {
+                        [only] => *end = only,
+                        ref several => return refused(format!("{} nodes have the name {name}", several.len())),
+                    }
+                }
+                Ok(Self { ends, time: *time })
+            }
+            [] => {
+                let names = text.rsplit_once('@').map_or(text, |(names, _)| names);
+                let unknown = names.split_once(':').map(|(from, to)| if nodes(from).is_empty() { from } else { to });
+                match unknown {
+                    Some(name) if nodes(name).is_empty() => refused(format!("there is no node {name}")),
+                    _ => refused("FROM:TO or FROM:TO@TIME is expected".into()),
+                }
+            }
+            _ => refused("there are nodes for more than one reading of it".into()),
         }
-        let names = text.rsplit_once('@').map_or(text, |(names, _)| names);
-        let unknown = names.split_once(':').map(|(from, to)| if node(from).is_none() { from } else { to });
-        Err(ImportError::new(match unknown {
-            Some(name) if node(name).is_none() => format!("route {text}: there is no node {name}"),
-            _ => format!("route {text}: FROM:TO or FROM:TO@TIME is expected"),
-        }))
     }
 }

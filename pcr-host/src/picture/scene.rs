@@ -85,7 +85,7 @@ impl Scene<'_> {
 
     /// Number of regions of an ego.
     pub(super) fn count(&self, ego: usize) -> usize {
-        self.ecm.row(self.motions, ego).count()
+        self.ecm.row(self.motions, ego).expect("the table of the fleet").count()
     }
 
     /// The regions of an ego, traced for pixels of this size \[s\], \[m\].
@@ -102,7 +102,7 @@ impl Scene<'_> {
             }
             Shape::new(&region, motion, &all, pixel)
         };
-        self.ecm.row(self.motions, ego).map(shape).collect()
+        self.ecm.row(self.motions, ego).expect("the table of the fleet").map(shape).collect()
     }
 }
 

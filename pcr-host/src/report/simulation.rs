@@ -74,6 +74,13 @@ fn planning(run: &Run, out: &mut impl Write) -> io::Result<()> {
     let (count, kept) = (planning.count, planning.kept);
     let (mean, longest) = (planning.mean_ms, planning.longest_ms);
     let name = run.controller.name();
+    if count > 0 && kept == count {
+        return writeln!(
+            out,
+            "{name}: no plan was found in {count} tries, and nobody moved: robots or goals are too near one another for their margins, \
+             or no order of passing works"
+        );
+    }
     writeln!(
         out,
         "{name}: planned {count} times ({kept} times the old orders stayed), {mean:.2} ms each, at most {longest:.2} ms"

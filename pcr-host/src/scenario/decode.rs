@@ -53,8 +53,8 @@ impl Scenario {
             Some((_, Json { data: Data::Text(name), .. })) => name.clone(),
             _ => String::new(),
         };
-        match Self::agents(json) {
-            Ok(agents) => Ok(Self { name, agents }),
+        match Self::agents(json).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
+            Ok((agents, warnings)) => Ok(Self { name, agents, warnings }),
             Err(mut error) => {
                 error.scenario = name;
                 Err(error)
@@ -62,8 +62,20 @@ impl Scenario {
         }
     }
 
+    fn warnings(json: &Json) -> Result<Vec<String>, ScenarioError> {
+        let fields = Place::default().fields(json, &["name", "warnings", "agents"])?;
+        if fields.get("warnings").is_none() {
+            return Ok(Vec::new());
+        }
+        let text = |warning: &Json| match &warning.data {
+            Data::Text(text) => Ok(text.clone()),
+            _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
+        };
+        fields.array("warnings")?.iter().map(text).collect()
+    }
+
     fn agents(json: &Json) -> Result<Vec<Agent>, ScenarioError> {
-        let fields = Place::default().fields(json, &["name", "agents"])?;
+        let fields = Place::default().fields(json, &["name", "warnings", "agents"])?;
         if let Some(name) = fields.get("name")
             && !matches!(name.data, Data::Text(_))
         {

@@ -12,7 +12,11 @@ impl Scenario {
     pub fn to_json(&self) -> String {
         let agents = self.agents.iter().map(|agent| format!("    {}", Json(agent))).collect::<Vec<_>>().join(",\n");
         let agents = if agents.is_empty() { "[]".to_owned() } else { format!("[\n{agents}\n  ]") };
-        format!("{{ \"name\": {},\n  \"agents\": {agents} }}\n", Value::from(self.name.as_str()))
+        let warnings = match self.warnings.is_empty() {
+            true => String::new(),
+            false => format!("  \"warnings\": {},\n", Value::from(self.warnings.clone())),
+        };
+        format!("{{ \"name\": {},\n{warnings}  \"agents\": {agents} }}\n", Value::from(self.name.as_str()))
     }
 }
 
@@ -110,9 +114,12 @@ mod tests {
         let outline =
             Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().grown(0.01);
         let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
-        let scenario = Scenario { name: "a \"name\"\n\\".into(), agents: vec![agent, stands, moves, outlined] };
+        let scenario = Scenario {
+            warnings: vec!["edge \"5\": left out".into()],
+            ..Scenario::new("a \"name\"\n\\", vec![agent, stands, moves, outlined])
+        };
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
-        let empty = Scenario { name: String::new(), agents: Vec::new() };
+        let empty = Scenario::default();
         assert_eq!(Scenario::from_json(&empty.to_json()), Ok(empty));
     }
 }

@@ -207,10 +207,7 @@ fn the_name_is_known_of_a_refused_scenario() {
 
 #[test]
 fn what_is_allowed_is_accepted() {
-    assert_eq!(
-        Scenario::from_json("\u{feff}{\"agents\": []}\r\n").unwrap(),
-        Scenario { name: String::new(), agents: vec![] }
-    );
+    assert_eq!(Scenario::from_json("\u{feff}{\"agents\": []}\r\n").unwrap(), Scenario::default());
     for (pointer, value) in [
         ("/path", json!([])),
         ("/path/0/length", json!(0)),

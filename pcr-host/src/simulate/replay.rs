@@ -112,7 +112,7 @@ fn plan(snapshot: &Snapshot) -> Value {
         let offset = snapshot.offsets.get(ego).copied().unwrap_or(0.0);
         let length = motion.path().length();
         let pixel = [(end - snapshot.time).max(FRAME) / PIXELS, length.max(UNIT) / PIXELS];
-        let regions = ecm.iter().flat_map(|ecm| ecm.row(&motions, ego));
+        let regions = ecm.iter().flat_map(|ecm| ecm.row(&motions, ego).expect("the table of the fleet"));
         let regions = regions.map(|region| self::region(&region, motion, pixel, offset, end));
         let times = (0..=POINTS).map(|k| snapshot.time + (end - snapshot.time) * k as f64 / POINTS as f64);
         let curve = times.map(|time| [short(time), short(offset + motion.length_at(time))]);

@@ -61,7 +61,8 @@ impl Robot {
 }
 
 impl Task {
-    /// The agents of a scenario: those with a path have one mission, the others are in the way.
+    /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
+    /// around all of them, and turns in place take no time.
     ///
     /// # Errors
     /// [`Failure::Refused`] where a value is out of range.
@@ -73,10 +74,10 @@ impl Task {
             if course.length() > 0.0 {
                 let missions = vec![Mission { release: agent.t_start, course }];
                 let limits = limits(&agent.motion);
-                robots.push(Robot { id: agent.id, radius: agent.radius, margin: agent.margin, limits, missions });
+                robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
             } else {
                 let centre = course.point_at(0.0);
-                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.radius + agent.margin });
+                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
             }
         }
         Ok(Self { name: scenario.name.clone(), robots, obstacles })

@@ -22,7 +22,7 @@ pub(super) struct Crowd {
 impl Crowd {
     /// Adds an agent if there still is an order for all; returns whether there is.
     pub(super) fn add(&mut self, agent: &Agent) -> bool {
-        let alone = Scenario { name: String::new(), agents: vec![agent.clone()] };
+        let alone = Scenario::new("", vec![agent.clone()]);
         // What cannot be computed with is not in anybody's way, and no mission.
         let Ok(bodies) = Bodies::<f64>::new(&alone) else { return false };
         // Most that fail do so by one disc of each already.
@@ -49,7 +49,7 @@ impl Crowd {
             let pair: Vec<Motion<'_, f64>> =
                 std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
             let ecm = build_ecm_of(&pair, 0).ok()?;
-            for region in ecm.row(&pair, 0) {
+            for region in ecm.row(&pair, 0).expect("the table of the fleet") {
                 let Some((other, _)) = others.get(region.other().wrapping_sub(1)) else { continue };
                 let [goes_after, goes_before] = sides(&region);
                 marks[0][*other] |= goes_after;

@@ -63,7 +63,7 @@ fn output_is_the_cores<S: Format>() {
     let ecm = build_ecm(&motions).unwrap();
     let answer = run(&["regions", "--format", "json", "--slices", "2", "--scalar", S::NAME]).json();
     let printed = answer["regions"].as_array().unwrap();
-    let regions: Vec<RegionRef<'_, S>> = ecm.regions(&motions).collect();
+    let regions: Vec<RegionRef<'_, S>> = ecm.regions(&motions).expect("the table of the fleet").collect();
     assert_eq!((answer["scalar"].as_str(), printed.len()), (Some(S::NAME), regions.len()));
     let mut found = 0;
     for region in &regions {

@@ -1,7 +1,7 @@
 //! What the lines and colours of a map mean.
 
 use super::super::axis::TICK_SIZE;
-use super::super::palette::Colour;
+use super::super::palette::{Colour, DISTINCT};
 use super::super::scene::{Scene, Shape};
 use super::super::svg::{Pixels, Svg, text_width};
 
@@ -48,7 +48,9 @@ impl Legend {
         if shapes.iter().any(|shape| !shape.before.is_empty() || !shape.after.is_empty()) {
             all.push((Sample::Strip, "the other agent stands at its start or end".into()));
         }
-        let mut others: Vec<usize> = shapes.iter().map(|shape| shape.other).collect();
+        // More colours than a dozen cannot be told apart: there the labels of the regions alone say whose they are.
+        let told_apart = scene.motions.len() <= DISTINCT;
+        let mut others: Vec<usize> = shapes.iter().map(|shape| shape.other).filter(|_| told_apart).collect();
         others.sort_unstable();
         others.dedup();
         let explained = all.len();
