@@ -75,7 +75,8 @@ pub fn table<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>], ecm: &Hos
 
 fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 2]) -> Pair {
     let (mut pieces, mut told) = (Vec::new(), Vec::new());
-    for (number, (region, back)) in ecm.pair(motions, i, j).zip(ecm.pair(motions, j, i)).enumerate() {
+    let regions = |a, b| ecm.pair(motions, a, b).expect("the table of the fleet");
+    for (number, (region, back)) in regions(i, j).zip(regions(j, i)).enumerate() {
         pieces.extend(region.pieces().map(|piece| Piece {
             segments: piece.segments,
             lengths: [ends_of(piece.length), ends_of(piece.other_length)],

@@ -5,7 +5,7 @@
 
 use crate::fleet::{Format, Refused};
 use crate::footprint::{Bodies, Disced};
-use crate::scenario::Scenario;
+use crate::scenario::{Labels, Scenario};
 use pcr_core::{Encounter, Interval, Motion};
 use serde::Serialize;
 
@@ -14,6 +14,9 @@ use serde::Serialize;
 pub struct Verdict {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// Sorted by their begin, then by the agents.
     pub conflicts: Vec<Conflict>,
     /// Every pair, if asked for.
@@ -114,6 +117,7 @@ impl Verdict {
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
         Ok(Self {
             name: scenario.name.clone(),
+            labels: Labels::of(scenario),
             conflicts,
             closest: closest.then_some(nearest),
             warnings: scenario.warnings.clone(),
@@ -123,7 +127,14 @@ impl Verdict {
 
     /// No answer, and why.
     pub fn refused(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, warnings: Vec::new(), error: Some(error) }
+        Self {
+            name: name.to_owned(),
+            labels: Labels::default(),
+            conflicts: Vec::new(),
+            closest: None,
+            warnings: Vec::new(),
+            error: Some(error),
+        }
     }
 }
 

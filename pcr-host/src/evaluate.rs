@@ -22,6 +22,7 @@ mod traffic;
 
 use crate::compare::Effort;
 use crate::import::{self, Format, Imported, Options, Warnings};
+use crate::output;
 use crate::regions::Failure;
 use crate::scenario::Scenario;
 use std::path::{Path, PathBuf};
@@ -128,8 +129,8 @@ pub fn write(
     files.insert(0, (directory.join("evaluation.md"), text));
     let written = files.into_iter().map(|(path, content)| {
         let write = || {
-            fs::create_dir_all(path.parent().unwrap_or(directory))?;
-            fs::write(&path, content)
+            output::folder(path.parent().unwrap_or(directory))?;
+            output::write(&path, content)
         };
         write().map_err(|error: io::Error| Problem::File(path.clone(), format!("cannot be written: {error}")))?;
         Ok(path)

@@ -77,7 +77,7 @@ impl Format for f32 {
 /// Why an agent of a scenario does not fit a number format: agent, segment, field, value and what is allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
-    agent: u64,
+    agent: String,
     part: Option<(&'static str, usize)>,
     format: &'static str,
     problem: String,
@@ -145,7 +145,7 @@ impl<S: Format> Fleet<S> {
     /// [`Refused`] where a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
-            let refused = |(part, problem)| Refused { agent: agent.id, part, format: S::NAME, problem };
+            let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
             Parts::new(agent).map_err(refused)
         });
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })

@@ -21,6 +21,7 @@
 //! route       the shortest way between nodes, corners rounded
 //! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
 //! names       names that tell apart what a file gives one name
+//! useful      which of them do something with which files                  Kind
 //! warnings    what was wrong and was read nevertheless                     Warnings
 //! ```
 //!
@@ -46,6 +47,7 @@ mod speed;
 mod timed;
 mod trace;
 mod trajectory;
+mod useful;
 mod value;
 mod vda5050;
 mod vehicle;
@@ -55,7 +57,8 @@ mod xml;
 pub use layout::{Edge, Id, Layout, Node, Placed};
 pub(crate) use route::{Step, ride, turn};
 pub use trace::{KINK, TURN};
-pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
+pub use useful::Kind;
+pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
 
 use crate::scenario::{Agent, Scenario};

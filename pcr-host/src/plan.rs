@@ -6,15 +6,17 @@
 
 mod circle;
 mod forbidden;
+mod reason;
 
 use crate::check::Verdict;
 use crate::fleet::Fleet;
 use crate::fleet::HostEcm;
 use crate::regions::{self, Failure};
-use crate::scenario::{MotionSpec, Scenario};
+use crate::scenario::{Labels, MotionSpec, Scenario};
 pub(crate) use circle::sides;
 pub(crate) use forbidden::{Forbidden, Schedule};
 use pcr_core::{Drive, Encounter, Limits, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
+pub use reason::Spot;
 use serde::Serialize;
 
 /// How conflicts are avoided.
@@ -55,6 +57,9 @@ pub enum Priority {
 pub struct Plan {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// How conflicts are avoided.
     pub method: &'static str,
     /// The agents by priority.
@@ -91,16 +96,21 @@ pub struct Unsolved {
     pub ids: Vec<u64>,
     /// Why.
     pub why: String,
+    /// Where, if it is about two agents and a place.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub spot: Option<Spot>,
 }
 
 impl Unsolved {
     /// The first agent cannot start because of the second, `always` or after it.
-    pub(crate) fn of(ids: [u64; 2], always: bool) -> Self {
-        let why = match always {
-            true => "they meet whenever they start: head-on without a passing place, or starts or ends that overlap",
-            false => "the first cannot start because of the second in any order that was tried",
-        };
-        Self { ids: ids.to_vec(), why: why.to_owned() }
+    pub(crate) fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
+        let (why, spot) = reason::reason(scenario, ids, always);
+        Self { ids: ids.to_vec(), why, spot }
+    }
+
+    /// Without a place.
+    fn nowhere(ids: Vec<u64>, why: impl Into<String>) -> Self {
+        Self { ids, why: why.into(), spot: None }
     }
 }
 
@@ -148,8 +158,8 @@ impl Plan {
             && let Some(circle) = circle::circle(&ecm, &motions)
         {
             let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
-            let why = "each has to let the next one pass first, the last one the first, however they move".into();
-            best.0.unsolved.insert(0, Unsolved { ids, why });
+            let why = "each has to let the next one pass first, the last one the first, however they move";
+            best.0.unsolved.insert(0, Unsolved::nowhere(ids, why));
         }
         Ok(best)
     }
@@ -244,6 +254,7 @@ impl Planner<'_> {
         };
         let mut plan = Plan {
             name: self.scenario.name.clone(),
+            labels: Labels::of(self.scenario),
             method: self.method.name(),
             order: order.iter().map(|&agent| self.id(agent)).collect(),
             agents: Vec::new(),
@@ -263,7 +274,7 @@ impl Planner<'_> {
         let verdict = Verdict::of::<f64>(&solved, false)?;
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);
-            plan.unsolved.push(Unsolved { ids: vec![conflict.i, conflict.j], why });
+            plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
             (plan.agents, plan.makespan, plan.sum_of_costs) = (Vec::new(), 0.0, 0.0);
             return Ok((plan, None));
         }
@@ -286,20 +297,24 @@ impl Planner<'_> {
     }
 
     fn unsolved(&self, never: Never) -> Unsolved {
-        let pair = |agents: [usize; 2], why: &str| Unsolved {
-            ids: agents.map(|agent| self.id(agent)).to_vec(),
-            why: why.into(),
+        let pair = |agents: [usize; 2], why: &str, ends: bool| {
+            let ids = agents.map(|agent| self.id(agent)).to_vec();
+            let [Some(a), Some(b)] = agents.map(|agent| self.motions.get(agent)) else {
+                return Unsolved::nowhere(ids, why);
+            };
+            let spot = Spot::standing([a, b], ends);
+            Unsolved { ids, why: format!("{why}, {}", spot.words()), spot: Some(spot) }
         };
         match never {
-            Never::Starts(agents) => pair(agents, "they overlap at their starts"),
-            Never::Ends(agents) => pair(agents, "they overlap at the ends of their paths"),
-            Never::Always([a, b]) => Unsolved::of([self.id(a), self.id(b)], true),
-            Never::Priorities([a, b]) => Unsolved::of([self.id(a), self.id(b)], false),
-            Never::Full(agent) => Unsolved {
-                ids: vec![self.id(agent)],
-                why: "its plan takes too many profiles or phases, or too long".into(),
-            },
-            other => Unsolved { ids: Vec::new(), why: other.to_string() },
+            Never::Starts(agents) => pair(agents, "they overlap at their starts", false),
+            Never::Ends(agents) => pair(agents, "they overlap at the ends of their paths", true),
+            Never::Always([a, b]) => Unsolved::of(self.scenario, [self.id(a), self.id(b)], true),
+            Never::Priorities([a, b]) => Unsolved::of(self.scenario, [self.id(a), self.id(b)], false),
+            Never::Full(agent) => {
+                let why = "its plan takes too many profiles or phases, or too long";
+                Unsolved::nowhere(vec![self.id(agent)], why)
+            }
+            other => Unsolved::nowhere(Vec::new(), other.to_string()),
         }
     }
 

@@ -29,6 +29,9 @@
 //!   `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\], and the vehicle comes to rest before and after it.
 //! - `"warnings": [ "..." ]` beside `agents` is what `pcr import` had to say about the file that the scenario is from.
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
+//! - `"label": "AGV-7"` is what people call the agent. Ids may be texts, too, if all are: then the agents are numbered from 1 in the
+//!   order of the file, and the texts are their labels.
+//! - `"format": "pcr-scenario"` and `"version": 1` are what files of the tool begin with; they may be left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
 //! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
@@ -36,6 +39,7 @@
 mod decode;
 mod encode;
 mod fields;
+mod labels;
 mod load;
 mod outline;
 mod parts;
@@ -46,6 +50,8 @@ pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::speed_after;
 pub(crate) use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
+pub(crate) use labels::label;
+pub use labels::{LONGEST_LABEL, Labels};
 pub use load::Load;
 pub(crate) use parts::Part;
 use std::f64::consts::TAU;
@@ -69,6 +75,8 @@ pub struct Scenario {
 pub struct Agent {
     /// Number, unique in its scenario.
     pub id: u64,
+    /// What people call it: printable text, empty if the file gives none.
+    pub label: String,
     /// Radius of the disc \[m\]; with a footprint that of the disc around all of it.
     pub radius: f64,
     /// Its outline, if it is no disc.
@@ -184,8 +192,8 @@ impl Agent {
     /// A disc of this radius \[m\] without a margin that sets off at the time 0; `start` is abscissa \[m\], ordinate \[m\], heading
     /// \[rad\].
     pub fn disc(id: u64, radius: f64, start: [f64; 3], path: Vec<PathSegment>, motion: MotionSpec) -> Self {
-        let (footprint, loads) = (None, Vec::new());
-        Self { id, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }
+        let (label, footprint, loads) = (String::new(), None, Vec::new());
+        Self { id, label, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }
     }
 
     /// Length of the path \[m\].

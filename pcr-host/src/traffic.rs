@@ -118,7 +118,7 @@ impl Traffic {
             lower_bound: at_once.agents.iter().map(Agent::duration).sum(),
             missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
             missions: travels,
-            unsolved: out.iter().map(|out| Unsolved::of([id(out.agent), id(out.by)], out.always)).collect(),
+            unsolved: out.iter().map(|out| Unsolved::of(&missions, [id(out.agent), id(out.by)], out.always)).collect(),
             warnings: layout.warnings.clone(),
         };
         Ok((traffic, [missions, plan]))

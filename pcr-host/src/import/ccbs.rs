@@ -20,6 +20,9 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
     let document = parse(text)?;
     let root = document.root_element();
     let graph = only(root, "graph")?.ok_or_else(|| {
+        if is_task(root) {
+            return task();
+        }
         ImportError::new(format!("{}: there is no graph in it, which a roadmap is", root.tag_name().name()))
     })?;
     let undirected = graph.attribute("edgedefault") == Some("undirected");
@@ -82,10 +85,22 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
     })
 }
 
+/// Whether a file says only who has to go where.
+fn is_task(root: roxmltree::Node<'_, '_>) -> bool {
+    child(root, "log").is_none() && child(root, "agent").is_some()
+}
+
+fn task() -> ImportError {
+    ImportError::new("a task of Continuous-CBS without its plan; the plan is in the log that the program writes")
+}
+
 /// Reads the plan in a log.
 pub(super) fn log(text: &str, vehicle: &Vehicle) -> Result<Scenario, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
+    if is_task(root) {
+        return Err(task());
+    }
     let log = only(root, "log")?
         .ok_or_else(|| ImportError::new(format!("{}: there is no log in it, hence no plan", root.tag_name().name())))?;
     let mut agents = Vec::new();

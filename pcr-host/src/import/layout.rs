@@ -138,6 +138,12 @@ pub struct Layout {
     pub nodes: Vec<Node>,
     /// The edges.
     pub edges: Vec<Edge>,
+    /// Other ids of nodes, with their places: names of ends of edges that are one node.
+    pub aliases: Vec<(String, usize)>,
+    /// Types of vehicles that the file tells apart.
+    pub vehicle_types: Vec<String>,
+    /// Vehicles that the file names.
+    pub vehicles: Vec<String>,
     /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
     pub corner_radius: Option<f64>,
     /// What its reader had to say about the file.
@@ -145,17 +151,18 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Places of the node of this id or, if there is none, of those of this name.
+    /// Places of the node of this id or of this other id or, if there is none, of those of this name.
     pub fn nodes_called(&self, name: &str) -> Vec<usize> {
         let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);
         let by_name = || {
             let named = self.nodes.iter().enumerate().filter(|(_, node)| node.name.as_deref() == Some(name));
             named.map(|(place, _)| place).collect()
         };
-        by_id.map_or_else(by_name, |place| vec![place])
+        let by_alias = || self.aliases.iter().find(|(alias, _)| alias == name).map(|(_, place)| *place);
+        by_id.or_else(by_alias).map_or_else(by_name, |place| vec![place])
     }
 
-    /// Place of the node of this id or, if there is none, of this name, if only one has it.
+    /// Place of the node of this id or, if there is none, of this other id, or of this name if only one has it.
     pub fn node(&self, name: &str) -> Option<usize> {
         match self.nodes_called(name)[..] {
             [only] => Some(only),

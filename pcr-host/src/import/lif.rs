@@ -50,6 +50,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         }
     }
     let Reader { levels, nodes, edges, types, .. } = reader;
+    let vehicle_types = types.iter().filter(|name| !name.is_empty()).cloned().collect();
     if nodes.list().is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
     }
@@ -67,6 +68,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     }
     Ok(Layout {
         name: name.to_owned(),
+        vehicle_types,
         levels,
         nodes: nodes.into_list(),
         edges: edges.into_list(),

@@ -68,7 +68,9 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         let name = format!("{} {name}", element.tag_name().name());
         warnings.add(name, "its vehicleEnvelope is not read; the vehicle has its own outline everywhere");
     }
+    let vehicles = children(root, "vehicle").filter_map(|vehicle| vehicle.attribute("name"));
     Ok(Layout {
+        vehicles: vehicles.map(crate::scenario::label).filter(|name| !name.is_empty()).collect(),
         name: root.attribute("name").unwrap_or_default().to_owned(),
         levels: vec![String::new()],
         nodes: nodes.into_list(),

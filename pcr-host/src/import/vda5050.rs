@@ -11,7 +11,7 @@ use super::timed::{self, seconds};
 use super::trace::Tracer;
 use super::value::Object;
 use super::{ImportError, Options, Vehicle, Warnings, loads, route, trajectory};
-use crate::scenario::{Agent, MotionSpec, Scenario};
+use crate::scenario::{Agent, MotionSpec, Scenario, label};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -52,22 +52,25 @@ pub(super) fn read(
         let id = k as u64 + 1;
         let message = Object::new(format!("message {id}"), value)?;
         let name = message.text("orderId").ok().flatten().unwrap_or_default();
+        let robot = message.text("serialNumber").ok().flatten().unwrap_or_default();
+        let called = label(&[robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "));
         let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];
         if message.get("nodes").is_some() {
             let order = message.called(format!("order {name}"));
-            scenario.agents.push(reader.order(id, &order)?);
+            scenario.agents.push(Agent { label: called, ..reader.order(id, &order)? });
             radii.push(vehicle.radius);
         } else if state.iter().any(|field| message.get(field).is_some()) {
-            let robot = message.text("serialNumber").ok().flatten();
+            let robot = Some(robot).filter(|robot| !robot.is_empty());
             let state =
                 message.called(robot.map_or_else(|| format!("state {id}"), |robot| format!("state of {robot}")));
             let loaded = loads::loaded(&state, vehicle, reader.warnings)?;
-            scenario.agents.push(reader.state(id, &state, &loaded)?);
+            scenario.agents.push(Agent { label: called, ..reader.state(id, &state, &loaded)? });
             radii.push(loaded.radius);
         } else {
             return Err(message.missing("nodes or nodeStates"));
         }
-        if k == 0 {
+        // Several have no name in common.
+        if messages.len() == 1 {
             scenario.name = name.to_owned();
         }
     }

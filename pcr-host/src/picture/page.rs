@@ -82,6 +82,7 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
     json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
+        "name": scene.called(place),
         "radius": motion.radius(),
         "discs": discs,
         "outline": footprint.map_or(&[][..], |footprint| footprint.polygon()),

@@ -1,7 +1,8 @@
 //! Traffic for reading.
 
 use super::columns::Columns;
-use super::{heading, printable};
+use super::{all_called, heading, printable};
+use crate::scenario::Labels;
 use crate::traffic::Traffic;
 use std::io::{self, Write};
 
@@ -47,8 +48,8 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     }
     columns.write(out)?;
     for unsolved in &traffic.unsolved {
-        let ids: Vec<String> = unsolved.ids.iter().map(u64::to_string).collect();
-        writeln!(out, "agents {}: {}; the first is left out", ids.join(" and "), unsolved.why)?;
+        let agents = all_called(&Labels::default(), &unsolved.ids);
+        writeln!(out, "agents {agents}: {}; the first is left out", unsolved.why)?;
     }
     let Traffic { regions, conflicts_before, conflicts_after, .. } = traffic;
     writeln!(

@@ -1,5 +1,6 @@
 //! From a scenario to its file.
 
+use super::decode::{FORMAT, VERSION};
 use super::{Agent, Load, MotionSpec, PathSegment, Scenario};
 use crate::footprint::Footprint;
 use crate::import::TURN;
@@ -16,7 +17,10 @@ impl Scenario {
             true => String::new(),
             false => format!("  \"warnings\": {},\n", Value::from(self.warnings.clone())),
         };
-        format!("{{ \"name\": {},\n{warnings}  \"agents\": {agents} }}\n", Value::from(self.name.as_str()))
+        let name = Value::from(self.name.as_str());
+        format!(
+            "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{warnings}  \"agents\": {agents} }}\n"
+        )
     }
 }
 
@@ -25,8 +29,12 @@ struct Json<T>(T);
 
 impl Display for Json<&Agent> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Agent { id, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } = self.0;
+        let Agent { id, label, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } =
+            self.0;
         write!(f, "{{ \"id\": {id}, ")?;
+        if !label.is_empty() {
+            write!(f, "\"label\": {}, ", Value::from(label.as_str()))?;
+        }
         write!(f, "{}, ", Json((*radius, footprint.as_ref())))?;
         if !loads.is_empty() {
             let loads = loads.iter().map(|Load { segments: [first, last], radius, footprint }| {
@@ -95,6 +103,7 @@ mod tests {
     fn what_is_written_is_read_again() {
         let agent = Agent {
             id: u64::MAX,
+            label: "AGV \"7\" → é".into(),
             radius: 1.0 / 3.0,
             footprint: None,
             loads: vec![Load { segments: [0, 1], radius: 0.7, footprint: None }],
@@ -105,7 +114,8 @@ mod tests {
             motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
         };
         let length = agent.length();
-        let stands = Agent { id: 0, margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
+        let stands =
+            Agent { id: 0, label: String::new(), margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
         let moves = Agent {
             id: 1,
             motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },

@@ -4,7 +4,7 @@ use super::course::Course;
 use super::vector::Vector;
 use crate::fleet::Fleet;
 use crate::regions::Failure;
-use crate::scenario::{MotionSpec, Scenario};
+use crate::scenario::{Labels, MotionSpec, Scenario};
 use pcr_core::Limits;
 
 /// A run: robots, what stands in their way, and their missions.
@@ -12,6 +12,8 @@ use pcr_core::Limits;
 pub struct Task {
     /// Name of the scenario.
     pub name: String,
+    /// What its agents are called.
+    pub labels: Labels,
     /// The robots.
     pub robots: Vec<Robot>,
     /// What does not move.
@@ -80,7 +82,7 @@ impl Task {
                 obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
             }
         }
-        Ok(Self { name: scenario.name.clone(), robots, obstacles })
+        Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles })
     }
 }
 

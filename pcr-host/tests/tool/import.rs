@@ -40,7 +40,7 @@ fn a_format_may_be_named_and_come_through_a_pipe() {
     let arguments = ["import", "nav2", &name, "--route", "3:4", "-o", written.to_str().unwrap()];
     let run = run(&[&arguments, &VEHICLE[..]].concat());
     assert_eq!((run.status, run.out.as_str()), (0, ""));
-    assert!(std::fs::read_to_string(written).unwrap().starts_with("{ \"name\": \"warehouse_graph\""));
+    assert!(std::fs::read_to_string(written).unwrap().contains("\"name\": \"warehouse_graph\""));
 }
 
 #[test]
@@ -49,10 +49,7 @@ fn what_is_wrong_is_named() {
     assert!(failed.ends_with("route 0:1000: there is no node 1000 (read as nav2)\n"), "{failed}");
     let scenario = file("import", "plain.json", crate::fixture::crossing().to_string());
     let failed = run(&["regions", &scenario, "--radius", "1"]).failed(2);
-    assert!(
-        failed.ends_with("a scenario has its own vehicles and paths; options for layouts are of no use\n"),
-        "{failed}"
-    );
+    assert!(failed.ends_with(": --radius is of no use: a scenario has its own vehicles and paths\n"), "{failed}");
     let failed = run(&["regions", &scenario, "--from", "nav2"]).failed(2);
     assert!(failed.ends_with("graph, features: missing (read as nav2)\n"), "{failed}");
     let refused = run(&["regions", WAREHOUSE, "--radius=-1"]);

@@ -3,8 +3,11 @@
 mod check;
 mod compare;
 mod evaluate;
+mod files;
 mod fixture;
 mod formats;
+mod habits;
+mod identity;
 mod import;
 mod lines;
 mod locks;
@@ -13,4 +16,5 @@ mod output;
 mod plan;
 mod refusals;
 mod simulate;
+mod sources;
 mod streams;

@@ -41,7 +41,7 @@ enum Sample {
 impl Legend {
     /// The legend of a map between two abscissas \[px\].
     pub(in super::super) fn new(scene: &Scene<'_>, ego: usize, shapes: &[Shape], [from, to]: [f64; 2]) -> Self {
-        let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.id(ego)))];
+        let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.called(ego)))];
         if !shapes.is_empty() {
             all.push((Sample::Region, "collision region, labelled by the other agent".into()));
         }
@@ -54,7 +54,7 @@ impl Legend {
         others.sort_unstable();
         others.dedup();
         let explained = all.len();
-        all.extend(others.iter().map(|other| (Sample::Agent(scene.colour(*other)), scene.id(*other).to_string())));
+        all.extend(others.iter().map(|other| (Sample::Agent(scene.colour(*other)), scene.called(*other))));
         let (mut row, mut x) = (0, from);
         let mut entries = Vec::new();
         for (k, (sample, text)) in all.into_iter().enumerate() {

@@ -159,7 +159,7 @@ function drawWorkspace() {
   });
   agents.forEach((agent, k) => {
     const disc = element(view.content, "g", {
-      class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.id}`,
+      class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.name}`,
     });
     outline(disc, agent, { class: "outline" });
     // A number that would hide its disc stands beside it.
@@ -233,14 +233,14 @@ function drawMap() {
     span: `${view.top}V${view.bottom}`,
   };
   const count = map.regions.length;
-  $("caption").textContent = `Extended collision map of agent ${ego.id}: ${count} region${count === 1 ? "" : "s"}${data.outlines ? " of the discs around all outlines" : ""}, labelled by the`
+  $("caption").textContent = `Extended collision map of agent ${ego.name}: ${count} region${count === 1 ? "" : "s"}${data.outlines ? " of the discs around all outlines" : ""}, labelled by the`
     + " other agent; dashed strips are agents that stand at their start or end. Point at a region, or press Tab, to read about it.";
 }
 
 const size = (region) => (region.time[1] - region.time[0]) * (region.length[1] - region.length[0]);
 
 function summary(region) {
-  return `Region of agents ${agents[state.ego].id} and ${agents[region.other].id}, ${number(region.time[0])} to `
+  return `Region of agents ${agents[state.ego].name} and ${agents[region.other].name}, ${number(region.time[0])} to `
     + `${number(region.time[1])} seconds, ${number(region.length[0])} to ${number(region.length[1])} metres`;
 }
 
@@ -261,7 +261,7 @@ function describe(region) {
   }
   const open = [region.before.length > 0 && "from before the other's start", region.after.length > 0 && "on after its arrival"];
   const line = add(about, "p");
-  add(line, "strong", `Agent ${agents[state.ego].id} against agent ${agents[region.other].id}`);
+  add(line, "strong", `Agent ${agents[state.ego].name} against agent ${agents[region.other].name}`);
   line.append(`, type ${region.types.join(", ")} (${region.pieces} piece${region.pieces === 1 ? "" : "s"})`);
   const extent = add(about, "p", `time ${number(region.time[0])} to ${number(region.time[1])} s, length `
     + `${number(region.length[0])} to ${number(region.length[1])} m`);
@@ -383,14 +383,14 @@ function start() {
   agents.forEach((agent, k) => {
     const option = document.createElement("option");
     option.value = k;
-    option.textContent = `${agent.id} (${data.maps[k].regions.length})`;
+    option.textContent = `${agent.name} (${data.maps[k].regions.length})`;
     $("ego").append(option);
     const chip = document.createElement("button");
     chip.type = "button";
     chip.className = "agent chip";
     chip.style.setProperty("--colour", agent.colour);
     chip.textContent = agent.id;
-    chip.title = `Show or hide agent ${agent.id}`;
+    chip.title = `Show or hide agent ${agent.name}`;
     chip.addEventListener("click", () => { state.shown[k] = !state.shown[k]; show(); });
     $("chips").append(chip);
   });
