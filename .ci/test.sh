@@ -2,7 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages instructions fuzz
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -140,13 +140,18 @@ firmware() {
   firmware/check.sh
 }
 
+proofs() {
+  step "proofs: every claim about errors, and how it is held"
+  proofs/check.sh
+}
+
 fuzz() {
   step "fuzzing: scenario files, pairs and importers"
   fuzz/run.sh
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests pages instructions fuzz}; do
+for part in ${*:-style docs features no_std c firmware tests pages instructions fuzz proofs}; do
   "$part"
 done
 step "all passed"

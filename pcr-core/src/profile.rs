@@ -72,8 +72,9 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            // The last digit of the acceleration counts for the whole duration.
-            if after < -(S::rounding(before) + S::rounding(acceleration.abs()).times(duration).narrow()) {
+            // The last digits of accelerations count for the whole time so far.
+            if after < -(S::rounding(before) + S::rounding(acceleration.abs()).times(self.time.hi + duration).narrow())
+            {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;

@@ -121,6 +121,12 @@ impl Scalar for N {
     fn is_finite(self) -> bool {
         true
     }
+    fn digest(self) -> u32 {
+        0
+    }
+    fn portion(self, _: Self, _: Self) -> Self {
+        left_out()
+    }
     fn times(self, rhs: Self) -> N {
         operation(self.0 * rhs.0, "{0} * {1}", &[self, rhs], true)
     }

@@ -41,7 +41,7 @@ const MOST: u64 = 2 * LIMIT as u64;
 /// The residual that rounding may cause, in last digits, in a small arena: 7.2 by docs/errors.md, and 0.8 for what
 /// [`Scalar::drift`] leaves out.
 const SLACK: i32 = 8;
-/// Directions and angles are right to a few 2⁻³⁰: the residual grows by 16 of these parts of the extent, of which 11.5 are
+/// Directions and angles are right to a few 2⁻³⁰: the residual grows by 16 of these parts of the extent, of which 11.6 are
 /// needed.
 const SLACK_SHIFT: u32 = 26;
 

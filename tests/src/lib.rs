@@ -6,7 +6,6 @@ pub mod certified;
 pub mod constants;
 pub mod disc;
 pub mod exact;
-pub mod exhaust;
 pub mod generators;
 pub mod oracle;
 pub mod outward;

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 
 /// A region in `f32` lies within the exact region of a radius that is larger by this, as a fraction of the larger extent
 /// of the two motions, where they do not wait: twice 64 roundoffs, and what the rounding of times adds.
-const F32_EXCESS: f64 = 9e-6;
+const F32_EXCESS: f64 = 9.6e-6;
 
 /// Samples of each region.
 const SAMPLES: u32 = if cfg!(optimized) { 32 } else { 8 };

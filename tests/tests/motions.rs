@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 /// Bound on the error of travelled lengths and of times, in slacks of the largest length, time, or length travelled
 /// meanwhile: each phase adds a few roundings.
-const MOTION: f64 = 16.0;
+const MOTION: f64 = 4.0;
 
 /// A pair with its drives and start times.
 type Driven = ((Disc, Disc), [(Drive, f64); 2]);

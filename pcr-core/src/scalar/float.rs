@@ -156,8 +156,9 @@ macro_rules! impl_float {
                 2.0 * $t::EPSILON * of
             }
             fn lag(speed: Self, time: Self) -> Self {
-                // One roundoff of the time in what has elapsed of it, two at either end of a phase.
-                2.5 * $t::EPSILON * speed * time
+                // One roundoff of the time in what has elapsed of it, two at either end of a phase, two where a stop is, one
+                // of a phase that takes no time.
+                4.0 * $t::EPSILON * speed * time
             }
         }
 
