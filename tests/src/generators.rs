@@ -5,10 +5,12 @@
 mod cases;
 mod dice;
 mod relations;
+mod tangent;
 
 pub use cases::{Case, case};
 pub use dice::{Dice, FACES};
 pub use relations::{RELATIONS, Relation};
+pub use tangent::inner_tangent;
 
 use crate::disc::{Disc, Drive, Leg};
 use proptest::prelude::*;

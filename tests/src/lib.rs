@@ -2,6 +2,7 @@
 //! but the definition of a collision region.
 
 pub mod audit;
+pub mod clearance;
 pub mod constants;
 pub mod disc;
 pub mod exact;
@@ -12,6 +13,7 @@ pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
+pub mod search;
 pub mod settings;
 pub mod velocity;
 

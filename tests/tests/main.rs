@@ -42,6 +42,7 @@ mod plans_footprints;
 mod properties;
 mod regressions;
 mod safe;
+mod search;
 mod simulate;
 mod speed;
 mod table;
