@@ -57,7 +57,10 @@ fn main() -> ExitCode {
     for (name, search) in FORMATS.iter().filter(|(name, _)| format.as_ref().is_none_or(|format| format == name)) {
         let found = starts.clone().filter_map(|seed| Some((seed, search(seed, steps)?)));
         if let Some((seed, worst)) = found.min_by(|a, b| a.1.margin().total_cmp(&b.1.margin())) {
-            println!("{name}: {:.3} to {:.3} of the excess, start {seed}: {:?}", worst.ends[0], worst.ends[1], worst.pair);
+            println!(
+                "{name}: {:.3} to {:.3} of the excess, start {seed}: {:?}",
+                worst.ends[0], worst.ends[1], worst.pair
+            );
             violated |= worst.margin() < 0.0;
         }
     }

@@ -58,7 +58,8 @@ pub fn search<S: Format>(seed: u64, steps: u64) -> Option<Worst> {
     let pair = start::<S>(seed);
     let mut worst = Worst { ends: of_ends::<S>(&pair)?, pair };
     for step in 0..steps {
-        let pair = changed(&worst.pair, &mut Dice::seeded(seed.wrapping_mul(0x1_0000_0001).wrapping_add(step)), size::<S>());
+        let pair =
+            changed(&worst.pair, &mut Dice::seeded(seed.wrapping_mul(0x1_0000_0001).wrapping_add(step)), size::<S>());
         if let Some(ends) = of_ends::<S>(&pair) {
             let next = Worst { ends, pair };
             if next.margin() <= worst.margin() {
