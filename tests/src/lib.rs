@@ -3,6 +3,7 @@
 
 pub mod audit;
 pub mod certified;
+pub mod clearance;
 pub mod constants;
 pub mod disc;
 pub mod exact;
@@ -13,6 +14,7 @@ pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
+pub mod search;
 pub mod settings;
 pub mod velocity;
 

@@ -44,6 +44,7 @@ mod plans_footprints;
 mod properties;
 mod regressions;
 mod safe;
+mod search;
 mod simulate;
 mod speed;
 mod table;

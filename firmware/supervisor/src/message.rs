@@ -289,7 +289,7 @@ impl Refusal {
             Invalid::NonFinite(what) => (Reason::NonFinite, what),
             Invalid::Negative(what) => (Reason::Negative, what),
             Invalid::NonPositive(what) => (Reason::NonPositive, what),
-            Invalid::OutOfRange(what) => (Reason::OutOfRange, what),
+            Invalid::OutOfRange(what) | Invalid::TooSmall(what) => (Reason::OutOfRange, what),
             Invalid::SweepOverOneTurn => (Reason::SweepOverOneTurn, ""),
             Invalid::Full(what) => (Reason::Full, what),
             _ => (Reason::Other, ""),
