@@ -23,6 +23,7 @@ style() {
 
 docs() {
   step "documentation"
+  peer_libraries
   RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features pcr-tests/peers --locked
 }
 
@@ -102,7 +103,7 @@ features() {
   fi
 }
 
-# Libraries for C++ that comparisons can do without: where they cannot be installed, it says what is left out.
+# Libraries for C++ that are compared with: nothing is left out silently.
 peer_libraries() {
   local packages=() library
   command -v c++ >/dev/null || packages+=(g++)
@@ -111,11 +112,15 @@ peer_libraries() {
     pkg-config --exists $library 2>/dev/null || packages+=(lib$library-dev)
   done
   if [ ${#packages[@]} = 0 ]; then return; fi
-  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    echo "installing ${packages[*]}"
-    if { apt-get update && apt-get install -y --no-install-recommends "${packages[@]}"; } >/dev/null 2>&1; then return; fi
+  if [ "$(id -u)" != 0 ] || ! command -v apt-get >/dev/null; then
+    echo "missing for comparisons: ${packages[*]}" >&2
+    return 1
   fi
-  echo "LEFT OUT of comparisons, not installed: ${packages[*]}"
+  echo "installing ${packages[*]}"
+  # Another installation may hold the lock for a while.
+  local apt=(apt-get -o DPkg::Lock::Timeout=600)
+  "${apt[@]}" update >/dev/null
+  "${apt[@]}" install -y --no-install-recommends "${packages[@]}" >/dev/null
 }
 
 no_std() {

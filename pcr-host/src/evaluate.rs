@@ -61,6 +61,8 @@ pub enum Problem {
     File(PathBuf, String),
     /// Of a fleet.
     Fleet(Failure),
+    /// Of a method that has no answer, by its name.
+    Method(String, String),
 }
 
 impl fmt::Display for Problem {
@@ -68,6 +70,7 @@ impl fmt::Display for Problem {
         match self {
             Self::File(path, problem) => write!(f, "{}: {problem}", path.display()),
             Self::Fleet(failure) => failure.fmt(f),
+            Self::Method(name, reason) => write!(f, "{name}: {reason}"),
         }
     }
 }

@@ -155,7 +155,9 @@ impl<S: Format> Fleet<S> {
     /// The motions, in the order of the scenario.
     pub fn motions(&self) -> Vec<Motion<'_, S>> {
         // `Parts::new` has built each of them once.
-        self.agents.iter().filter_map(|parts| parts.motion().ok()).collect()
+        let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
+        debug_assert_eq!(motions.len(), self.agents.len());
+        motions
     }
 
     /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.

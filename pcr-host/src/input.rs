@@ -168,8 +168,17 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
     let name = files.first().cloned();
     let Some(format) = read_as else { return Err(InputError::Single(name)) };
     // An empty line parts paths, and means nothing between messages.
-    match import::scenario(format, &texts.join("\n\n"), options, &mut Warnings::default()) {
+    let mut all = Warnings::default();
+    match import::scenario(format, &texts.join("\n\n"), options, &mut all) {
         Ok(mut scenario) => {
+            // What is said of all of them together is said with the last one.
+            if let Some((_, last)) = warnings.last_mut() {
+                last.add_of_all(&all);
+            }
+            scenario.warnings = warnings
+                .iter()
+                .flat_map(|(file, own)| own.all().into_iter().map(move |line| format!("{}: {line}", file.display())))
+                .collect();
             files.iter().take(1).for_each(|file| or_stem(&mut scenario.name, file));
             Ok((scenario, warnings))
         }

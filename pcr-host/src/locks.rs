@@ -11,7 +11,7 @@ mod rides;
 
 use crate::fleet::build_ecm;
 use crate::footprint::{Bodies, Disc};
-use crate::import::{self, Edge, Id, ImportError, Imported, Node};
+use crate::import::{self, Edge, Id, ImportError, Imported, Layout, Node};
 use crate::scenario::{Agent, Scenario};
 use rides::Ride;
 pub(crate) use rides::{Rides, corridor};
@@ -123,7 +123,7 @@ impl Locks {
             locks: Vec::new(),
             nodes: nodes.then(Vec::new),
             node_pairs: nodes.then(Vec::new),
-            warnings: layout.warnings.clone(),
+            warnings: layout.warnings.iter().cloned().chain(rounded(layout)).collect(),
         };
         for level in 0..layout.levels.len() {
             // One that leads from level to level is on both.
@@ -169,6 +169,15 @@ impl Locks {
         }
         Ok(())
     }
+}
+
+/// What has to be said of layouts of which routes round the corners.
+fn rounded(layout: &Layout) -> Option<String> {
+    let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
+    Some(format!(
+        "corners: routes round them with {radius} m, off their edges by up to {radius} m (1 - cos(a/2)) in a turn by a; locks are those of \
+         vehicles that keep to the edges: give that as --margin"
+    ))
 }
 
 /// Of every two places, the first one before the second, the extents of the regions of their discs.

@@ -33,6 +33,9 @@ impl<'a, S: Format> Row<'a, S> {
     ///
     /// # Errors
     /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 32767 pieces.
+    ///
+    /// # Panics
+    /// For an agent that the fleet does not have: without it the row would say that it is free of it.
     pub fn new(motions: &[Motion<'a, S>], ego: usize, others: &[u32]) -> Result<Self, Full> {
         let mut row = Self::default();
         row.fill(motions, ego, others)?;
@@ -45,7 +48,7 @@ impl<'a, S: Format> Row<'a, S> {
         self.agents.push(ego as u32);
         self.agents.extend_from_slice(others);
         self.motions.clear();
-        self.motions.extend(self.agents.iter().filter_map(|&agent| motions.get(agent as usize)));
+        self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
         match self.table.fill_row(&self.motions, 0) {
             Err(Full::Regions | Full::Pieces) => {
                 let agents = self.agents.len();
@@ -66,8 +69,8 @@ impl<'a, S: Format> Row<'a, S> {
         &self.table
     }
 
-    /// The regions of the agent of the row with another one of the fleet, either of whom comes first; none with one that does
-    /// not come near it.
+    /// The regions of the agent of the row with another one of the fleet, either of whom comes first; none with one that is not
+    /// of this row, which says nothing of those before its agent, and of those after it that they are far away.
     ///
     /// # Errors
     /// [`Mismatch::OnlyRow`] for two others.

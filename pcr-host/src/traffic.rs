@@ -37,8 +37,10 @@ pub struct Traffic {
     pub asked: usize,
     /// Agents that have a mission; for the others there is no room to start or to end.
     pub placed: usize,
-    /// Missions that were drawn and passed over, because no order of starts would have let them through with those before them.
+    /// Missions that were drawn and passed over, in all draws.
     pub passed_over: usize,
+    /// Why, and how many each.
+    pub passed_over_because: Vec<PassedOver>,
     /// Agents that have a mission and a plan.
     pub planned: usize,
     /// Collision regions of the agents that have a mission, both directions of every pair.
@@ -61,6 +63,15 @@ pub struct Traffic {
     pub unsolved: Vec<Unsolved>,
     /// What was read otherwise than it was written.
     pub warnings: Vec<String>,
+}
+
+/// Why missions were passed over.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassedOver {
+    /// In words.
+    pub why: String,
+    /// How many.
+    pub missions: usize,
 }
 
 /// A mission and what became of it.
@@ -89,7 +100,12 @@ impl Traffic {
         let Drawn { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
         let layout = &imported.layout;
         let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
-        let missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
+        let mut missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
+        if layout.levels.len() > 1 {
+            let level = &layout.levels[layout.largest_level()];
+            let problem = format!("levels: missions are drawn on {level} only, of {}", layout.levels.len());
+            missions.warnings.push(problem);
+        }
         let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
         let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
         let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
@@ -108,7 +124,8 @@ impl Traffic {
             radius: imported.vehicle.radius,
             asked: request.agents,
             placed: drawn.len(),
-            passed_over,
+            passed_over: passed_over.values().sum(),
+            passed_over_because: passed_over.into_iter().map(|(why, missions)| PassedOver { why, missions }).collect(),
             planned: plan.agents.len(),
             regions,
             conflicts_before: conflicts(&at_once)?,
@@ -119,7 +136,7 @@ impl Traffic {
             missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
             missions: travels,
             unsolved: out.iter().map(|out| Unsolved::of(&missions, [id(out.agent), id(out.by)], out.always)).collect(),
-            warnings: layout.warnings.clone(),
+            warnings: missions.warnings.clone(),
         };
         Ok((traffic, [missions, plan]))
     }

@@ -1,6 +1,6 @@
 //! This library.
 
-use super::{Answer, Field, Found, Method, Number, Question, Regions};
+use super::{Answer, BEYOND, Field, Found, Method, Number, Outcome, Question, Regions};
 use crate::fleet::{HostEcm, build_ecm};
 use crate::rows::{Row, rows};
 use pcr_core::{Bounds, BroadPhase, Interval, Motion, Piece, Region, RegionRef};
@@ -70,11 +70,11 @@ impl<S: Number> Method for Map<S> {
         self.0 == Cores::All
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
-        let motions = S::motions(field)?;
-        Some(Answer::Regions(match self.0 {
-            Cores::One => Box::new(Whole { motions, table: build_ecm(motions).ok()? }),
-            Cores::All => Box::new(Rows(rows(motions).ok()?)),
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+        let motions = S::motions(field).ok_or(BEYOND)?;
+        Ok(Answer::Regions(match self.0 {
+            Cores::One => Box::new(Whole { motions, table: build_ecm(motions).map_err(|full| full.to_string())? }),
+            Cores::All => Box::new(Rows(rows(motions).map_err(|full| full.to_string())?)),
         }))
     }
 }
@@ -144,14 +144,14 @@ impl<S: Number> Method for Conflicts<S> {
         self.0 == Cores::All
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
-        let motions = S::motions(field)?;
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+        let motions = S::motions(field).ok_or(BEYOND)?;
         let during = field.horizon.map(S::from_f64);
         let during = Interval::new(during[0], during[1]);
         let boxes = vec![Bounds::default(); motions.len() * (1 + PARTS)];
-        let broad_phase = BroadPhase::new(boxes, motions, during).ok()?;
+        let broad_phase = BroadPhase::new(boxes, motions, during).map_err(|full| full.to_string())?;
         let found = |(agents, time): Contact<S>| Found { agents, begin: time.lo.to_f64(), end: Some(time.hi.to_f64()) };
-        Some(Answer::Conflicts(match self.0 {
+        Ok(Answer::Conflicts(match self.0 {
             Cores::One => broad_phase.contacts().map(found).collect(),
             Cores::All => {
                 let candidates: Vec<_> = broad_phase.candidates().collect();

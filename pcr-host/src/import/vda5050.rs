@@ -10,6 +10,7 @@ use super::layout::Placed;
 use super::timed::{self, seconds};
 use super::trace::Tracer;
 use super::value::Object;
+use super::warnings::TOGETHER;
 use super::{ImportError, Options, Vehicle, Warnings, loads, route, trajectory};
 use crate::scenario::{Agent, MotionSpec, Scenario, label};
 use serde_json::Value;
@@ -76,7 +77,8 @@ pub(super) fn read(
     }
     if reader.maps.len() > 1 {
         let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
-        warnings.add(format_args!("maps {maps}"), "the agents are on several, which a scenario does not tell apart");
+        warnings
+            .add(format_args!("maps {maps}"), format!("{TOGETHER}on several, which a scenario does not tell apart"));
     }
     Ok((scenario, radii))
 }

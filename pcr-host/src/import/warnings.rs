@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// How warnings begin that are about agents together, who may be from several files.
+pub(super) const TOGETHER: &str = "the agents are ";
+
 /// Names of one warning that are listed; the others are counted.
 const LISTED: usize = 8;
 
@@ -27,6 +30,11 @@ impl Warnings {
     pub(crate) fn lose(&mut self, problem: impl fmt::Display) {
         self.lost.push(problem.to_string());
         self.add(problem, "left out");
+    }
+
+    /// Adds what is said of several files together, which is about agents of more than one.
+    pub(crate) fn add_of_all(&mut self, all: &Self) {
+        self.list.extend(all.list.iter().filter(|(problem, _)| problem.starts_with(TOGETHER)).cloned());
     }
 
     /// What is in the file and not in what was read.

@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::{all_called, heading, printable};
 use crate::scenario::Labels;
-use crate::traffic::Traffic;
+use crate::traffic::{PassedOver, Traffic};
 use std::io::{self, Write};
 
 /// The header line of [`traffic_csv`].
@@ -31,7 +31,12 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
-    writeln!(out, "{passed_over} missions passed over that no order of starts lets through with those before them")?;
+    if *passed_over == 0 {
+        writeln!(out, "no mission passed over")?;
+    }
+    for PassedOver { why, missions } in &traffic.passed_over_because {
+        writeln!(out, "{missions} missions passed over: {}", printable(why))?;
+    }
     if placed < asked {
         let without = asked - placed;
         writeln!(

@@ -62,7 +62,13 @@ pub fn task(seed: u64, trips: u32) -> Task {
         Robot { id: place as u64 + 1, radius: RADIUS, margin: 0.0, limits: LIMITS, missions }
     });
     let obstacles = OBSTACLES.map(|centre| Obstacle { id: None, centre, radius: OBSTACLE });
-    Task { name: "foraging".into(), labels: Labels::default(), robots: robots.collect(), obstacles: obstacles.to_vec() }
+    Task {
+        name: "foraging".into(),
+        labels: Labels::default(),
+        robots: robots.collect(),
+        obstacles: obstacles.to_vec(),
+        warnings: Vec::new(),
+    }
 }
 
 #[cfg(test)]

@@ -70,6 +70,8 @@ pub struct Simulation {
     pub delay: f64,
     /// One for each controller.
     pub runs: Vec<Run>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 impl Simulation {
@@ -77,7 +79,8 @@ impl Simulation {
     pub fn of(task: &Task, settings: Settings, outcomes: &[Outcome]) -> Self {
         let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
         let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
-        Self { name: task.name.clone(), labels: task.labels.clone(), seed, replan, noise, drift, slip, delay, runs }
+        let (name, labels, warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
+        Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }
 
     /// Whether under [`Controller::Pcr`], if it is there, all missions were done without a collision.

@@ -18,6 +18,8 @@ pub struct Task {
     pub robots: Vec<Robot>,
     /// What does not move.
     pub obstacles: Vec<Obstacle>,
+    /// What was read otherwise than it was written, or is left aside here.
+    pub warnings: Vec<String>,
 }
 
 /// A robot and its missions.
@@ -82,7 +84,11 @@ impl Task {
                 obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
             }
         }
-        Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles })
+        let mut warnings = scenario.warnings.clone();
+        for agent in scenario.agents.iter().filter(|agent| agent.turns_in_place()) {
+            warnings.push(format!("agent {}: its turns in place take no time in a simulation", agent.id));
+        }
+        Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles, warnings })
     }
 }
 

@@ -52,6 +52,13 @@ impl Run {
         serde_json::from_str(&self.ok()).unwrap()
     }
 
+    /// The JSON output of a run with this status and no message.
+    #[track_caller]
+    pub(crate) fn json_of(self, status: i32) -> Value {
+        assert_eq!((self.status, self.err.as_str()), (status, ""));
+        serde_json::from_str(&self.out).unwrap()
+    }
+
     /// The message of a run that failed with this status and printed nothing else.
     #[track_caller]
     pub(crate) fn failed(self, status: i32) -> String {
