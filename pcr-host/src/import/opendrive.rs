@@ -1,8 +1,9 @@
 //! OpenDRIVE: the reference lines of roads, whose lines and arcs are taken as they are.
 //!
-//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share. Joints within a road that
-//! are open by what maps are off by are closed: the rest of the road keeps its place, and the gap counts as deviation of its path. Lanes
-//! are not read.
+//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share where their reference lines meet: then
+//! the node has the names of all ends. Where lines of linked roads are apart, mostly sideways by lanes, no path leads from one onto the
+//! other, and there is a warning. Joints within a road that are open by what maps are off by are closed: the rest of the road
+//! keeps its place, and the gap counts as deviation of its path. Lanes are not read.
 
 use super::layout::{Edge, Id, Layout, Node, Placed};
 use super::xml::{child, children, number, parse};
@@ -89,7 +90,13 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         );
         warnings.add(road, problem);
     }
-    join(&mut layout, root, &roads);
+    let Links { count, apart, widest } = join(&mut layout, root, &roads);
+    if apart > 0 {
+        let problem = format!(
+            "{apart} of {count} are between reference lines up to {widest:.3} m apart; no route passes there from road to road"
+        );
+        warnings.add("links of roads", problem);
+    }
     Ok(layout)
 }
 
@@ -154,8 +161,19 @@ fn speed(road: roxmltree::Node<'_, '_>) -> Option<f64> {
     Some(speed).filter(|speed| *speed > 0.0 && *speed < 1e6)
 }
 
-/// Gives the roads their nodes: linked ends are one node.
-fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<String, usize>) {
+/// Links between the ends of roads.
+#[derive(Default)]
+struct Links {
+    count: usize,
+    /// Between ends that are apart.
+    apart: usize,
+    /// The largest distance of linked ends \[m\].
+    widest: f64,
+}
+
+/// Gives the roads their nodes: linked ends that meet are one node, which has the names of all of them.
+fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<String, usize>) -> Links {
+    let mut links = HashMap::new();
     // Ends by 2 × road, and one more for its end.
     let mut group: Vec<usize> = (0..2 * layout.edges.len()).collect();
     fn find(group: &mut [usize], mut end: usize) -> usize {
@@ -176,8 +194,14 @@ fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<Stri
                 Some(2 * road + usize::from(link.attribute("contactPoint")? == "end"))
             });
             if let Some(other) = other {
-                let (a, b) = (find(&mut group, 2 * place + side), find(&mut group, other));
-                group[a.max(b)] = a.min(b);
+                let end = 2 * place + side;
+                let gap = gap(layout, [end, other]);
+                // A link is mostly told by both of its roads.
+                links.insert([end.min(other), end.max(other)], gap);
+                if gap <= GAP {
+                    let (a, b) = (find(&mut group, end), find(&mut group, other));
+                    group[a.max(b)] = a.min(b);
+                }
             }
         }
     }
@@ -185,16 +209,34 @@ fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<Stri
     for place in 0..layout.edges.len() {
         for side in 0..2 {
             let root = find(&mut group, 2 * place + side);
-            let edge = &layout.edges[place];
-            let at =
-                if side == 0 { edge.curve.first().map(|first| first.at) } else { edge.curve.last().map(Placed::end) };
+            let at = end_of(layout, 2 * place + side);
             let next = layout.nodes.len();
             let node = *nodes.entry(root).or_insert(next);
+            let id = format!("{}/{}", layout.edges[place].id, ["start", "end"][side]);
             if node == next {
-                let id = Id::Text(format!("{}/{}", edge.id, ["start", "end"][side]));
-                layout.nodes.push(Node { id, name: None, level: 0, at: at.unwrap_or_default() });
+                layout.nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+            } else {
+                layout.aliases.push((id, node));
             }
             layout.edges[place].ends[side] = node;
         }
     }
+    Links {
+        count: links.len(),
+        apart: links.values().filter(|gap| **gap > GAP).count(),
+        widest: links.values().fold(0.0, |widest, gap| f64::max(widest, *gap)),
+    }
+}
+
+/// Where an end of a road is \[m\].
+fn end_of(layout: &Layout, end: usize) -> [f64; 2] {
+    let curve = layout.edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
+    let at = if end % 2 == 0 { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    at.unwrap_or_default()
+}
+
+/// Distance of two ends of roads \[m\].
+fn gap(layout: &Layout, ends: [usize; 2]) -> f64 {
+    let [a, b] = ends.map(|end| end_of(layout, end));
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }
