@@ -18,7 +18,7 @@ pub fn of_ends<S: Format>(pair: &Pair) -> Option<[f64; 2]> {
     let routes = discs.each_ref().map(Route::new::<S>);
     let radius = Twofold::from(discs[0].radius) + Twofold::from(discs[1].radius);
     let ecm = build_ecm(&motions).ok()?;
-    let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
+    let regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of both").collect();
     let mut found: Option<[f64; 2]> = None;
     for own in [0, 1] {
         let stated = excess(&motions[0], &motions[1]).to_f64();

@@ -150,7 +150,10 @@ fn what_is_no_plan_is_refused_by_name() {
         scenario(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
     };
     for (text, expected) in [
-        (include_str!("../data/real/ccbs/example_grid_task.xml"), "root: there is no log in it, hence no plan"),
+        (
+            include_str!("../data/real/ccbs/example_grid_task.xml"),
+            "a task of Continuous-CBS without its plan; the plan is in the log that the program writes",
+        ),
         (include_str!("../data/real/ccbs/example_grid_map.xml"), "root: there is no log in it, hence no plan"),
         (include_str!("../data/real/ccbs/example_config.xml"), "root: there is no log in it, hence no plan"),
         ("<root><log/></root>", "log: there is no agent in it"),

@@ -198,3 +198,77 @@ fn different_roads_of_one_name_are_both_there() {
 fn layout_error(text: &str) -> String {
     layout(Format::OpenDrive, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
 }
+
+/// Two roads, one after the other, and a third on another lane; the first road is linked to both.
+fn lanes() -> String {
+    let road = |id: &str, at: [f64; 2], link: &str| {
+        let [x, y] = at;
+        format!(
+            "<road id=\"{id}\"><link>{link}</link><planView><geometry x=\"{x}\" y=\"{y}\" hdg=\"0\" length=\"10\">\
+             <line/></geometry></planView></road>"
+        )
+    };
+    let link = |side: &str, other: &str, point: &str| {
+        format!("<{side} elementType=\"road\" elementId=\"{other}\" contactPoint=\"{point}\"/>")
+    };
+    let roads = [
+        road("1", [0.0, 0.0], &link("successor", "2", "start")),
+        road("2", [10.0, 0.0], &link("predecessor", "1", "end")),
+        road("3", [10.0, 3.5], &link("predecessor", "1", "end")),
+    ];
+    format!("<OpenDRIVE><header name=\"lanes\"/>{}</OpenDRIVE>", roads.concat())
+}
+
+#[test]
+fn routes_take_every_end_of_every_road() {
+    let (layout, warnings) = read(&lanes());
+    assert_eq!((layout.edges.len(), layout.nodes.len()), (3, 5));
+    for text in [&lanes(), TOWN_1, TOWN_2] {
+        let (layout, _) = read(text);
+        for edge in &layout.edges {
+            for (end, node) in ["start", "end"].into_iter().zip(edge.ends) {
+                assert_eq!(layout.node(&format!("{}/{end}", edge.id)), Some(node), "{} {end}", edge.id);
+            }
+        }
+    }
+    let expected = "links of roads: 1 of 2 are between reference lines up to 3.500 m apart; no route passes there from road to road";
+    assert_eq!(warnings, [expected]);
+    let route = |route: &str| {
+        let options = Options { radius: Some(0.9), routes: vec![route.into()], ..Options::default() };
+        scenario(Format::OpenDrive, &lanes(), &options, &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    assert_eq!(route("1/start:2/end").unwrap().agents[0].length(), 20.0);
+    assert_eq!(route("1/end:2/end").unwrap(), route("2/start:2/end").unwrap());
+    assert_eq!(route("1/start:3/end").unwrap_err(), "route 1/start:3/end: there is no way from node to node");
+}
+
+/// Of two ways the one without a gap is taken, also where the other one is shorter.
+#[test]
+fn joints_without_gaps_are_preferred() {
+    let road = |id: &str, at: [f64; 2], length: f64, links: &str| {
+        let [x, y] = at;
+        format!(
+            "<road id=\"{id}\"><link>{links}</link><planView><geometry x=\"{x}\" y=\"{y}\" hdg=\"0\" length=\"{length}\">\
+             <line/></geometry></planView></road>"
+        )
+    };
+    let link = |side: &str, other: &str, point: &str| {
+        format!("<{side} elementType=\"road\" elementId=\"{other}\" contactPoint=\"{point}\"/>")
+    };
+    // From 1 to 9 over the short road 2, which lies 4 m beside, or over 3 and 4.
+    let text = [
+        road("1", [0.0, 0.0], 10.0, ""),
+        road("2", [10.0, 4.0], 20.0, &(link("predecessor", "1", "end") + &link("successor", "9", "start"))),
+        road("3", [10.0, 0.0], 10.0, &link("predecessor", "1", "end")),
+        road("4", [20.0, 0.0], 10.0, &(link("predecessor", "3", "end") + &link("successor", "9", "start"))),
+        road("9", [30.0, 0.0], 10.0, ""),
+    ];
+    let text = format!("<OpenDRIVE>{}</OpenDRIVE>", text.concat());
+    let options = Options { radius: Some(0.9), routes: vec!["1/start:9/end".into()], ..Options::default() };
+    let mut warnings = Warnings::default();
+    let scenario = scenario(Format::OpenDrive, &text, &options, &mut warnings).unwrap();
+    assert_eq!(scenario.agents[0].length(), 40.0);
+    assert!(
+        warnings.lines().iter().any(|line| line.contains("2 of 5 are between reference lines up to 4.000 m apart"))
+    );
+}

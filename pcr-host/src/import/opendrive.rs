@@ -1,8 +1,9 @@
 //! OpenDRIVE: the reference lines of roads, whose lines and arcs are taken as they are.
 //!
-//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share. Joints within a road that
-//! are open by what maps are off by are closed: the rest of the road keeps its place, and the gap counts as deviation of its path. Lanes
-//! are not read.
+//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share where their reference lines meet: then
+//! the node has the names of all ends. Where lines of linked roads are apart, mostly sideways by lanes, no path leads from one onto the
+//! other, and there is a warning. Joints within a road that are open by what maps are off by are closed: the rest of the road
+//! keeps its place, and the gap counts as deviation of its path. Lanes are not read.
 
 use super::layout::{Edge, Id, Layout, Node, Placed};
 use super::names::Names;
@@ -90,7 +91,13 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         );
         warnings.add(road, problem);
     }
-    let group = groups(&names, &links, warnings);
+    let (group, Links { count, apart, widest }) = groups(&names, &links, warnings);
+    if apart > 0 {
+        let problem = format!(
+            "{apart} of {count} are between reference lines up to {widest:.3} m apart; no route passes there from road to road"
+        );
+        warnings.add("links of roads", problem);
+    }
     let mut layout = Layout {
         name: header.to_owned(),
         levels: vec![String::new()],
@@ -182,8 +189,22 @@ fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> 
     Ok(least.filter(|speed| *speed > 0.0 && *speed < 1e6))
 }
 
-/// For each end of a road, by 2 × road and one more for its end, the end that stands for all that are linked to it.
-fn groups(roads: &Names<Edge>, links: &[Option<roxmltree::Node<'_, '_>>], warnings: &mut Warnings) -> Vec<usize> {
+/// Links between the ends of roads.
+struct Links {
+    count: usize,
+    /// Between ends that are apart.
+    apart: usize,
+    /// The largest distance of linked ends \[m\].
+    widest: f64,
+}
+
+/// For each end of a road, by 2 × road and one more for its end, the end that stands for all that are linked to it and meet it.
+fn groups(
+    roads: &Names<Edge>,
+    links: &[Option<roxmltree::Node<'_, '_>>],
+    warnings: &mut Warnings,
+) -> (Vec<usize>, Links) {
+    let mut gaps = HashMap::new();
     let mut group: Vec<usize> = (0..2 * links.len()).collect();
     fn find(group: &mut [usize], mut end: usize) -> usize {
         while group[end] != end {
@@ -202,9 +223,15 @@ fn groups(roads: &Names<Edge>, links: &[Option<roxmltree::Node<'_, '_>>], warnin
             let other = roads.place(&named(linked.attribute("elementId").unwrap_or_default()));
             match (other, linked.attribute("contactPoint")) {
                 (Ok(road), Some(point @ ("start" | "end"))) => {
-                    let other = 2 * road + usize::from(point == "end");
-                    let (a, b) = (find(&mut group, 2 * place + side), find(&mut group, other));
-                    group[a.max(b)] = a.min(b);
+                    let (end, other) = (2 * place + side, 2 * road + usize::from(point == "end"));
+                    let [a, b] = [end, other].map(|end| end_of(roads.list(), end));
+                    let gap = (a[0] - b[0]).hypot(a[1] - b[1]);
+                    // A link is mostly told by both of its roads.
+                    gaps.insert([end.min(other), end.max(other)], gap);
+                    if gap <= GAP {
+                        let (a, b) = (find(&mut group, end), find(&mut group, other));
+                        group[a.max(b)] = a.min(b);
+                    }
                 }
                 (other, _) => {
                     let problem = other.map_or_else(|unclear| unclear.to_string(), |_| "it has no contactPoint".into());
@@ -214,24 +241,36 @@ fn groups(roads: &Names<Edge>, links: &[Option<roxmltree::Node<'_, '_>>], warnin
             }
         }
     }
-    (0..group.len()).map(|end| find(&mut group, end)).collect()
+    let links = Links {
+        count: gaps.len(),
+        apart: gaps.values().filter(|gap| **gap > GAP).count(),
+        widest: gaps.values().fold(0.0, |widest, gap| f64::max(widest, *gap)),
+    };
+    ((0..group.len()).map(|end| find(&mut group, end)).collect(), links)
 }
 
-/// Gives the roads their nodes: linked ends are one node.
+/// Gives the roads their nodes: linked ends that meet are one node, which has the names of all of them.
 fn join(layout: &mut Layout, group: &[usize]) {
     let mut nodes = HashMap::new();
     for place in 0..layout.edges.len() {
         for side in 0..2 {
-            let edge = &layout.edges[place];
-            let at =
-                if side == 0 { edge.curve.first().map(|first| first.at) } else { edge.curve.last().map(Placed::end) };
+            let at = end_of(&layout.edges, 2 * place + side);
             let next = layout.nodes.len();
             let node = *nodes.entry(group[2 * place + side]).or_insert(next);
+            let id = format!("{}/{}", layout.edges[place].id, ["start", "end"][side]);
             if node == next {
-                let id = Id::Text(format!("{}/{}", edge.id, ["start", "end"][side]));
-                layout.nodes.push(Node { id, name: None, level: 0, at: at.unwrap_or_default() });
+                layout.nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+            } else {
+                layout.aliases.push((id, node));
             }
             layout.edges[place].ends[side] = node;
         }
     }
+}
+
+/// Where an end of a road is \[m\].
+fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
+    let curve = edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
+    let at = if end % 2 == 0 { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    at.unwrap_or_default()
 }

@@ -15,6 +15,7 @@ mod margins;
 mod output;
 mod plan;
 mod refusals;
+mod schema;
 mod simulate;
 mod sources;
 mod streams;
