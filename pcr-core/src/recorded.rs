@@ -118,6 +118,7 @@ impl Scalar for N {
     type Angle = N;
     const ZERO: Self = N(0.0, 0);
     const LIMIT: Self = N(1e12, 0);
+    const LEAST: Self = N(1e-75, 0);
     fn is_finite(self) -> bool {
         true
     }
