@@ -185,6 +185,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.lag
     }
 
+    /// How far the agent may be from both ends of a segment that it passes at one time: a quarter of the way at its top speed
+    /// in what a time may be off. Nothing in a format of relative precision, whose times `reach` is for \[m\].
+    pub(crate) fn leap(&self) -> S {
+        self.top_speed.times(S::slack(S::ZERO)).narrow().half().half()
+    }
+
     /// How far the agent goes at its top speed in a time that holds all of its motion and the time 0 \[m\].
     pub(crate) fn reach(&self) -> S {
         self.top_speed.times(self.latest()).narrow()

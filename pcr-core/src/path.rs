@@ -166,7 +166,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
                 Curve::Arc { radius, turn: Turn::Left } => radius,
                 Curve::Arc { radius, turn: Turn::Right } => -radius,
             };
-            [segment.end.x, segment.end.y, segment.to, bend]
+            [segment.end.x, segment.end.y, segment.length, bend]
                 .into_iter()
                 .fold(sum, |sum, number| digest(sum, number.digest()))
         })

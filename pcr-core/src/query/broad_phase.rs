@@ -59,13 +59,14 @@ impl<S: Scalar + defmt::Format, B> defmt::Format for BroadPhase<'_, S, B> {
 impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S, B> {
     /// The fleet during an interval of time \[s\], in 32, 16, 8, 4, 2 parts or 1: as many as there is room for. Each agent
     /// needs a box more than there are parts. More parts sort out more pairs and take more time themselves; about 16 are
-    /// best where a fleet crosses its floor once.
+    /// best where a fleet crosses its floor once. The interval is cut as by [`Encounter::contacts`].
     ///
     /// Cost: a point of the path a part.
     ///
     /// # Errors
     /// [`Full::Boxes`] where there is room for less than two boxes an agent.
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, Full> {
+        let during = during.limited();
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
         let halvings = room.saturating_sub(1).checked_ilog2().ok_or(Full::Boxes)?.min(MOST_PARTS.ilog2());
         let parts = 1_u32.wrapping_shl(halvings);

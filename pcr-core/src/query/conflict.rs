@@ -110,6 +110,7 @@ fn first<'a, S: Scalar>(
     during: Interval<S>,
     counts: impl Fn(&Encounter<'_, S>, Interval<S>) -> bool,
 ) -> Option<Met<S>> {
+    let during = during.limited();
     let (mut first, mut until) = (None, during.hi);
     for region in regions {
         let Some(window) = region.window(ego, Interval::new(during.lo, until)) else { continue };

@@ -24,7 +24,7 @@ const PARTS: usize = 8;
 impl<'a, S: Scalar> Encounter<'a, S> {
     /// When the other agent blocks a part of the ego's path \[m\], in an interval of time \[s\]: its disc is then within
     /// reach of the ego's on some of these lengths. Disjoint windows in increasing order, rounded outward. A single
-    /// length is a part, too; so is a whole segment.
+    /// length is a part, too; so is a whole segment. Lengths are limited to the path.
     ///
     /// Cost: a comparison of boxes a pair of segments, and a few hundred operations a pair that comes near, for each
     /// window.
@@ -40,6 +40,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     /// Lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint, in
     /// increasing order, rounded outward. Cost as that of [`Encounter::blocked`].
     pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        let during = during.limited();
         let times = [during.lo - self.other.lateness(), during.hi + self.ego.lateness()];
         let lengths = times.map(|time| self.other.length_at(time));
         // The length that belongs to a time is right within what rounding does to a distance.
@@ -56,6 +57,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         on: &'a Motion<'a, S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let slack = Pair::new(by, on).slack;
+        let part = on_path(by, part);
         // The cut of a segment adds roundings of its own.
         let radius = self.radius() + slack.double();
         let length = Interval::new(S::ZERO, on.path().length());
@@ -82,6 +84,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
+        let length = on_path(ego, length);
         // The cut of a segment adds roundings of its own.
         let radius = ego.radius() + other.radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
@@ -153,6 +156,11 @@ fn encounters<'a, S: Scalar>(
     Ok(others.map(move |(_, other)| Encounter::new(own, other)))
 }
 
+/// The part of a path, limited to it: an end that is off by a rounding is on it.
+fn on_path<S: Scalar>(motion: &Motion<'_, S>, part: Interval<S>) -> Interval<S> {
+    Interval::new(motion.path().length().min(part.lo), S::ZERO.max(part.hi))
+}
+
 /// The part of a segment between these lengths of its path, if there is any.
 fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
     // Not `from` + `length`, which is another number in floating point: a joint, and the end of the path, is on a segment.
@@ -219,9 +227,13 @@ fn kept_from<S: Scalar>(
     during: Interval<S>,
 ) -> Option<Interval<S>> {
     let (early, late) = (ego.lateness(), other.lateness());
-    let window = times(other, lengths, Interval::new(during.lo - late, during.hi + early))?;
-    let window = Interval::new((window.lo - early).max(during.lo), (window.hi + late).min(during.hi));
-    (window.lo <= window.hi).then_some(window)
+    let inner = during.limited();
+    let window = times(other, lengths, Interval::new(inner.lo - late, inner.hi + early))?;
+    let (lo, hi) = (window.lo - early, window.hi + late);
+    // Beyond the limits nobody moves.
+    let lo = if lo <= inner.lo { during.lo } else { lo };
+    let hi = if hi >= inner.hi { during.hi } else { hi };
+    (lo <= hi).then_some(Interval::new(lo, hi))
 }
 
 /// The times of an interval at which an agent is on these lengths of its path, standing included.

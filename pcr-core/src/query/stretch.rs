@@ -7,7 +7,7 @@
 //! slow, it is met) or the other stands in it at its end; down to 0 where it comes to the ego's end, or the other stands in
 //! it at its start. Finite ends are found as those of delays are.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, not_negative};
 use crate::geometry::Interval;
 use crate::profile::Profile;
 use crate::query::bracket::Bracket;
@@ -121,7 +121,8 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// Cost: that of [`RegionRef::forbidden_durations`] for each region on the way, twice.
 ///
 /// # Errors
-/// [`Invalid::Full`] where the motion has more than `N` phases.
+/// [`Invalid::Full`] where the motion has more than `N` phases; [`Invalid::NonFinite`], [`Invalid::OutOfRange`] and
+/// [`Invalid::Negative`] for `from`.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, least_duration};
@@ -142,6 +143,7 @@ pub fn least_duration<'a, S: Scalar, const N: usize>(
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     from: S,
 ) -> Result<Option<S>, Invalid> {
+    not_negative(from, "duration")?;
     for region in regions.clone() {
         if region.ego_motion().profile().phases().len() > N {
             return Err(Invalid::Full("phase"));
