@@ -7,6 +7,7 @@ A claim is a `[[claim]]` of ledger.toml or a section with an anchor of docs/equa
 gappa        scripts of proofs/gappa about kernels as recorded (proofs/recorded; a unit test of pcr-core compares them)
 z3           lemmas of proofs/real/lemmas.py, over the real numbers
 budget       the sums of the rows' coefficients, against the constants in the sources, both exact
+sum          the figures of an argument by hand add up to no more than it says
 exhaustive   every input, by the example `exhaust` (left out by --quick, and then not counted as held)
 test         tests that exist and are not ignored; they run in step `tests` of .ci/test.sh
 hand         an argument that is written out at the anchor of the claim
@@ -112,6 +113,15 @@ def by_budget(claim):
 # Runs and tests
 
 
+def by_sum(claim):
+    """Sums, products and quotients of decimals, exact."""
+    exact = re.sub(r"\d+(\.\d+)?", lambda number: f"Fraction('{number[0]}')", claim["terms"])
+    if not re.fullmatch(r"[\d. +*/()-]+", claim["terms"]):
+        return f"not a sum: {claim['terms']}"
+    value = eval(exact, {"Fraction": Fraction})
+    return value <= Fraction(str(claim["most"])) or f"{float(value)} is more than {claim['most']}"
+
+
 def by_exhaustive(claim):
     if "--quick" in sys.argv:
         return "left out (--quick)"
@@ -123,13 +133,13 @@ def by_exhaustive(claim):
 def exists(test):
     """`path/of/file.rs::name`, the name a test or the begin of several, or the name of a macro's tests."""
     path, name = test.split("::")
-    name = name.removesuffix("…")
+    pattern = re.escape(name[:-1]) if name.endswith("…") else re.escape(name) + r"\b"
     file = next((ROOT / base / path for base in ("tests/tests", ".") if (ROOT / base / path).is_file()), None)
     if file is None:
         return f"no file {path}"
     text = file.read_text()
-    function = re.search(r"((?:#\[[^\n]*\]\s*|///[^\n]*\n\s*)*)fn " + re.escape(name), text)
-    if function is None:
+    function = re.search(r"((?:#\[[^\n]*\]\s*|///[^\n]*\n\s*)*)fn " + pattern, text)
+    if function is None or "#[test]" not in function[1]:
         return f"no test {test}"
     return "ignore" not in function[1] or f"{test} is ignored"
 
@@ -153,6 +163,7 @@ HOLDS = {
     "exhaustive": by_exhaustive,
     "test": by_test,
     "hand": by_hand,
+    "sum": by_sum,
 }
 
 
@@ -198,6 +209,10 @@ def main():
         if result is not True:
             print(f"         {str(result).strip()}")
             not_held.append(name)
+    ways = {by: sum(by in claim[2].split(", ") for claim in claims) for by in HOLDS}
+    print("held by " + ", ".join(f"{by}: {count}" for by, count in ways.items()))
+    alone = [claim for claim in claims if set(claim[2].split(", ")) <= {"hand", "sum"}]
+    print(f"by hand alone: {len(alone)}")
     print(f"{len(claims)} claims, {len(claims) - len(not_held)} held, missed {len(not_held)}")
     return 1 if not_held else 0
 
