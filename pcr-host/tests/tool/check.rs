@@ -42,7 +42,7 @@ fn a_crossing_at_the_same_time_is_a_conflict() {
 #[test]
 fn a_plan_without_conflicts_is_free() {
     let run = check(&free(), &["--format", "json"]);
-    assert_eq!(run.json(), json!({ "name": "crossing", "conflicts": [], "error": null }));
+    assert_eq!(run.json(), json!({ "name": "crossing", "conflicts": [], "error": null, "warnings": [] }));
     assert_eq!(check(&free(), &[]).ok(), "crossing: no conflicts\n");
     assert_eq!(check(&free(), &["--format", "csv"]).ok().lines().count(), 1);
 }
@@ -108,5 +108,5 @@ fn what_is_refused() {
     let help = run(&["check", "--help"]).ok();
     assert!(help.contains("pcr check - --format json < plans.jsonl") && help.contains("  1  conflicts\n"), "{help}");
     let empty = check(&json!({ "agents": [] }), &["--format", "json", "--closest"]);
-    assert_eq!(empty.json(), json!({ "name": "", "conflicts": [], "closest": [], "error": null }));
+    assert_eq!(empty.json(), json!({ "name": "", "conflicts": [], "closest": [], "error": null, "warnings": [] }));
 }

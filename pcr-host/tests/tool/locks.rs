@@ -22,7 +22,7 @@ fn json_is_as_documented() {
     let name = file("locks", "cross.geojson", cross());
     let output = run(&["locks", &name, "--radius", "0.25", "--speed", "1", "--format", "json"]);
     let table: serde_json::Value = serde_json::from_str(&output.out).unwrap();
-    assert_eq!(table.as_object().unwrap().keys().collect::<Vec<_>>(), ["layout", "locks", "vehicle"]);
+    assert_eq!(table.as_object().unwrap().keys().collect::<Vec<_>>(), ["layout", "locks", "vehicle", "warnings"]);
     assert_eq!((&table["layout"], &table["vehicle"]), (&json!("cross"), &json!({ "name": null, "radius": 0.25 })));
     let lock = &table["locks"][0];
     assert_eq!((&lock["a"], &lock["b"], table["locks"].as_array().unwrap().len()), (&json!(7), &json!(20), 1));

@@ -30,11 +30,13 @@ fn json_has_the_documented_keys_in_the_documented_order() {
         r#""crossings":[{"T":N,"L":N,"r_hat":N,"v":N,"theta":N}]}]"#
     );
     let plain = run(&["regions", &scenario, "--format", "json"]).ok();
-    let form = format!(r#"{{"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null}}"#);
+    let form =
+        format!(r#"{{"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null,"warnings":[]}}"#);
     assert_eq!(skeleton(&plain), form + "\n");
     let sliced = run(&["regions", &scenario, "--format", "json", "--slices", "1", "--scalar", "f32"]).ok();
     let region = format!(r#"{region},"slices":[{{"t":N,"l":[[N,N]]}}]}}"#);
-    let form = format!(r#"{{"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null}}"#);
+    let form =
+        format!(r#"{{"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null,"warnings":[]}}"#);
     assert_eq!(skeleton(&sliced), form + "\n");
 }
 
@@ -277,7 +279,7 @@ fn fleets_of_none_and_of_one_have_no_regions() {
         let scenario =
             file("few", &format!("{}.json", agents.as_array().unwrap().len()), json!({ "agents": agents }).to_string());
         let json = run(&["regions", &scenario, "--format", "json"]).ok();
-        assert_eq!(json, "{\"name\":\"\",\"scalar\":\"f64\",\"regions\":[],\"error\":null}\n");
+        assert_eq!(json, "{\"name\":\"\",\"scalar\":\"f64\",\"regions\":[],\"error\":null,\"warnings\":[]}\n");
         assert_eq!(run(&["regions", &scenario]).ok(), "scenario: 0 collision regions, 0 crossings (f64)\n");
         assert_eq!(run(&["regions", &scenario, "--format", "csv"]).ok().lines().count(), 1);
     }
