@@ -22,10 +22,10 @@ pub struct Verdict {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
-    /// What was read otherwise than it was written.
-    pub warnings: Vec<String>,
     /// Why the scenario was refused.
     pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// Two discs in contact, from begin to end. What is deeper than [`Encounter::tolerance`] is always there, what is

@@ -4,6 +4,7 @@
 //! a later start, or by its speed along the path. Starts are planned with the discs of footprints, speeds with the one disc
 //! around them: another speed along the path is none of a disc beside it. Every plan is checked as `pcr check` does before it is returned.
 
+mod bound;
 mod circle;
 mod forbidden;
 mod reason;
@@ -15,7 +16,7 @@ use crate::regions::{self, Failure};
 use crate::scenario::{Labels, MotionSpec, Scenario};
 pub(crate) use circle::sides;
 pub(crate) use forbidden::{Forbidden, Schedule};
-use pcr_core::{Drive, Encounter, Limits, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
+use pcr_core::{Drive, Encounter, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
 pub use reason::Spot;
 use serde::Serialize;
 
@@ -116,8 +117,6 @@ impl Unsolved {
 
 /// Rounds of [`Priority::Best`] in which the agent that loses most is moved to the front.
 const ROUNDS: usize = 8;
-/// What rounding may take off the time of a motion, relative.
-const ROUNDING: f64 = 1e-9;
 /// Phases of a speed profile, at most.
 const PHASES: usize = 64;
 /// Stations along a path: 256 cells.
@@ -234,7 +233,7 @@ impl Planner<'_> {
     fn least(&self, motion: &Motion<'_, f64>) -> f64 {
         match self.method {
             Method::Delay => motion.time().length(),
-            Method::Speed => fastest(Drive::of(motion), motion.path().length()),
+            Method::Speed => bound::fastest(Drive::of(motion), motion.path().length()),
         }
     }
 
@@ -332,23 +331,6 @@ impl Planner<'_> {
         }
         solved
     }
-}
-
-/// The least time from one speed to another over a length \[s\]: full acceleration, the largest speed, full deceleration.
-fn fastest(Drive { limits: Limits { speed, acceleration }, start, goal }: Drive<f64>, length: f64) -> f64 {
-    let squares = start * start + goal * goal;
-    let reached = (squares / 2.0 + acceleration * length).max(0.0).sqrt();
-    let peak = reached.min(speed).max(start).max(goal);
-    if peak <= 0.0 {
-        return 0.0;
-    }
-    // Without acceleration it goes at one speed.
-    let (ramps, ramped) = match acceleration > 0.0 {
-        true => ((2.0 * peak - start - goal) / acceleration, (2.0 * peak * peak - squares) / (2.0 * acceleration)),
-        false => (0.0, 0.0),
-    };
-    // Speeds and phases of a plan are rounded.
-    (ramps + (length - ramped).max(0.0) / peak) * (1.0 - ROUNDING)
 }
 
 impl Plan {

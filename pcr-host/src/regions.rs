@@ -33,10 +33,10 @@ pub struct Answer {
     /// The covers of the agents that have footprints, if any has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
-    /// What was read otherwise than it was written.
-    pub warnings: Vec<String>,
     /// Why the scenario was refused.
     pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// The discs that an agent with a footprint is computed with.

@@ -211,3 +211,33 @@ fn every_type_keeps_its_own_way() {
     let (one, _) = read(&text, &Options { vehicle: Some("straight".into()), ..options() });
     assert_eq!((one.edges.len(), &one.edges[0].curve), (1, &all.edges[1].curve));
 }
+
+#[test]
+fn edges_have_the_limits_and_the_gaps_of_the_file() {
+    let node = |id: &str, x: f64, y: f64| json!({ "nodeId": id, "nodePosition": { "x": x, "y": y } });
+    let line = |from: [f64; 2], to: [f64; 2]| {
+        let points = [from, to].map(|[x, y]| json!({ "x": x, "y": y }));
+        json!({ "degree": 1, "knotVector": [0, 0, 1, 1], "controlPoints": points })
+    };
+    let edge = |id: &str, to: &str, properties: Value| json!({ "edgeId": id, "startNodeId": "a", "endNodeId": to, "vehicleTypeEdgeProperties": properties });
+    let lif = json!({ "layouts": [{ "layoutId": "l", "nodes": [node("a", 1.0, 2.0), node("b", 4.0, 6.0), node("c", 1.0, 2.0)], "edges": [
+        edge("plain", "b", json!([])),
+        edge("slow", "b", json!([{ "vehicleTypeId": "t", "maxSpeed": 0.7, "maxRotationSpeed": 0.3 }])),
+        edge("near", "b", json!([{ "vehicleTypeId": "t", "trajectory": line([1.0, 2.0], [4.0, 6.0]) }])),
+        edge("off", "b", json!([{ "vehicleTypeId": "t", "trajectory": line([1.0, 2.0], [4.0, 6.5]) }])),
+        edge("none", "c", json!([])),
+    ] }] });
+    let (layout, warnings) = read(&lif.to_string(), &options());
+    let limits: Vec<_> = layout.edges.iter().map(|edge| (edge.id.to_string(), edge.speed, edge.rotation)).collect();
+    let expected = [
+        ("plain", None, None),
+        ("slow", Some(0.7), Some(0.3)),
+        ("near", None, None),
+        ("off", None, None),
+        ("none", None, None),
+    ];
+    assert_eq!(limits, expected.map(|(id, speed, rotation)| (id.to_owned(), speed, rotation)));
+    assert!(layout.edges.iter().all(|edge| !edge.two_way));
+    assert!((layout.edges[0].length() - 5.0).abs() < 1e-12 && layout.edges[4].curve.is_empty());
+    assert_eq!(warnings, ["edge off: its trajectory ends 0.500 m from its node", "edge none: its length is 0"]);
+}

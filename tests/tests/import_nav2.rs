@@ -318,3 +318,21 @@ fn a_route_that_can_be_read_in_two_ways_is_refused() {
     assert_eq!(failed("twin:a"), "route twin:a: 2 nodes have the name twin");
     assert_eq!(failed("a:b:c@7"), "route a:b:c@7: there are nodes for more than one reading of it");
 }
+
+#[test]
+fn ids_speeds_and_directions_are_those_of_the_file() {
+    assert_eq!(Format::of("graph.json".as_ref(), ONE_ID), Some(Format::Nav2));
+    assert_eq!(Format::of("graph.json".as_ref(), r#"{ "type": "Feature" }"#), None);
+    let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+    // Whole numbers, as texts or with a decimal point as well.
+    (graph["features"][0]["properties"]["id"], graph["features"][1]["properties"]["id"]) = (json!("0"), json!(1.0));
+    graph["features"][7]["properties"]["metadata"] = json!({ "speed_limit": 0.5 });
+    graph["features"][8]["properties"]["metadata"] = json!({ "speed_limit": 50 });
+    let fast = Options { speed: Some(3.0), ..options(&[], 1.0) };
+    let whole = layout(Format::Nav2, &graph.to_string(), &fast, &mut Warnings::default()).unwrap().layout;
+    let speeds: Vec<Option<f64>> = whole.edges.iter().map(|edge| edge.speed).collect();
+    assert_eq!(speeds, [None, Some(1.5), Some(1.5)]);
+    assert!(whole.edges.iter().all(|edge| !edge.two_way && edge.curve.len() == 1));
+    graph["features"][1]["properties"]["id"] = json!(1.5);
+    assert!(failed(&graph).starts_with("feature 2, properties, id: not a whole number from 0; "));
+}

@@ -49,7 +49,7 @@ fn a_plan_without_conflicts_is_free() {
     let run = check(&free(), &["--format", "json"]);
     assert_eq!(
         run.json(),
-        json!({ "format": "pcr-conflicts", "version": 1, "name": "crossing", "conflicts": [], "error": null })
+        json!({ "format": "pcr-conflicts", "version": 1, "name": "crossing", "conflicts": [], "error": null, "warnings": [] })
     );
     assert_eq!(check(&free(), &[]).ok(), "crossing: no conflicts\n");
     assert_eq!(check(&free(), &["--format", "csv"]).ok().lines().count(), 1);
@@ -121,6 +121,6 @@ fn what_is_refused() {
     assert!(empty["name"].as_str().is_some_and(|name| !name.is_empty()));
     assert_eq!(
         empty,
-        json!({ "format": "pcr-conflicts", "version": 1, "name": empty["name"], "conflicts": [], "closest": [], "error": null })
+        json!({ "format": "pcr-conflicts", "version": 1, "name": empty["name"], "conflicts": [], "closest": [], "error": null, "warnings": [] })
     );
 }

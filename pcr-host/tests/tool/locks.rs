@@ -24,7 +24,7 @@ fn json_is_as_documented() {
     let table: serde_json::Value = serde_json::from_str(&output.out).unwrap();
     assert_eq!(
         table.as_object().unwrap().keys().collect::<Vec<_>>(),
-        ["format", "layout", "locks", "vehicle", "version"]
+        ["format", "layout", "locks", "vehicle", "version", "warnings"]
     );
     assert_eq!((&table["layout"], &table["vehicle"]), (&json!("cross"), &json!({ "name": null, "radius": 0.25 })));
     let lock = &table["locks"][0];

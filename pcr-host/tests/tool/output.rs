@@ -31,13 +31,13 @@ fn json_has_the_documented_keys_in_the_documented_order() {
     );
     let plain = run(&["regions", &scenario, "--format", "json"]).ok();
     let form = format!(
-        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null}}"#
+        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null,"warnings":[]}}"#
     );
     assert_eq!(skeleton(&plain), form + "\n");
     let sliced = run(&["regions", &scenario, "--format", "json", "--slices", "1", "--scalar", "f32"]).ok();
     let region = format!(r#"{region},"slices":[{{"t":N,"l":[[N,N]]}}]}}"#);
     let form = format!(
-        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null}}"#
+        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null,"warnings":[]}}"#
     );
     assert_eq!(skeleton(&sliced), form + "\n");
 }
@@ -287,7 +287,7 @@ fn fleets_of_none_and_of_one_have_no_regions() {
         assert_eq!(
             json,
             format!(
-                "{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null}}\n"
+                "{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null,\"warnings\":[]}}\n"
             )
         );
         assert_eq!(run(&["regions", &scenario]).ok(), format!("{name}: 0 collision regions, 0 crossings (f64)\n"));
