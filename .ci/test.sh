@@ -132,6 +132,13 @@ no_std() {
     firmware/cross.sh "$target" build --release --locked -p pcr-core --no-default-features --features libm,micromath,serde,defmt
     firmware/cross.sh "$target" build --release --locked -p pcr-fixed --features serde,defmt
   done
+  local crate features
+  for crate in pcr-core pcr-fixed; do
+    step "no_std: $crate with the features of its documentation"
+    features=$(python3 -c 'import sys, tomllib
+print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["docs.rs"]["features"]))' "$crate/Cargo.toml")
+    firmware/cross.sh thumbv7em-none-eabihf check --locked -p "$crate" --features "$features"
+  done
 }
 
 c() {
