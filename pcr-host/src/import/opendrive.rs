@@ -231,7 +231,7 @@ fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<Stri
 /// Where an end of a road is \[m\].
 fn end_of(layout: &Layout, end: usize) -> [f64; 2] {
     let curve = layout.edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
-    let at = if end % 2 == 0 { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
     at.unwrap_or_default()
 }
 
