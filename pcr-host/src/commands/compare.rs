@@ -62,11 +62,11 @@ const SLICES: usize = 20_000;
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let files = sources(self.files)?;
-        let mut out: Box<dyn Write> = match self.format {
+        let format = if self.json { Output::Json } else { self.format };
+        let mut out: Box<dyn Write> = match format {
             Output::Table if quiet() => Box::new(io::sink()),
             _ => Box::new(BufWriter::new(io::stdout().lock())),
         };
-        let format = if self.json { Output::Json } else { self.format };
         if format == Output::Csv {
             out.write_all(report::COMPARISON_CSV_HEADER.as_bytes())?;
         }

@@ -271,6 +271,6 @@ fn join(layout: &mut Layout, group: &[usize]) {
 /// Where an end of a road is \[m\].
 fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
     let curve = edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
-    let at = if end % 2 == 0 { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
     at.unwrap_or_default()
 }

@@ -84,7 +84,8 @@ fn every_output_fits_its_schema() {
         fits(&run_with(&[refused, &["--json"]].concat(), b"{}\n").out);
     }
     formats.push(fits(&run(&["plan", &labelled, "-o", "-", "-q"]).out));
-    formats.push(fits(&run(&["plan", &outlines, "-o", "-", "-q"]).out));
+    let factsheet = format!("{ROOT}/tests/data/small/factsheet.json");
+    formats.push(fits(&run(&["import", "nav2", &layout, "--route", "0:1", "--fleet", &factsheet, "-q"]).out));
     let routes = ["import", "nav2", &layout, "--route", "0:1", "--radius", "0.3", "-q"];
     formats.push(fits(&run(&routes).out));
     // There is no schema of which nothing was seen.
