@@ -2,6 +2,7 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
+#   .ci/test.sh quick      for daily work: format, lints, unit tests
 #   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -19,6 +20,12 @@ style() {
   fi
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
+}
+
+quick() {
+  style
+  step "unit tests"
+  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-host --lib --locked
 }
 
 docs() {
