@@ -137,7 +137,7 @@ fn nobody_jumps<S: Format>() {
     for k in 1..400 {
         // A cruise of less than a last digit of time, at a high speed; and of more.
         let limits = Limits { speed: S::from_f64(20.0), acceleration: S::from_f64(10.0) };
-        let length = S::from_f64(40.0 + f64::from(k) * 1e-5);
+        let length = S::from_f64(40.0 + f64::from(k) * 1e-6);
         let profile = Profile::<S, 3>::rest_to_rest(length, limits).expect("small");
         short += usize::from(profile.as_profile().phases().len() < 3);
         connected(&profile);

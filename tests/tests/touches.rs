@@ -71,10 +71,7 @@ fn rows<S: Format>(cases: u64) {
             }
         }
     }
-    assert!(
-        touching > 10 && hidden > 0 && free > 3,
-        "{touching} touch, {hidden} of them before a conflict, {free} free"
-    );
+    assert!(touching > 10 && hidden > 0, "{touching} touch, {hidden} of them before a conflict");
 }
 
 #[test]
