@@ -78,6 +78,10 @@ typedef enum PcrStatus {
    The buffer is too small; the count that is needed is told.
    */
   PCR_STATUS_BUFFER_TOO_SMALL,
+  /*
+   The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
+   */
+  PCR_STATUS_NOT_BUILT,
 } PcrStatus;
 
 /*
