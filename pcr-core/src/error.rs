@@ -164,3 +164,25 @@ pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
 pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if in_range(value, what)? > S::ZERO { Ok(value) } else { Err(Invalid::NonPositive(what)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Full, Mismatch, Unchanged};
+    use core::fmt::Write;
+    use heapless::String;
+
+    #[test]
+    fn messages_name_all_agents() {
+        let text = |value: &dyn core::fmt::Display| {
+            let mut text = String::<80>::new();
+            write!(text, "{value}").map(|()| text)
+        };
+        let pair = text(&Full::Pair([3, 17])).unwrap();
+        assert_eq!(pair, "agents 3 and 17 of the fleet have more than 32767 pieces");
+        assert_eq!(text(&Unchanged::from(Mismatch::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
+        assert_eq!(
+            text(&Unchanged::from(Mismatch::OnlyRow(4))).unwrap(),
+            "the table holds the regions of agent 4 only"
+        );
+    }
+}

@@ -8,6 +8,7 @@ pub mod constants;
 pub mod disc;
 pub mod exact;
 pub mod generators;
+pub mod limits;
 pub mod oracle;
 pub mod outward;
 pub mod paper;

@@ -158,9 +158,7 @@ fn the_table_of_another_fleet_is_refused() {
             Profile::<f64, 3>::rest_to_rest(path.as_path().length(), Limits { speed: 1.0, acceleration: 1.0 });
         let profile = profile.expect("a profile");
         let motion = Motion::new(path.as_path(), profile.as_profile(), 0.5, 0.0).expect("a motion");
-        Ecm::<f64, _, _>::build([], [], &[motion])
-            .and_then(|table| Ok((table, path.clone(), profile)))
-            .expect("one agent")
+        Ecm::<f64, _, _>::build([], [], &[motion]).map(|table| (table, path.clone(), profile)).expect("one agent")
     };
     let (table, ..) = standing(&path(numbers));
     for place in 0..numbers.len() {

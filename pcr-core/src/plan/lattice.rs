@@ -163,6 +163,11 @@ impl<S: Scalar> Lattice<S> {
         let ramp = peak.times(peak.quotient(acceleration)).narrow().half();
         // Shorter on a path that is but a part of a ramp.
         let mut cell = ramp.half().half().min(length.half().half());
+        // A quarter of a few last digits is nothing, and nothing doubled is no more.
+        if cell <= S::ZERO {
+            cell = S::slack(length);
+        }
+        positive(cell, "length of the path")?;
         let mut count = cells(length, cell, most);
         while count.is_none() && cell < length {
             cell = cell.double();
