@@ -43,6 +43,7 @@ mod properties;
 mod regressions;
 mod safe;
 mod search;
+mod shadow;
 mod simulate;
 mod speed;
 mod table;
