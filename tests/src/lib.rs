@@ -17,6 +17,7 @@ pub mod polygons;
 pub mod reference;
 pub mod search;
 pub mod settings;
+pub mod shadow;
 pub mod velocity;
 
 /// The example of the README runs.

@@ -47,6 +47,7 @@ mod properties;
 mod regressions;
 mod safe;
 mod search;
+mod shadow;
 mod simulate;
 mod speed;
 mod table;
