@@ -271,7 +271,8 @@ where
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;
     for agent in 0..fleet.len() {
-        let answer = match earliest_start(ecm.row(&fleet, agent)?, S::ZERO) {
+        let delay = earliest_start(ecm.row(&fleet, agent)?, S::ZERO);
+        let answer = match delay {
             Some(delay) => {
                 fleet[agent] = fleet[agent].delayed(delay)?;
                 planned += 1;
