@@ -7,8 +7,9 @@ use pcr_tests::disc::{Disc, Drive};
 use pcr_tests::oracle::{Pair, Travel};
 use pcr_tests::reference::{Component, Regions, cases, fleets};
 
-/// Largest difference of a time \[s\] or length \[m\]: the reference is good to 1e-10.
-const TOLERANCE: f64 = 1e-9;
+/// Largest difference of a time \[s\] or length \[m\]: the reference is good to 1e-10, and the slack moves the ends of an overlap of a
+/// micrometre by 1.6e-9.
+const TOLERANCE: f64 = 2e-9;
 
 /// A contact of an uncertain case is closer to critical than this \[m\]; slices there may differ by as much clearance.
 const UNCERTAIN: f64 = 1e-8;
