@@ -296,6 +296,9 @@ fn deviations_make_agents_larger_and_are_told() {
     assert!((scenario.agents[0].radius - radius).abs() < 1e-6);
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].starts_with("agent 1: its lines and arcs are up to"), "{warnings:?}");
+    let beside = json!({ "serialNumber": "r", "nodeStates": [], "mobileRobotPosition": { "x": 0.0, "y": 2.5 },
+        "plannedPath": { "trajectory": { "controlPoints": [{ "x": 0, "y": 3 }, { "x": 5, "y": 3 }] } } });
+    assert!(read(&beside.to_string(), &options()).unwrap().1[0].contains("it begins 0.500 m from where"));
     let (_, warnings) = read(&state(-0.25), &options()).unwrap();
     assert!(warnings[0].contains("it begins 0.250 m from where the vehicle is"), "{warnings:?}");
 }
