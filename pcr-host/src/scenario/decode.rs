@@ -63,7 +63,7 @@ impl Scenario {
     }
 
     fn warnings(json: &Json) -> Result<Vec<String>, ScenarioError> {
-        let fields = Place::default().fields(json, &["name", "warnings", "agents"])?;
+        let fields = Place::default().fields(json, &["name", "agents", "warnings"])?;
         if fields.get("warnings").is_none() {
             return Ok(Vec::new());
         }
@@ -75,7 +75,7 @@ impl Scenario {
     }
 
     fn agents(json: &Json) -> Result<Vec<Agent>, ScenarioError> {
-        let fields = Place::default().fields(json, &["name", "warnings", "agents"])?;
+        let fields = Place::default().fields(json, &["name", "agents", "warnings"])?;
         if let Some(name) = fields.get("name")
             && !matches!(name.data, Data::Text(_))
         {
