@@ -165,6 +165,7 @@ fn roads_have_the_least_of_their_speed_limits() {
     assert!((speed(&limit("25", "mph")).unwrap() - 25.0 * 1609.344 / 3600.0).abs() < 1e-12);
     assert!((speed(&limit("36", "km/h")).unwrap() - 10.0).abs() < 1e-12);
     assert_eq!((speed(&limit("7", "m/s")), speed(&limit("no limit", "mph")), speed("")), (Some(7.0), None, None));
+    assert_eq!((speed(&limit("0", "m/s")), speed(&limit("2e6", "m/s"))), (None, None), "no limits");
     let (layout, warnings) = read(&road(&[limit("7", "m/s"), limit("5", "m/s"), limit("6", "m/s")].concat()));
     assert_eq!(layout.edges[0].speed, Some(5.0));
     assert_eq!(warnings, ["road 1: its speed limit changes on the way; the least one is taken for all of it"]);
@@ -270,5 +271,30 @@ fn joints_without_gaps_are_preferred() {
     assert_eq!(scenario.agents[0].length(), 40.0);
     assert!(
         warnings.lines().iter().any(|line| line.contains("2 of 5 are between reference lines up to 4.000 m apart"))
+    );
+}
+
+#[test]
+fn records_without_length_windings_and_open_joints() {
+    let line = |x: f64, hdg: f64, length: f64| {
+        format!("<geometry x=\"{x}\" y=\"0\" hdg=\"{hdg}\" length=\"{length}\"><line/></geometry>")
+    };
+    let road = |records: &str| format!("<OpenDRIVE><road id=\"1\"><planView>{records}</planView></road></OpenDRIVE>");
+    let (layout, warnings) = read(&road(&[line(0.0, 0.0, 4.0), line(4.0, 0.0, 0.0), line(4.0, 0.0, 1.0)].concat()));
+    assert_eq!((layout.edges[0].curve.len(), layout.edges[0].two_way, warnings.len()), (2, true, 0));
+    // The widest of three joints, angles to either side.
+    let joints = [line(0.0, 0.0, 4.0), line(4.01, 1e-3, 4.0), line(8.01, -2e-3, 4.0), line(12.03, -2e-3, 1.0)];
+    let (_, warnings) = read(&road(&joints.concat()));
+    assert!(warnings[0].starts_with("road 1: joints are open, by 2.2e-2 m and 3.0e-3 rad at most;"), "{warnings:?}");
+    let arc = |turns: f64| {
+        let curvature = std::f64::consts::TAU * turns / 1000.0;
+        road(&format!(
+            "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"1000\"><arc curvature=\"{curvature}\"/></geometry>"
+        ))
+    };
+    assert_eq!((read(&arc(99.0)).0.edges.len(), read(&arc(-99.0)).0.edges.len()), (1, 1));
+    assert!(
+        layout_error(&arc(101.0)).contains("sweep is out of range")
+            && layout_error(&arc(-101.0)).contains("sweep is out")
     );
 }

@@ -101,3 +101,59 @@ fn a_plant_is_read_whole_or_refused() {
     let reversed = read(&path("p", "a", "b", "maxReverseVelocity=\"500\" maxVelocity=\"1500\""), false).unwrap().layout;
     assert_eq!((reversed.edges[0].two_way, reversed.edges[0].speed), (true, Some(1.5)));
 }
+
+#[test]
+fn paths_have_the_limits_and_the_shape_of_the_file() {
+    let read = |path: &str, controls: &[[i32; 2]], kind: &str| {
+        let controls: String = controls.iter().map(|[x, y]| format!("<controlPoint x=\"{x}\" y=\"{y}\"/>")).collect();
+        let text = format!(
+            "<model><point name=\"a\" positionX=\"0\" positionY=\"0\"/><point name=\"b\" positionX=\"4000\" positionY=\"0\">\
+            <vehicleEnvelope key=\"k\"/></point><path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\" {path}>\
+            <pathLayout connectionType=\"{kind}\">{controls}</pathLayout></path></model>"
+        );
+        let imported = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default());
+        imported.map(|imported| imported.layout).map_err(|error| error.to_string())
+    };
+    let stands = read("length=\"4000\" maxVelocity=\"0\" maxReverseVelocity=\"0\"", &[], "DIRECT").unwrap();
+    assert_eq!((stands.edges[0].two_way, stands.edges[0].speed), (false, None));
+    assert!(!stands.warnings.iter().any(|line| line.contains("vehicleEnvelope")), "{:?}", stands.warnings);
+    // One per cent is not warned about.
+    for (length, warned) in [(4000, false), (4030, false), (3970, false), (4050, true), (3950, true)] {
+        let plant = read(&format!("length=\"{length}\""), &[], "DIRECT").unwrap();
+        assert_eq!(plant.warnings.iter().any(|line| line.contains("its length is not that")), warned, "{length}");
+    }
+    // Units of 50 mm if the model names none, y down; twice the same point is no line.
+    let poly = read("", &[[40, -20], [40, -20]], "POLYPATH").unwrap();
+    let ends: Vec<[f64; 2]> = poly.edges[0].curve.iter().map(|piece| piece.end()).collect();
+    assert_eq!(ends.len(), 2);
+    assert!((ends[0][0] - 2.0).abs() < 1e-12 && (ends[0][1] - 1.0).abs() < 1e-12, "{ends:?}");
+    assert!(
+        read("", &[[1, 1], [2, 2], [3, 3]], "BEZIER").unwrap_err().contains("BEZIER with 3 control points is not read")
+    );
+}
+
+#[test]
+fn xml_is_known_by_its_first_element_and_not_nested_without_end() {
+    let format = |text: &str| Format::of("x.xml".as_ref(), text);
+    for text in [
+        "<model>",
+        "<model/>",
+        "<model name=\"a\"/>",
+        "<?xml version=\"1.0\"?>\n<!-- > -->\n <model>",
+        "\u{feff}<model>",
+    ] {
+        assert_eq!(format(text), Some(Format::OpenTcs), "{text}");
+    }
+    assert_eq!((format("<models>"), format("<graphml>"), format("model")), (None, Some(Format::Ccbs), None));
+    let read = |inner: &str| {
+        let text = format!("<model><point name=\"a\" positionX=\"0\" positionY=\"0\"/>{inner}</model>");
+        layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    let nested = |depth: usize| format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth));
+    assert!(read(&nested(190)).is_ok());
+    assert_eq!(read(&nested(210)).unwrap_err(), "not XML that is read: nested deeper than 200 elements");
+    // What is beside one another is not nested.
+    for many in ["<a></a>", "<a/>", "<a b=\"c\"/>", "<!-- a -->", "<?a b?>"] {
+        assert!(read(&many.repeat(300)).is_ok(), "{many}");
+    }
+}

@@ -22,6 +22,7 @@ mod import_lif;
 mod import_nav2;
 mod import_opendrive;
 mod import_opentcs;
+mod import_options;
 mod import_rmf;
 mod import_vda5050;
 mod laws;

@@ -123,6 +123,16 @@ mod tests {
     }
 
     #[test]
+    fn a_name_that_is_taken_is_passed_over() {
+        let (mut names, mut warnings) = (Names::new(), Warnings::default());
+        for (id, x) in [("a", 0.0), ("a", 1.0), ("a#3", 2.0), ("a", 3.0)] {
+            names.add(node(id, x), &mut warnings);
+        }
+        let ids: Vec<String> = names.list().iter().map(|node| node.id.to_string()).collect();
+        assert_eq!(ids, ["a", "a#2", "a#3", "a#4"]);
+    }
+
+    #[test]
     fn different_things_of_one_name_are_told_apart() {
         let (mut names, mut warnings) = (Names::new(), Warnings::default());
         // The third has the name that the second is given, and the fifth is a copy of the second.

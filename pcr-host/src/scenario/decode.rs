@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::collections::HashSet;
 
 /// What a scenario file holds.
-const FIELDS: [&str; 5] = ["format", "version", "name", "warnings", "agents"];
+const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 
 /// Relative difference between the travelled length and the length of the path that is still scaled away.
 pub const LENGTH_TOLERANCE: f64 = 1e-6;

@@ -86,7 +86,8 @@ impl VisitMut for Mutator {
 
     fn visit_item_impl_mut(&mut self, item: &mut syn::ItemImpl) {
         // Names and orders for messages and heaps aside, what formats is not of interest.
-        let of_display = item.trait_.as_ref().is_some_and(|(_, path, _)| path.to_token_stream().to_string().contains("Display"));
+        let of_display =
+            item.trait_.as_ref().is_some_and(|(_, path, _)| path.to_token_stream().to_string().contains("Display"));
         if !of_display {
             visit_mut::visit_item_impl_mut(self, item);
         }
@@ -126,7 +127,9 @@ impl VisitMut for Mutator {
                 *expr = self.or(at, "the other truth value", parse_quote!(#other), expr.clone());
             }
             Expr::If(condition) if !has_let(&condition.cond) => {
-                if let (Expr::If(own), Some(n)) = (&mut *expr, self.number(condition.cond.span(), "the condition turned round")) {
+                if let (Expr::If(own), Some(n)) =
+                    (&mut *expr, self.number(condition.cond.span(), "the condition turned round"))
+                {
                     let cond = own.cond.clone();
                     own.cond = parse_quote!((crate::mutant_switch::on(#n) != (#cond)));
                 }
