@@ -1,5 +1,6 @@
 //! The commands of the tool, a file each: their arguments, what they do with them, and how that may end.
 
+mod certify;
 mod check;
 mod compare;
 mod evaluate;
@@ -62,6 +63,7 @@ pub(crate) struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Regions(regions::Arguments),
+    Certify(certify::Arguments),
     Check(check::Arguments),
     Plan(plan::Arguments),
     Simulate(Box<simulate::Arguments>),
@@ -79,6 +81,7 @@ impl Arguments {
         match self.command {
             None => overview::run(),
             Some(Command::Regions(arguments)) => arguments.run(),
+            Some(Command::Certify(arguments)) => arguments.run(),
             Some(Command::Check(arguments)) => arguments.run(),
             Some(Command::Plan(arguments)) => arguments.run(),
             Some(Command::Simulate(arguments)) => arguments.run(),

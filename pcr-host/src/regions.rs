@@ -6,9 +6,11 @@
 mod outlines;
 mod record;
 
+use crate::certify;
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
 use crate::footprint::{Bodies, Disc, Disced};
 use crate::scenario::{Agent, Scenario};
+use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
 use record::Work;
 pub use record::{Descriptor, Piece, Region, Slice};
@@ -30,6 +32,9 @@ pub struct Answer {
     /// The covers of the agents that have footprints, if any has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
+    /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Vec<Table>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
 }
@@ -58,6 +63,8 @@ pub struct Request {
     pub agent: Option<u64>,
     /// Number of slices a region.
     pub slices: Option<usize>,
+    /// The tables as they are held.
+    pub certificate: bool,
 }
 
 /// Why there is no answer.
@@ -169,6 +176,7 @@ impl Answer {
                 .enumerate()
                 .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
                 .collect(),
+            certificate: request.certificate.then(|| certify::table_of::<S>(scenario)).transpose()?,
             error: None,
         })
     }
@@ -181,6 +189,7 @@ impl Answer {
             regions: Vec::new(),
             margin_regions: None,
             footprints: Vec::new(),
+            certificate: None,
             error: Some(error),
         }
     }

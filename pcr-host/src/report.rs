@@ -1,5 +1,6 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
+mod certified;
 mod columns;
 mod comparison;
 mod conflicts;
@@ -11,6 +12,7 @@ mod simulation;
 mod table;
 mod traffic;
 
+pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use comparison::{COMPARISON_CSV_HEADER, comparison_csv, comparison_table};
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use locks::{LOCKS_HEADER, locks_csv, locks_json, locks_table};

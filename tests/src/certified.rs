@@ -63,7 +63,8 @@ impl fmt::Display for Proofs {
 
 /// The table of a pair in motion, as plain numbers; none where the format or a table cannot hold it.
 pub fn table<S: Format>(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Option<Table> {
-    let driven = [(pair.0.clone(), drives[0].0.clone(), drives[0].1), (pair.1.clone(), drives[1].0.clone(), drives[1].1)];
+    let driven =
+        [(pair.0.clone(), drives[0].0.clone(), drives[0].1), (pair.1.clone(), drives[1].0.clone(), drives[1].1)];
     let [first, second] = driven.each_ref().map(Course::<S>::rounded);
     let courses = [first?, second?];
     let motions = courses.each_ref().map(|(course, _)| course.motion());

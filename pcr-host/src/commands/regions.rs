@@ -39,6 +39,9 @@ pub(super) struct Arguments {
     /// Add the lengths covered at N evenly spaced inner times of each region (JSON only)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST_SLICES))]
     slices: Option<u32>,
+    /// Add the table as it is held, path by path and piece by piece, for `pcr certify --table` (JSON only)
+    #[arg(long)]
+    certificate: bool,
     /// Number format of the computation
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
@@ -51,7 +54,11 @@ impl Arguments {
         if self.slices.is_some() && self.format != Form::Json {
             return Err(Stop::Error("--slices is for --format json".into(), WRONG_INPUT));
         }
-        let request = Request { agent: self.agent, slices: self.slices.map(|slices| slices as usize) };
+        if self.certificate && self.format != Form::Json {
+            return Err(Stop::Error("--certificate is for --format json".into(), WRONG_INPUT));
+        }
+        let slices = self.slices.map(|slices| slices as usize);
+        let request = Request { agent: self.agent, slices, certificate: self.certificate };
         let work = Regions { scalar: self.scalar, request };
         run(&work, self.file.as_deref(), &self.import, self.format).map(|_| ExitCode::SUCCESS)
     }

@@ -4,6 +4,7 @@
 pub mod ball;
 pub mod cell;
 pub mod data;
+pub mod motion;
 pub mod pair;
 pub mod path;
 pub mod plane;
