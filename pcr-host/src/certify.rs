@@ -2,6 +2,10 @@
 //!
 //! The types are the JSON output, field for field in this order.
 
+mod motions;
+
+pub use motions::{Contact, Proof};
+
 use crate::certificate;
 use crate::fleet::Format;
 use crate::footprint::Bodies;
@@ -119,7 +123,6 @@ impl Certified {
                     Promise::Covered => "contact outside of all pieces",
                     Promise::Shared => "contact in a piece that does not show it",
                     Promise::Near => "told, but no contact",
-                    Promise::Timed => "time",
                 },
                 i: id(witness.agents[0]),
                 j: id(witness.agents[1]),

@@ -3,6 +3,7 @@
 //! The types are the JSON output, field for field in this order. All motions run from the earliest start to the latest
 //! arrival; every agent stands at its start before and at its end after its motion.
 
+use crate::certify::Proof;
 use crate::fleet::{Format, Refused};
 use crate::footprint::{Bodies, Disced};
 use crate::scenario::Scenario;
@@ -19,6 +20,9 @@ pub struct Verdict {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
+    /// What an independent checker has proved, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
     /// Why the scenario was refused.
     pub error: Option<String>,
 }
@@ -110,12 +114,27 @@ impl Verdict {
         }
         // Stable: those that begin together stay in the order of the agents.
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
-        Ok(Self { name: scenario.name.clone(), conflicts, closest: closest.then_some(nearest), error: None })
+        Ok(Self {
+            name: scenario.name.clone(),
+            conflicts,
+            closest: closest.then_some(nearest),
+            certificate: None,
+            error: None,
+        })
+    }
+
+    /// The same with a certificate.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Refused> {
+        let certificate = Some(Proof::of::<S>(scenario)?);
+        Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
     }
 
     /// No answer, and why.
     pub fn refused(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, error: Some(error) }
+        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, certificate: None, error: Some(error) }
     }
 }
 

@@ -7,6 +7,7 @@
 mod circle;
 mod forbidden;
 
+use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::fleet::Fleet;
 use crate::fleet::HostEcm;
@@ -69,6 +70,9 @@ pub struct Plan {
     pub lower_bound: f64,
     /// Who cannot be planned.
     pub unsolved: Vec<Unsolved>,
+    /// What an independent checker has proved of the plan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
 }
 
 /// An agent of a plan.
@@ -146,6 +150,15 @@ impl Plan {
             let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
             let why = "each has to let the next one pass first, the last one the first, however they move".into();
             best.0.unsolved.insert(0, Unsolved { ids, why });
+        }
+        if let Some(solved) = &best.1 {
+            let proof = Proof::of::<f64>(solved)?;
+            if let Some(contact) = proof.contacts.first() {
+                let why = format!("the plan has a contact at {} s", contact.t);
+                best.0.unsolved.push(Unsolved { ids: vec![contact.i, contact.j], why });
+                best.1 = None;
+            }
+            best.0.certificate = Some(proof);
         }
         Ok(best)
     }
@@ -238,6 +251,7 @@ impl Planner<'_> {
             sum_of_costs: 0.0,
             lower_bound: self.motions.iter().map(|motion| motion.time().length()).sum(),
             unsolved: Vec::new(),
+            certificate: None,
         };
         if let Err(never) = outcome {
             plan.unsolved.push(self.unsolved(never));

@@ -410,7 +410,7 @@ mod tests {
             Phase { time: [half, 2.0 * half], length: [0.5 * from, from], speed: [top, 0.0] },
         ];
         let path = Path { start, heading: Angle::Radians(heading), segments, rounding: 1e-14 };
-        Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0, excess: 1e-12 }) }
+        Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0 }) }
     }
 
     fn movers(agents: &[Agent]) -> Vec<Mover> {
@@ -465,7 +465,7 @@ mod tests {
     #[test]
     fn agents_that_stand_touch_or_do_not() {
         let stands = |id, x| Agent {
-            travel: Some(Travel { start: 3.0, phases: Vec::new(), lag: 0.0, excess: 0.0 }),
+            travel: Some(Travel { start: 3.0, phases: Vec::new(), lag: 0.0 }),
             ..agent(id, [x, 0.0], 0.3, &[(0.0, None)], 0.0, 1.0)
         };
         let found = |x| meetings(&movers(&[stands(1, 0.0), stands(2, x)]));
