@@ -16,6 +16,8 @@ pub enum Invalid {
     NonPositive(&'static str),
     /// Its magnitude is above [`Scalar::LIMIT`](crate::Scalar::LIMIT).
     OutOfRange(&'static str),
+    /// It is below [`Scalar::LEAST`](crate::Scalar::LEAST).
+    TooSmall(&'static str),
     /// An arc may sweep one full turn; split longer ones.
     SweepOverOneTurn,
     /// It does not begin where its predecessor ends.
@@ -33,6 +35,7 @@ impl fmt::Display for Invalid {
             Self::Negative(what) => write!(f, "{what} is below zero"),
             Self::NonPositive(what) => write!(f, "{what} is not above zero"),
             Self::OutOfRange(what) => write!(f, "{what} is out of range"),
+            Self::TooSmall(what) => write!(f, "{what} is too small for the number format"),
             Self::SweepOverOneTurn => f.write_str("the arc sweeps more than one turn"),
             Self::Disconnected(what) => write!(f, "the {what} does not begin where its predecessor ends"),
             Self::LengthMismatch => f.write_str("the profile does not travel the length of the path"),
@@ -90,6 +93,11 @@ pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result
 /// `value` if it is in range and not negative.
 pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }
+}
+
+/// The radius of a disc or an arc.
+pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
+    if positive(value, "radius")? < S::LEAST { Err(Invalid::TooSmall("radius")) } else { Ok(value) }
 }
 
 /// `value` if it is in range and above zero.

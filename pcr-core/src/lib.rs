@@ -42,6 +42,9 @@ mod ecm;
 mod error;
 mod few;
 mod geometry;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod internals;
 mod intervals;
 mod motion;
 mod pair;

@@ -1,6 +1,6 @@
 //! An agent in motion: a disc, its path, and when it is where on it (Eq. 2, ρ ∘ λ).
 
-use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::error::{self, Invalid, in_range, not_negative};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
@@ -29,10 +29,10 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// The motion of a disc of this radius \[m\] that sets off at the time `start` \[s\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`] (radius) and
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius) and
     /// [`Invalid::LengthMismatch`] where the profile does not travel the length of the path (rounding aside).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
-        positive(radius, "radius")?;
+        error::radius(radius)?;
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius;

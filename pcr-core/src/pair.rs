@@ -177,7 +177,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         }
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
-        self.share(piece, own, covered).map(|slice| slice.map(|slice| along_path(slice, own)))
+        let slices = piece.share.of(covered, own, self.hull(piece, own));
+        slices.map(|slice| slice.map(|slice| along_path(slice, own)))
     }
 
     /// The parts of the second path that a piece covers at the length `l` of the first one.
@@ -190,37 +191,23 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
         // An interval is connected, hence part of one region, that of each piece that it meets. But where two laps of the
-        // first segment may be covered, its next part may be that of another lap: then each piece has its own.
-        let wraps = wraps(own, self.radius);
+        // first segment may be covered, the next part of it may be that of the other lap: then each piece has its own part.
         covered.map(|slice| {
-            let slice = along_path(slice?, other);
+            let slice = Some(along_path(slice?, other)).filter(|slice| slice.meets(piece.second))?;
+            if !wraps(own, self.radius) {
+                return Some(slice);
+            }
             let part = slice.common(piece.second);
-            if !wraps { Some(slice) } else { Some(part).filter(|part| self.stands_for(piece, l, part.middle())) }
-                .filter(|_| slice.meets(piece.second))
+            let footprint = Footprint::of(other.point_at(part.middle() - other.from), own);
+            // What only just is covered of the second segment may not seem to be from here.
+            let laps = footprint.reach(own, self.radius + self.slack).intervals(own);
+            piece.share.holds(l - own.from, laps, own, self.hull(piece, own)).then_some(part)
         })
     }
 
-    /// Whether a piece stands for the lap of the first path that is at the length `l` there, at `s` of the second one. What
-    /// none does, by rounding, is left out by none.
-    fn stands_for(&self, piece: &Piece<S>, l: S, s: S) -> bool {
-        let (Some(own), Some(other)) = self.segments(piece) else {
-            return false;
-        };
-        let footprint = Footprint::of(other.point_at(s - other.from), own);
-        let holds = |slices: [Option<Interval<S>>; 2]| {
-            slices.into_iter().flatten().any(|slice| along_path(slice, own).contains(l))
-        };
-        // What only just is covered of the second segment may not seem to be from here.
-        let at = |radius| footprint.reach(own, radius).intervals(own);
-        let near = at(self.radius);
-        let laps = if holds(near) { near } else { at(self.radius + self.excess()) };
-        holds(self.share(piece, own, laps)) || !holds(laps)
-    }
-
-    /// Of what is covered of the first segment, that which a piece stands for.
-    fn share(&self, piece: &Piece<S>, own: &Segment<S>, covered: [Option<Interval<S>>; 2]) -> [Option<Interval<S>>; 2] {
-        let hull = Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack);
-        piece.share.of(covered, own, hull)
+    /// Where a piece lies along its first segment, and a slack more.
+    fn hull(&self, piece: &Piece<S>, own: &Segment<S>) -> Interval<S> {
+        Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack)
     }
 
     fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {

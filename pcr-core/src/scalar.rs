@@ -66,6 +66,10 @@ pub trait Scalar:
     /// Largest magnitude of a coordinate, length, radius, time, speed or acceleration that constructors accept. The
     /// diameter of an arc counts as a length, and its box as coordinates.
     const LIMIT: Self;
+    /// Least radius of a disc or an arc. A product of four of them, as in the discriminants of P3, has all its digits: below
+    /// it would lose them to underflow, and contacts with them. Coordinates and lengths may be 0 and as small as they like,
+    /// as they are compared and added, and multiplied with radii only.
+    const LEAST: Self;
 
     /// Neither NaN nor infinite. Fixed-point formats are always finite.
     fn is_finite(self) -> bool;

@@ -88,6 +88,8 @@ impl<const F: u32> Scalar for Q<F> {
 
     const ZERO: Self = Self::from_bits(0);
     const LIMIT: Self = Self::from_bits(LIMIT);
+    /// Products keep all their digits.
+    const LEAST: Self = Self::LAST_DIGIT;
 
     fn is_finite(self) -> bool {
         true

@@ -113,6 +113,7 @@ fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
+        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:e}", S::LEAST.to_f64()),
         reason => reason.to_string(),
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod audit;
 pub mod certified;
+pub mod clearance;
 pub mod constants;
 pub mod disc;
 pub mod exact;
@@ -13,7 +14,9 @@ pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
+pub mod search;
 pub mod settings;
+pub mod shadow;
 pub mod velocity;
 
 /// The example of the README runs.

@@ -97,6 +97,13 @@ fn segments<S: Format>() {
     each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_line(length));
     each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_arc(one, Turn::Left, length));
     each::<S, _>(refused_unless_positive::<S>(), "radius", |radius| origin().then_arc(radius, Turn::Right, one));
+    let below = S::from_f64(0.9 * S::LEAST.to_f64());
+    if below < S::LEAST {
+        assert_eq!(origin().then_arc(below, Turn::Left, S::ZERO).err(), Some(Invalid::TooSmall("radius")));
+    }
+    assert!(origin().then_arc(S::LEAST, Turn::Left, S::ZERO).is_ok());
+    // Lengths are not multiplied with one another.
+    assert!(origin().then_line(S::from_f64(f64::MIN_POSITIVE)).is_ok());
     for sweep in [6.284, 7.0, 100.0] {
         let long = origin().then_arc(one, Turn::Left, S::from_f64(sweep));
         assert_eq!(long.err(), Some(Invalid::SweepOverOneTurn), "{sweep} rad");

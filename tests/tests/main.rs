@@ -43,6 +43,8 @@ mod plans_footprints;
 mod properties;
 mod regressions;
 mod safe;
+mod search;
+mod shadow;
 mod simulate;
 mod speed;
 mod table;

@@ -224,7 +224,7 @@ impl From<Invalid> for Refusal {
             Invalid::NonFinite(what) => (Reason::NonFinite, what),
             Invalid::Negative(what) => (Reason::Negative, what),
             Invalid::NonPositive(what) => (Reason::NonPositive, what),
-            Invalid::OutOfRange(what) => (Reason::OutOfRange, what),
+            Invalid::OutOfRange(what) | Invalid::TooSmall(what) => (Reason::OutOfRange, what),
             Invalid::SweepOverOneTurn => (Reason::SweepOverOneTurn, ""),
             Invalid::Full(what) => (Reason::Full, what),
             _ => (Reason::Other, ""),

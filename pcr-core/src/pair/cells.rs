@@ -2,7 +2,7 @@
 //!
 //! The events cut the second segment into slabs, in each of which the disc covers something of the first one all along or
 //! nothing at all: its middle tells. Neighbouring slabs that are covered are parts of one piece, if one lap at most of the
-//! first segment can be covered and no disc fits an arc ([`super::laps`] is for the others).
+//! first segment can be covered ([`super::laps`] is for the others).
 //!
 //! The lengths of a piece are the hull of its slices where it begins and ends, of the ends of the first segment where they
 //! are covered, and of the turning points: nothing between them can be extreme. Inside the second segment a piece begins
@@ -18,7 +18,7 @@ use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
-use crate::segment::{Curve, Segment};
+use crate::segment::Segment;
 
 /// Two segments, by their places in the two paths.
 #[derive(Clone, Copy)]
@@ -51,7 +51,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);
         events.sort();
         let in_order = events.as_slice();
-        let by_laps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
+        let by_laps = wraps(self.first, self.radius);
         let begin = pieces.last_pending();
         if by_laps {
             self.find_laps(in_order, pieces)?;
@@ -65,13 +65,6 @@ impl<S: Scalar> SegmentPair<'_, S> {
             self.turn_back(pieces, begin, l);
         }
         Ok(())
-    }
-
-    /// Whether a disc fits an arc so well that contact from inside is contact all around: then rounding decides where
-    /// it is, and slices are taken everywhere.
-    fn fits(&self, segment: &Segment<S>) -> bool {
-        let around = (0..6).fold(self.slack, |slack, _| slack.double());
-        matches!(segment.curve, Curve::Arc { radius, .. } if (radius - self.radius).abs() <= around)
     }
 
     /// Whether this slab, between two neighbouring events, is one. Events may coincide; a second segment of length 0 has one
@@ -158,17 +151,20 @@ impl<S: Scalar> SegmentPair<'_, S> {
         let reach = self.radius + self.slack.half();
         let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
         let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
-        let turn = [Some(Interval::new(l, l)), None];
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
-            let within = piece.second.contains(s);
-            if within || near(piece.second.lo) || near(piece.second.hi) {
-                // Of two laps the slices tell whose end it is.
-                let slices = if within && piece.share != Share::Only { self.slices(s) } else { [None; 2] };
-                let own = if slices == [None; 2] { turn } else { piece.share.of(slices, self.first, piece.first) };
-                for slice in own {
-                    piece.first = slice.map_or(piece.first, |slice| piece.first.hull(slice));
-                }
+            let belongs = if !piece.second.contains(s) {
+                near(piece.second.lo) || near(piece.second.hi)
+            } else if piece.share == Share::Only {
+                true
+            } else {
+                // With a slack more, what is but one interval by rounding is that of both pieces.
+                let footprint = Footprint::of(self.second.point_at(s), self.first);
+                let laps = footprint.reach(self.first, self.radius + self.slack).intervals(self.first);
+                piece.share.holds(l, laps, self.first, piece.first)
+            };
+            if belongs {
+                piece.first = piece.first.hull(Interval::new(l, l));
             }
             index = piece.next;
         }

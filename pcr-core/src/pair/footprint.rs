@@ -246,6 +246,19 @@ impl Share {
             })
         })
     }
+
+    /// Whether the length `l` is its own, of those that are covered. One that none of the intervals holds, by rounding, may be
+    /// anybody's.
+    pub(crate) fn holds<S: Scalar>(
+        self,
+        l: S,
+        intervals: [Option<Interval<S>>; 2],
+        segment: &Segment<S>,
+        hull: Interval<S>,
+    ) -> bool {
+        let hold = |intervals: [Option<Interval<S>>; 2]| intervals.into_iter().flatten().any(|slice| slice.contains(l));
+        hold(self.of(intervals, segment, hull)) || !hold(intervals)
+    }
 }
 
 pub(crate) fn shift<S: Scalar>(foot: S, segment: &Segment<S>, lap: Lap) -> S {

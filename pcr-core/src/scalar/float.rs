@@ -40,7 +40,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, least: $least:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -48,6 +48,7 @@ macro_rules! impl_float {
 
             const ZERO: Self = 0.0;
             const LIMIT: Self = $limit;
+            const LEAST: Self = $least;
 
             fn is_finite(self) -> bool {
                 $t::is_finite(self)
@@ -226,8 +227,8 @@ macro_rules! impl_float {
 
 // `slack` in unit roundoffs of the extent; `tolerance` 2^-32 and 2^-16 of it; `split` is 1 more than the power
 // of 2 that halves a significand.
-impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
-impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
+impl_float!(f64, bits: u64, limit: 1e12, least: 1e-75, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
+impl_float!(f32, bits: u32, limit: 1e6, least: 1e-9, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
 
 #[cfg(feature = "std")]
 extern crate std;

@@ -58,6 +58,7 @@ impl Scalar for Micro {
 
     const ZERO: Self = Self(0.0);
     const LIMIT: Self = Self(<f32 as Scalar>::LIMIT);
+    const LEAST: Self = Self(<f32 as Scalar>::LEAST);
 
     fn is_finite(self) -> bool {
         self.0.is_finite()
