@@ -3,7 +3,7 @@
 //! All numbers are those that the library holds: nothing is rounded or computed again here.
 
 use crate::fleet::{Fleet, Format, HostEcm};
-use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Segment, Share, Table, Told, Travel};
+use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Segment, Share, Table, Travel};
 use pcr_core::{Curve, Interval, Motion, Turn, excess};
 
 /// A motion: `heading` is that at the start of its path, `turns` its turns in place, each before the segment of this place.
@@ -37,12 +37,7 @@ pub fn agent<S: Format>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turn
             segments: segments.collect(),
             rounding: S::EPSILON * path.length().to_f64(),
         },
-        travel: Some(Travel {
-            start: motion.time().lo.to_f64(),
-            phases: phases.collect(),
-            lag: motion.lag().to_f64(),
-            excess: motion.time_excess().to_f64(),
-        }),
+        travel: Some(Travel { start: motion.time().lo.to_f64(), phases: phases.collect(), lag: motion.lag().to_f64() }),
     }
 }
 
@@ -74,9 +69,8 @@ pub fn table<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>], ecm: &Hos
 }
 
 fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 2]) -> Pair {
-    let (mut pieces, mut told) = (Vec::new(), Vec::new());
-    let regions = |a, b| ecm.pair(motions, a, b).expect("the table of the fleet");
-    for (number, (region, back)) in regions(i, j).zip(regions(j, i)).enumerate() {
+    let mut pieces = Vec::new();
+    for (number, region) in ecm.pair(motions, i, j).expect("the table of the fleet").enumerate() {
         pieces.extend(region.pieces().map(|piece| Piece {
             segments: piece.segments,
             lengths: [ends_of(piece.length), ends_of(piece.other_length)],
@@ -87,7 +81,6 @@ fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 
             },
             region: number,
         }));
-        told.push(Told { region: number, times: [ends_of(back.time()), ends_of(region.time())] });
     }
-    Pair { agents: [i, j], excess: excess(&motions[i], &motions[j]).to_f64(), pieces, told }
+    Pair { agents: [i, j], excess: excess(&motions[i], &motions[j]).to_f64(), pieces }
 }

@@ -2,6 +2,10 @@
 //!
 //! The types are the JSON output, field for field in this order.
 
+mod motions;
+
+pub use motions::{Contact, Proof};
+
 use crate::certificate;
 use crate::fleet::Format;
 use crate::footprint::Bodies;
@@ -10,7 +14,8 @@ use crate::scenario::Scenario;
 use pcr_certify::data::Table;
 use pcr_certify::pair::{Findings, Promise};
 use pcr_certify::table::{Checker, Margin};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// What has been proved of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -57,16 +62,43 @@ pub struct Point {
     pub in_excess: f64,
 }
 
-/// The table of a scenario, to be certified.
+/// The tables in an answer of `pcr regions --certificate`; what else is there does not count.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Dump {
+    /// Name of the scenario.
+    pub name: String,
+    /// That of contact, and that in which margins overlap, if there are any.
+    pub certificate: Vec<Table>,
+}
+
+impl Dump {
+    /// Reads one from a file.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn read(file: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
+        serde_json::from_str(&text).map_err(|error| error.to_string())
+    }
+}
+
+/// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
 ///
 /// # Errors
 /// [`Failure`] where a value does not fit the format.
-pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Table, Failure> {
+pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
-    let agents = certificate::agents(&fleet, &motions, &ids);
-    Ok(certificate::table(agents, &motions, &table(&discs, &motions)?))
+    let mut tables = vec![motions.clone()];
+    if motions.iter().any(|motion| motion.margin() > S::ZERO) {
+        tables.push(motions.iter().map(|motion| motion.inflated()).collect());
+    }
+    let certificate = |motions: &Vec<_>| {
+        let agents = certificate::agents(&fleet, motions, &ids);
+        Ok(certificate::table(agents, motions, &table(&discs, motions)?))
+    };
+    tables.iter().map(certificate).collect()
 }
 
 impl Certified {
@@ -91,7 +123,6 @@ impl Certified {
                     Promise::Covered => "contact outside of all pieces",
                     Promise::Shared => "contact in a piece that does not show it",
                     Promise::Near => "told, but no contact",
-                    Promise::Timed => "time",
                 },
                 i: id(witness.agents[0]),
                 j: id(witness.agents[1]),

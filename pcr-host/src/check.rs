@@ -3,6 +3,7 @@
 //! The types are the JSON output, field for field in this order. All motions run from the earliest start to the latest
 //! arrival; every agent stands at its start before and at its end after its motion.
 
+use crate::certify::Proof;
 use crate::fleet::{Format, Refused};
 use crate::footprint::{Bodies, Disced};
 use crate::scenario::{Labels, Scenario};
@@ -22,6 +23,9 @@ pub struct Verdict {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
+    /// What an independent checker has proved, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
     /// Why the scenario was refused.
     pub error: Option<String>,
     /// What was read otherwise than it was written.
@@ -120,9 +124,19 @@ impl Verdict {
             labels: Labels::of(scenario),
             conflicts,
             closest: closest.then_some(nearest),
+            certificate: None,
             warnings: scenario.warnings.clone(),
             error: None,
         })
+    }
+
+    /// The same with a certificate.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Refused> {
+        let certificate = Some(Proof::of::<S>(scenario)?);
+        Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
     }
 
     /// No answer, and why.
@@ -132,6 +146,7 @@ impl Verdict {
             labels: Labels::default(),
             conflicts: Vec::new(),
             closest: None,
+            certificate: None,
             warnings: Vec::new(),
             error: Some(error),
         }

@@ -1,5 +1,6 @@
 //! The commands of the tool, a file each: their arguments, what they do with them, and how that may end.
 
+mod certify;
 mod check;
 mod compare;
 mod completions;
@@ -72,6 +73,7 @@ pub(crate) struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Regions(regions::Arguments),
+    Certify(certify::Arguments),
     Check(check::Arguments),
     Plan(plan::Arguments),
     Map(map::Arguments),
@@ -98,6 +100,7 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     match arguments.command {
         None => demo::Arguments::default().run(),
         Some(Command::Regions(arguments)) => arguments.run(),
+        Some(Command::Certify(arguments)) => arguments.run(),
         Some(Command::Check(arguments)) => arguments.run(),
         Some(Command::Plan(arguments)) => arguments.run(),
         Some(Command::Map(arguments)) => arguments.run(),

@@ -129,6 +129,18 @@ fn useful(file: &Option<PathBuf>, text: &str, format: Option<Format>, options: &
     }
 }
 
+/// What a file is, by its name and content or as the options say; a scenario on standard input for `-`, which is not read.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+pub fn kind(file: &Path, options: &Options) -> Result<Kind, InputError> {
+    if file == Path::new("-") {
+        return Ok(Kind::of(options.from, ""));
+    }
+    let (_, text) = text(file)?;
+    Ok(Kind::of(options.from.or_else(|| Format::of(file, &text)), &text))
+}
+
 /// Whether all files hold orders or states of VDA 5050, or all paths by their points: an agent each, of one fleet.
 pub fn are_of_one_fleet(files: &[PathBuf], options: &Options) -> bool {
     let format = |file: &PathBuf| {

@@ -9,6 +9,7 @@ mod circle;
 mod forbidden;
 mod reason;
 
+use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::fleet::Fleet;
 use crate::fleet::HostEcm;
@@ -77,6 +78,9 @@ pub struct Plan {
     pub unsolved: Vec<Unsolved>,
     /// What was read otherwise than it was written.
     pub warnings: Vec<String>,
+    /// What an independent checker has proved of the plan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
 }
 
 /// An agent of a plan.
@@ -159,6 +163,15 @@ impl Plan {
             let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
             let why = "each has to let the next one pass first, the last one the first, however they move";
             best.0.unsolved.insert(0, Unsolved::nowhere(ids, why));
+        }
+        if let Some(solved) = &best.1 {
+            let proof = Proof::of::<f64>(solved)?;
+            if let Some(contact) = proof.contacts.first() {
+                let why = format!("the plan has a contact at {} s", contact.t);
+                best.0.unsolved.push(Unsolved::nowhere(vec![contact.i, contact.j], why));
+                best.1 = None;
+            }
+            best.0.certificate = Some(proof);
         }
         Ok(best)
     }
@@ -262,6 +275,7 @@ impl Planner<'_> {
             lower_bound: self.motions.iter().map(|motion| self.least(motion)).sum(),
             unsolved: Vec::new(),
             warnings: self.scenario.warnings.clone(),
+            certificate: None,
         };
         if let Err(never) = outcome {
             plan.unsolved.push(self.unsolved(never));

@@ -6,9 +6,11 @@
 mod outlines;
 mod record;
 
+use crate::certify;
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
 use crate::footprint::{Bodies, Disc, Disced};
 use crate::scenario::{Agent, Labels, Scenario};
+use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
 use record::Work;
 pub use record::{Descriptor, Piece, Region, Slice};
@@ -33,6 +35,9 @@ pub struct Answer {
     /// The covers of the agents that have footprints, if any has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
+    /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Vec<Table>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
     /// What was read otherwise than it was written.
@@ -63,6 +68,8 @@ pub struct Request {
     pub agent: Option<u64>,
     /// Number of slices a region.
     pub slices: Option<usize>,
+    /// The tables as they are held.
+    pub certificate: bool,
 }
 
 /// Why there is no answer.
@@ -214,6 +221,7 @@ impl Answer {
                 .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
                 .collect(),
             warnings: scenario.warnings.clone(),
+            certificate: request.certificate.then(|| certify::table_of::<S>(scenario)).transpose()?,
             error: None,
         })
     }
@@ -228,6 +236,7 @@ impl Answer {
             margin_regions: None,
             footprints: Vec::new(),
             warnings: Vec::new(),
+            certificate: None,
             error: Some(error),
         }
     }

@@ -1,5 +1,6 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
+mod certified;
 mod columns;
 mod comparison;
 mod conflicts;
@@ -12,6 +13,7 @@ mod simulation;
 mod table;
 mod traffic;
 
+pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use comparison::{COMPARISON_CSV_HEADER, comparison_csv, comparison_table};
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use locks::{LOCKS_HEADER, locks_csv, locks_table};
@@ -22,6 +24,7 @@ pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;
 pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
+use crate::certify::Certified;
 use crate::check::Verdict;
 use crate::compare::Comparison;
 use crate::locks::Locks;
@@ -49,6 +52,9 @@ impl Document for Answer {
 }
 impl Document for Verdict {
     const FORMAT: &'static str = "pcr-conflicts";
+}
+impl Document for Certified {
+    const FORMAT: &'static str = "pcr-certificate";
 }
 impl Document for Plan {
     const FORMAT: &'static str = "pcr-plan";

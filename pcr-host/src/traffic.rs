@@ -7,6 +7,7 @@ mod crowd;
 mod missions;
 mod schedule;
 
+use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::import::{Id, Imported};
 use crate::plan::{Forbidden, Schedule, Unsolved};
@@ -49,6 +50,8 @@ pub struct Traffic {
     pub conflicts_before: usize,
     /// Conflicts with the plan.
     pub conflicts_after: usize,
+    /// What an independent checker has proved of the plan.
+    pub certificate: Proof,
     /// From the start of all to the last arrival \[s\].
     pub makespan: f64,
     /// Sum over the agents of the time until they arrive \[s\].
@@ -130,6 +133,7 @@ impl Traffic {
             regions,
             conflicts_before: conflicts(&at_once)?,
             conflicts_after: conflicts(&plan)?,
+            certificate: Proof::of::<f64>(&plan)?,
             makespan,
             sum_of_costs: ends().sum(),
             lower_bound: at_once.agents.iter().map(Agent::duration).sum(),

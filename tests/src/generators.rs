@@ -160,7 +160,8 @@ pub fn certifiable<S: Format>(seed: u64) -> Case {
 /// The disc with some of its numbers one to three last digits off.
 fn nudged<S: Format>(mut disc: Disc, often: f64, dice: &mut Dice) -> Disc {
     let mut nudge = |value: f64| {
-        if !dice.chance(often) {
+        // Beyond the limit there may be no other number; the library refuses it.
+        if !dice.chance(often) || value.abs() >= S::LIMIT.to_f64() {
             return value;
         }
         let (steps, above) = (1 + dice.below(3), dice.chance(0.5));

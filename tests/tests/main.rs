@@ -2,6 +2,7 @@
 //! formats is compiled once for all of them. `cargo test -p pcr-tests outward::` runs those of one file.
 
 mod broad_phase;
+mod certify;
 mod closed_forms;
 mod compare;
 mod conflicts;

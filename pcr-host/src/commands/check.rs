@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  no conflicts
-  1  conflicts
+  0  no conflicts; with --certify proved, too
+  1  conflicts; with --certify also what is not proved
   2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
@@ -24,6 +24,7 @@ const EXAMPLES: &str = "\
 Examples:
   pcr check plan.json                                who collides when, where and how deep
   pcr check plan.json --closest                      and how near every two agents come
+  pcr check plan.json --certify                      and the proof that they do not, by an independent checker
   pcr check -q plan.json && echo free                for scripts: the exit status says it
   pcr check - --format json < plans.jsonl            JSON Lines: a scenario a line in, a line a scenario out";
 
@@ -39,6 +40,9 @@ pub(super) struct Arguments {
     /// Add how near every two agents come, and when (not in CSV)
     #[arg(long)]
     closest: bool,
+    /// Have it proved by a checker that shares nothing with the search for conflicts (not in CSV)
+    #[arg(long)]
+    certify: bool,
     /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
@@ -51,7 +55,10 @@ impl Arguments {
         if self.closest && self.printed.form() == Form::Csv {
             return Err(Stop::arguments("--closest is for --format json and table"));
         }
-        let work = Check { scalar: self.scalar, closest: self.closest };
+        if self.certify && self.printed.form() == Form::Csv {
+            return Err(Stop::arguments("--certify is for --format json and table"));
+        }
+        let work = Check { scalar: self.scalar, closest: self.closest, certify: self.certify };
         let found = run(&work, self.files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
@@ -61,6 +68,7 @@ impl Arguments {
 struct Check {
     scalar: Number,
     closest: bool,
+    certify: bool,
 }
 
 impl Work for Check {
@@ -68,7 +76,12 @@ impl Work for Check {
     const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
 
     fn answer(&self, scenario: &Scenario) -> Result<Verdict, Failure> {
-        Ok(with_scalar!(self.scalar, S => Verdict::of::<S>(scenario, self.closest))?)
+        let verdict = if self.certify {
+            with_scalar!(self.scalar, S => Verdict::certified::<S>(scenario, self.closest))
+        } else {
+            with_scalar!(self.scalar, S => Verdict::of::<S>(scenario, self.closest))
+        };
+        Ok(verdict?)
     }
 
     fn refused(&self, name: &str, error: String) -> Verdict {
@@ -76,7 +89,7 @@ impl Work for Check {
     }
 
     fn found(&self, verdict: &Verdict) -> bool {
-        !verdict.conflicts.is_empty()
+        !verdict.conflicts.is_empty() || verdict.certificate.as_ref().is_some_and(|proof| proof.verdict != "proved")
     }
 
     fn print(&self, verdict: &Verdict, format: Form, out: &mut impl Write) -> io::Result<()> {

@@ -39,6 +39,9 @@ pub(super) struct Arguments {
     /// Add the lengths covered at N evenly spaced inner times of each region (JSON only)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST_SLICES))]
     slices: Option<u32>,
+    /// Add the table as it is held, path by path and piece by piece, for `pcr certify --table` (JSON only)
+    #[arg(long)]
+    certificate: bool,
     /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
@@ -51,8 +54,11 @@ impl Arguments {
         if self.slices.is_some() && self.printed.form() != Form::Json {
             return Err(Stop::arguments("--slices is for --format json"));
         }
+        if self.certificate && self.printed.form() != Form::Json {
+            return Err(Stop::arguments("--certificate is for --format json"));
+        }
         let slices = self.slices.map(|slices| slices as usize);
-        let work = Regions { scalar: self.scalar, agent: self.agent, slices };
+        let work = Regions { scalar: self.scalar, agent: self.agent, slices, certificate: self.certificate };
         run(&work, self.files, &self.import, &self.printed).map(|_| ExitCode::SUCCESS)
     }
 }
@@ -62,6 +68,7 @@ struct Regions {
     scalar: Number,
     agent: Option<String>,
     slices: Option<usize>,
+    certificate: bool,
 }
 
 impl Work for Regions {
@@ -70,7 +77,7 @@ impl Work for Regions {
 
     fn answer(&self, scenario: &Scenario) -> Result<Answer, Failure> {
         let agent = self.agent.as_deref().map(|asked| find(scenario, asked)).transpose()?;
-        let request = Request { agent, slices: self.slices };
+        let request = Request { agent, slices: self.slices, certificate: self.certificate };
         with_scalar!(self.scalar, S => Answer::of::<S>(scenario, request))
     }
 

@@ -32,7 +32,7 @@ impl Kind {
 
 impl Options {
     /// The fields that are given, with the names that they have on the command line. The margin is not among them: it is of use everywhere.
-    fn all(&self) -> [(&'static str, &'static str, bool); 13] {
+    fn all(&self) -> [(&'static str, &'static str, bool); 14] {
         [
             ("from", "--from", self.from.is_some()),
             ("routes", "--route", !self.routes.is_empty()),
@@ -47,6 +47,7 @@ impl Options {
             ("tolerance", "--tolerance", self.tolerance.is_some()),
             ("graph", "--graph", self.graph.is_some()),
             ("horizon", "--horizon", self.horizon),
+            ("partial", "--partial", self.partial),
         ]
     }
 

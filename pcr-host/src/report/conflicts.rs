@@ -68,5 +68,8 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()
         }
         columns.write(out)?;
     }
+    if let Some(proof) = &verdict.certificate {
+        writeln!(out, "{}", proof.sentence())?;
+    }
     Ok(())
 }

@@ -43,5 +43,9 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     }
     columns.write(out)?;
     let Plan { makespan, sum_of_costs, lower_bound, .. } = plan;
-    writeln!(out, "makespan {makespan:.3} s, sum of costs {sum_of_costs:.3} s (at least {lower_bound:.3} s)")
+    writeln!(out, "makespan {makespan:.3} s, sum of costs {sum_of_costs:.3} s (at least {lower_bound:.3} s)")?;
+    match &plan.certificate {
+        Some(proof) => writeln!(out, "{}", proof.sentence()),
+        None => Ok(()),
+    }
 }

@@ -63,5 +63,6 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     )?;
     let Traffic { makespan, sum_of_costs, lower_bound, missions_per_hour, .. } = traffic;
     let costs = format!("sum of costs {sum_of_costs:.3} s (without any wait {lower_bound:.3} s)");
-    writeln!(out, "makespan {makespan:.3} s, {costs}, {missions_per_hour:.1} missions an hour")
+    writeln!(out, "makespan {makespan:.3} s, {costs}, {missions_per_hour:.1} missions an hour")?;
+    writeln!(out, "{}", traffic.certificate.sentence())
 }

@@ -62,7 +62,10 @@ fn unknown_keys_are_refused_with_those_that_are_known() {
         &with("/speed", &json!(1)),
         "agent 7, speed: unknown key; known are id, label, radius, footprint, loads, margin, v_max, a_max, turn_v_max, turn_a_max, t_start, start, path, profile",
     );
-    refused(&json!({ "agents": [], "units": "m" }), "units: unknown key; known are format, version, name, agents, warnings");
+    refused(
+        &json!({ "agents": [], "units": "m" }),
+        "units: unknown key; known are format, version, name, agents, warnings",
+    );
 }
 
 #[test]

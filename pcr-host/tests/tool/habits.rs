@@ -3,8 +3,9 @@
 use crate::fixture::{PAPER, crossing, directory, file, run};
 use serde_json::Value;
 
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "regions",
+    "certify",
     "check",
     "plan",
     "map",

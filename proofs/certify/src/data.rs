@@ -70,8 +70,6 @@ pub struct Travel {
     pub phases: Vec<Phase>,
     /// What the travelled length at a time may be off by the rounding of times \[m\].
     pub lag: f64,
-    /// What a time of a length may be told too early or too late \[s\].
-    pub excess: f64,
 }
 
 /// A disc on a path.
@@ -116,16 +114,6 @@ pub struct Piece {
     pub region: usize,
 }
 
-/// When one of the agents of a pair must not be in a region because of the other one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-pub struct Told {
-    /// Number of the region.
-    pub region: usize,
-    /// From when to when the other agent is in it, the first agent being the other one or the second \[s\].
-    pub times: [[f64; 2]; 2],
-}
-
 /// Two agents and the pieces of their regions.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -136,9 +124,6 @@ pub struct Pair {
     pub excess: f64,
     /// In no order.
     pub pieces: Vec<Piece>,
-    /// Time ranges, where agents move.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
-    pub told: Vec<Told>,
 }
 
 /// A table of collision regions: every two agents that are not discs of one body are a pair of it.

@@ -16,8 +16,6 @@ pub enum Promise {
     Shared,
     /// No length is told that is farther than R + ε from all lengths of the other path told with it (C4).
     Near,
-    /// The times told are those of the lengths.
-    Timed,
 }
 
 /// Where a promise is broken, or may be.
