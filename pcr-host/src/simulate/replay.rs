@@ -53,7 +53,8 @@ fn short(value: f64) -> f64 {
 fn data(task: &Task, outcomes: &[Outcome]) -> Value {
     let robots = task.robots.iter().enumerate().map(|(place, robot)| {
         // Beyond 2⁵³ a number would lose its last digits in the browser.
-        json!({ "id": robot.id.to_string(), "radius": robot.radius, "colour": colour(place).to_string() })
+        let (id, name) = (robot.id.to_string(), task.labels.called(robot.id));
+        json!({ "id": id, "name": name, "radius": robot.radius, "colour": colour(place).to_string() })
     });
     let obstacles =
         task.obstacles.iter().map(|obstacle| json!([obstacle.centre[0], obstacle.centre[1], obstacle.radius]));

@@ -39,6 +39,8 @@ fn labels_are_in_every_answer() {
         let text = fs::read_to_string(maps.join(picture)).unwrap();
         assert!(text.matches("AGV-9").count() + text.matches("AGV-7").count() >= times, "{picture}");
     }
+    let replay = run(&["simulate", &name, "--controller", "pcr", "-q", "-o", "-"]).ok();
+    assert!(replay.contains("\"name\":\"1 AGV-7, east\""), "the robots of the page have their names");
     let plan = run(&["plan", &name, "-q", "-o", "-"]).out;
     assert!(plan.contains("\"label\": \"AGV-7, east\""), "{plan}");
 }

@@ -19,7 +19,7 @@ function option(select, text, value) {
   select.append(option);
 }
 data.runs.forEach((run, k) => option($("run"), run.controller, k));
-robots.forEach((robot, k) => option($("ego"), robot.id, k));
+robots.forEach((robot, k) => option($("ego"), robot.name, k));
 
 const bounds = (() => {
   const box = [Infinity, -Infinity, Infinity, -Infinity];
@@ -174,7 +174,7 @@ function drawMap() {
   c.lineTo(x(time), bottom);
   c.stroke();
   c.restore();
-  $("caption").textContent = `What robot ${robots[ego].id} keeps out of, with margins, in the plan of ${plan.time.toFixed(2)} s. Dashed: the plan; solid: what it did.`;
+  $("caption").textContent = `What robot ${robots[ego].name} keeps out of, with margins, in the plan of ${plan.time.toFixed(2)} s. Dashed: the plan; solid: what it did.`;
 }
 
 function draw() {
