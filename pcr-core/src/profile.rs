@@ -72,9 +72,10 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            // The last digits of accelerations count for the whole time so far.
-            if after < -(S::rounding(before) + S::rounding(acceleration.abs()).times(self.time.hi + duration).narrow())
-            {
+            // The last digits of accelerations count for the whole time so far, those of times with the acceleration.
+            let (slows, time) = (acceleration.abs(), self.time.hi + duration);
+            let last = S::rounding(slows).times(time).narrow().max(slows.times(S::rounding(time)).narrow());
+            if after < -(S::rounding(before) + last) {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;

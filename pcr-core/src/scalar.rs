@@ -182,7 +182,7 @@ pub trait Scalar:
     /// Where a search for a contact stops, in a configuration of the given extent: discs this near to one another may be
     /// reported as touching. Not a bound on an error but a choice: it takes steps to come nearer. At least two slacks.
     fn tolerance(extent: Self) -> Self {
-        Self::slack(extent).double().double().double()
+        Self::slack(extent).double().double().double().double()
     }
 }
 

@@ -97,11 +97,11 @@ fn tolerances<S: Format>() {
         let slack = S::slack(motion.extent() + latest + latest);
         let rest = S::drift(0, motion.extent()) + S::lag(one, profile.as_profile().duration());
         let leap = S::slack(S::ZERO).half().half();
-        let pad = quadruple(slack) + (rest + leap).double();
+        let pad = slack + (rest + leap).double();
         let least = S::tolerance(motion.extent()).max(quadruple(pad));
         let found = Encounter::new(&motion, &motion).tolerance();
         assert!((found - least).abs() <= S::slack(S::ZERO).double(), "{found:?} and {least:?}");
-        assert!(found >= quadruple(quadruple(slack)) - S::slack(S::ZERO));
+        assert!(found >= quadruple(slack) - S::slack(S::ZERO));
     }
 }
 
