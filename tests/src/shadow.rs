@@ -111,6 +111,9 @@ impl<X: Shadowed> Scalar for Number<X> {
     fn is_finite(self) -> bool {
         self.value.is_finite()
     }
+    fn digest(self) -> u32 {
+        self.value.digest()
+    }
     fn times(self, rhs: Self) -> Product<X> {
         Product { value: self.value.times(rhs.value), exact: self.exact * rhs.exact }
     }
@@ -185,6 +188,9 @@ impl<X: Shadowed> Scalar for Number<X> {
     }
     fn slack(extent: Self) -> Self {
         Self::exact(X::S::slack(extent.value))
+    }
+    fn rounding(of: Self) -> Self {
+        Self::exact(X::S::rounding(of.value))
     }
     fn drift(arcs: usize, extent: Self) -> Self {
         Self::exact(X::S::drift(arcs, extent.value))
