@@ -113,7 +113,7 @@ fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
-        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:e}", S::LEAST.to_f64()),
+        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:?}", S::LEAST),
         reason => reason.to_string(),
     }
 }

@@ -62,7 +62,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
             return Ok(());
         }
         for &l in turning.as_slice() {
-            self.turn_back(pieces, begin, l);
+            self.turn_back(pieces, begin, l, by_laps);
         }
         Ok(())
     }
@@ -142,7 +142,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// The foot alone would not do: its error is not a few slacks but ϱ / |ϱ - R| times that beside the centre of an arc, and two
     /// turning points on either side of a gap may be one by rounding, whose foot is in the gap. The distance is right
     /// whatever the foot, and of all points of a range it is least at the foot or at an end.
-    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, l: S) {
+    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
+        &self,
+        pieces: &mut Pieces<S, P>,
+        begin: u32,
+        l: S,
+        by_laps: bool,
+    ) {
         let point = self.first.point_at(l);
         let footprint = Footprint::of(point, self.second);
         if footprint.offset.abs() > self.radius + self.slack {
@@ -153,16 +159,17 @@ impl<S: Scalar> SegmentPair<'_, S> {
         let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
-            let belongs = if !piece.second.contains(s) {
-                near(piece.second.lo) || near(piece.second.hi)
-            } else if piece.share == Share::Only {
-                true
-            } else {
+            let Interval { lo, hi } = piece.second;
+            let place = if piece.second.contains(s) { Some(s) } else { [lo, hi].into_iter().find(|&end| near(end)) };
+            let belongs = place.is_some_and(|s| {
+                if !by_laps {
+                    return true;
+                }
                 // With a slack more, what is but one interval by rounding is that of both pieces.
                 let footprint = Footprint::of(self.second.point_at(s), self.first);
                 let laps = footprint.reach(self.first, self.radius + self.slack).intervals(self.first);
                 piece.share.holds(l, laps, self.first, piece.first)
-            };
+            });
             if belongs {
                 piece.first = piece.first.hull(Interval::new(l, l));
             }
