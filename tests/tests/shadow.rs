@@ -82,7 +82,7 @@ impl<X: Shadowed<S = X> + Format> Placed<X> {
 
     fn wraps(&self, radius: f64) -> bool {
         let length = X::number(self.segment.length().value);
-        self.bend.is_some_and(|bend| bend.farthest(0.0) <= 1.001 * radius || length >= 3.14 * bend.farthest(0.0))
+        self.bend.is_some_and(|bend| bend.farthest(0.0) <= 1.001 * radius || length >= 0.999 * PI * bend.farthest(0.0))
     }
 }
 

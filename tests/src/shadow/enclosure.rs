@@ -56,7 +56,7 @@ impl Enclosure {
         let ([y, dy], [x, dx]) = (self.middle(), x.middle());
         // The angle changes by asin(moved / distance), π/2 times that at most.
         let part = (dy.hypot(dx) / y.hypot(x)).next_up();
-        if !(part < 1.0) {
+        if part.is_nan() || part >= 1.0 {
             return Self::around(near, PI);
         }
         let angle = y.atan2(x);
