@@ -114,7 +114,7 @@ fn what_is_refused() {
     assert_eq!(message, "pcr: --closest is for --format json and table\n");
     assert!(check(&json!({ "agents": 3 }), &[]).failed(2).contains("agents"));
     let help = run(&["check", "--help"]).ok();
-    assert!(help.contains("pcr check - --format json < plans.jsonl") && help.contains("  1  conflicts\n"), "{help}");
+    assert!(help.contains("pcr check - --format json < plans.jsonl") && help.contains("  1  conflicts;"), "{help}");
     let empty = check(&json!({ "agents": [] }), &["--format", "json", "--closest"]);
     let empty = empty.json();
     // A file without a name in it answers by its own.

@@ -2,6 +2,8 @@
 
 mod check;
 mod compare;
+#[cfg(unix)]
+mod console;
 mod evaluate;
 mod files;
 mod fixture;

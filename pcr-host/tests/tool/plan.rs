@@ -36,7 +36,7 @@ fn the_papers_agents_are_resolved_and_the_plan_is_free() {
     let output = directory("plan").join("paper12-plan.json").to_str().unwrap().to_owned();
     let table = run(&["plan", PAPER, "-o", &output]).ok();
     assert!(table.starts_with("paper12: a plan without conflicts, by start delays"), "{table}");
-    assert!(table.lines().count() == 15 && table.contains("makespan"), "{table}");
+    assert!(table.lines().count() == 16 && table.contains("makespan") && table.contains("proved"), "{table}");
     let check = run(&["check", &output]).ok();
     assert_eq!(check, "paper12: no conflicts\n");
     let csv = run(&["plan", PAPER, "--format", "csv"]).ok();
