@@ -93,7 +93,7 @@ fn arithmetic<S: Scalar>() {
     any(Sector::<S::Unit>::all(from));
     any((Scalar::portion(a, b, number()), S::tolerance(a)));
     any((Scalar::sum(a, b), Scalar::advance(a, b, number(), unit::<S>()), Scalar::sum_up(a, b)));
-    any((S::drift(any(0), a), S::lag(a, b)));
+    any((S::drift(any(0), a), S::lag(a, b), Scalar::rounding(a)));
     any(S::chord(a, angle::<S>(), any(false), [unit::<S>(), unit::<S>()]));
     let (v, w) = (wide::<S>(), wide::<S>());
     any((v + w, v - w, -v, v < w, Wide::sqrt(v), Wide::narrow(v), Wide::half(v), Wide::double(v)));
@@ -192,7 +192,7 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any(Motion::with_profile(*motion, profile, number()).is_ok());
         any((Motion::with_lateness(*motion, number()).is_ok(), Motion::lateness(motion)));
         any(Profile::<S, 4>::stretched(profile, number()).is_ok());
-        any((Motion::time_excess(motion), excess(motion, motion)));
+        any((Motion::time_excess(motion), Motion::lag(motion), excess(motion, motion)));
         any((Motion::radius(motion), Motion::time(motion), Motion::bounds(motion), Motion::extent(motion)));
         any((Motion::length_at(motion, number()), Motion::speed_at(motion, number())));
         any((Motion::position_at(motion, number()), Motion::time_in(motion, interval())));
