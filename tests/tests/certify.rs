@@ -66,6 +66,23 @@ fn tables_of_random_pairs_are_proved_in_q12() {
     holds::<Q12>(0.5);
 }
 
+fn is_proved_of<S: Format>(seeds: &[u64]) {
+    for &seed in seeds {
+        let proofs = run::<S>(seed, 1);
+        assert_eq!(proofs.proved, 1, "{} of {}: {proofs:?}", seed, S::NAME);
+    }
+}
+
+/// A disc as large as the circle but for rounding, arcs of half a turn, and paths of hundreds of segments.
+#[test]
+fn tables_that_were_not_proved_once_are() {
+    is_proved_of::<f64>(&[6, 1362]);
+    is_proved_of::<f32>(&[6, 16, 53, 68, 188, 6825, 12872, 25920]);
+    is_proved_of::<Q20>(&[6, 16, 53, 68, 188, 4698, 59166]);
+    is_proved_of::<Q16>(&[35497, 65178, 86630]);
+    is_proved_of::<Q12>(&[3285, 13525, 27854, 52685, 66637, 89197]);
+}
+
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
 }

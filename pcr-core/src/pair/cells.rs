@@ -51,9 +51,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
         add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);
         events.sort();
         let in_order = events.as_slice();
-        let by_laps = wraps(self.first, self.radius);
         let begin = pieces.last_pending();
-        if by_laps {
+        if wraps(self.first, self.radius) {
             self.find_laps(in_order, pieces)?;
         } else {
             self.find_one_lap(in_order, pieces)?;
@@ -62,7 +61,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
             return Ok(());
         }
         for &l in turning.as_slice() {
-            self.turn_back(pieces, begin, l, by_laps);
+            self.turn_back(pieces, begin, l);
         }
         Ok(())
     }
@@ -80,10 +79,11 @@ impl<S: Scalar> SegmentPair<'_, S> {
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
-        if Runs(any).rest() != 0 {
-            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece. Half a
-            // slack: the middle of a slab is nearer than the middle of the gap, and R + ε must not be passed there.
-            let near = self.slabs(in_order, self.radius + self.slack.half()).any;
+        let reach = self.reach();
+        if Runs(any).rest() != 0 && !wraps(self.first, reach) {
+            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece. About the
+            // centre of an arc as large as the disc it is where one end is left for the other: what lies between is far.
+            let near = self.slabs(in_order, reach).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
             for gap in Runs(between & !any) {
                 any |= if gap & !near == 0 { gap } else { 0 };
@@ -100,6 +100,11 @@ impl<S: Scalar> SegmentPair<'_, S> {
             pieces.push(Piece::new(self.indices, Lap::Same, Share::Only, first, second))?;
         }
         Ok(())
+    }
+
+    /// As far as rounding may take a contact: half a slack more, so that what is off by as much is still within R + ε.
+    fn reach(&self) -> S {
+        self.radius + self.slack.half()
     }
 
     /// What a disc of this radius covers in the middle of each slab.
@@ -142,19 +147,14 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// The foot alone would not do: its error is not a few slacks but ϱ / |ϱ - R| times that beside the centre of an arc, and two
     /// turning points on either side of a gap may be one by rounding, whose foot is in the gap. The distance is right
     /// whatever the foot, and of all points of a range it is least at the foot or at an end.
-    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
-        &self,
-        pieces: &mut Pieces<S, P>,
-        begin: u32,
-        l: S,
-        by_laps: bool,
-    ) {
+    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, l: S) {
         let point = self.first.point_at(l);
         let footprint = Footprint::of(point, self.second);
         if footprint.offset.abs() > self.radius + self.slack {
             return;
         }
-        let reach = self.radius + self.slack.half();
+        let reach = self.reach();
+        let by_laps = wraps(self.first, reach);
         let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
         let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
         let mut index = pieces.pending_after(begin);
@@ -165,10 +165,12 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 if !by_laps {
                     return true;
                 }
-                // With a slack more, what is but one interval by rounding is that of both pieces.
                 let footprint = Footprint::of(self.second.point_at(s), self.first);
-                let laps = footprint.reach(self.first, self.radius + self.slack).intervals(self.first);
-                piece.share.holds(l, laps, self.first, piece.first)
+                // What is but one interval by rounding is that of both pieces. Further out only what none holds before.
+                [reach, self.radius + self.slack].into_iter().all(|radius| {
+                    let laps = footprint.reach(self.first, radius).intervals(self.first);
+                    piece.share.holds(l, laps, self.first, piece.first)
+                })
             });
             if belongs {
                 piece.first = piece.first.hull(Interval::new(l, l));

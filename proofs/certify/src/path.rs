@@ -47,9 +47,10 @@ impl Stretch {
         }
     }
 
-    /// The parts of the segment between lengths along the path.
-    pub fn range(&self, lengths: [f64; 2]) -> [Twofold; 2] {
-        lengths.map(|length| self.along(length))
+    /// The part of the segment between lengths along the path. Both ends of a segment that is too short for them to differ are
+    /// the same number: then it is all of it.
+    pub fn range(&self, [lo, hi]: [f64; 2]) -> [Twofold; 2] {
+        [self.along(lo), if hi == self.to { self.placed.length } else { self.along(hi) }]
     }
 
     /// The length along the path at a length along the segment, rounded.
@@ -58,24 +59,23 @@ impl Stretch {
     }
 }
 
-/// Sine and cosine of an angle.
-fn sine_and_cosine(angle: Angle) -> [Number; 2] {
+/// An angle \[rad\].
+fn radians(angle: Angle) -> Number {
     match angle {
-        Angle::Radians(angle) => sines(Twofold::from(angle), 0.0),
+        Angle::Radians(angle) => Ball::from(angle),
         // The product is right within 2^-102 of itself, the constant within 2^-108.
-        Angle::Turns(turns) => {
-            let rest = turns - turns.round();
-            let angle = Twofold::TURN * rest;
-            sines(angle, 1e-30)
-        }
+        Angle::Turns(turns) => Ball { mid: Twofold::TURN * (turns - turns.round()), err: 1e-30 },
     }
 }
 
-/// Those of an angle that is off by so much: up to a thousand turns they are as right as those of smaller ones.
-fn sines(angle: Twofold, off: f64) -> [Number; 2] {
-    let (sin, cos) = angle.sin_cos();
-    let err = if angle.to_f64().abs() < 6000.0 { off + 8e-31 } else { f64::INFINITY };
-    [sin, cos].map(|mid| Ball { mid, err })
+/// The unit vector in a direction: up to a thousand turns it is as right as that of smaller angles.
+///
+/// Always from the sum of all angles: a vector that is turned again and again has a bound that grows by up to √2 each time.
+fn unit(heading: Number) -> Vector<Twofold> {
+    let (sin, cos) = heading.mid.sin_cos();
+    let err = if heading.to_f64().abs() < 6000.0 { heading.err + 8e-31 } else { f64::INFINITY };
+    let [y, x] = [sin, cos].map(|mid| Ball { mid, err });
+    Vector { x, y }
 }
 
 fn fits(value: f64, name: &str) -> Result<(), String> {
@@ -94,15 +94,15 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
     if heading.abs() > 6000.0 || heading.is_nan() {
         return Err(format!("heading {heading} is out of range"));
     }
-    let zero = Ball::from(0.0);
-    let mut direction = Vector { x: Ball::from(1.0), y: zero }.turned(sine_and_cosine(path.heading));
+    let mut heading = radians(path.heading);
     let mut at = Vector { x: Ball::from(x), y: Ball::from(y) };
     let mut before = Twofold::ZERO;
     let (mut stretches, mut sum) = (Vec::with_capacity(path.segments.len()), 0.0);
     for (place, segment) in path.segments.iter().enumerate() {
         let wrong = |problem: String| format!("segment {place}: {problem}");
         checked(segment, sum).map_err(wrong)?;
-        direction = segment.turns.iter().fold(direction, |direction, &by| direction.turned(sine_and_cosine(by)));
+        heading = segment.turns.iter().fold(heading, |heading, &by| heading + radians(by));
+        let direction = unit(heading);
         let carrier = match segment.radius {
             None => Carrier::Line { start: at, along: direction },
             Some(bend) => {
@@ -114,7 +114,10 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
         };
         let length = Twofold::from(segment.length);
         let placed = Placed::new(carrier, length);
-        (at, direction) = (carrier.point(Ball::from(segment.length)), carrier.direction(Ball::from(segment.length)));
+        at = carrier.point(Ball::from(segment.length));
+        if let Some(bend) = segment.radius {
+            heading = heading + Ball::from(segment.length) / Ball::from(bend);
+        }
         for (end, exact) in [(segment.from, before), (segment.to, before + length)] {
             let off = (Twofold::from(end) - exact).abs().to_f64();
             if off > path.rounding {
@@ -141,4 +144,28 @@ fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
         return Err("it does not begin where the one before ends".into());
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arcs(count: u32, radius: f64, length: f64, sum: impl Fn(u32) -> f64) -> Vec<Stretch> {
+        let segment = |k| Segment { length, radius: Some(radius), turns: vec![], from: sum(k), to: sum(k + 1) };
+        let heading = Angle::Turns(0.1);
+        stretches(&Path { start: [0.0; 2], heading, segments: (0..count).map(segment).collect(), rounding: 1e-9 })
+            .unwrap()
+    }
+
+    #[test]
+    fn a_range_holds_all_of_a_segment_whose_ends_are_the_same_number() {
+        let tiny = &arcs(1, 1e-9, 1e-16, |_| 0.0)[0];
+        assert_eq!(tiny.range([0.0, 0.0]), [Twofold::ZERO, Twofold::from(1e-16)]);
+    }
+
+    #[test]
+    fn bounds_stay_small_on_paths_of_a_thousand_arcs() {
+        let Carrier::Circle { centre, .. } = arcs(1000, 1.5, 1.0, f64::from)[999].placed.exact else { panic!() };
+        assert!(centre.x.err.max(centre.y.err) < 1e-22, "{centre:?}");
+    }
 }
