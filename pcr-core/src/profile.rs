@@ -72,10 +72,8 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            // The last digits of accelerations count for the whole time so far, those of times with the acceleration.
-            let (slows, time) = (acceleration.abs(), self.time.hi + duration);
-            let last = S::rounding(slows).times(time).narrow().max(slows.times(S::rounding(time)).narrow());
-            if after < -(S::rounding(before) + last) {
+            // The last digit of the acceleration counts for the whole duration.
+            if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;

@@ -239,5 +239,9 @@ fn itself<S: Format>(motion: &Motion<'_, S>, interval: Interval<S>) {
         assert!(pair.blocked_lengths(during).next().is_some());
     }
     let at = motion.path().length();
-    assert!(pair.blocked(Interval::new(at, at), Interval::new(motion.time().hi, S::LIMIT)).next().is_some());
+    assert!(
+        pair.blocked(Interval::new(at, at), Interval::new(motion.time().hi, motion.time().hi.max(S::LIMIT)))
+            .next()
+            .is_some()
+    );
 }

@@ -38,7 +38,7 @@ use crate::scalar::Scalar;
 /// let conflict = encounter.conflicts(encounter.time()).next().unwrap();
 /// // They are √((t - 2)² + (t - 2.5)²) apart, hence never nearer than 1 / √8.
 /// assert!((conflict.deepest.time - 2.25).abs() < 1e-9 && (conflict.deepest.separation - 0.125_f64.sqrt()).abs() < 1e-9);
-/// assert!((conflict.time.lo - 2.0).abs() < 1e-9 && (conflict.time.hi - 2.5).abs() < 1e-9);
+/// assert!((conflict.time.lo - 2.0).abs() < 1e-8 && (conflict.time.hi - 2.5).abs() < 1e-8);
 /// assert!(!conflict.touching);
 /// let later = north.delayed(0.5)?;
 /// assert_eq!(Encounter::new(&east, &later).contacts(Interval::new(0.0, 9.0)).next(), None);

@@ -180,7 +180,10 @@ mod tests {
     #[test]
     fn faults_are_in_the_line_where_they_are() {
         let lines = read("{\"agents\": [],\n \"units\": 5 }\n{\"agents\": 1}");
-        assert_eq!(lines[0].1, Err("line 2: units: unknown key; known are format, version, name, agents, warnings".to_owned()));
+        assert_eq!(
+            lines[0].1,
+            Err("line 2: units: unknown key; known are format, version, name, agents, warnings".to_owned())
+        );
         assert_eq!(lines[1], (3, Err("line 3: agents: 1 where an array is expected".to_owned())));
     }
 
