@@ -143,7 +143,7 @@ no_std() {
   for crate in pcr-core pcr-fixed; do
     step "no_std: $crate with the features of its documentation"
     features=$(python3 -c 'import sys, tomllib
-print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["docs.rs"]["features"]))' "$crate/Cargo.toml")
+print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["docs"]["rs"]["features"]))' "$crate/Cargo.toml")
     firmware/cross.sh thumbv7em-none-eabihf check --locked -p "$crate" --features "$features"
   done
 }
