@@ -129,6 +129,21 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         entries.filter_map(move |region| self.view(fleet, region, ego))
     }
 
+    /// The agents of the region in a place of the table.
+    pub(crate) fn agents_at(&self, place: usize) -> Option<[usize; 2]> {
+        self.entries().get(place).map(|region| region.agents())
+    }
+
+    /// The region in a place of the table, as one of its agents sees it.
+    pub(crate) fn at<'a>(
+        &'a self,
+        fleet: &'a [Motion<'a, S>],
+        place: usize,
+        ego: usize,
+    ) -> Option<RegionRef<'a, S>> {
+        self.view(fleet, self.entries().get(place)?, ego)
+    }
+
     fn view<'a>(&'a self, fleet: &'a [Motion<'a, S>], region: &Region, ego: usize) -> Option<RegionRef<'a, S>> {
         let agents = region.agents();
         let pair = Pair::new(fleet.get(agents[0])?, fleet.get(agents[1])?);

@@ -29,6 +29,7 @@ mod locks;
 mod locks_footprints;
 mod micro;
 mod motions;
+mod orders_hold;
 mod outward;
 mod paper_equations;
 mod paper_errata_arc;

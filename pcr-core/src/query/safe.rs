@@ -145,7 +145,7 @@ fn encounters<'a, S: Scalar>(fleet: &'a [Motion<'a, S>], ego: usize) -> impl Ite
 }
 
 /// The part of a segment between these lengths of its path, if there is any.
-fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
+pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
     let own = Interval::new(segment.from, segment.from + segment.length);
     if !own.meets(part) {
         return None;
@@ -166,7 +166,12 @@ fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>>
 
 /// The lengths of the second segment from which some of the first one is within the radius, distances right within
 /// `slack`.
-fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
+pub(crate) fn covered<S: Scalar>(
+    first: &Segment<S>,
+    second: &Segment<S>,
+    radius: S,
+    slack: S,
+) -> [Option<Interval<S>>; PARTS] {
     let mut events = Lengths::new(S::ZERO);
     add_events(first, second, radius, slack, &mut events);
     events.sort();
