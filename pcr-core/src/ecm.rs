@@ -135,12 +135,7 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     }
 
     /// The region in a place of the table, as one of its agents sees it.
-    pub(crate) fn at<'a>(
-        &'a self,
-        fleet: &'a [Motion<'a, S>],
-        place: usize,
-        ego: usize,
-    ) -> Option<RegionRef<'a, S>> {
+    pub(crate) fn at<'a>(&'a self, fleet: &'a [Motion<'a, S>], place: usize, ego: usize) -> Option<RegionRef<'a, S>> {
         self.view(fleet, self.entries().get(place)?, ego)
     }
 

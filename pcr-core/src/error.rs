@@ -59,6 +59,10 @@ pub enum Full {
     Agents,
     /// Each agent of a [`BroadPhase`](crate::BroadPhase) needs two boxes at least.
     Boxes,
+    /// Each region of [`Orders`](crate::Orders) needs an order; an agent that is admitted needs as many more as it has regions.
+    Orders,
+    /// Each agent of a check of [`Orders`](crate::Orders) needs a [`Reach`](crate::Reach).
+    Reaches,
 }
 
 impl fmt::Display for Full {
@@ -69,6 +73,8 @@ impl fmt::Display for Full {
             Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 32767 pieces"),
             Self::Agents => f.write_str("the fleet has more than 65535 agents"),
             Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
+            Self::Orders => f.write_str("there is no room for another order"),
+            Self::Reaches => f.write_str("there is room to check the orders of fewer agents"),
         }
     }
 }

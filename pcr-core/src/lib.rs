@@ -61,7 +61,7 @@ pub use error::{Full, Invalid};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
-pub use orders::Hold;
+pub use orders::{Brakes, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
 pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};

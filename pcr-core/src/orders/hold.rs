@@ -41,6 +41,15 @@ impl<S: Scalar> Hold<S> {
         }
     }
 
+    /// Whether the agent may go beyond this length of its path \[m\].
+    pub(super) fn allows_beyond(self, length: S) -> bool {
+        match self {
+            Self::Free => true,
+            Self::At(hold) => length < hold,
+            Self::Inside => false,
+        }
+    }
+
     /// The hold as a length of a path that ends at `end` \[m\]: nothing inside.
     pub fn length(self, end: S) -> Option<S> {
         match self {
@@ -94,7 +103,8 @@ impl<S: Scalar> RegionRef<'_, S> {
         let mut hold = Hold::Free;
         for piece in self.pieces() {
             // It holds no less than its least length.
-            let counts = piece.other_length.hi >= other_from && piece.length.hi >= from && hold_above(hold, &piece);
+            let counts =
+                piece.other_length.hi >= other_from && piece.length.hi >= from && hold.allows_beyond(piece.length.lo);
             if counts {
                 hold = hold.min(self.hold_of(&piece, from, other_from));
             }
@@ -116,15 +126,6 @@ impl<S: Scalar> RegionRef<'_, S> {
         let parts = parts.map(|part| Interval::new(part.lo + piece.ego.from, part.hi + piece.ego.from));
         let parts = parts.filter(|part| part.meets(piece.length)).map(|part| part.widen(slack, piece.length));
         parts.filter(|part| part.hi >= from).fold(Hold::Free, |hold, part| hold.min(at(part.lo, from)))
-    }
-}
-
-/// Whether a piece can make the hold any lower.
-fn hold_above<S: Scalar>(hold: Hold<S>, piece: &PieceRef<'_, S>) -> bool {
-    match hold {
-        Hold::Free => true,
-        Hold::At(hold) => piece.length.lo < hold,
-        Hold::Inside => false,
     }
 }
 

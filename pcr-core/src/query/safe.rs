@@ -218,7 +218,7 @@ fn kept_from<S: Scalar>(
 }
 
 /// The times of an interval at which an agent is on these lengths of its path, standing included.
-pub(super) fn times<S: Scalar>(
+pub(crate) fn times<S: Scalar>(
     motion: &Motion<'_, S>,
     lengths: Interval<S>,
     during: Interval<S>,
