@@ -5,6 +5,7 @@ pub mod audit;
 pub mod constants;
 pub mod disc;
 pub mod exact;
+pub mod execution;
 pub mod generators;
 pub mod oracle;
 pub mod outward;

@@ -30,6 +30,7 @@ mod locks_footprints;
 mod micro;
 mod motions;
 mod orders_hold;
+mod orders_run;
 mod outward;
 mod paper_equations;
 mod paper_errata_arc;

@@ -146,14 +146,16 @@ fn encounters<'a, S: Scalar>(fleet: &'a [Motion<'a, S>], ego: usize) -> impl Ite
 
 /// The part of a segment between these lengths of its path, if there is any.
 pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
-    let own = Interval::new(segment.from, segment.from + segment.length);
+    // Not from + length: lengths of a path are rounded once, so that its end may lie beyond that.
+    let own = Interval::new(segment.from, segment.to);
     if !own.meets(part) {
         return None;
     }
     if part.lo <= own.lo && own.hi <= part.hi {
         return Some(*segment);
     }
-    let (from, to) = (part.lo.max(own.lo) - own.lo, part.hi.min(own.hi) - own.lo);
+    let to = if part.hi < own.hi { (part.hi - own.lo).min(segment.length) } else { segment.length };
+    let from = (part.lo.max(own.lo) - own.lo).min(to);
     let pose = Pose { position: segment.point_at(from), heading: segment.heading_at(from) };
     let length = to - from;
     let cut = Segment::standing(pose).and_then(|start| match segment.curve {
