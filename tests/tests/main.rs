@@ -29,6 +29,7 @@ mod locks;
 mod locks_footprints;
 mod micro;
 mod motions;
+mod orders_check;
 mod orders_hold;
 mod orders_run;
 mod outward;

@@ -29,6 +29,15 @@ pub enum Refused {
         /// The place of their region in the table.
         place: usize,
     },
+    /// An agent is where it should have waited for another one: the order cannot be kept any more.
+    Late {
+        /// Who is there.
+        agent: usize,
+        /// Who was to go first.
+        by: usize,
+        /// The place of their region in the table.
+        place: usize,
+    },
     /// Neither agent can be second at a region any more, or none would ever leave it: one cannot stop before it, is in
     /// it, or ends in it.
     Blocked {
@@ -49,6 +58,7 @@ impl core::fmt::Display for Refused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Stuck { agent, by, .. } => write!(f, "agent {agent} would wait for agent {by} for ever"),
+            Self::Late { agent, by, .. } => write!(f, "agent {agent} is where agent {by} was to go first"),
             Self::Blocked { agent, by } => write!(f, "agent {by} is in the way of agent {agent}, whoever goes first"),
             Self::Meeting([a, b]) => write!(f, "agents {a} and {b} meet"),
             Self::NoSuchAgent(agent) => write!(f, "there is no agent {agent} in the fleet"),
@@ -124,7 +134,8 @@ where
     /// whose first agent has gained ([`RegionRef::hold`](crate::RegionRef::hold)).
     ///
     /// # Errors
-    /// [`Refused::Stuck`] names one agent that would wait for ever; [`Full::Reaches`] for too few places.
+    /// [`Refused::Stuck`] names one agent that would wait for ever, [`Refused::Late`] one that is beyond its hold, by more
+    /// than the least gain; [`Full::Reaches`] for too few places.
     pub fn check(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -138,7 +149,7 @@ where
             let at = progress.get(agent).copied().unwrap_or_default().at.lo.clamp(S::ZERO, end);
             *reach = Reach { at, next: end, end, moved: true };
         }
-        while self.sweep(fleet, progress, tolerances.width, reaches) {
+        while self.sweep(fleet, progress, tolerances, reaches)? {
             let mut gained = false;
             for reach in reaches.iter_mut() {
                 let gain = reach.next - reach.at;
@@ -158,7 +169,13 @@ where
 
     /// Brings the holds up to date whose first agents have gained, and takes everybody's `next` down to them. Returns
     /// whether there is anybody left who is not at its end.
-    fn sweep(&mut self, fleet: &[Motion<'_, S>], progress: &[Progress<S>], width: S, reaches: &mut [Reach<S>]) -> bool {
+    fn sweep(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        progress: &[Progress<S>],
+        tolerances: Tolerances<S>,
+        reaches: &mut [Reach<S>],
+    ) -> Result<bool, Refused> {
         for (place, order) in (0..self.ecm.len()).zip(self.orders.as_mut()) {
             let Some(agents) = self.ecm.agents_at(place) else { continue };
             let (first, second) = match order.pass {
@@ -169,7 +186,9 @@ where
                     // Nobody passes it.
                     for agent in agents {
                         let hold = self.ecm.at(fleet, place, agent).map(|region| region.hold(S::ZERO, S::ZERO));
-                        limit(reaches.get_mut(agent), hold.unwrap_or(Hold::Inside));
+                        if let Some(reach) = reaches.get_mut(agent) {
+                            reach.next = reach.next.min(length(hold.unwrap_or(Hold::Inside)));
+                        }
                     }
                     continue;
                 }
@@ -177,18 +196,17 @@ where
             let Some(reach) = reaches.get(first).copied() else { continue };
             if reach.moved {
                 let known = progress.get(first).copied().unwrap_or_default().at.lo;
-                let left = (reach.at - width).max(known);
+                let left = (reach.at - tolerances.width).max(known);
                 let region = if left > order.exit { None } else { self.ecm.at(fleet, place, second) };
-                let hold = region.map_or(Hold::Free, |region| region.hold(order.since, left));
-                order.hold = match hold {
-                    Hold::Free => S::LIMIT,
-                    Hold::At(hold) => hold,
-                    Hold::Inside => -S::LIMIT,
-                };
+                order.hold = length(region.map_or(Hold::Free, |region| region.hold(order.since, left)));
             }
-            limit(reaches.get_mut(second), Hold::At(order.hold));
+            let Some(reach) = reaches.get_mut(second) else { continue };
+            if reach.at > order.hold + tolerances.gain {
+                return Err(Refused::Late { agent: second, by: first, place });
+            }
+            reach.next = reach.next.min(order.hold);
         }
-        reaches.iter().any(Reach::is_stuck)
+        Ok(reaches.iter().any(Reach::is_stuck))
     }
 
     /// Who keeps an agent from going on.
@@ -210,8 +228,11 @@ where
     }
 }
 
-fn limit<S: Scalar>(reach: Option<&mut Reach<S>>, hold: Hold<S>) {
-    if let Some(reach) = reach {
-        reach.next = reach.next.min(hold.length(reach.end).unwrap_or(-S::LIMIT));
+/// A hold as a length beyond all paths or before them.
+fn length<S: Scalar>(hold: Hold<S>) -> S {
+    match hold {
+        Hold::Free => S::LIMIT,
+        Hold::At(hold) => hold,
+        Hold::Inside => -S::LIMIT,
     }
 }
