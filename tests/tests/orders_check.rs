@@ -30,11 +30,11 @@ fn monotone_way(pair: &Pair, ends: [f64; 2], clearance: f64) -> bool {
     // Of the row before this one; before the first one there is the start alone.
     let mut reached = vec![false; STEPS + 1];
     reached[0] = true;
-    for k in 0..=STEPS {
+    for (k, at) in own.iter().enumerate() {
         let (mut left, mut diagonal) = (false, false);
-        for (j, place) in reached.iter_mut().enumerate() {
+        for (place, other) in reached.iter_mut().zip(&their) {
             let below = *place;
-            let free = (own[k].0 - their[j].0).hypot(own[k].1 - their[j].1) - pair.radius >= clearance;
+            let free = (at.0 - other.0).hypot(at.1 - other.1) - pair.radius >= clearance;
             *place = free && (below || left || diagonal);
             (left, diagonal) = (*place, below && k > 0);
         }
@@ -47,7 +47,7 @@ fn orders_can_be_kept_if_and_only_if_there_is_a_way() {
     let (mut possible, mut impossible, mut chosen) = (0, 0, 0);
     for seed in 0..if cfg!(optimized) { 4000 } else { 300 } {
         let (a, b) = pair(&mut Dice::seeded(seed));
-        let courses = [&a, &b].map(|disc| Course::<f64>::new(disc));
+        let courses = [&a, &b].map(Course::<f64>::new);
         let [Ok(first), Ok(second)] = &courses else { continue };
         let motions = [first.motion(), second.motion()];
         let mut orders = table(&motions);
@@ -119,7 +119,96 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
             Err(Refused::Stuck { agent, by, place }) => {
                 stuck += 1;
                 assert!(unfinished.contains(&agent), "seed {seed}: {agent} is not stuck");
-                match all_wait {
+                let row = orders.row(&motions, agent).find(|(at, ..)| *at == place);
+                assert_eq!(
+                    row.map(|(_, region, pass)| (region.other(), pass)),
+                    Some((by, Pass::Second)),
+                    "seed {seed}"
+                );
+                let again = orders.check(&motions, &progress, EXACT, &mut reaches);
+                assert!(again.is_err(), "seed {seed}: stuck and yet not");
+            }
+            // Such that overlap at their starts.
+            Err(Refused::Late { .. }) => {}
+            Err(refused) => panic!("seed {seed}: {refused}"),
+        }
+    }
+    assert!(finished > 100 && stuck > 15, "{finished} {stuck}");
+}
+
+#[test]
+fn the_orders_of_a_plan_are_kept_by_the_plan() {
+    let mut planned = 0;
+    for seed in 0..if cfg!(optimized) { 2000 } else { 200 } {
+        let discs = fleet(&mut Dice::seeded(seed));
+        // Planned with discs that are a little larger than those that the orders are about.
+        let course = |growth: f64| {
+            let driven = discs
+                .iter()
+                .filter_map(move |(disc, drive, start)| Course::<f64>::driven(&disc.grown(growth), drive, *start).ok());
+            driven.collect::<Vec<_>>()
+        };
+        let (courses, small) = (course(1e-6), course(0.0));
+        let motions: Vec<_> = courses.iter().map(Course::motion).collect();
+        let ecm = build_ecm(&motions).expect("a small table");
+        let (mut plan, mut order) = (motions.clone(), (0..motions.len()).collect::<Vec<_>>());
+        if plan_delays(&ecm, &motions, &mut plan, &mut order).is_err() || ecm.is_empty() {
+            continue;
+        }
+        let timed: Vec<_> = small
+            .iter()
+            .zip(&plan)
+            .map(|(course, plan)| course.motion().with_profile(plan.profile(), plan.time().lo).expect("the same path"))
+            .collect();
+        let mut orders = table(&timed);
+        orders.as_planned(&timed).unwrap_or_else(|refused| panic!("seed {seed}: {refused}"));
+        let mut reaches = vec![Reach::EMPTY; timed.len()];
+        let start = vec![Progress::at_rest(0.0); timed.len()];
+        assert_eq!(orders.check(&timed, &start, EXACT, &mut reaches), Ok(()), "seed {seed}");
+        let [begin, end] = [f64::min, f64::max]
+            .map(|of| timed.iter().flat_map(|motion| [motion.time().lo, motion.time().hi]).fold(f64::NAN, of));
+        for k in 0..=60 {
+            let time = begin + (end - begin) * f64::from(k) / 60.0;
+            let progress: Vec<_> = timed.iter().map(|motion| Progress::at_rest(motion.length_at(time))).collect();
+            for (agent, place) in progress.iter().enumerate() {
+                let hold = orders.hold(&timed, agent, &progress);
+                assert!(hold.allows(place.at.lo), "seed {seed}: {agent} at {place:?}, {time} s, {hold:?}");
+            }
+        }
+        planned += 1;
+    }
+    assert!(planned > 40, "{planned}");
+}
+
+fn course(start: [f64; 3], legs: &[Leg]) -> Course<f64> {
+    let disc = Disc { radius: 0.3, start, legs: legs.to_vec() };
+    Course::driven(&disc, &Drive::Unit, 0.0).expect("a valid disc")
+}
+
+#[test]
+fn all_that_wait_for_the_next_one_around_a_square_are_stuck_and_one_that_goes_first_frees_them() {
+    // Four one-way streets around a block, each crossing the next one.
+    let lane = |k: u32| {
+        let heading = FRAC_PI_2 * f64::from(k);
+        let (sin, cos) = heading.sin_cos();
+        course([cos * -3.0 + sin, sin * -3.0 - cos, heading], &[Leg::Line(6.0)])
+    };
+    let lanes = [0, 1, 2, 3].map(lane);
+    let motions = lanes.each_ref().map(Course::motion);
+    let mut orders = table(&motions);
+    assert_eq!(orders.ecm().len(), 4);
+    let progress = [Progress::at_rest(0.0); 4];
+    let mut reaches = [Reach::EMPTY; 4];
+    let undecided = orders.check(&motions, &progress, EXACT, &mut reaches);
+    assert!(matches!(undecided, Err(Refused::Stuck { .. })), "{undecided:?}");
+    // Everybody is held before where it could meet anybody.
+    assert!(matches!(orders.hold(&motions, 0, &progress), Hold::At(hold) if (hold - 1.4).abs() < 1e-9));
+    // On each lane the first crossing is with the one before it, who has come that far already.
+    for k in 0..4 {
+        orders.decide(&motions, (k + 3) % 4, k, Pass::Second, 0.0);
+    }
+    let all_wait = orders.check(&motions, &progress, EXACT, &mut reaches);
+    match all_wait {
         Err(Refused::Stuck { agent, by, .. }) => assert_eq!(by, (agent + 3) % 4),
         other => panic!("{other:?}"),
     }
