@@ -50,7 +50,7 @@ mod warnings;
 mod xml;
 
 pub use layout::{Edge, Id, Layout, Node, Placed};
-pub(crate) use route::{Step, ride, turn};
+pub(crate) use route::{Step, cheapest, ride, turn};
 pub use trace::{KINK, TURN};
 pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;

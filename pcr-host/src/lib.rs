@@ -30,6 +30,7 @@ pub mod footprint;
 pub mod import;
 pub mod input;
 mod json;
+pub mod lifelong;
 pub mod locks;
 pub mod paper;
 pub mod picture;

@@ -108,7 +108,19 @@ where
     ///
     /// Cost: O(regions) to find the row, and that of [`RegionRef::hold`] for each region of it that may be the nearest.
     pub fn hold(&self, fleet: &[Motion<'_, S>], agent: usize, progress: &[Progress<S>]) -> Hold<S> {
-        let mut hold = Hold::Free;
+        self.hold_before(fleet, agent, progress, Hold::Free)
+    }
+
+    /// The hold, or this other one if that leaves less way: regions that begin beyond it are not looked at. An agent that needs
+    /// to know no more than whether it may go on for a while asks so.
+    pub fn hold_before(
+        &self,
+        fleet: &[Motion<'_, S>],
+        agent: usize,
+        progress: &[Progress<S>],
+        other: Hold<S>,
+    ) -> Hold<S> {
+        let mut hold = other;
         for (place, agents, order) in self.places(agent) {
             let other = if agents[0] == agent { agents[1] } else { agents[0] };
             let first = progress.get(other).copied().unwrap_or_default().at.lo;

@@ -283,6 +283,7 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
             .is_ok());
     }
     let hold: Hold<S> = Orders::hold(&orders, fleet, agent, progress);
+    any(Orders::hold_before(&orders, fleet, agent, progress, any(hold)));
     any((Hold::allows(hold, number()), Hold::min(hold, any(hold)), Hold::length(hold, number())));
     any((Orders::row(&orders, fleet, agent).last().is_some(), Orders::ecm(&orders).len()));
     any(Orders::passed(&mut orders, progress));
