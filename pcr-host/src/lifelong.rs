@@ -13,7 +13,7 @@ mod way;
 
 use crate::import::Imported;
 use crate::random::Random;
-use dispatch::dispatch;
+use dispatch::{Scene, dispatch, make_way};
 use network::Network;
 use pcr_core::{Hold, Motion, Order, Orders, Piece, Refused, Region, Tolerances};
 use robot::{Abilities, Robot, STEP};
@@ -29,6 +29,9 @@ const TOLERANCES: Tolerances<f64> = Tolerances { width: 0.01, gain: 1e-3 };
 
 /// Between two tries for the same mission \[s\].
 const AGAIN: f64 = 2.0;
+
+/// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
+const PATIENCE: f64 = 8.0;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +71,9 @@ pub struct Outcome {
     pub waiting: f64,
     /// Tries that were refused.
     pub refused: usize,
-    /// Of these, because a table was full.
+    /// Robots that were asked to go elsewhere, as they stood in the way.
+    pub moved: usize,
+    /// Tries that were refused because a table was full.
     pub full: usize,
     /// Robots that have not come to the end of their way long after the last mission.
     pub stuck: usize,
@@ -118,7 +123,9 @@ pub fn run(imported: &Imported, request: Request) -> Result<(Outcome, Vec<Durati
             waiting.sort_by(|a, b| a.2.total_cmp(&b.2));
             if let Some(&(agent, goal, since)) = waiting.first() {
                 let begin = Instant::now();
-                let found = dispatch(&network, &robots, &orders, agent, goal, &abilities, radius);
+                let scene =
+                    Scene { network: &network, robots: &robots, orders: &orders, abilities: &abilities, radius };
+                let found = dispatch(scene, agent, goal);
                 decisions.push(begin.elapsed());
                 match found {
                     Ok(admitted) => {
@@ -131,6 +138,17 @@ pub fn run(imported: &Imported, request: Request) -> Result<(Outcome, Vec<Durati
                         outcome.refused += 1;
                         outcome.full += usize::from(matches!(reason, Some(Refused::Full(_))));
                         next_try[agent] = time + AGAIN;
+                        let by = match reason {
+                            Some(Refused::Blocked { by, .. } | Refused::Stuck { by, .. }) => by,
+                            _ => agent,
+                        };
+                        let asked = by != agent && time - since > PATIENCE && robots[by].has_arrived();
+                        let scene = Scene { robots: &robots, ..scene };
+                        if let Some(admitted) = asked.then(|| make_way(scene, by, agent, goal)).flatten() {
+                            orders = admitted.orders;
+                            robots[by].take(admitted.way, admitted.before);
+                            outcome.moved += 1;
+                        }
                     }
                 }
             }

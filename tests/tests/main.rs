@@ -24,6 +24,7 @@ mod import_opentcs;
 mod import_rmf;
 mod import_vda5050;
 mod laws;
+mod lifelong;
 mod loads;
 mod locks;
 mod locks_footprints;
