@@ -13,6 +13,7 @@ const STRAIGHT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(super) struct Way<'a> {
     segments: Vec<Segment<f64>>,
+    length: f64,
     /// At 1 m/s: lengths are times.
     phases: Vec<Phase<f64>>,
     radius: f64,
@@ -62,9 +63,11 @@ impl<'a> Way<'a> {
             }
             after.push(length);
         }
-        let (segments, phases) = path(shapes, network.at(from), length)?;
+        let segments = path(shapes, network.at(from))?;
+        let length = PathRef::new(&segments)?.length();
+        let phases = if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() };
         let goal = goal.map(|goal| goal.checked_sub(1).map_or(0.0, |last| after[last]));
-        let way = Self { segments, phases, radius, from, steps, after, corners, goal };
+        let way = Self { segments, length, phases, radius, from, steps, after, corners, goal };
         way.try_motion().map(|_| ())?;
         Ok(way)
     }
@@ -79,7 +82,7 @@ impl<'a> Way<'a> {
     }
 
     pub(super) fn length(&self) -> f64 {
-        self.segments.last().map_or(0.0, |last| last.from() + last.length())
+        self.length
     }
 
     /// Where the robot is after so much \[m\].
@@ -110,8 +113,8 @@ fn wrapped(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// The segments, with turns in place where the shapes meet at an angle, and the motion at 1 m/s.
-fn path(shapes: Vec<Placed>, at: [f64; 2], length: f64) -> Result<(Vec<Segment<f64>>, Vec<Phase<f64>>), Invalid> {
+/// The segments, with turns in place where the shapes meet at an angle.
+fn path(shapes: Vec<Placed>, at: [f64; 2]) -> Result<Vec<Segment<f64>>, Invalid> {
     let heading = shapes.first().map_or(0.0, |first| first.heading);
     let start = shapes.first().map_or(at, |first| first.at);
     let mut last = Segment::standing(Pose { position: Point::new(start[0], start[1]), heading: Radians(heading) })?;
@@ -137,7 +140,5 @@ fn path(shapes: Vec<Placed>, at: [f64; 2], length: f64) -> Result<(Vec<Segment<f
     if segments.is_empty() {
         segments.push(last);
     }
-    let length = PathRef::new(&segments)?.length().max(if length > 0.0 { 0.0 } else { length });
-    let phases = if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() };
-    Ok((segments, phases))
+    Ok(segments)
 }
