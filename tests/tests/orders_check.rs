@@ -205,7 +205,7 @@ fn all_that_wait_for_the_next_one_around_a_square_are_stuck_and_one_that_goes_fi
     assert!(matches!(orders.hold(&motions, 0, &progress), Hold::At(hold) if (hold - 1.4).abs() < 1e-9));
     // On each lane the first crossing is with the one before it, who has come that far already.
     for k in 0..4 {
-        orders.decide(&motions, (k + 3) % 4, k, Pass::Second, 0.0);
+        orders.decide(&motions, k, (k + 3) % 4, Pass::Second, 0.0);
     }
     let all_wait = orders.check(&motions, &progress, EXACT, &mut reaches);
     match all_wait {

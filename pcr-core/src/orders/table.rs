@@ -36,7 +36,7 @@ use crate::scalar::Scalar;
 /// // What robot 1 knows: its own row, and that robot 0 goes first.
 /// let mut orders = Orders::new([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 4]);
 /// orders.insert(&fleet, 1)?;
-/// orders.decide(&fleet, 0, 1, Pass::Second, 0.0);
+/// orders.decide(&fleet, 1, 0, Pass::Second, 0.0);
 /// let mut progress = [Progress::at_rest(0.0); 2];
 /// assert!(matches!(orders.hold(&fleet, 1, &progress), Hold::At(hold) if (hold - 1.5).abs() < 1e-9));
 /// progress[0] = Progress::at_rest(2.6);
@@ -179,7 +179,7 @@ where
 
     /// Decides about all regions that `ego` and `other` have and that are not decided yet: whether the ego passes them first or
     /// second. `since` is the least length at which the second of the two is now \[m\]: what is behind it is passed.
-    pub fn decide(&mut self, fleet: &[Motion<'_, S>], other: usize, ego: usize, pass: Pass, since: S) {
+    pub fn decide(&mut self, fleet: &[Motion<'_, S>], ego: usize, other: usize, pass: Pass, since: S) {
         for place in 0..self.ecm.len() {
             let undecided = self.order(place).pass == Pass::Undecided;
             let agents = self.ecm.agents_at(place);

@@ -272,7 +272,7 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     let mut orders = any(Orders::<S, _, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8], [Order::EMPTY; 8]));
     let (agent, other, place) = any((0, 0, 0));
     any(Orders::insert(&mut orders, fleet, agent).is_ok());
-    any(Orders::decide(&mut orders, fleet, other, agent, any(Pass::First), number()));
+    any(Orders::decide(&mut orders, fleet, agent, other, any(Pass::First), number()));
     any(Orders::decide_at(&mut orders, fleet, place, agent, any(Pass::swapped(Pass::Second)), number()));
     any(Orders::as_planned(&mut orders, fleet).is_ok());
     let tolerances = Tolerances { width: number(), gain: number() };
