@@ -251,3 +251,24 @@ fn brakes_are_enough() {
     }
     assert_eq!((brakes.speed(0.0), brakes.speed(-1.0), brakes.distance(0.0)), (0.0, 0.0, 0.0));
 }
+
+#[test]
+fn who_stands_at_the_end_of_its_path_is_not_past_it_by_the_rounding_of_its_place() {
+    let east = course([-3.0, 0.0, 0.0], &[Leg::Line(6.0)]);
+    let parks = course([0.0, -3.0, FRAC_PI_2], &[Leg::Line(3.0)]);
+    let mut fleet = [east.motion(), parks.motion()];
+    let end = fleet[1].path().length();
+    let mut progress = [Progress::at_rest(0.0), Progress::at_rest(end + 1e-12)];
+    let mut orders = table(&fleet);
+    orders.decide(&fleet, 0, 1, Pass::Second, 0.0);
+    let region = orders.row(&fleet, 0).next().expect("a region").1;
+    assert!(!region.hold(0.0, end + 1e-12).allows(3.0));
+    assert_eq!(region.clone().swapped().hold(end + 1e-12, 0.0), Hold::Inside);
+    orders.passed(&progress);
+    assert!(!orders.hold(&fleet, 0, &progress).allows(3.0), "it is driven into");
+    let mut reaches = [Reach::EMPTY; 2];
+    assert!(orders.check(&fleet, &progress, EXACT, &mut reaches).is_err());
+    let mission = pcr_core::Mission { agent: 0, motion: fleet[0], progress: progress[0] };
+    let refused = orders.admit(&mut fleet, &mut progress, mission, EXACT, &mut reaches, |_| Pass::First);
+    assert_eq!(refused, Err(Refused::Blocked { agent: 0, by: 1 }));
+}

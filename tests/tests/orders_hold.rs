@@ -137,7 +137,7 @@ fn what_holds_the_end_of_the_first_is_never_left_and_a_start_is_no_boundary() {
     let east = course([-5.0, 0.0, 0.0], &[Leg::Line(10.0)]);
     let parks = course([0.0, -5.0, FRAC_PI_2], &[Leg::Line(5.0)]);
     let found = &holds(&east, &parks, &[(0.0, 5.0), (0.0, 9.0)])[0];
-    assert!(close(found[0], 4.0) && found[1] == Hold::Free, "{found:?}");
+    assert!(close(found[0], 4.0) && close(found[1], 4.0), "nobody is beyond its end: {found:?}");
     let leaves = course([-4.5, 0.0, FRAC_PI_2], &[Leg::Line(5.0)]);
     let found = &holds(&east, &leaves, &[(0.0, 0.0), (0.0, 0.8), (0.0, 1.1)])[0];
     assert_eq!(found[..], [Hold::Inside, Hold::Inside, Hold::Free]);

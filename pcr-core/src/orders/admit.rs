@@ -185,7 +185,9 @@ where
             let Some(region) = self.ecm.at(fleet, place, agent) else { continue };
             let by = region.other();
             let [own, their] = [agent, by].map(|agent| progress.get(agent).copied().unwrap_or_default());
-            if own.is_beyond(region.length()) || their.is_beyond(region.other_length()) {
+            if own.is_beyond(region.length(), region.ego_motion())
+                || their.is_beyond(region.other_length(), region.other_motion())
+            {
                 *order = Order::new(&region, Pass::Over, S::ZERO);
                 continue;
             }
@@ -269,7 +271,8 @@ fn can_wait<S: Scalar>(region: &RegionRef<'_, S>, own: &Progress<S>, their: &Pro
     if !region.hold(own.at.lo, their.at.lo).allows(own.stop) {
         return false;
     }
-    let last = (region.other_motion().path().length() - width).max(their.at.lo);
+    let other_end = region.other_motion().path().length();
+    let last = (other_end - width).max(their.at.lo).min(other_end);
     let end = region.ego_motion().path().length();
     region.other_length().hi < last || region.hold(own.at.lo, last).allows(end)
 }

@@ -1,6 +1,7 @@
 //! Who passes a region first, and what is known of agents.
 
 use crate::geometry::Interval;
+use crate::motion::Motion;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
@@ -55,9 +56,9 @@ impl<S: Scalar> Progress<S> {
         Self { at: Interval::new(length, length), stop: length }
     }
 
-    /// Whether it has left a region of these lengths behind for sure.
-    pub(super) fn is_beyond(&self, lengths: Interval<S>) -> bool {
-        self.at.lo > lengths.hi
+    /// Whether it has left a region of these lengths of its path behind for sure.
+    pub(super) fn is_beyond(&self, lengths: Interval<S>, motion: &Motion<'_, S>) -> bool {
+        self.at.lo > exit(lengths, motion)
     }
 }
 
@@ -73,7 +74,7 @@ pub struct Order<S> {
     pub(super) since: S,
     /// Least length of the second in it \[m\].
     pub(super) entry: S,
-    /// Largest length of the first in it \[m\].
+    /// Largest length of the first in it \[m\], out of reach if it holds the end of its path.
     pub(super) exit: S,
     /// How far a check has found the second to get past it \[m\].
     pub(super) hold: S,
@@ -89,12 +90,12 @@ impl<S: Scalar> Order<S> {
 
     /// The order in which the ego of a region is first or second; what is behind `since` of the second does not count.
     pub(super) fn new(region: &RegionRef<'_, S>, pass: Pass, since: S) -> Self {
-        let (second, first) = match pass {
-            Pass::First => (region.other_length(), region.length()),
-            _ => (region.length(), region.other_length()),
+        let (second, exit) = match pass {
+            Pass::First => (region.other_length(), exit(region.length(), region.ego_motion())),
+            _ => (region.length(), exit(region.other_length(), region.other_motion())),
         };
         let transposed = region.ego() > region.other();
-        Self { pass: pass.swapped_if(transposed), since, entry: second.lo, exit: first.hi, ..Self::EMPTY }
+        Self { pass: pass.swapped_if(transposed), since, entry: second.lo, exit, ..Self::EMPTY }
     }
 
     /// Whether the second is held nowhere before the entry: it cannot be inside.
@@ -106,6 +107,11 @@ impl<S: Scalar> Order<S> {
     pub(super) fn pass_of(&self, agent: usize, [_, higher]: [usize; 2]) -> Pass {
         self.pass.swapped_if(agent == higher)
     }
+}
+
+/// Where an agent has left a region of these lengths: never if it holds the end of its path, whatever rounding says.
+fn exit<S: Scalar>(lengths: Interval<S>, motion: &Motion<'_, S>) -> S {
+    if lengths.hi < motion.path().length() { lengths.hi } else { S::LIMIT }
 }
 
 impl<S: Scalar> Default for Order<S> {
