@@ -2,7 +2,8 @@
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests instructions fuzz
+#   .ci/test.sh quick      for daily work: format, lints, unit tests
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -21,8 +22,15 @@ style() {
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
 }
 
+quick() {
+  style
+  step "unit tests"
+  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-host --lib --locked
+}
+
 docs() {
   step "documentation"
+  peer_libraries
   RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features pcr-tests/peers --locked
 }
 
@@ -35,6 +43,21 @@ tests() {
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
   step "benchmarks, one pass each, as the tests are built"
   cargo bench --workspace --bench '*' --profile checked --features pcr-tests/peers --locked -- --test
+}
+
+# A browser for the pages; a package of Debian, where there is none.
+browser() {
+  command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null && return
+  echo "installing chromium"
+  apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends chromium >/dev/null
+}
+
+pages() {
+  step "pages, in a real browser"
+  browser
+  # As the tests build it.
+  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
 }
 
 instructions() {
@@ -87,7 +110,7 @@ features() {
   fi
 }
 
-# Libraries for C++ that comparisons can do without: where they cannot be installed, it says what is left out.
+# Libraries for C++ that are compared with: nothing is left out silently.
 peer_libraries() {
   local packages=() library
   command -v c++ >/dev/null || packages+=(g++)
@@ -96,11 +119,15 @@ peer_libraries() {
     pkg-config --exists $library 2>/dev/null || packages+=(lib$library-dev)
   done
   if [ ${#packages[@]} = 0 ]; then return; fi
-  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-    echo "installing ${packages[*]}"
-    if { apt-get update && apt-get install -y --no-install-recommends "${packages[@]}"; } >/dev/null 2>&1; then return; fi
+  if [ "$(id -u)" != 0 ] || ! command -v apt-get >/dev/null; then
+    echo "missing for comparisons: ${packages[*]}" >&2
+    return 1
   fi
-  echo "LEFT OUT of comparisons, not installed: ${packages[*]}"
+  echo "installing ${packages[*]}"
+  # Another installation may hold the lock for a while.
+  local apt=(apt-get -o DPkg::Lock::Timeout=600)
+  "${apt[@]}" update >/dev/null
+  "${apt[@]}" install -y --no-install-recommends "${packages[@]}" >/dev/null
 }
 
 no_std() {
@@ -111,6 +138,13 @@ no_std() {
     firmware/cross.sh "$target" build --release --locked -p pcr-core -p pcr-fixed
     firmware/cross.sh "$target" build --release --locked -p pcr-core --no-default-features --features libm,micromath,serde,defmt
     firmware/cross.sh "$target" build --release --locked -p pcr-fixed --features serde,defmt
+  done
+  local crate features
+  for crate in pcr-core pcr-fixed; do
+    step "no_std: $crate with the features of its documentation"
+    features=$(python3 -c 'import sys, tomllib
+print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["docs.rs"]["features"]))' "$crate/Cargo.toml")
+    firmware/cross.sh thumbv7em-none-eabihf check --locked -p "$crate" --features "$features"
   done
 }
 
@@ -125,13 +159,18 @@ firmware() {
   firmware/check.sh
 }
 
+proofs() {
+  step "proofs: every claim about errors, and how it is held"
+  proofs/check.sh
+}
+
 fuzz() {
   step "fuzzing: scenario files, pairs and importers"
   fuzz/run.sh
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests instructions fuzz}; do
+for part in ${*:-style docs features no_std c firmware tests pages instructions fuzz proofs}; do
   "$part"
 done
 step "all passed"

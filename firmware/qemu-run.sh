@@ -4,7 +4,8 @@
 #   SERIAL=stdio     the serial line on standard input and output instead of nothing
 #   ICOUNT=7         deterministic time, 2^7 ns an instruction
 #   PLUGIN=a.so,...  a TCG plugin; it writes to the file PLUGIN_LOG
-#   QEMU_TIMEOUT=60  seconds after which it is ended, as a failure (without SERIAL)
+#   QEMU_TIMEOUT=3600  seconds after which it is ended, as a failure (without SERIAL): only a program that never ends, on however
+#                    busy a machine, takes that long
 set -euo pipefail
 [ $# -ge 1 ] || { echo "usage: $0 ELF" >&2; exit 2; }
 elf=$1 qemu=qemu-system-arm
@@ -24,4 +25,4 @@ if [ -n "${PLUGIN:-}" ]; then options+=(-plugin "$PLUGIN" -d plugin -D "${PLUGIN
 command=($qemu -machine $machine "${options[@]}" -kernel "$elf")
 # Whoever talks over the line ends QEMU by a signal to this process, which QEMU therefore has to be.
 if [ -n "${SERIAL:-}" ]; then exec "${command[@]}"; fi
-exec timeout "${QEMU_TIMEOUT:-60}" "${command[@]}" </dev/null
+exec timeout "${QEMU_TIMEOUT:-3600}" "${command[@]}" </dev/null

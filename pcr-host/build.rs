@@ -1,5 +1,6 @@
 //! Compiles the programs in `peers/` that run other libraries' methods, each where its library is installed; with the feature
-//! `peers` only. Where one is not, the tool says so when it compares.
+//! `peers` only. Where a library is not installed, the tool says so when it compares; in continuous integration (`CI=true`) that
+//! is an error. A program that cannot be compiled is an error everywhere.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -16,16 +17,31 @@ fn main() {
     if Path::new(INSTALLED).exists() {
         println!("cargo:rerun-if-changed={INSTALLED}");
     }
+    println!("cargo:rerun-if-env-changed=CI");
+    let in_ci = env::var("CI").is_ok_and(|ci| ci == "true");
+    let mut failed = false;
     for (name, packages) in [("fcl", ["fcl", "eigen3"].as_slice()), ("box2d", &["box2d"])] {
         let program = directory.join(name);
+        if let Err(problem) = run(Command::new("pkg-config").arg("--exists").arg("--print-errors").args(packages)) {
+            println!("cargo:warning=not installed, left out of comparisons: {name}: {problem}");
+            failed |= in_ci;
+            continue;
+        }
         match compile(name, packages, &program) {
             Ok(version) => {
                 let variable = format!("PCR_PEER_{}", name.to_uppercase());
                 println!("cargo:rustc-env={variable}={}", program.display());
                 println!("cargo:rustc-env={variable}_VERSION={version}");
             }
-            Err(problem) => println!("cargo:warning=left out of comparisons: {name}: {problem}"),
+            Err(problem) => {
+                eprintln!("peers/{name}.cc: {problem}");
+                failed = true;
+            }
         }
+    }
+    if failed {
+        eprintln!("a program that other libraries are compared with cannot be built");
+        std::process::exit(1);
     }
 }
 
@@ -46,7 +62,7 @@ fn compile(name: &str, packages: &[&str], program: &Path) -> Result<String, Stri
     Ok(run(Command::new("pkg-config").args(["--modversion", name]))?.trim().to_owned())
 }
 
-/// What a command prints, or the last line of what it complains about.
+/// What a command prints, or what it complains about: the first line with an error in it, else the last one.
 fn run(command: &mut Command) -> Result<String, String> {
     let name = command.get_program().to_string_lossy().into_owned();
     let output = command.output().map_err(|error| format!("{name}: {error}"))?;

@@ -25,17 +25,27 @@ fn agents(c: &mut Criterion) {
         group.throughput(Throughput::Elements(motions.len() as u64));
         group.bench_function("first conflict with its row", |b| {
             let rows = || black_box(&motions).iter().enumerate();
-            b.iter(|| rows().filter_map(|(k, motion)| first_conflict(motion, ecm.row(&motions, k), time)).count());
+            b.iter(|| {
+                rows()
+                    .filter_map(|(k, motion)| {
+                        first_conflict(motion, ecm.row(&motions, k).expect("the table of the fleet"), time)
+                    })
+                    .count()
+            });
         });
         group.bench_function("earliest start", |b| {
-            b.iter(|| (0..motions.len()).filter_map(|k| earliest_start(ecm.row(black_box(&motions), k), 0.0)).count());
+            b.iter(|| {
+                (0..motions.len())
+                    .filter_map(|k| earliest_start(ecm.row(black_box(&motions), k).expect("its table"), 0.0))
+                    .count()
+            });
         });
         group.sample_size(10);
         let mut stations = vec![Station::EMPTY; STATIONS];
         group.bench_function("speed plan", |b| {
             b.iter(|| {
                 let planned = (0..motions.len()).filter(|&k| {
-                    let regions = ecm.row(black_box(&motions), k);
+                    let regions = ecm.row(black_box(&motions), k).expect("its table");
                     plan_speed::<f64, PHASES>(&motions[k], Drive::of(&motions[k]), regions, &mut stations).is_ok()
                 });
                 planned.count()
@@ -99,11 +109,13 @@ fn replanning(c: &mut Criterion) {
             let agent = agents.next().unwrap_or_default();
             let same = motions[agent];
             let replaced = ecm.replace(&mut motions, agent, black_box(same));
-            replaced.is_ok().then(|| earliest_start(ecm.row(&motions, agent), 0.0))
+            replaced.is_ok().then(|| earliest_start(ecm.row(&motions, agent).expect("the table of the fleet"), 0.0))
         });
     });
     c.bench_function("a new start for one agent of 100, regions as they are", |b| {
-        b.iter(|| earliest_start(ecm.row(black_box(&motions), agents.next().unwrap_or_default()), 0.0));
+        b.iter(|| {
+            earliest_start(ecm.row(black_box(&motions), agents.next().unwrap_or_default()).expect("its table"), 0.0)
+        });
     });
 }
 

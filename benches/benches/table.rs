@@ -10,11 +10,16 @@ fn queries(c: &mut Criterion) {
     let mut storage = Storage::of(&motions);
     let ecm = storage.table(&motions);
     c.bench_function("slice at the middle of each of 136 regions", |b| {
-        b.iter(|| ecm.regions(&motions).flat_map(|region| region.slice_at(region.time().middle())).count());
+        b.iter(|| {
+            ecm.regions(&motions)
+                .expect("the table of the fleet")
+                .flat_map(|region| region.slice_at(region.time().middle()))
+                .count()
+        });
     });
     c.bench_function("membership in each of 136 regions", |b| {
         let inside = |region: &pcr_core::RegionRef<'_, f64>| region.contains(region.time().middle(), black_box(5.0));
-        b.iter(|| ecm.regions(&motions).filter(inside).count());
+        b.iter(|| ecm.regions(&motions).expect("the table of the fleet").filter(inside).count());
     });
 }
 

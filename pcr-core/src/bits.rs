@@ -1,9 +1,15 @@
 //! Rows of bits: which of a few neighbours have something in common. Tests whose outcome is as good as random to a processor
-//! are written as bits first, without a branch, and looked at then.
+//! are written as bits first, without a branch, and looked at then. And a checksum of numbers by their bits.
 
 /// A row of flags as bits, the first one the lowest.
 pub(crate) fn row(flags: impl DoubleEndedIterator<Item = bool>) -> u32 {
     flags.rev().fold(0, |row, flag| row << 1 | u32::from(flag))
+}
+
+/// A checksum with one more number in it: a product with an odd constant carries a change upward, the shift down again.
+pub(crate) fn digest(sum: u32, number: u32) -> u32 {
+    let product = (sum.rotate_left(5) ^ number).wrapping_mul(0x9E37_79B9);
+    product ^ (product >> 15)
 }
 
 /// The places of the ones in a row, the lowest first.

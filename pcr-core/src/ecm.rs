@@ -1,7 +1,7 @@
 //! The extended collision map: all collision regions of a fleet, both directions of every pair.
 
 use crate::bits::{self, Ones};
-use crate::error::Full;
+use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
 use crate::pair::Pair;
 use crate::pieces::{List, NONE, Piece, Pieces};
@@ -46,7 +46,9 @@ impl Default for Region {
 /// motions when they are asked for. Hence a later start of an agent changes nothing in the table: shift its
 /// [`Motion`] and go on.
 ///
-/// The fleet itself is handed to each method, always the same one; [`Ecm::replace`] exchanges one of its agents.
+/// The fleet itself is handed to each method, always the same one: another one is refused, by a checksum of the number of
+/// agents, their paths and radii. Start times, profiles, margins and lateness may change. [`Ecm::replace`] exchanges one agent,
+/// [`Ecm::insert`] and [`Ecm::remove`] are for fleets that grow or shrink at their end.
 ///
 /// ```
 /// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
@@ -58,7 +60,7 @@ impl Default for Region {
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
 ///
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
-/// let region = ecm.row(&fleet, 0).next().unwrap();
+/// let region = ecm.row(&fleet, 0)?.next().unwrap();
 /// assert_eq!(region.other(), 1);
 /// let (time, length) = (region.time(), region.length());
 /// assert!((time.lo - 2.0).abs() < 1e-9 && (time.hi - 3.0).abs() < 1e-9);
@@ -72,6 +74,34 @@ pub struct Ecm<S, R, P> {
     regions: R,
     len: usize,
     pieces: Pieces<S, P>,
+    fleet: Known,
+    /// The agent whose regions these are, if they are those of one.
+    only: Option<usize>,
+}
+
+/// The agents that a table knows: how many, and the sum of their checksums.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Known {
+    agents: usize,
+    sum: u32,
+}
+
+impl Known {
+    const NOBODY: Self = Self { agents: 0, sum: 0 };
+
+    fn all<S: Scalar>(fleet: &[Motion<'_, S>]) -> Self {
+        (0..fleet.len()).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
+    }
+
+    fn with<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
+        let sum = self.sum.wrapping_add(motion.digest(agent));
+        Self { agents: self.agents.wrapping_add(1), sum }
+    }
+
+    fn without<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
+        let sum = self.sum.wrapping_sub(motion.digest(agent));
+        Self { agents: self.agents.wrapping_sub(1), sum }
+    }
 }
 
 #[cfg(feature = "defmt")]
@@ -82,9 +112,15 @@ impl<S: Scalar, R, P> defmt::Format for Ecm<S, R, P> {
 }
 
 impl<S: Scalar, R, P> Ecm<S, R, P> {
-    /// An empty table.
+    /// The table of a fleet without agents.
     pub const fn new(regions: R, pieces: P) -> Self {
-        Self { regions, len: 0, pieces: Pieces::new(pieces) }
+        Self { regions, len: 0, pieces: Pieces::new(pieces), fleet: Known::NOBODY, only: None }
+    }
+
+    /// Forgets all regions and all agents.
+    pub fn clear(&mut self) {
+        self.pieces.clear();
+        (self.len, self.fleet, self.only) = (0, Known::NOBODY, None);
     }
 
     /// Number of regions stored; each counts for both directions of its pair.
@@ -105,27 +141,73 @@ impl<S: Scalar, R, P> Ecm<S, R, P> {
 
 impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     /// The regions of all ordered pairs, by the ego, then by the other agent. O(agents × regions).
-    pub fn regions<'a>(&'a self, fleet: &'a [Motion<'a, S>]) -> impl Iterator<Item = RegionRef<'a, S>> {
-        (0..fleet.len()).flat_map(move |ego| self.row(fleet, ego))
+    ///
+    /// # Errors
+    /// [`Mismatch::OtherFleet`], [`Mismatch::OnlyRow`].
+    pub fn regions<'a>(
+        &'a self,
+        fleet: &'a [Motion<'a, S>],
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>>, Mismatch> {
+        self.holds_all(fleet)?;
+        Ok((0..fleet.len()).flat_map(move |ego| self.of(fleet, ego)))
     }
 
-    /// The regions that an agent has to keep out of, by the other agent. O(regions).
-    pub fn row<'a>(&'a self, fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = RegionRef<'a, S>> + Clone {
-        // In the order of the entries, those of lower partners come first and in order, then those of higher ones.
-        let entries = self.entries().iter().filter(move |region| region.agents().contains(&ego));
-        entries.filter_map(move |region| self.view(fleet, region, ego))
+    /// The regions that an agent has to keep out of, by the other agent. O(agents + regions).
+    ///
+    /// # Errors
+    /// [`Mismatch`]: none is an answer.
+    pub fn row<'a>(
+        &'a self,
+        fleet: &'a [Motion<'a, S>],
+        ego: usize,
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+        self.holds(fleet, [ego, ego])?;
+        Ok(self.of(fleet, ego))
     }
 
-    /// The regions that an agent has with another one. O(log regions).
+    /// The regions that an agent has with another one. O(agents + log regions).
+    ///
+    /// # Errors
+    /// As [`Ecm::row`].
     pub fn pair<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
         ego: usize,
         other: usize,
-    ) -> impl Iterator<Item = RegionRef<'a, S>> + Clone {
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+        self.holds(fleet, [ego, other])?;
         let agents = [ego.min(other), ego.max(other)];
         let begin = self.entries().partition_point(|region| region.agents() < agents);
         let entries = self.entries().iter().skip(begin).take_while(move |region| region.agents() == agents);
+        Ok(entries.filter_map(move |region| self.view(fleet, region, ego)))
+    }
+
+    /// Whether this is the table of the fleet.
+    fn check(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
+        if self.fleet == Known::all(fleet) { Ok(()) } else { Err(Mismatch::OtherFleet) }
+    }
+
+    /// Whether the table tells of all agents of the fleet.
+    pub(crate) fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
+        self.check(fleet)?;
+        self.only.map_or(Ok(()), |only| Err(Mismatch::OnlyRow(only)))
+    }
+
+    /// Whether the table tells of two agents of the fleet, or of all regions of one.
+    pub(crate) fn holds(&self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Mismatch> {
+        self.check(fleet)?;
+        if let Some(agent) = agents.into_iter().find(|&agent| agent >= fleet.len()) {
+            return Err(Mismatch::NoSuchAgent(agent));
+        }
+        match self.only {
+            Some(only) if !agents.contains(&only) => Err(Mismatch::OnlyRow(only)),
+            _ => Ok(()),
+        }
+    }
+
+    fn of<'a>(&'a self, fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = RegionRef<'a, S>> + Clone {
+        // In the order of the entries, those of lower partners come first and in order, then those of higher ones.
+        let entries = self.entries().iter().filter(move |region| region.agents().contains(&ego));
         entries.filter_map(move |region| self.view(fleet, region, ego))
     }
 
@@ -164,54 +246,108 @@ where
     /// [`Full`] where the storage is too small.
     pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let mut ecm = Self::new(regions, pieces);
-        for agent in 0..fleet.len() {
-            ecm.add_pairs(fleet, agent, agent.saturating_add(1)..fleet.len())?;
-        }
-        Ok(ecm)
+        ecm.fill(fleet).map(|()| ecm)
     }
 
-    /// Adds the regions of one agent with all others of the fleet. The table must not hold any of it.
+    /// Becomes the table of a whole fleet, as [`Ecm::build`], in the storage that it has.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the table is then as it was.
-    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
-        let mut partners = [0..agent, agent.saturating_add(1)..fleet.len()].into_iter();
-        let added = partners.try_for_each(|partners| self.add_pairs(fleet, agent, partners));
-        if added.is_err() {
-            self.remove(agent);
-        }
-        added
+    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
+        self.compute(fleet, |ecm| {
+            (0..fleet.len()).try_for_each(|agent| ecm.add_pairs(fleet, agent, agent.saturating_add(1)..fleet.len()))
+        })
     }
 
-    /// Removes the regions of one agent with all others. O(regions).
-    pub fn remove(&mut self, agent: usize) {
-        self.retain(|_, region| !region.agents().contains(&agent));
+    /// Becomes a table of the regions of one agent with all others only, in the storage that it has. It answers for that agent.
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+        self.compute(fleet, |ecm| ecm.add_row(fleet, agent))?;
+        self.only = Some(agent);
+        Ok(())
+    }
+
+    /// Adds the regions of one agent with all others of the fleet, whose table this is but for that agent: the last one, of a
+    /// fleet that has grown, or one that was removed.
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small, and [`Mismatch`], also for an agent that the table has already; the table is then
+    /// as it was.
+    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+        let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
+        let known = Known::all(fleet);
+        if self.only.is_some() || self.fleet != known.without(agent, own) {
+            return Err(Mismatch::OtherFleet.into());
+        }
+        self.add_row(fleet, agent)?;
+        self.fleet = known;
+        Ok(())
+    }
+
+    /// Removes one agent, with its regions. The table answers again when it is inserted again, or, after the last one, for a fleet
+    /// without it. O(agents + regions).
+    ///
+    /// # Errors
+    /// [`Mismatch`].
+    pub fn remove(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        self.holds_all(fleet)?;
+        let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
+        self.take_out(agent);
+        self.fleet = self.fleet.without(agent, own);
+        Ok(())
     }
 
     /// Exchanges the motion of one agent and computes its regions anew; those of the others are not touched.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the fleet and the table are then as they were.
+    /// [`Full`] where the storage is too small, and [`Mismatch`]; the fleet and the table are then as they were.
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), Full> {
+    ) -> Result<(), Unchanged> {
+        self.holds(fleet, [agent, agent])?;
         let Some(place) = fleet.get_mut(agent) else {
-            return Ok(());
+            return Err(Mismatch::NoSuchAgent(agent).into());
         };
         let before = core::mem::replace(place, motion);
-        self.remove(agent);
-        let outcome = self.insert(fleet, agent);
+        self.take_out(agent);
+        let outcome = self.add_row(fleet, agent);
         if outcome.is_err()
             && let Some(place) = fleet.get_mut(agent)
         {
             // What was there fits: it is the same computation on the same motions.
             *place = before;
-            self.insert(fleet, agent)?;
+            self.add_row(fleet, agent)?;
         }
-        outcome
+        self.fleet = Known::all(fleet);
+        Ok(outcome?)
+    }
+
+    /// Computes all regions, or those of a row, of a fleet.
+    fn compute(&mut self, fleet: &[Motion<'_, S>], add: impl Fn(&mut Self) -> Result<(), Full>) -> Result<(), Full> {
+        self.clear();
+        match add(self) {
+            Ok(()) => self.fleet = Known::all(fleet),
+            Err(full) => {
+                self.clear();
+                return Err(full);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the regions of an agent with all others, or nothing.
+    fn add_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+        let mut partners = [0..agent, agent.saturating_add(1)..fleet.len()].into_iter();
+        let added = partners.try_for_each(|partners| self.add_pairs(fleet, agent, partners));
+        if added.is_err() {
+            self.take_out(agent);
+        }
+        added
     }
 
     /// Adds the regions of an agent with others, all of them before or after it in the fleet.
@@ -234,6 +370,7 @@ where
         Ok(())
     }
 
+    /// Where there is no room, some regions of the pair may stay behind: the caller takes out one of the agents, or all.
     fn add_pair(&mut self, agents: [usize; 2], pair: Pair<'_, S>) -> Result<(), Full> {
         if let Err(full) = pair.find(&mut self.pieces) {
             let no_storage_helps = self.pieces.pair_is_full();
@@ -247,12 +384,10 @@ where
         let entries = self.entries();
         let at_end = entries.last().is_none_or(|last| last.agents() < agents);
         let mut index = if at_end { entries.len() } else { entries.partition_point(|region| region.agents() < agents) };
-        let begin = index;
         while let Some(head) = self.pieces.take_region() {
             if let Err(full) = self.insert_entry(index, agents, head) {
                 self.pieces.release(head);
                 self.pieces.take_back();
-                self.retain(|place, _| place < begin || place >= index);
                 return Err(full);
             }
             // There is an entry at this index: no saturation.
@@ -281,22 +416,22 @@ where
         Ok(())
     }
 
-    /// Removes the entries that do not pass, and gives their pieces back.
-    fn retain(&mut self, keep: impl Fn(usize, Region) -> bool) {
+    /// Removes the entries of an agent, and gives their pieces back.
+    fn take_out(&mut self, agent: usize) {
         let mut kept = 0_usize;
         for index in 0..self.len {
             let regions = self.regions.as_mut();
             let Some(&region) = regions.get(index) else {
                 break;
             };
-            if keep(index, region) {
+            if region.agents().contains(&agent) {
+                self.pieces.release(region.head);
+            } else {
                 if let Some(place) = regions.get_mut(kept) {
                     *place = region;
                 }
                 // Never above `index`: it cannot saturate, but the compiler does not see it.
                 kept = kept.saturating_add(1);
-            } else {
-                self.pieces.release(region.head);
             }
         }
         self.len = kept;

@@ -16,6 +16,8 @@ pub enum Invalid {
     NonPositive(&'static str),
     /// Its magnitude is above [`Scalar::LIMIT`](crate::Scalar::LIMIT).
     OutOfRange(&'static str),
+    /// It is below [`Scalar::LEAST`](crate::Scalar::LEAST).
+    TooSmall(&'static str),
     /// An arc may sweep one full turn; split longer ones.
     SweepOverOneTurn,
     /// It does not begin where its predecessor ends.
@@ -33,6 +35,7 @@ impl fmt::Display for Invalid {
             Self::Negative(what) => write!(f, "{what} is below zero"),
             Self::NonPositive(what) => write!(f, "{what} is not above zero"),
             Self::OutOfRange(what) => write!(f, "{what} is out of range"),
+            Self::TooSmall(what) => write!(f, "{what} is too small for the number format"),
             Self::SweepOverOneTurn => f.write_str("the arc sweeps more than one turn"),
             Self::Disconnected(what) => write!(f, "the {what} does not begin where its predecessor ends"),
             Self::LengthMismatch => f.write_str("the profile does not travel the length of the path"),
@@ -81,6 +84,69 @@ impl fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
+/// What was asked for does not go with the fleet, or the fleet not with its table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Mismatch {
+    /// The fleet has no such agent.
+    NoSuchAgent(usize),
+    /// The table was made of other agents: in number, paths, radii or order.
+    OtherFleet,
+    /// The table holds the regions of this agent only ([`Ecm::fill_row`](crate::Ecm::fill_row)).
+    OnlyRow(usize),
+    /// In this place of the table there is no region of the agent.
+    NoSuchRegion(usize),
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
+            Self::OtherFleet => f.write_str("the table of regions is that of another fleet"),
+            Self::OnlyRow(agent) => write!(f, "the table holds the regions of agent {agent} only"),
+            Self::NoSuchRegion(place) => write!(f, "the agent has no region in place {place} of the table"),
+        }
+    }
+}
+
+impl core::error::Error for Mismatch {}
+
+/// Why a table was not changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Unchanged {
+    /// There is no room.
+    Full(Full),
+    /// It is not the table of the fleet, but for the agent.
+    Mismatch(Mismatch),
+}
+
+impl From<Full> for Unchanged {
+    fn from(full: Full) -> Self {
+        Self::Full(full)
+    }
+}
+
+impl From<Mismatch> for Unchanged {
+    fn from(mismatch: Mismatch) -> Self {
+        Self::Mismatch(mismatch)
+    }
+}
+
+impl fmt::Display for Unchanged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full(full) => full.fmt(f),
+            Self::Mismatch(mismatch) => mismatch.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for Unchanged {}
+
 /// `value` if it is finite and within the limits of its format.
 pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if !value.is_finite() {
@@ -98,7 +164,34 @@ pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Re
     if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }
 }
 
+/// The radius of a disc or an arc.
+pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
+    if positive(value, "radius")? < S::LEAST { Err(Invalid::TooSmall("radius")) } else { Ok(value) }
+}
+
 /// `value` if it is in range and above zero.
 pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if in_range(value, what)? > S::ZERO { Ok(value) } else { Err(Invalid::NonPositive(what)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Full, Mismatch, Unchanged};
+    use core::fmt::Write;
+    use heapless::String;
+
+    #[test]
+    fn messages_name_all_agents() {
+        let text = |value: &dyn core::fmt::Display| {
+            let mut text = String::<80>::new();
+            write!(text, "{value}").map(|()| text)
+        };
+        let pair = text(&Full::Pair([3, 17])).unwrap();
+        assert_eq!(pair, "agents 3 and 17 of the fleet have more than 32767 pieces");
+        assert_eq!(text(&Unchanged::from(Mismatch::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
+        assert_eq!(
+            text(&Unchanged::from(Mismatch::OnlyRow(4))).unwrap(),
+            "the table holds the regions of agent 4 only"
+        );
+    }
 }

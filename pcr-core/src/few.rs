@@ -15,8 +15,9 @@ impl<T: Copy, const N: usize> Few<T, N> {
         Self { places: [anything; N], count: 0 }
     }
 
-    /// Adds a thing if it `counts` and there is room for it.
+    /// Adds a thing if it `counts`. There is room for all that count: whoever sets `N` has counted them.
     pub(crate) fn add(&mut self, thing: T, counts: bool) {
+        debug_assert!(!counts || self.count < N, "one more than {N}");
         if let Some(place) = self.places.get_mut(self.count) {
             *place = thing;
             // There is a place at it: no overflow.
@@ -40,13 +41,21 @@ mod tests {
     use super::Few;
 
     #[test]
-    fn what_counts_is_kept_and_there_is_room_for_so_many_and_no_more() {
+    fn what_counts_is_kept() {
         let mut few = Few::<_, 4>::new(0);
-        for (thing, counts) in [(3, true), (1, true), (7, false), (2, true), (1, true), (9, true), (8, false)] {
+        for (thing, counts) in [(3, true), (1, true), (7, false), (2, true), (1, true), (9, false), (8, false)] {
             few.add(thing, counts);
         }
         assert_eq!(few.as_slice(), [3, 1, 2, 1]);
         few.as_mut_slice().sort_unstable();
         assert_eq!(few.as_slice(), [1, 1, 2, 3]);
+    }
+
+    #[test]
+    #[cfg(debug_assertions)]
+    #[should_panic(expected = "one more than 2")]
+    fn one_too_many_is_noticed() {
+        let mut few = Few::<_, 2>::new(0);
+        (0..3).for_each(|thing| few.add(thing, true));
     }
 }

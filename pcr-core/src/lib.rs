@@ -43,6 +43,9 @@ mod ecm;
 mod error;
 mod few;
 mod geometry;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod internals;
 mod intervals;
 mod motion;
 mod orders;
@@ -57,21 +60,25 @@ mod segment;
 
 pub use crossing::{Crossing, crossings};
 pub use ecm::{Ecm, Region};
-pub use error::{Full, Invalid};
+pub use error::{Full, Invalid, Mismatch, Unchanged};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
 pub use orders::{Brakes, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
+pub use pair::footprint::Share;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
 pub use plan::{Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
     Approach, BroadPhase, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start,
-    first_conflict, least_duration, safe_intervals, safe_lengths,
+    first_conflict, first_overlap, least_duration, safe_intervals, safe_lengths,
 };
 pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]
 pub use scalar::Radians;
 pub use scalar::Scalar;
 pub use segment::{Curve, Segment, Turn};
+
+#[cfg(all(test, feature = "libm"))]
+mod recorded;

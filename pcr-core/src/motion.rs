@@ -1,6 +1,7 @@
 //! An agent in motion: a disc, its path, and when it is where on it (Eq. 2, ρ ∘ λ).
 
-use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::bits::digest;
+use crate::error::{self, Invalid, in_range, not_negative};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
@@ -23,30 +24,38 @@ pub struct Motion<'a, S: Scalar> {
     drift: S,
     lag: S,
     top_speed: S,
+    /// Checksum of the path.
+    digest: u32,
 }
 
 impl<'a, S: Scalar> Motion<'a, S> {
     /// The motion of a disc of this radius \[m\] that sets off at the time `start` \[s\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`] (radius) and
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius) and
     /// [`Invalid::LengthMismatch`] where the profile does not travel the length of the path (rounding aside).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
-        positive(radius, "radius")?;
+        error::radius(radius)?;
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
-        let extent = bounds.extent().max(path.length()) + radius;
-        if (profile.length() - path.length()).abs() > S::slack(extent) {
+        let extent = bounds.extent().max(path.length()) + radius.double();
+        let gap = (profile.length() - path.length()).abs();
+        if gap > S::slack(extent) {
             return Err(Invalid::LengthMismatch);
         }
-        let arcs = path.segments().iter().filter(|segment| segment.curve() != Curve::Line);
         // `count` would check for overflow.
-        let arcs = arcs.fold(0_usize, |count, _| count.saturating_add(1));
-        let drift = S::drift(arcs, extent);
+        let (arcs, diameter) =
+            path.segments().iter().fold((0_usize, S::ZERO), |(arcs, most), segment| match segment.curve() {
+                Curve::Line => (arcs, most),
+                Curve::Arc { radius, .. } => (arcs.saturating_add(1), most.max(radius.double())),
+            });
+        let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        let lag = S::lag(top_speed, profile.duration());
+        // The agent is nowhere by more than that from where its profile says.
+        let lag = S::lag(top_speed, profile.duration()) + gap;
         let (margin, lateness) = (S::ZERO, S::ZERO);
-        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed })
+        let digest = path.digest();
+        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed, digest })
     }
 
     /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
@@ -97,7 +106,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// ```
     #[must_use]
     pub fn inflated(self) -> Self {
-        let (radius, extent) = (self.radius + self.margin, self.extent + self.margin);
+        let (radius, extent) = (self.radius + self.margin, self.extent + self.margin.double());
         Self { radius, extent, margin: S::ZERO, ..self }
     }
 
@@ -148,6 +157,11 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds
     }
 
+    /// A checksum of the path and the radius, on which regions depend, in this place of a fleet.
+    pub(crate) fn digest(&self, place: usize) -> u32 {
+        digest(digest(self.digest, place as u32), self.radius.digest())
+    }
+
     /// Box around all that the disc sweeps, twice what rounding may do to a distance included \[m\]: agents whose boxes do
     /// not meet have no region.
     pub(crate) fn swept(&self) -> Bounds<S> {
@@ -155,7 +169,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds.expanded(self.radius + slack.double())
     }
 
-    /// Largest coordinate or length that belongs to the motion, plus its radius \[m\]: what errors grow with.
+    /// Largest coordinate or length that belongs to the motion, plus the diameter of the disc \[m\]: what errors grow with.
     pub fn extent(&self) -> S {
         self.extent
     }
@@ -165,9 +179,16 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.drift
     }
 
-    /// How far the agent is from where it should be at a time, for the rounding of times alone \[m\].
-    pub(crate) fn lag(&self) -> S {
+    /// How far the agent is from where it should be at a time, for the rounding of times, and for what the profile's length
+    /// differs from the path's \[m\].
+    pub fn lag(&self) -> S {
         self.lag
+    }
+
+    /// How far the agent may be from both ends of a segment that it passes at one time: a quarter of the way at its top speed
+    /// in what a time may be off. Nothing in a format of relative precision, whose times `reach` is for \[m\].
+    pub(crate) fn leap(&self) -> S {
+        self.top_speed.times(S::slack(S::ZERO)).narrow().half().half()
     }
 
     /// How far the agent goes at its top speed in a time that holds all of its motion and the time 0 \[m\].
@@ -209,7 +230,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// What the sum of the start time and a time since then may be off.
     fn time_slack(&self) -> S {
-        S::slack(self.latest())
+        let rounding = S::rounding(self.latest());
+        rounding.double() + rounding
     }
 
     /// The largest magnitude of a time of the motion \[s\].

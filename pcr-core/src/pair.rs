@@ -177,7 +177,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         }
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
-        self.share(piece, own, covered).map(|slice| slice.map(|slice| along_path(slice, own)))
+        let slices = piece.share.of(covered, own, self.hull(piece, own));
+        slices.map(|slice| slice.map(|slice| along_path(slice, own)))
     }
 
     /// The parts of the second path that a piece covers at the length `l` of the first one.
@@ -189,35 +190,24 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         }
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
-        // One interval of the second segment is connected, hence part of one region: that of its middle. It may go
-        // on beyond the piece. But where the whole circle is about to be covered rounding may show one interval for two:
-        // then each piece has its part.
-        let belongs = |slice: &Interval<S>| {
-            let middle = slice.middle();
-            let footprint = Footprint::of(other.point_at(middle - other.from), own);
-            let holds = |slices: [Option<Interval<S>>; 2]| {
-                slices.into_iter().flatten().any(|slice| along_path(slice, own).contains(l))
-            };
-            let at = |radius| footprint.reach(own, radius).intervals(own);
-            let mut slices = at(self.radius);
-            if !holds(slices) {
-                // Contact all along a circle: its middle, too, is covered by rounding alone, which may see it the other
-                // way round from here.
-                slices = at(self.radius + self.excess());
-            }
-            piece.second.contains(middle) && holds(self.share(piece, own, slices))
-        };
+        // An interval is connected, hence part of one region, that of each piece that it meets. But where two laps of the
+        // first segment may be covered, the next part of it may be that of the other lap: then each piece has its own part.
         covered.map(|slice| {
-            let slice = along_path(slice?, other);
-            let whole = piece.second.contains(slice.middle()) || !piece.second.meets(slice);
-            Some(if whole { slice } else { slice.common(piece.second) }).filter(belongs)
+            let slice = Some(along_path(slice?, other)).filter(|slice| slice.meets(piece.second))?;
+            if !wraps(own, self.radius) {
+                return Some(slice);
+            }
+            let part = slice.common(piece.second);
+            let footprint = Footprint::of(other.point_at(part.middle() - other.from), own);
+            // What only just is covered of the second segment may not seem to be from here.
+            let laps = footprint.reach(own, self.radius + self.slack).intervals(own);
+            piece.share.holds(l - own.from, laps, own, self.hull(piece, own)).then_some(part)
         })
     }
 
-    /// Of what is covered of the first segment, that which a piece stands for.
-    fn share(&self, piece: &Piece<S>, own: &Segment<S>, covered: [Option<Interval<S>>; 2]) -> [Option<Interval<S>>; 2] {
-        let hull = Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack);
-        piece.share.of(covered, own, hull)
+    /// Where a piece lies along its first segment, and a slack more.
+    fn hull(&self, piece: &Piece<S>, own: &Segment<S>) -> Interval<S> {
+        Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack)
     }
 
     fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {

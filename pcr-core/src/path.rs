@@ -1,12 +1,16 @@
 //! Paths: chains of lines and arcs (Eq. 1, the map ρ from travelled length to position), G1 but for turns in place.
 
+use crate::bits::digest;
 use crate::error::Invalid;
 use crate::geometry::{Bounds, Point, Pose};
 use crate::scalar::{Angle, Scalar};
 use crate::segment::{Curve, Segment, Turn};
 use heapless::Vec;
 
-/// A path of at most `N` lines and arcs. Each begins in the pose in which the one before it ends, or after a turn in place
+/// Segments of a path, at most: pieces number them with 16 bits.
+const MOST_SEGMENTS: usize = u16::MAX as usize;
+
+/// A path of at most `N` lines and arcs, and `N` at most 65535. Each begins in the pose in which the one before it ends, or after a turn in place
 /// there.
 ///
 /// ```
@@ -17,6 +21,11 @@ use heapless::Vec;
 /// let end = path.as_path().pose_at(3.0 + quarter).position;
 /// assert!((end.x - 4.0).abs() < 1e-15 && (end.y - 1.0).abs() < 1e-15);
 /// # Ok::<(), pcr_core::Invalid>(())
+/// ```
+/// More segments than a table can number are refused by the compiler:
+/// ```compile_fail,E0080
+/// # use pcr_core::{Path, Point, Pose, Radians};
+/// let _ = Path::<f64, 65536>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) });
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -31,6 +40,8 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
     pub fn starting_at(pose: Pose<S>) -> Result<Self, Invalid> {
+        // Pieces number segments with 16 bits.
+        const { assert!(N <= MOST_SEGMENTS, "a path has at most 65535 segments") };
         Ok(Self { origin: Segment::standing(pose)?, segments: Vec::new() })
     }
 
@@ -93,7 +104,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
     /// # Errors
     /// [`Invalid::Disconnected`] if they were not, or if there are none; [`Invalid::Full`] above 65535 segments.
     pub fn new(segments: &'a [Segment<S>]) -> Result<Self, Invalid> {
-        if segments.len() > usize::from(u16::MAX) {
+        if segments.len() > MOST_SEGMENTS {
             return Err(Invalid::Full("segment"));
         }
         let first = segments.first().ok_or(Invalid::Disconnected("path"))?;
@@ -144,6 +155,21 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         let mut rest = self.segments.iter().map(|segment| segment.bounds);
         let first = rest.next().unwrap_or_default();
         rest.fold(first, Bounds::hull)
+    }
+
+    /// A checksum of where the path leads and how.
+    pub(crate) fn digest(self) -> u32 {
+        let origin = self.segments.first().map_or_else(Point::default, |first| first.start);
+        self.segments.iter().fold(digest(origin.x.digest(), origin.y.digest()), |sum, segment| {
+            let bend = match segment.curve {
+                Curve::Line => S::ZERO,
+                Curve::Arc { radius, turn: Turn::Left } => radius,
+                Curve::Arc { radius, turn: Turn::Right } => -radius,
+            };
+            [segment.end.x, segment.end.y, segment.length, bend]
+                .into_iter()
+                .fold(sum, |sum, number| digest(sum, number.digest()))
+        })
     }
 
     /// The segment at a travelled length, and the length along it. There is one: no path is without segments.

@@ -108,6 +108,11 @@ impl<S, P> Pieces<S, P> {
         Self { slots, fresh: 0, free: NONE, used: 0, pending: Pending::NOTHING, scalar: PhantomData }
     }
 
+    /// Gives all pieces back.
+    pub(crate) fn clear(&mut self) {
+        (self.fresh, self.free, self.used, self.pending) = (0, NONE, 0, Pending::NOTHING);
+    }
+
     /// Number of pieces stored.
     pub(crate) const fn len(&self) -> usize {
         self.used as usize

@@ -72,8 +72,10 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            // The last digit of the acceleration counts for the whole duration.
-            if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
+            // The last digits of accelerations count for the whole time so far, those of times with the acceleration.
+            let (slows, time) = (acceleration.abs(), self.time.hi + duration);
+            let last = S::rounding(slows).times(time).narrow().max(slows.times(S::rounding(time)).narrow());
+            if after < -(S::rounding(before) + last) {
                 return Err(Invalid::Negative("speed"));
             }
             after = S::ZERO;
@@ -191,16 +193,22 @@ impl<S: Scalar> Profile<S, 3> {
             let lengths = [S::ZERO, ramp_length, ramp_length + cruise_length, length];
             let speeds = [S::ZERO, peak, peak, S::ZERO];
             let accelerations = [limits.acceleration, S::ZERO, -limits.acceleration];
+            let mut from = S::ZERO;
             for k in 0..3 {
                 let phase = Phase {
                     time: Interval::new(times[k], times[k + 1]),
-                    length: Interval::new(lengths[k], lengths[k + 1]),
+                    length: Interval::new(from, lengths[k + 1]),
                     speed: [speeds[k], speeds[k + 1]],
                     acceleration: accelerations[k],
                 };
+                // The length of what takes no time belongs to a neighbour: nobody jumps.
                 if phase.time.lo < phase.time.hi {
                     phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
+                    from = lengths[k + 1];
                 }
+            }
+            if let Some(last) = phases.last_mut() {
+                last.length.hi = length;
             }
         }
         Ok(Self { phases })
@@ -233,17 +241,25 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     pub fn stretched(profile: ProfileRef<'_, S>, duration: S) -> Result<Self, Invalid> {
         positive(duration, "duration")?;
         let whole = profile.duration();
-        let speed = |speed: S| in_range(speed.times(whole).narrow().quotient(duration), "speed");
+        let speed = |speed: S| in_range(speed.portion(whole, duration), "speed");
         let mut phases: Vec<Phase<S>, N> = Vec::new();
-        let mut from = S::ZERO;
+        let first = profile.phases().first().map_or(S::ZERO, |first| first.speed[0]);
+        let mut last = Phase::origin(speed(first)?);
         for phase in profile.phases() {
             let to = if phase.time.hi < whole { duration.portion(phase.time.hi, whole) } else { duration };
-            let [before, after] = [speed(phase.speed[0])?, speed(phase.speed[1])?];
-            let acceleration = in_range((after - before).quotient(to - from), "acceleration")?;
-            let time = Interval::new(from, to);
-            let phase = Phase { time, length: phase.length, speed: [before, after], acceleration };
-            phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
-            from = to;
+            let (time, [_, before], after) = (to - last.time.hi, last.speed, speed(phase.speed[1])?);
+            // The length of what takes no time belongs to a neighbour: nobody jumps.
+            if time > S::ZERO {
+                let acceleration = in_range((after - before).quotient(time), "acceleration")?;
+                last = Phase {
+                    time: Interval::new(last.time.hi, to),
+                    ..last.until(time, phase.length.hi, after, acceleration)
+                };
+                phases.push(last).map_err(|_| Invalid::Full("phase"))?;
+            }
+        }
+        if let Some(last) = phases.last_mut() {
+            last.length.hi = profile.length();
         }
         Ok(Self { phases })
     }
@@ -253,15 +269,16 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Self { phases: Vec::new() }
     }
 
-    /// Appends a phase that follows the last one, to which it is joined where both are of the same acceleration; an
-    /// empty phase adds nothing.
-    pub(crate) fn extend(&mut self, phase: Phase<S>) -> Result<(), Invalid> {
-        if phase.time.length() <= S::ZERO {
+    /// Appends the phase `next` that follows `phase`, which it then is; to the last one it is joined where both are of the
+    /// same acceleration. What takes no time adds nothing: its length belongs to what follows `phase` then.
+    pub(crate) fn extend(&mut self, phase: &mut Phase<S>, next: Phase<S>) -> Result<(), Invalid> {
+        if next.time.length() <= S::ZERO {
             return Ok(());
         }
-        match self.phases.last_mut().and_then(|last| Some((last.joined(&phase)?, last))) {
+        *phase = next;
+        match self.phases.last_mut().and_then(|last| Some((last.joined(&next)?, last))) {
             Some((joined, last)) => *last = joined,
-            None => self.phases.push(phase).map_err(|_| Invalid::Full("phase"))?,
+            None => self.phases.push(next).map_err(|_| Invalid::Full("phase"))?,
         }
         Ok(())
     }

@@ -6,7 +6,7 @@
 //! chord       the relative motion between two instants          (internal)
 //! contact     when two discs are in contact                      Encounter, Contacts
 //! clearance   how near they come                                 Approach
-//! conflict    both: from when to when, where, how deep           Conflict, Conflicts, first_conflict
+//! conflict    both: from when to when, where, how deep           Conflict, Conflicts, first_conflict, first_overlap
 //! broad_phase who of a fleet can be in contact, and when         BroadPhase
 //! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
 //! bracket     the end of what is forbidden                        (internal)
@@ -30,7 +30,7 @@ mod windows;
 
 pub use broad_phase::BroadPhase;
 pub use clearance::Approach;
-pub use conflict::{Conflict, Conflicts, Met, first_conflict};
+pub use conflict::{Conflict, Conflicts, Met, first_conflict, first_overlap};
 pub use contact::{Contacts, Encounter};
 pub use delay::earliest_start;
 pub use depart::earliest_departure;

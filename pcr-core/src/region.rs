@@ -4,6 +4,7 @@ use crate::geometry::Interval;
 use crate::intervals::union;
 use crate::motion::Motion;
 use crate::pair::Pair;
+use crate::pair::footprint::Share;
 use crate::pieces::List;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
@@ -37,6 +38,9 @@ pub struct PieceRef<'a, S: Scalar> {
     pub length: Interval<S>,
     /// Length range along the other's path \[m\].
     pub other_length: Interval<S>,
+    /// Which of the intervals that are covered of the segment of the first agent of the pair, that of the lower index, it stands
+    /// for.
+    pub share: Share,
 }
 
 /// The types of Section 3.3 of the paper; the first letter is the ego's.
@@ -188,7 +192,8 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
             let second = pair.second.path().segments().get(indices[1])?;
             Some(if transposed {
                 let segments = [indices[1], indices[0]];
-                PieceRef { ego: second, other: first, segments, length: piece.second, other_length: piece.first }
+                let share = piece.share;
+                PieceRef { ego: second, other: first, segments, length: piece.second, other_length: piece.first, share }
             } else {
                 PieceRef {
                     ego: first,
@@ -196,6 +201,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
                     segments: indices,
                     length: piece.first,
                     other_length: piece.second,
+                    share: piece.share,
                 }
             })
         })

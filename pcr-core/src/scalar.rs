@@ -66,9 +66,15 @@ pub trait Scalar:
     /// Largest magnitude of a coordinate, length, radius, time, speed or acceleration that constructors accept. The
     /// diameter of an arc counts as a length, and its box as coordinates.
     const LIMIT: Self;
+    /// Least radius of a disc or an arc. A product of four of them, as in the discriminants of P3, has all its digits: below
+    /// it would lose them to underflow, and contacts with them. Coordinates and lengths may be 0 and as small as they like,
+    /// as they are compared and added, and multiplied with radii only.
+    const LEAST: Self;
 
     /// Neither NaN nor infinite. Fixed-point formats are always finite.
     fn is_finite(self) -> bool;
+    /// Its bits, folded to 32: what tells one number from another in a checksum.
+    fn digest(self) -> u32;
     /// `self · rhs`, wide.
     fn times(self, rhs: Self) -> Self::Wide;
     /// `self · by`, rounded to nearest.
@@ -119,11 +125,10 @@ pub trait Scalar:
     /// `self / divisor` for dimensions that divide (a length by a speed). Saturates at a magnitude above
     /// [`Scalar::LIMIT`]; `0 / 0` is 0.
     fn quotient(self, divisor: Self) -> Self;
-    /// `self · part / whole` with `0 <= part <= whole` and a whole above 0. A format of constant absolute precision
-    /// should round once, at the end: a quotient on the way does not have the digits.
-    fn portion(self, part: Self, whole: Self) -> Self {
-        part.quotient(whole.quotient(self))
-    }
+    /// `self · part / whole` with a whole above 0. A format of constant absolute precision should round once, at the end: a
+    /// quotient on the way does not have the digits, and the product may be beyond what it holds. Where the part is larger than
+    /// the whole, it saturates as [`Scalar::quotient`] does.
+    fn portion(self, part: Self, whole: Self) -> Self;
     /// `self / divisor` for a sine or cosine, `None` where it is not below [`Scalar::LIMIT`].
     fn quotient_unit(self, divisor: Self::Unit) -> Option<Self>;
     /// The vector `(x, y)` of this norm, not zero, as a unit vector. A format of constant absolute precision takes the
@@ -156,22 +161,26 @@ pub trait Scalar:
     fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self;
     /// Time since the slow end of a ramp after which `length` is travelled: the inverse of [`Scalar::ramp_length`].
     fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self;
-    /// The residual that rounding may cause in a configuration of the given extent: every distance that the
-    /// kernels compare with a radius is right within this. `docs/errors.md` states it for each format.
+    /// The residual that rounding may cause in a configuration of the given extent, [`Motion::extent`](crate::Motion::extent):
+    /// every distance that the kernels compare with a radius is right within this. `docs/errors.md` derives it for each
+    /// format.
     fn slack(extent: Self) -> Self;
-    /// How far the end of a path of so many arcs may be off for what cannot be carried on from one to the next.
-    fn drift(arcs: usize, extent: Self) -> Self {
-        let _ = (arcs, extent);
+    /// What a sum, a product or a quotient of a few numbers of this magnitude may be off.
+    fn rounding(of: Self) -> Self;
+    /// How far a path of so many arcs may be off for what cannot be carried on from one to the next, and for the rounding
+    /// of angles; `span` is its extent and the largest diameter of an arc.
+    fn drift(arcs: usize, span: Self) -> Self {
+        let _ = (arcs, span);
         Self::ZERO
     }
-    /// How far the rounding of a difference of two times up to `time` moves an agent of this speed: not at all in a
-    /// format that adds exactly.
+    /// How far the rounding of times up to `time`, of the phases and of a query, moves an agent of this speed: not at all
+    /// in a format that adds exactly.
     fn lag(speed: Self, time: Self) -> Self {
         let _ = (speed, time);
         Self::ZERO
     }
     /// Where a search for a contact stops, in a configuration of the given extent: discs this near to one another may be
-    /// reported as touching. At least 16 slacks; a finer format has more, as it takes steps to come this near.
+    /// reported as touching. Not a bound on an error but a choice: it takes steps to come nearer. At least two slacks.
     fn tolerance(extent: Self) -> Self {
         Self::slack(extent).double().double().double().double()
     }

@@ -14,7 +14,7 @@ mod near;
 
 pub(crate) use near::{ROW, in_box};
 
-use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::error::{self, Invalid, in_range, not_negative};
 use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
 use crate::scalar::{Angle, Scalar, Sector, Unit};
 
@@ -136,14 +136,15 @@ impl<S: Scalar> Segment<S> {
     ///
     /// # Errors
     /// As [`Segment::then_line`], [`Invalid::OutOfRange`] also for the diameter and the box of the arc (from half a turn
-    /// on that of its circle), [`Invalid::NonPositive`] for the radius and [`Invalid::SweepOverOneTurn`].
+    /// on that of its circle), [`Invalid::NonPositive`] and [`Invalid::TooSmall`] for the radius and
+    /// [`Invalid::SweepOverOneTurn`].
     pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
-        positive(radius, "radius")?;
+        error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
         not_negative(length, "length")?;
         let circumference = S::Angle::circumference(radius);
         // A full turn may come in with the rounding of `sweep * radius`.
-        if length > circumference + S::slack(circumference) {
+        if length > circumference + S::rounding(circumference) {
             return Err(Invalid::SweepOverOneTurn);
         }
         let length = length.min(circumference);
@@ -273,6 +274,11 @@ impl<S: Scalar> Segment<S> {
             Curve::Line => S::ZERO,
             Curve::Arc { radius, .. } => way.portion(way, radius.double().double().double()),
         }
+    }
+
+    /// Centre of an arc of this radius.
+    pub(crate) fn centre(&self, radius: S) -> Point<S> {
+        self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()))
     }
 
     /// Whether it bends to the right: coordinates along it are then mirrored, so that all arcs turn left.

@@ -78,7 +78,49 @@ typedef enum PcrStatus {
    The buffer is too small; the count that is needed is told.
    */
   PCR_STATUS_BUFFER_TOO_SMALL,
+  /*
+   The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
+   */
+  PCR_STATUS_NOT_BUILT,
+  /*
+   The order does not list each agent once.
+   */
+  PCR_STATUS_BAD_ORDER,
+  /*
+   There is no such plan: whoever waits, for however long, meets another one.
+   */
+  PCR_STATUS_NO_PLAN,
 } PcrStatus;
+
+/*
+ Why there is no plan.
+ */
+typedef enum PcrReason {
+  /*
+   The two overlap at the starts of their paths.
+   */
+  PCR_REASON_STARTS,
+  /*
+   The two overlap at the ends of their paths.
+   */
+  PCR_REASON_ENDS,
+  /*
+   The two meet however late either sets off.
+   */
+  PCR_REASON_ALWAYS,
+  /*
+   The first cannot go because of the second, with the orders that were tried.
+   */
+  PCR_REASON_ORDER,
+  /*
+   The check of the plan found that the two overlap.
+   */
+  PCR_REASON_OVERLAP,
+  /*
+   The times of the first are out of range.
+   */
+  PCR_REASON_TIMES,
+} PcrReason;
 
 /*
  A fleet and the table of its regions.
@@ -106,7 +148,7 @@ typedef struct PcrPhase {
  */
 typedef struct PcrMotion {
   size_t pointers[4];
-  float opaque[13];
+  float opaque[14];
 } PcrMotion;
 
 /*
@@ -321,6 +363,34 @@ typedef struct PcrConflict {
   bool touching;
 } PcrConflict;
 
+/*
+ A conflict, and with whom.
+ */
+typedef struct PcrMet {
+  /*
+   The other agent.
+   */
+  size_t other;
+  /*
+   The conflict.
+   */
+  struct PcrConflict conflict;
+} PcrMet;
+
+/*
+ Why there is no plan, and of whom.
+ */
+typedef struct PcrUnsolved {
+  /*
+   The reason.
+   */
+  enum PcrReason reason;
+  /*
+   The agents; twice the same where it is one.
+   */
+  size_t agents[2];
+} PcrUnsolved;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -383,6 +453,57 @@ enum PcrStatus pcr_fleet_conflicts(const struct PcrFleet *place,
                                    struct PcrConflict *out,
                                    size_t capacity,
                                    size_t *count);
+
+/*
+ Puts another agent in the place of one, and its regions into the table if that was built. The memory needs room for the
+ segments and phases of the new one beside those of the old one, which become free. Whatever fails leaves all as it was.
+ */
+enum PcrStatus pcr_fleet_replace(struct PcrFleet *place,
+                                 size_t agent,
+                                 const struct PcrAgent *by);
+
+/*
+ The earliest conflict of an agent with any other, from the first start of any agent to the last arrival, and whether
+ there is one. Mere touches are passed over, unless they are asked for: plans make agents touch on purpose.
+ */
+enum PcrStatus pcr_fleet_first_conflict(const struct PcrFleet *place,
+                                        size_t ego,
+                                        bool touches,
+                                        struct PcrMet *out,
+                                        bool *found);
+
+/*
+ The least delay of an agent's start, from `from` on (s), with which it meets none of the others, each moving as it does
+ now. `PCR_STATUS_NO_PLAN` where no delay helps. `pcr_fleet_delay` makes it so.
+ */
+enum PcrStatus pcr_fleet_earliest_start(const struct PcrFleet *place,
+                                        size_t agent,
+                                        float from,
+                                        float *delay);
+
+/*
+ The times in an interval (s) at which no other agent is in the way on a part of the ego's path (m), wherever on it the ego
+ is, and how many intervals there are. It asks the motions, not the table.
+ */
+enum PcrStatus pcr_fleet_safe_intervals(const struct PcrFleet *place,
+                                        size_t ego,
+                                        struct PcrInterval length,
+                                        struct PcrInterval during,
+                                        struct PcrInterval *out,
+                                        size_t capacity,
+                                        size_t *count);
+
+/*
+ Delays the starts of all agents so that none overlaps another, each as little as those before it in the order allow.
+ `order` lists each agent once, the highest priority first, and comes back as it was used. `room` is for a motion an agent,
+ and free afterwards. Where there is no plan, nobody is delayed and `why` tells who is in the way; it may be null.
+ */
+enum PcrStatus pcr_fleet_plan_delays(struct PcrFleet *place,
+                                     size_t *order,
+                                     size_t count,
+                                     struct PcrMotion *room,
+                                     size_t room_count,
+                                     struct PcrUnsolved *why);
 
 #ifdef __cplusplus
 }  // extern "C"

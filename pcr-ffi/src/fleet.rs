@@ -1,18 +1,17 @@
 //! A fleet in the caller's memory, in safe Rust.
 
-use crate::memory::{Stack, values};
+use crate::memory::{Arena, Stack, values};
 use crate::types::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrAgent, PcrMemory, PcrStatus};
-use core::mem::take;
 use pcr_core::{
-    Ecm, Interval, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
-    Segment, Turn,
+    Ecm, Interval, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region, Segment,
+    Turn, Unchanged, Unsolved, plan_delays,
 };
 
 /// Agents, and the table of their regions.
 pub(crate) struct Fleet {
-    /// What no agent has taken yet.
-    segments: &'static mut [Segment<f32>],
-    phases: &'static mut [Phase<f32>],
+    /// Of all agents, without gaps, and in the same order.
+    segments: Arena<Segment<f32>>,
+    phases: Arena<Phase<f32>>,
     motions: Stack<Motion<'static, f32>>,
     table: Ecm<f32, &'static mut [Region], &'static mut [Piece<f32>]>,
 }
@@ -27,7 +26,8 @@ impl Fleet {
         let entries = Stack::new(memory.entries, memory.entry_count).ok_or(PcrStatus::Null)?;
         let pieces = Stack::new(memory.pieces, memory.piece_count).ok_or(PcrStatus::Null)?;
         let table = Ecm::new(entries.filled(Region::EMPTY), pieces.filled(Piece::EMPTY));
-        Ok(Self { segments: segments.filled(origin), phases: phases.filled(rest), motions, table })
+        let (segments, phases) = (Arena::new(segments, origin), Arena::new(phases, rest));
+        Ok(Self { segments, phases, motions, table })
     }
 
     pub(crate) fn motions(&self) -> &[Motion<'static, f32>] {
@@ -49,39 +49,69 @@ impl Fleet {
     }
 
     pub(crate) fn add(&mut self, agent: &PcrAgent) -> Result<(), PcrStatus> {
-        // Into free slots, which are taken once nothing can go wrong any more.
-        let segments = place(agent, self.segments)?;
-        let path = self.segments.get(..segments).unwrap_or_default();
-        let phases = profile(agent, PathRef::new(path)?.length(), self.phases)?;
-        motion(agent, path, self.phases.get(..phases).unwrap_or_default())?;
-        if self.motions.is_full() {
+        let motion = self.placed(agent)?;
+        if !self.motions.push(motion) {
             return Err(PcrStatus::NoRoom);
         }
-        let (path, free) = take(&mut self.segments).split_at_mut_checked(segments).unwrap_or_default();
-        self.segments = free;
-        let (profile, free) = take(&mut self.phases).split_at_mut_checked(phases).unwrap_or_default();
-        self.phases = free;
-        self.motions.push(motion(agent, path, profile)?);
+        self.take(&motion);
+        Ok(())
+    }
+
+    /// The motion of an agent in free memory, which is taken once nothing can go wrong any more.
+    fn placed(&mut self, agent: &PcrAgent) -> Result<Motion<'static, f32>, PcrStatus> {
+        let segments = place(agent, self.segments.free())?;
+        let path = PathRef::new(self.segments.next(segments))?;
+        let phases = profile(agent, path.length(), self.phases.free())?;
+        Ok(Motion::new(path, ProfileRef::new(self.phases.next(phases))?, agent.radius, agent.start)?)
+    }
+
+    fn take(&mut self, motion: &Motion<'static, f32>) {
+        self.segments.take(motion.path().segments().len());
+        self.phases.take(motion.profile().phases().len());
+    }
+
+    /// Another agent in the place of one; a table that was complete is so afterwards.
+    pub(crate) fn replace(&mut self, index: usize, agent: &PcrAgent) -> Result<(), PcrStatus> {
+        let before = *self.motion(index)?;
+        let motion = self.placed(agent)?;
+        match self.table.replace(self.motions.values_mut(), index, motion) {
+            Err(Unchanged::Full(full)) => return Err(full.into()),
+            Ok(()) => {}
+            // It was not complete before.
+            Err(_) => *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion,
+        }
+        self.take(&motion);
+        self.close(&before)
+    }
+
+    /// Closes the gap that a motion leaves: those behind it move down, one after the other, so that each is read before
+    /// anything is written there.
+    fn close(&mut self, gone: &Motion<'static, f32>) -> Result<(), PcrStatus> {
+        let (path, profile) = (gone.path().segments(), gone.profile().phases());
+        let mut to = [self.segments.place(path), self.phases.place(profile)];
+        let mut from = [to[0].saturating_add(path.len()), to[1].saturating_add(profile.len())];
+        let (motions, segments, phases) = (&mut self.motions, &mut self.segments, &mut self.phases);
+        let next = |motion: &&mut Motion<'static, f32>, segments: &Arena<_>, from| {
+            segments.place(motion.path().segments()) == from
+        };
+        while let Some(motion) = motions.values_mut().iter_mut().find(|motion| next(motion, segments, from[0])) {
+            let counts = [motion.path().segments().len(), motion.profile().phases().len()];
+            let path = PathRef::new(segments.moved(from[0], to[0], counts[0]))?;
+            let profile = ProfileRef::new(phases.moved(from[1], to[1], counts[1]))?;
+            *motion = Motion::new(path, profile, motion.radius(), motion.time().lo)?;
+            for kind in 0..2 {
+                from[kind] = from[kind].saturating_add(counts[kind]);
+                to[kind] = to[kind].saturating_add(counts[kind]);
+            }
+        }
+        segments.give_back(to[0]);
+        phases.give_back(to[1]);
         Ok(())
     }
 
     /// Computes the table anew.
     pub(crate) fn build(&mut self) -> Result<(), PcrStatus> {
-        let (motions, table) = (self.motions.values(), &mut self.table);
-        for agent in 0..motions.len() {
-            table.remove(agent);
-        }
-        for agent in 1..=motions.len() {
-            // With those before it.
-            let fleet = motions.get(..agent).unwrap_or_default();
-            if let Err(full) = table.insert(fleet, agent - 1) {
-                for agent in 0..agent {
-                    table.remove(agent);
-                }
-                return Err(full.into());
-            }
-        }
-        Ok(())
+        Ok(self.table.fill(self.motions.values())?)
     }
 
     pub(crate) fn delay(&mut self, agent: usize, delay: f32) -> Result<(), PcrStatus> {
@@ -89,14 +119,31 @@ impl Fleet {
         *motion = motion.delayed(delay)?;
         Ok(())
     }
-}
 
-fn motion<'a>(
-    agent: &PcrAgent,
-    path: &'a [Segment<f32>],
-    profile: &'a [Phase<f32>],
-) -> Result<Motion<'a, f32>, Invalid> {
-    Motion::new(PathRef::new(path)?, ProfileRef::new(profile)?, agent.radius, agent.start)
+    /// Delays the starts so that nobody collides; `room` is for a plan. The fleet is as before where there is none.
+    pub(crate) fn plan(
+        &mut self,
+        mut room: Stack<Motion<'static, f32>>,
+        order: &mut [usize],
+    ) -> Result<(), (PcrStatus, Option<Unsolved>)> {
+        let agents = self.motions().len();
+        let listed =
+            |agent: usize| order.iter().filter(|&&other| other == agent).nth(1).is_none() && order.contains(&agent);
+        if order.len() != agents || !(0..agents).all(listed) {
+            return Err((PcrStatus::BadOrder, None));
+        }
+        if !self.motions().iter().all(|&motion| room.push(motion)) {
+            return Err((PcrStatus::NoRoom, None));
+        }
+        plan_delays(&self.table, self.motions.values(), room.values_mut(), order).map_err(
+            |unsolved| match unsolved {
+                Unsolved::Table(mismatch) => (mismatch.into(), None),
+                unsolved => (PcrStatus::NoPlan, Some(unsolved)),
+            },
+        )?;
+        self.motions.values_mut().iter_mut().zip(room.values()).for_each(|(motion, planned)| *motion = *planned);
+        Ok(())
+    }
 }
 
 /// Places the path of an agent in the first of these slots; how many it takes.

@@ -13,6 +13,10 @@
 //! pcr_fleet_regions(&fleet, 0, regions, 8, &count);
 //! ```
 //!
+//! What resolves conflicts is in `c/resolve.c`: `pcr_fleet_first_conflict`, `pcr_fleet_earliest_start`,
+//! `pcr_fleet_safe_intervals`, `pcr_fleet_plan_delays`, `pcr_fleet_replace`. After an agent was added, what asks the table is
+//! refused until `pcr_fleet_build` (`PCR_STATUS_NOT_BUILT`).
+//!
 //! Nothing is allocated, nothing panics (on a microcontroller the link fails if anything could), and a call that fails
 //! leaves the fleet as it was.
 //!

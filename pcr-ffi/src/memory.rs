@@ -50,11 +50,78 @@ impl<R: Copy + 'static> Stack<R> {
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }.get_mut(index)
     }
 
+    /// The values that are there, to be changed.
+    pub(crate) fn values_mut(&mut self) -> &mut [R] {
+        // SAFETY: as above.
+        unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }
+    }
+
     /// All of the memory, filled up with this value.
     pub(crate) fn filled(mut self, value: R) -> &'static mut [R] {
         while self.push(value) {}
         // SAFETY: as above, and nothing else keeps the pointer.
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }
+    }
+}
+
+/// Memory of which one part after the other is taken for good, until it is given back.
+pub(crate) struct Arena<R> {
+    first: NonNull<R>,
+    room: usize,
+    /// How much is taken.
+    len: usize,
+}
+
+impl<R: Copy + 'static> Arena<R> {
+    /// All of it free, and filled with this value.
+    pub(crate) fn new(all: Stack<R>, value: R) -> Self {
+        let (first, room) = (all.first, all.room);
+        for place in 0..room {
+            // SAFETY: the caller promises this much room, for good and for the fleet alone.
+            unsafe { first.add(place).write(value) };
+        }
+        Self { first, room, len: 0 }
+    }
+
+    /// What is free.
+    pub(crate) fn free(&mut self) -> &mut [R] {
+        // SAFETY: it was filled, and no part of it is taken.
+        unsafe { slice::from_raw_parts_mut(self.first.as_ptr().add(self.len), self.room.saturating_sub(self.len)) }
+    }
+
+    /// The part that comes next. It is not taken before [`Arena::take`]: until then, [`Arena::free`] ends its use.
+    pub(crate) fn next(&self, count: usize) -> &'static [R] {
+        self.part(self.len, count)
+    }
+
+    /// Takes the part that comes next.
+    pub(crate) fn take(&mut self, count: usize) {
+        self.len = self.len.saturating_add(count).min(self.room);
+    }
+
+    /// Where a part begins.
+    pub(crate) fn place(&self, part: &[R]) -> usize {
+        (part.as_ptr() as usize).wrapping_sub(self.first.as_ptr() as usize) / const { size_of::<R>() }
+    }
+
+    /// Moves a part down, and gives where it is now. Whatever lies there or borrows the part is not used any more.
+    pub(crate) fn moved(&mut self, from: usize, to: usize, count: usize) -> &'static [R] {
+        if from.max(to).checked_add(count).is_some_and(|end| end <= self.room) {
+            // SAFETY: both are within the memory.
+            unsafe { self.first.add(from).copy_to(self.first.add(to), count) };
+        }
+        self.part(to, count)
+    }
+
+    /// Gives back all from a place on.
+    pub(crate) fn give_back(&mut self, from: usize) {
+        self.len = self.len.min(from);
+    }
+
+    fn part(&self, from: usize, count: usize) -> &'static [R] {
+        let count = count.min(self.room.saturating_sub(from));
+        // SAFETY: it was filled; whoever changes it knows of what borrows it.
+        unsafe { slice::from_raw_parts(self.first.as_ptr().add(from.min(self.room)), count) }
     }
 }
 

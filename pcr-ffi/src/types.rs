@@ -1,6 +1,6 @@
 //! The C types. SI units: metres, seconds, radians; left turns and counter-clockwise angles are positive.
 
-use pcr_core::{Full, Invalid};
+use pcr_core::{Full, Invalid, Mismatch, Unsolved};
 
 /// What a call comes to. Whatever fails leaves the fleet as it was; a table that became full is empty.
 #[repr(C)]
@@ -32,6 +32,12 @@ pub enum PcrStatus {
     TableFull,
     /// The buffer is too small; the count that is needed is told.
     BufferTooSmall,
+    /// The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
+    NotBuilt,
+    /// The order does not list each agent once.
+    BadOrder,
+    /// There is no such plan: whoever waits, for however long, meets another one.
+    NoPlan,
 }
 
 impl From<Invalid> for PcrStatus {
@@ -51,6 +57,15 @@ impl From<Invalid> for PcrStatus {
 impl From<Full> for PcrStatus {
     fn from(_: Full) -> Self {
         Self::TableFull
+    }
+}
+
+impl From<Mismatch> for PcrStatus {
+    fn from(mismatch: Mismatch) -> Self {
+        match mismatch {
+            Mismatch::NoSuchAgent(_) => Self::NoSuchAgent,
+            _ => Self::NotBuilt,
+        }
     }
 }
 
@@ -155,6 +170,59 @@ pub struct PcrConflict {
     pub touching: bool,
 }
 
+/// A conflict, and with whom.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcrMet {
+    /// The other agent.
+    pub other: usize,
+    /// The conflict.
+    pub conflict: PcrConflict,
+}
+
+/// Why there is no plan.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PcrReason {
+    /// The two overlap at the starts of their paths.
+    Starts,
+    /// The two overlap at the ends of their paths.
+    Ends,
+    /// The two meet however late either sets off.
+    Always,
+    /// The first cannot go because of the second, with the orders that were tried.
+    Order,
+    /// The check of the plan found that the two overlap.
+    Overlap,
+    /// The times of the first are out of range.
+    Times,
+}
+
+/// Why there is no plan, and of whom.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PcrUnsolved {
+    /// The reason.
+    pub reason: PcrReason,
+    /// The agents; twice the same where it is one.
+    pub agents: [usize; 2],
+}
+
+impl From<Unsolved> for PcrUnsolved {
+    fn from(unsolved: Unsolved) -> Self {
+        let (reason, agents) = match unsolved {
+            Unsolved::Starts(agents) => (PcrReason::Starts, agents),
+            Unsolved::Ends(agents) => (PcrReason::Ends, agents),
+            Unsolved::Always(agents) => (PcrReason::Always, agents),
+            Unsolved::Priorities(agents) => (PcrReason::Order, agents),
+            Unsolved::Overlap(agents) => (PcrReason::Overlap, agents),
+            Unsolved::Full(agent) => (PcrReason::Times, [agent; 2]),
+            _ => (PcrReason::Times, [usize::MAX; 2]),
+        };
+        Self { reason, agents }
+    }
+}
+
 /// Room for a segment of a path: one a leg, or one for an agent that stands.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -174,7 +242,7 @@ pub struct PcrPhase {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMotion {
     pointers: [usize; 4],
-    opaque: [f32; 13],
+    opaque: [f32; 14],
 }
 
 /// Room for a region in the table; each serves both agents of its pair.
@@ -241,7 +309,7 @@ impl PcrPhase {
 
 impl PcrMotion {
     /// A free slot.
-    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [0.0; 13] };
+    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [0.0; 14] };
 }
 
 impl PcrEntry {

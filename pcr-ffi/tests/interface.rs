@@ -56,6 +56,19 @@ fn regions(fleet: &PcrFleet, ego: usize) -> Vec<PcrRegion> {
     out[..count].to_vec()
 }
 
+/// What is said of agent 0 without its table.
+fn not_built(fleet: &PcrFleet) -> [PcrStatus; 4] {
+    let (mut count, mut delay, mut met, mut found) = (7, 7.0, PcrMet::default(), true);
+    let seen = [
+        pcr_fleet_regions(Some(fleet), 0, null_mut(), 0, Some(&mut count)),
+        pcr_fleet_slices(Some(fleet), 0, 0, 1.0, null_mut(), 0, Some(&mut count)),
+        pcr_fleet_first_conflict(Some(fleet), 0, true, Some(&mut met), Some(&mut found)),
+        pcr_fleet_earliest_start(Some(fleet), 0, 0.0, Some(&mut delay)),
+    ];
+    assert_eq!((count, delay, met, found), (7, 7.0, PcrMet::default(), true), "nothing is told");
+    seen
+}
+
 /// Within the rounding of `f32` at some metres and seconds, and the tolerance of the search for conflicts.
 fn near(interval: PcrInterval, lo: f32, hi: f32) -> bool {
     (interval.lo - lo).abs() < 1e-4 && (interval.hi - hi).abs() < 1e-4
@@ -64,7 +77,7 @@ fn near(interval: PcrInterval, lo: f32, hi: f32) -> bool {
 #[test]
 fn a_crossing_at_right_angles_has_the_numbers_of_the_hand_calculation() {
     let mut fleet = fleet(&memory(2, 4, 4), &[agent(0.0), agent(std::f32::consts::FRAC_PI_2)]);
-    assert_eq!(regions(&fleet, 0), [], "not yet");
+    assert_eq!(not_built(&fleet), [PcrStatus::NotBuilt; 4], "not yet");
     assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
     // 1 s and 0.5 m to speed up, then 1.5 m at 1 m/s to the crossing; the discs reach 0.5 m.
     let [region] = regions(&fleet, 0)[..] else { panic!("one region") };
@@ -164,16 +177,156 @@ fn null_pointers_are_told() {
 }
 
 #[test]
-fn a_full_table_is_told_and_empty() {
+fn a_full_table_is_told_and_is_none() {
     let agents = [agent(0.0), agent(0.5), agent(1.0)];
     for (entries, pieces) in [(2, 8), (8, 2)] {
         let mut fleet = fleet(&memory(3, entries, pieces), &agents);
         assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::TableFull);
-        assert_eq!(regions(&fleet, 0), []);
+        assert_eq!(not_built(&fleet), [PcrStatus::NotBuilt; 4]);
     }
     let mut fleet = fleet(&memory(3, 3, 3), &agents);
     for _ in 0..3 {
         assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok, "as often as one likes");
         assert_eq!(regions(&fleet, 0).len(), 2);
     }
+}
+
+#[test]
+fn a_table_without_an_agent_that_was_added_answers_nothing() {
+    let crossing = agent(std::f32::consts::FRAC_PI_2);
+    let mut fleet = fleet(&memory(3, 4, 4), &[agent(0.0)]);
+    assert_eq!(not_built(&fleet), [PcrStatus::NotBuilt; 4], "never built");
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    assert_eq!(regions(&fleet, 0), [], "there is nobody else");
+    assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&crossing)), PcrStatus::Ok);
+    assert_eq!(not_built(&fleet), [PcrStatus::NotBuilt; 4], "added since");
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    assert_eq!(regions(&fleet, 0).len(), 1);
+}
+
+/// A fleet of agents through the origin at these angles, built.
+fn star(agents: &[PcrAgent]) -> PcrFleet {
+    let mut fleet = fleet(&memory(agents.len() + 1, 16, 32), agents);
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    fleet
+}
+
+fn table(fleet: &PcrFleet) -> Vec<PcrRegion> {
+    (0..pcr_fleet_agents(Some(fleet))).flat_map(|ego| regions(fleet, ego)).collect()
+}
+
+#[test]
+fn replaced_agents_have_the_table_of_a_fleet_that_was_added_so() {
+    let legs = [LEGS[0], PcrLeg { curve: PCR_LEFT, length: 1.0, radius: 1.0 }];
+    let bent = |heading| PcrAgent { legs: legs.as_ptr(), leg_count: 2, ..agent(heading) };
+    let mut agents = [agent(0.0), agent(0.7), agent(1.4), agent(2.1)];
+    let mut fleet = star(&agents);
+    // More often than there is memory for without giving any back.
+    for round in 0..40 {
+        let (index, heading) = (round * 7 % 4, round as f32 * 0.3);
+        let by = if round % 3 == 0 { bent(heading) } else { agent(heading) };
+        assert_eq!(pcr_fleet_replace(Some(&mut fleet), index, Some(&by)), PcrStatus::Ok, "round {round}");
+        agents[index] = by;
+        assert_eq!(table(&fleet), table(&star(&agents)), "round {round}");
+    }
+    let before = table(&fleet);
+    let flat = PcrAgent { radius: 0.0, ..agent(0.0) };
+    assert_eq!(pcr_fleet_replace(Some(&mut fleet), 0, Some(&flat)), PcrStatus::NonPositive);
+    assert_eq!(pcr_fleet_replace(Some(&mut fleet), 4, Some(&agent(0.0))), PcrStatus::NoSuchAgent);
+    assert_eq!(pcr_fleet_replace(Some(&mut fleet), 0, None), PcrStatus::Null);
+    let long = [LEGS[0]; 11];
+    let long = PcrAgent { legs: long.as_ptr(), leg_count: long.len(), ..agent(0.0) };
+    assert_eq!(pcr_fleet_replace(Some(&mut fleet), 0, Some(&long)), PcrStatus::NoRoom);
+    assert_eq!(table(&fleet), before);
+}
+
+#[test]
+fn a_replaced_agent_that_fills_the_table_changes_nothing() {
+    let apart = PcrAgent { y: 50.0, ..agent(0.0) };
+    let mut fleet = fleet(&memory(4, 1, 1), &[agent(0.0), agent(0.7), apart]);
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    let before = table(&fleet);
+    assert_eq!(pcr_fleet_replace(Some(&mut fleet), 2, Some(&agent(1.4))), PcrStatus::TableFull);
+    assert_eq!(table(&fleet), before);
+}
+
+#[test]
+fn an_agent_gets_out_of_the_way_by_the_least_delay() {
+    let mut fleet = star(&[agent(0.0), agent(std::f32::consts::FRAC_PI_2)]);
+    let first = |fleet: &PcrFleet, touches| {
+        let (mut met, mut found) = (PcrMet::default(), false);
+        let asked = pcr_fleet_first_conflict(Some(fleet), 1, touches, Some(&mut met), Some(&mut found));
+        assert_eq!(asked, PcrStatus::Ok);
+        found.then_some(met)
+    };
+    let met = first(&fleet, false).expect("a conflict");
+    assert!(met.other == 0 && (met.conflict.depth - 0.5).abs() < 3e-5 && !met.conflict.touching, "{met:?}");
+    let mut delay = 0.0;
+    assert_eq!(pcr_fleet_earliest_start(Some(&fleet), 1, 0.0, Some(&mut delay)), PcrStatus::Ok);
+    // The discs pass at half a metre: 1 / sqrt(2) s at 1 m/s.
+    assert!((delay - 0.5_f32.sqrt()).abs() < 1e-3, "{delay}");
+    assert_eq!(pcr_fleet_delay(Some(&mut fleet), 1, delay), PcrStatus::Ok);
+    assert_eq!(first(&fleet, false), None, "at most a touch");
+    // Whoever asks for touches is told of them, not of nothing.
+    assert!(first(&fleet, true).is_none_or(|met| met.conflict.touching));
+    for (from, expected) in [(f32::NAN, PcrStatus::NonFinite), (1e7, PcrStatus::OutOfRange)] {
+        assert_eq!(pcr_fleet_earliest_start(Some(&fleet), 1, from, Some(&mut delay)), expected);
+    }
+    // One that stands in the way for good.
+    let standing = PcrAgent { x: 0.0, y: 0.0, legs: null(), leg_count: 0, ..agent(0.0) };
+    let blocked = star(&[agent(0.0), standing]);
+    assert_eq!(pcr_fleet_earliest_start(Some(&blocked), 0, 0.0, Some(&mut delay)), PcrStatus::NoPlan);
+    assert_eq!(pcr_fleet_earliest_start(Some(&blocked), 2, 0.0, Some(&mut delay)), PcrStatus::NoSuchAgent);
+}
+
+#[test]
+fn the_times_that_are_safe_leave_out_those_of_the_other() {
+    let fleet = star(&[agent(0.0), agent(std::f32::consts::FRAC_PI_2)]);
+    let (middle, all) = (PcrInterval { lo: 2.0, hi: 2.0 }, PcrInterval { lo: 0.0, hi: 9.0 });
+    let (mut safe, mut count) = ([PcrInterval::default(); 4], 0);
+    let mut ask = |ego, length, during, capacity| {
+        pcr_fleet_safe_intervals(Some(&fleet), ego, length, during, safe.as_mut_ptr(), capacity, Some(&mut count))
+    };
+    assert_eq!(ask(0, middle, all, 1), PcrStatus::BufferTooSmall);
+    assert_eq!(ask(2, middle, all, 4), PcrStatus::NoSuchAgent);
+    assert_eq!(ask(0, middle, PcrInterval { lo: 1.0, hi: 0.0 }, 4), PcrStatus::OutOfRange);
+    assert_eq!(ask(0, PcrInterval { lo: f32::NAN, hi: 0.0 }, all, 4), PcrStatus::NonFinite);
+    assert_eq!(ask(0, middle, all, 4), PcrStatus::Ok);
+    assert!(count == 2 && near(safe[0], 0.0, 2.0) && near(safe[1], 3.0, 9.0), "{safe:?}");
+}
+
+#[test]
+fn a_plan_delays_the_fleet_and_none_leaves_it() {
+    let mut fleet = star(&[agent(0.0), agent(0.7), agent(1.4)]);
+    let mut room = [PcrMotion::EMPTY; 3];
+    let mut plan = |fleet: &mut PcrFleet, order: &mut [usize], rooms, why: &mut PcrUnsolved| {
+        pcr_fleet_plan_delays(Some(fleet), order.as_mut_ptr(), order.len(), room.as_mut_ptr(), rooms, Some(why))
+    };
+    let conflicts = |fleet: &PcrFleet| {
+        let mut found = [false; 3];
+        for (ego, found) in found.iter_mut().enumerate() {
+            let asked = pcr_fleet_first_conflict(Some(fleet), ego, false, Some(&mut PcrMet::default()), Some(found));
+            assert_eq!(asked, PcrStatus::Ok);
+        }
+        found
+    };
+    let mut why = PcrUnsolved { reason: PcrReason::Times, agents: [7; 2] };
+    assert_eq!(conflicts(&fleet), [true; 3]);
+    for order in [&mut [0, 1][..], &mut [0, 1, 1], &mut [0, 1, 3], &mut [0, 1, 2, 2]] {
+        assert_eq!(plan(&mut fleet, order, 3, &mut why), PcrStatus::BadOrder, "{order:?}");
+    }
+    assert_eq!(plan(&mut fleet, &mut [2, 0, 1], 2, &mut why), PcrStatus::NoRoom);
+    assert_eq!((conflicts(&fleet), why.agents), ([true; 3], [7; 2]));
+    assert_eq!(plan(&mut fleet, &mut [2, 0, 1], 3, &mut why), PcrStatus::Ok);
+    assert_eq!((conflicts(&fleet), why.agents), ([false; 3], [7; 2]));
+
+    let standing = PcrAgent { x: 0.0, y: 0.0, legs: null(), leg_count: 0, ..agent(0.0) };
+    let mut blocked = star(&[agent(0.0), standing]);
+    let before = table(&blocked);
+    assert_eq!(plan(&mut blocked, &mut [0, 1], 2, &mut why), PcrStatus::NoPlan);
+    assert_eq!(why, PcrUnsolved { reason: PcrReason::Always, agents: [1, 0] });
+    assert_eq!(table(&blocked), before);
+    let mut unbuilt = star(&[agent(0.0)]);
+    assert_eq!(pcr_fleet_add(Some(&mut unbuilt), Some(&agent(0.7))), PcrStatus::Ok);
+    assert_eq!(plan(&mut unbuilt, &mut [0, 1], 2, &mut why), PcrStatus::NotBuilt);
 }

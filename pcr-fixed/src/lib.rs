@@ -12,7 +12,7 @@
 //! Speeds and accelerations have the same digits, in m/s and m/s². Angles are [`Turns`]: 32-bit fractions of a turn, which
 //! wrap as angles do. Whatever does not fit is refused by the constructors of `pcr-core`; afterwards nothing overflows.
 //! `docs/errors-fixed.md` has the bounds of its sums, `docs/errors.md` that on the regions: they contain the exact ones,
-//! and lie within those of a radius that is larger by 10 last digits and one for each arc ([`pcr_core::excess`]).
+//! and lie within those of a radius that is larger by 16 last digits and one for each arc ([`pcr_core::excess`]).
 //!
 //! ```
 //! use pcr_core::{Limits, Motion, Path, Point, Pose, Profile};

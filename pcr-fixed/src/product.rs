@@ -52,8 +52,8 @@ impl<const F: u32> Wide<Q<F>> for Product<F> {
         Q::from_bits(root.min(i32::MAX as u32) as i32)
     }
     fn narrow(self) -> Q<F> {
-        /// Four times the limit: two such numbers can be added.
-        const MOST: i64 = 1 << 30;
+        /// Twice the limit, as a quotient: three such numbers can be added.
+        const MOST: i64 = 1 << 29;
         // Half a last digit is added after all other digits are gone, where it cannot overflow.
         let nearest = ((self.0 >> (F - 1)) + 1) >> 1;
         Q::from_bits(nearest.clamp(-MOST, MOST) as i32)

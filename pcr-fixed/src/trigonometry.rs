@@ -22,7 +22,7 @@ fn scaled<const SHIFT: u32>(a: i32, z: u32) -> i32 {
     ((i64::from(a) * i64::from(z) + (1 << (SHIFT - 1))) >> SHIFT) as i32
 }
 
-/// Sine and cosine of an angle in 2⁻³² of a turn, times 2³⁰: right to 1.2 · 2⁻³¹.
+/// Sine and cosine of an angle in 2⁻³² of a turn, times 2³⁰: right to 1.18 · 2⁻³⁰, and to 1.51 · 2⁻³⁰ as a vector (all angles: docs/errors.md).
 ///
 /// Ten products.
 pub(crate) fn sin_cos(angle: i32) -> (i32, i32) {

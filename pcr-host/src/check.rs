@@ -3,9 +3,10 @@
 //! The types are the JSON output, field for field in this order. All motions run from the earliest start to the latest
 //! arrival; every agent stands at its start before and at its end after its motion.
 
+use crate::certify::Proof;
 use crate::fleet::{Format, Refused};
 use crate::footprint::{Bodies, Disced};
-use crate::scenario::Scenario;
+use crate::scenario::{Labels, Scenario};
 use pcr_core::{Encounter, Interval, Motion};
 use serde::Serialize;
 
@@ -14,13 +15,21 @@ use serde::Serialize;
 pub struct Verdict {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// Sorted by their begin, then by the agents.
     pub conflicts: Vec<Conflict>,
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
+    /// What an independent checker has proved, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
     /// Why the scenario was refused.
     pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// Two discs in contact, from begin to end. What is deeper than [`Encounter::tolerance`] is always there, what is
@@ -110,12 +119,37 @@ impl Verdict {
         }
         // Stable: those that begin together stay in the order of the agents.
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
-        Ok(Self { name: scenario.name.clone(), conflicts, closest: closest.then_some(nearest), error: None })
+        Ok(Self {
+            name: scenario.name.clone(),
+            labels: Labels::of(scenario),
+            conflicts,
+            closest: closest.then_some(nearest),
+            certificate: None,
+            warnings: scenario.warnings.clone(),
+            error: None,
+        })
+    }
+
+    /// The same with a certificate.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Refused> {
+        let certificate = Some(Proof::of::<S>(scenario)?);
+        Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
     }
 
     /// No answer, and why.
     pub fn refused(name: &str, error: String) -> Self {
-        Self { name: name.to_owned(), conflicts: Vec::new(), closest: None, error: Some(error) }
+        Self {
+            name: name.to_owned(),
+            labels: Labels::default(),
+            conflicts: Vec::new(),
+            closest: None,
+            certificate: None,
+            warnings: Vec::new(),
+            error: Some(error),
+        }
     }
 }
 

@@ -1,27 +1,36 @@
 //! The commands of the tool, a file each: their arguments, what they do with them, and how that may end.
 
+mod certify;
 mod check;
 mod compare;
+mod completions;
+mod demo;
 mod evaluate;
+mod help;
 mod import;
 mod locks;
 mod map;
+mod nodes;
 mod number;
-mod overview;
 mod plan;
+mod printed;
 mod regions;
 mod simulate;
+mod sources;
 mod traffic;
 mod work;
 
-use clap::{Parser, Subcommand, ValueEnum};
-use pcr_host::import::{Options, Warnings};
-use pcr_host::input::{self, InputError};
-use pcr_host::paper;
+use clap::{Parser, Subcommand};
+use pcr_host::import::Warnings;
+use pcr_host::input::InputError;
 use pcr_host::regions::Failure;
-use pcr_host::scenario::Scenario;
+use pcr_host::{output, progress};
+pub(crate) use printed::complain;
+use printed::{Form, Printed, quiet};
+use sources::{scenario, sources};
+use std::ffi::OsString;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Exit status: a plan that collides, or no plan.
@@ -34,27 +43,29 @@ const NOT_WRITTEN: u8 = 3;
 const STATUSES: &str = "\
 Exit status:
   0  done
-  2  wrong arguments, or a scenario that cannot be read or was refused (one line of JSON Lines is enough)
+  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
   pcr                                      the paper's 12 agents: its tables beside ours, pictures in pcr-out/
   pcr regions fleet.json                   what every agent has to keep out of, as a table
-  pcr regions fleet.json --format json     the same for programs
+  pcr regions fleet.json --json            the same for programs
   pcr map fleet.json -o pictures           the same as pictures
   pcr check fleet.json                     whether the agents collide, moving as the file says
   pcr plan fleet.json -o plan.json         later starts, so that they do not
-  pcr simulate -o replay.html              robots in closed loop, with noise and delays, and a page to watch them";
+  pcr plan fleet.json -o - | pcr check     through a pipe: without a FILE, scenarios come from standard input";
 
-/// Exact collision regions of discs on line/arc paths.
+/// Exact collision regions of discs on paths of lines and arcs.
 ///
-/// Agents are discs that move on given paths of lines and arcs. pcr computes, for each of them, at what times it must
-/// not be where on its path because of each other one: in closed form, without sampling. Without a command it shows
-/// the paper's simulation of 12 agents and draws it to pcr-out/.
+/// Agents are discs that move on given paths. pcr computes, for each of them, at what times it must not be where on
+/// its path because of each other one: in closed form, without sampling. Without a command it shows the paper's 12 agents.
 #[derive(Parser)]
-#[command(name = "pcr", version, about, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(crate) struct Arguments {
+    /// No tables, warnings or progress; only errors, JSON and CSV
+    #[arg(short, long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -62,50 +73,65 @@ pub(crate) struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Regions(regions::Arguments),
+    Certify(certify::Arguments),
     Check(check::Arguments),
     Plan(plan::Arguments),
-    Simulate(Box<simulate::Arguments>),
-    Compare(compare::Arguments),
-    Evaluate(evaluate::Arguments),
     Map(map::Arguments),
+    Simulate(Box<simulate::Arguments>),
     Locks(locks::Arguments),
     Traffic(traffic::Arguments),
+    Nodes(nodes::Arguments),
     Import(import::Arguments),
+    Compare(compare::Arguments),
+    Evaluate(evaluate::Arguments),
+    Demo(demo::Arguments),
+    Completions(completions::Shells),
+    Man(completions::Manual),
 }
 
-impl Arguments {
-    /// Does what is asked for.
-    pub(crate) fn run(self) -> Result<ExitCode, Stop> {
-        match self.command {
-            None => overview::run(),
-            Some(Command::Regions(arguments)) => arguments.run(),
-            Some(Command::Check(arguments)) => arguments.run(),
-            Some(Command::Plan(arguments)) => arguments.run(),
-            Some(Command::Simulate(arguments)) => arguments.run(),
-            Some(Command::Compare(arguments)) => arguments.run(),
-            Some(Command::Evaluate(arguments)) => arguments.run(),
-            Some(Command::Map(arguments)) => arguments.run(),
-            Some(Command::Locks(arguments)) => arguments.run(),
-            Some(Command::Traffic(arguments)) => arguments.run(),
-            Some(Command::Import(arguments)) => arguments.run(),
-        }
+/// Does what the words of the command line ask for.
+pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
+    survive_limits();
+    let Some(arguments) = help::parse(words)? else { return Ok(ExitCode::SUCCESS) };
+    if arguments.quiet {
+        printed::be_quiet();
+        progress::silence();
+    }
+    match arguments.command {
+        None => demo::Arguments::default().run(),
+        Some(Command::Regions(arguments)) => arguments.run(),
+        Some(Command::Certify(arguments)) => arguments.run(),
+        Some(Command::Check(arguments)) => arguments.run(),
+        Some(Command::Plan(arguments)) => arguments.run(),
+        Some(Command::Map(arguments)) => arguments.run(),
+        Some(Command::Simulate(arguments)) => arguments.run(),
+        Some(Command::Locks(arguments)) => arguments.run(),
+        Some(Command::Traffic(arguments)) => arguments.run(),
+        Some(Command::Nodes(arguments)) => arguments.run(),
+        Some(Command::Import(arguments)) => arguments.run(),
+        Some(Command::Compare(arguments)) => arguments.run(),
+        Some(Command::Evaluate(arguments)) => arguments.run(),
+        Some(Command::Demo(arguments)) => arguments.run(),
+        Some(Command::Completions(arguments)) => arguments.run(),
+        Some(Command::Man(arguments)) => arguments.run(),
     }
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Form {
-    /// For reading
-    Table,
-    /// One object a scenario
-    Json,
-    /// One line a region or conflict
-    Csv,
+/// A limit on the size of files is an error of a write, with its message, and no signal that ends the program.
+fn survive_limits() {
+    #[cfg(unix)]
+    {
+        // Where the signal cannot be caught, it ends the program as it does others; no file is damaged by that.
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
+    }
 }
 
 /// Why the tool stops.
 pub(crate) enum Stop {
     /// With a message and an exit status.
     Error(String, u8),
+    /// The arguments are wrong.
+    Usage(Box<clap::Error>),
     /// The reader of the output has seen enough.
     Closed,
 }
@@ -133,13 +159,15 @@ impl From<io::Error> for Stop {
 }
 
 impl Stop {
-    /// Something wrong with a file, or with the paper's scenario.
-    fn wrong(file: Option<&Path>, problem: impl std::fmt::Display) -> Self {
-        let message = match file {
-            Some(file) => format!("{}: {problem}", file.display()),
-            None => problem.to_string(),
-        };
-        Self::Error(message, WRONG_INPUT)
+    /// Wrong arguments that only the command itself can tell.
+    fn arguments(problem: impl Into<String>) -> Self {
+        Self::Error(problem.into(), WRONG_INPUT)
+    }
+
+    /// Something wrong with a file.
+    fn wrong(file: &Path, problem: impl std::fmt::Display) -> Self {
+        let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };
+        Self::Error(format!("{name}: {problem}"), WRONG_INPUT)
     }
 
     /// A file or directory that could not be written.
@@ -148,36 +176,27 @@ impl Stop {
     }
 }
 
-/// A message on standard error. Where that is closed, the exit status has to do.
-pub(crate) fn complain(message: &str) {
-    let _ = writeln!(io::stderr(), "pcr: {message}");
-}
-
-fn paper12() -> Result<Scenario, Stop> {
-    Scenario::from_json(paper::SCENARIO).map_err(|error| Stop::Error(error.to_string(), WRONG_INPUT))
-}
-
-/// The scenario in a file, in whatever format, or the paper's; warnings about it are told.
-fn scenario(file: Option<&Path>, import: &Options) -> Result<Scenario, Stop> {
-    let mut scenario = match file {
-        None => paper12()?,
-        Some(file) => {
-            let (scenario, warnings) = input::read(file, import)?;
-            warn(file, &warnings);
-            scenario
-        }
-    };
-    scenario.give_margin(import.margin.unwrap_or(0.0));
-    Ok(scenario)
-}
-
 fn warn(file: &Path, warnings: &Warnings) {
+    if quiet() {
+        return;
+    }
+    let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };
     for line in warnings.lines() {
-        complain(&format!("warning: {}: {line}", file.display()));
+        complain(&format!("warning: {name}: {line}"));
     }
 }
 
-/// Writes a scenario file.
-fn write_to(output: &Path, scenario: &Scenario) -> Result<(), Stop> {
-    std::fs::write(output, scenario.to_json()).map_err(|error| Stop::not_written(output, &error))
+/// Whether an output is standard output.
+fn is_standard(output: Option<&PathBuf>) -> bool {
+    output.is_some_and(|output| output == Path::new("-"))
+}
+
+/// Writes a file, or standard output for `-`.
+fn write_to(output: &Path, content: &str) -> Result<(), Stop> {
+    if output == Path::new("-") {
+        let mut out = io::stdout().lock();
+        out.write_all(content.as_bytes())?;
+        return Ok(out.flush()?);
+    }
+    output::write(output, content).map_err(|error| Stop::not_written(output, &error))
 }

@@ -140,6 +140,12 @@ pub(crate) enum Answer<'a> {
     Conflicts(Vec<Found>),
 }
 
+/// An answer, or why there is none.
+pub(crate) type Outcome<'f> = Result<Answer<'f>, String>;
+
+/// Why a method has no answer that can have one for other fleets.
+const BEYOND: &str = "this fleet is beyond what it can hold";
+
 /// A way to find collisions.
 pub(crate) trait Method: Sync {
     /// With resolution or format.
@@ -156,10 +162,10 @@ pub(crate) trait Method: Sync {
     fn missing(&self) -> Option<&'static str> {
         None
     }
-    /// The answer; `None` for a fleet beyond its limits.
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>>;
+    /// The answer, or why there is none: a fleet beyond its limits, or a program that failed.
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f>;
     /// The time that the answer takes \[s\], and the answer.
-    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
+    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Outcome<'f>) {
         let clock = if self.is_parallel() { Stopwatch::wall } else { Stopwatch::elapsed };
         steady(clock, || self.answer(black_box(field)))
     }

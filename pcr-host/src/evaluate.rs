@@ -22,6 +22,7 @@ mod traffic;
 
 use crate::compare::Effort;
 use crate::import::{self, Format, Imported, Options, Warnings};
+use crate::output;
 use crate::regions::Failure;
 use crate::scenario::Scenario;
 use std::path::{Path, PathBuf};
@@ -60,6 +61,8 @@ pub enum Problem {
     File(PathBuf, String),
     /// Of a fleet.
     Fleet(Failure),
+    /// Of a method that has no answer, by its name.
+    Method(String, String),
 }
 
 impl fmt::Display for Problem {
@@ -67,6 +70,7 @@ impl fmt::Display for Problem {
         match self {
             Self::File(path, problem) => write!(f, "{}: {problem}", path.display()),
             Self::Fleet(failure) => failure.fmt(f),
+            Self::Method(name, reason) => write!(f, "{name}: {reason}"),
         }
     }
 }
@@ -128,8 +132,8 @@ pub fn write(
     files.insert(0, (directory.join("evaluation.md"), text));
     let written = files.into_iter().map(|(path, content)| {
         let write = || {
-            fs::create_dir_all(path.parent().unwrap_or(directory))?;
-            fs::write(&path, content)
+            output::folder(path.parent().unwrap_or(directory))?;
+            output::write(&path, content)
         };
         write().map_err(|error: io::Error| Problem::File(path.clone(), format!("cannot be written: {error}")))?;
         Ok(path)

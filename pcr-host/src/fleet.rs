@@ -10,6 +10,7 @@ mod tests;
 
 use crate::import::TURN;
 use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
+use pcr_certify::data::Angle;
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
     Scalar, Segment, Turn,
@@ -30,10 +31,17 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     fn angle(radians: f64) -> Self::Angle;
     /// The exact angle \[rad\].
     fn radians(angle: Self::Angle) -> f64;
+    /// The angle as the format holds it.
+    fn held_angle(angle: Self::Angle) -> Angle {
+        Angle::Radians(Self::radians(angle))
+    }
+    /// By how much of itself a sum may be rounded, twice: 0 in a format that adds exactly.
+    const EPSILON: f64;
 }
 
 impl Format for f64 {
     const NAME: &'static str = "f64";
+    const EPSILON: f64 = f64::EPSILON;
     fn from_f64(value: f64) -> Self {
         value
     }
@@ -50,6 +58,7 @@ impl Format for f64 {
 
 impl Format for f32 {
     const NAME: &'static str = "f32";
+    const EPSILON: f64 = f32::EPSILON as f64;
     fn from_f64(value: f64) -> Self {
         value as f32
     }
@@ -68,7 +77,7 @@ impl Format for f32 {
 /// Why an agent of a scenario does not fit a number format: agent, segment, field, value and what is allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
-    agent: u64,
+    agent: String,
     part: Option<(&'static str, usize)>,
     format: &'static str,
     problem: String,
@@ -104,6 +113,7 @@ fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
+        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:?}", S::LEAST),
         reason => reason.to_string(),
     }
 }
@@ -120,6 +130,9 @@ struct Parts<S: Scalar> {
     segments: Vec<Segment<S>>,
     /// Place of each segment in the scenario: zero lengths are left out there, arcs over one turn are split.
     sources: Vec<usize>,
+    heading: S::Angle,
+    /// Turns in place, each before the segment of this place.
+    turns: Vec<(usize, S::Angle)>,
     phases: Vec<Phase<S>>,
     radius: S,
     margin: S,
@@ -133,7 +146,7 @@ impl<S: Format> Fleet<S> {
     /// [`Refused`] where a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
-            let refused = |(part, problem)| Refused { agent: agent.id, part, format: S::NAME, problem };
+            let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
             Parts::new(agent).map_err(refused)
         });
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })
@@ -142,7 +155,14 @@ impl<S: Format> Fleet<S> {
     /// The motions, in the order of the scenario.
     pub fn motions(&self) -> Vec<Motion<'_, S>> {
         // `Parts::new` has built each of them once.
-        self.agents.iter().filter_map(|parts| parts.motion().ok()).collect()
+        let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
+        debug_assert_eq!(motions.len(), self.agents.len());
+        motions
+    }
+
+    /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.
+    pub(crate) fn headings(&self, agent: usize) -> Option<(S::Angle, &[(usize, S::Angle)])> {
+        self.agents.get(agent).map(|parts| (parts.heading, &parts.turns[..]))
     }
 
     /// Place in the scenario (from 0) of a segment of an agent's motion; `None` for the point of an agent that stands.
@@ -161,13 +181,14 @@ fn of_agent(problem: String) -> Fault {
 
 impl<S: Format> Parts<S> {
     fn new(agent: &Agent) -> Result<Self, Fault> {
-        let (segments, sources) = place(agent)?;
+        let Route { segments, sources, turns } = place(agent)?;
         let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
         let phases = phases(agent, path.length())?;
         let radius = number("radius", agent.reach()).map_err(of_agent)?;
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
         let margin = number("margin", agent.margin).map_err(of_agent)?;
-        let parts = Self { segments, sources, phases, radius, margin, start };
+        let heading = S::angle(agent.start[2]);
+        let parts = Self { segments, sources, heading, turns, phases, radius, margin, start };
         match parts.motion() {
             Ok(_) => Ok(parts),
             Err(reason) => Err(of_agent(derived::<S>(reason))),
@@ -180,29 +201,36 @@ impl<S: Format> Parts<S> {
     }
 }
 
-/// The segments of a path, placed one after the other, and the place of each in the scenario.
-fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Fault> {
+/// The segments of a path, placed one after the other, the place of each in the scenario, and turns in place.
+struct Route<S: Scalar> {
+    segments: Vec<Segment<S>>,
+    sources: Vec<usize>,
+    turns: Vec<(usize, S::Angle)>,
+}
+
+fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
     let [x, y, heading] = agent.start;
     let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
     let pose = Pose { position, heading: S::angle(heading) };
     let mut origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
-    let (mut segments, mut sources) = (Vec::<Segment<S>>::new(), Vec::new());
+    let (mut segments, mut sources, mut turns) = (Vec::<Segment<S>>::new(), Vec::new(), Vec::new());
     for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
         let at = |problem| (Some(("segment", source)), problem);
         if let Some(sweep) = turn_in_place::<S>(segment) {
             let last = segments.last_mut().unwrap_or(&mut origin);
             *last = last.turned(S::angle(sweep)).map_err(|reason| at(derived::<S>(reason)))?;
+            turns.push((segments.len(), S::angle(sweep)));
             continue;
         }
-        let turns = segment.turns();
+        let whole = segment.turns();
         let curve = match *segment {
             PathSegment::Line { .. } => None,
             PathSegment::Arc { radius, sweep } => {
                 Some((number("radius", radius).map_err(at)?, if sweep > 0.0 { Turn::Left } else { Turn::Right }))
             }
         };
-        let length = number("length", segment.length() / turns).map_err(at)?;
-        for _ in 0..turns as usize {
+        let length = number("length", segment.length() / whole).map_err(at)?;
+        for _ in 0..whole as usize {
             let last = segments.last().unwrap_or(&origin);
             let next = match curve {
                 None => last.then_line(length),
@@ -215,7 +243,7 @@ fn place<S: Format>(agent: &Agent) -> Result<(Vec<Segment<S>>, Vec<usize>), Faul
     if segments.is_empty() {
         segments.push(origin);
     }
-    Ok((segments, sources))
+    Ok(Route { segments, sources, turns })
 }
 
 /// The angle of a turn in place \[rad\], in a format that has no lengths as small as its radius.
@@ -311,7 +339,7 @@ pub(crate) fn table_of<S: Scalar>(
 ) -> Result<HostEcm<S>, Full> {
     grown(storage, |regions, pieces| {
         let mut ecm = Ecm::new(regions, pieces);
-        ecm.insert(motions, agent).map(|()| ecm)
+        ecm.fill_row(motions, agent).map(|()| ecm)
     })
 }
 

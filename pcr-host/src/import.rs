@@ -20,11 +20,14 @@
 //! speed       the fastest motion under changing limits
 //! route       the shortest way between nodes, corners rounded
 //! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
+//! names       names that tell apart what a file gives one name
+//! useful      which of them do something with which files                  Kind
 //! warnings    what was wrong and was read nevertheless                     Warnings
 //! ```
 //!
-//! A reader leaves out what it cannot use and warns about it by name; where nothing useful is left, or a path would
-//! be wrong, it refuses with an [`ImportError`]. No input makes it panic.
+//! What is in a file is in what is read, or the file is refused with an [`ImportError`] that names all that would be left out;
+//! with [`Options::partial`] it is left out. What is read otherwise than it is written is warned about, and the warnings go into
+//! the answers. No input makes it panic.
 
 mod biarc;
 mod ccbs;
@@ -32,6 +35,7 @@ mod factsheet;
 mod layout;
 mod lif;
 mod loads;
+mod names;
 mod nav2;
 mod nurbs;
 mod opendrive;
@@ -43,6 +47,7 @@ mod speed;
 mod timed;
 mod trace;
 mod trajectory;
+mod useful;
 mod value;
 mod vda5050;
 mod vehicle;
@@ -52,7 +57,8 @@ mod xml;
 pub use layout::{Edge, Id, Layout, Node, Placed};
 pub(crate) use route::{Step, cheapest, ride, turn};
 pub use trace::{KINK, TURN};
-pub use vehicle::{CORNER_RADIUS, Options, TOLERANCE, Vehicle};
+pub use useful::Kind;
+pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
 
 use crate::scenario::{Agent, Scenario};
@@ -61,6 +67,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::{fmt, fs};
 use vehicle::Given;
+use warnings::listed;
 
 /// Formats of files that are not scenarios.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -208,19 +215,37 @@ fn imported(
     }
     let given = given(options, warnings)?;
     let vehicle = options.vehicle(&given, moves, warnings);
-    let layout = match format {
-        Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings)?,
-        Format::Lif => lif::read(text, options, warnings)?,
-        Format::Rmf => rmf::read(text, options, warnings)?,
-        Format::OpenDrive => opendrive::read(text, options, warnings)?,
-        Format::OpenTcs => opentcs::read(text, options, warnings)?,
-        Format::Ccbs => ccbs::roadmap(text, options, warnings)?,
-        Format::Path => return Err(ImportError::new("paths of agents are not a layout")),
-        Format::Vda5050 => return Err(ImportError::new("an order or a state is not a layout")),
-    };
+    let mut layout = whole(options, warnings, |warnings| match format {
+        Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings),
+        Format::Lif => lif::read(text, options, warnings),
+        Format::Rmf => rmf::read(text, options, warnings),
+        Format::OpenDrive => opendrive::read(text, options, warnings),
+        Format::OpenTcs => opentcs::read(text, options, warnings),
+        Format::Ccbs => ccbs::roadmap(text, options, warnings),
+        Format::Path => Err(ImportError::new("paths of agents are not a layout")),
+        Format::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
+    })?;
     let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
     report(&off, warnings);
+    layout.warnings = warnings.all();
     Ok(Imported { layout, vehicle })
+}
+
+/// What a reader reads, if it leaves out nothing or that is asked for.
+fn whole<T>(
+    options: &Options,
+    warnings: &mut Warnings,
+    read: impl FnOnce(&mut Warnings) -> Result<T, ImportError>,
+) -> Result<T, ImportError> {
+    let before = warnings.lost().len();
+    let outcome = read(warnings);
+    match &warnings.lost()[before..] {
+        // What would be left out says more than what is missing without it.
+        lost if !lost.is_empty() && !options.partial => {
+            Err(ImportError::new(format!("{}; --partial leaves that out", listed(lost, "; "))))
+        }
+        _ => outcome,
+    }
 }
 
 /// Deviation that goes without saying \[m\].
@@ -287,7 +312,7 @@ pub fn scenario(
     if is_empty(text) {
         return Err(ImportError::new("empty"));
     }
-    let scenario = match format {
+    let mut scenario = match format {
         Format::Ccbs if xml::root_of(text) != Some("graphml") => plan(text, options, warnings)?,
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
@@ -300,12 +325,13 @@ pub fn scenario(
                 let radii = vec![vehicle.radius; scenario.agents.len()];
                 (scenario, radii)
             } else {
-                vda5050::read(text, options, &vehicle, warnings)?
+                whole(options, warnings, |warnings| vda5050::read(text, options, &vehicle, warnings))?
             };
             report_agents(&scenario, &radii, warnings);
             scenario
         }
     };
+    scenario.warnings = warnings.all();
     checked(&scenario)
 }
 

@@ -1,10 +1,13 @@
 //! Where scenarios come from, and errors that say where the fault is.
 
-use crate::import::{self, Format, ImportError, Imported, Options, Warnings};
+mod lines;
+
+use crate::import::{self, Format, ImportError, Imported, Kind, Options, Warnings};
 use crate::scenario::{Scenario, ScenarioError};
+pub use lines::{Line, Lines};
 use std::fmt;
 use std::fs;
-use std::io::{self, BufRead, Read};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// Why there is no scenario.
@@ -21,10 +24,12 @@ pub enum InputError {
     Foreign(Option<PathBuf>, Format, ImportError),
     /// It has to be a layout, and is none that is known, or (`true`) empty.
     NoLayout(Option<PathBuf>, bool),
+    /// It has to be a layout, and is a scenario.
+    IsScenario(Option<PathBuf>),
     /// It cannot be read together with others.
     Single(Option<PathBuf>),
-    /// It is a scenario, which has routes and vehicles of its own.
-    HasAgents(Option<PathBuf>),
+    /// An option does nothing with such a file, and why.
+    Useless(Option<PathBuf>, &'static str, &'static str),
 }
 
 impl fmt::Display for InputError {
@@ -44,13 +49,10 @@ impl fmt::Display for InputError {
             Self::Single(file) => {
                 write!(f, "{}: only orders and states of VDA 5050, or paths, may be several files", name(file))
             }
-            Self::HasAgents(file) => {
-                write!(
-                    f,
-                    "{}: a scenario has its own vehicles and paths; options for layouts are of no use",
-                    name(file)
-                )
+            Self::IsScenario(file) => {
+                write!(f, "{}: this is a scenario, with paths of its own; a layout is expected", name(file))
             }
+            Self::Useless(file, option, why) => write!(f, "{}: {option} is of no use: {why}", name(file)),
         }
     }
 }
@@ -74,8 +76,23 @@ fn text(file: &Path) -> Result<(Option<PathBuf>, String), InputError> {
     }
 }
 
+/// The name of a file as far as answers carry it that have no other: without its folder and its extensions. Empty for `-`.
+pub fn stem(file: &Path) -> String {
+    let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let known = [".lif", ".building", ".planview"];
+    let stem = known.iter().find_map(|extension| stem.strip_suffix(extension)).unwrap_or(&stem);
+    if stem == "-" { String::new() } else { stem.to_owned() }
+}
+
+/// A name, else the stem of the file.
+fn or_stem(name: &mut String, file: &Path) {
+    if name.is_empty() {
+        *name = stem(file);
+    }
+}
+
 /// The scenario in a file, or on standard input for `-`: a scenario file, or another format by its name or
-/// as the options say; with the warnings of the reader.
+/// as the options say; with the warnings of the reader. One without a name has that of the file.
 ///
 /// # Errors
 /// [`InputError`], naming the file and, for a refused scenario, the line.
@@ -83,16 +100,56 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
     let (name, text) = text(file)?;
     let mut warnings = Warnings::default();
     match options.from.or_else(|| Format::of(file, &text)) {
-        Some(format) => match import::scenario(format, &text, options, &mut warnings) {
-            Ok(scenario) => Ok((scenario, warnings)),
-            Err(error) => Err(InputError::Foreign(name, format, error)),
-        },
+        Some(format) => {
+            useful(&name, &text, Some(format), options)?;
+            match import::scenario(format, &text, options, &mut warnings) {
+                Ok(mut scenario) => {
+                    or_stem(&mut scenario.name, file);
+                    Ok((scenario, warnings))
+                }
+                Err(error) => Err(InputError::Foreign(name, format, error)),
+            }
+        }
         None => match Scenario::from_json(&text) {
-            Ok(_) if options.any() => Err(InputError::HasAgents(name)),
-            Ok(scenario) => Ok((scenario, warnings)),
+            Ok(mut scenario) => {
+                useful(&name, &text, None, options)?;
+                or_stem(&mut scenario.name, file);
+                Ok((scenario, warnings))
+            }
             Err(error) => Err(InputError::Refused(name, error)),
         },
     }
+}
+
+/// Refuses options that do nothing with a file.
+fn useful(file: &Option<PathBuf>, text: &str, format: Option<Format>, options: &Options) -> Result<(), InputError> {
+    match options.useless(Kind::of(format, text)) {
+        Some((option, why)) => Err(InputError::Useless(file.clone(), option, why)),
+        None => Ok(()),
+    }
+}
+
+/// What a file is, by its name and content or as the options say; a scenario on standard input for `-`, which is not read.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+pub fn kind(file: &Path, options: &Options) -> Result<Kind, InputError> {
+    if file == Path::new("-") {
+        return Ok(Kind::of(options.from, ""));
+    }
+    let (_, text) = text(file)?;
+    Ok(Kind::of(options.from.or_else(|| Format::of(file, &text)), &text))
+}
+
+/// Whether all files hold orders or states of VDA 5050, or all paths by their points: an agent each, of one fleet.
+pub fn are_of_one_fleet(files: &[PathBuf], options: &Options) -> bool {
+    let format = |file: &PathBuf| {
+        let text = if file == Path::new("-") { String::new() } else { fs::read_to_string(file).unwrap_or_default() };
+        options.from.or_else(|| Format::of(file, &text))
+    };
+    let mut formats = files.iter().map(format);
+    let first = formats.next().flatten();
+    matches!(first, Some(Format::Vda5050 | Format::Path)) && formats.all(|format| format == first)
 }
 
 /// The scenario in several files that have agents of their own, with the warnings about each: messages of VDA 5050, or paths by
@@ -109,6 +166,7 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
         let Some(format @ (Format::Vda5050 | Format::Path)) = format else {
             return Err(InputError::Single(name));
         };
+        useful(&name, &text, Some(format), options)?;
         let mut own = Warnings::default();
         import::scenario(format, &text, options, &mut own)
             .map_err(|error| InputError::Foreign(name.clone(), format, error))?;
@@ -122,8 +180,20 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
     let name = files.first().cloned();
     let Some(format) = read_as else { return Err(InputError::Single(name)) };
     // An empty line parts paths, and means nothing between messages.
-    match import::scenario(format, &texts.join("\n\n"), options, &mut Warnings::default()) {
-        Ok(scenario) => Ok((scenario, warnings)),
+    let mut all = Warnings::default();
+    match import::scenario(format, &texts.join("\n\n"), options, &mut all) {
+        Ok(mut scenario) => {
+            // What is said of all of them together is said with the last one.
+            if let Some((_, last)) = warnings.last_mut() {
+                last.add_of_all(&all);
+            }
+            scenario.warnings = warnings
+                .iter()
+                .flat_map(|(file, own)| own.all().into_iter().map(move |line| format!("{}: {line}", file.display())))
+                .collect();
+            files.iter().take(1).for_each(|file| or_stem(&mut scenario.name, file));
+            Ok((scenario, warnings))
+        }
         Err(error) => Err(InputError::Foreign(name, format, error)),
     }
 }
@@ -137,59 +207,18 @@ pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Impor
     let (name, text) = text(file)?;
     let mut warnings = Warnings::default();
     let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
-        return Err(InputError::NoLayout(name, import::is_empty(&text)));
+        return Err(match import::is_empty(&text) {
+            false if text.contains("\"agents\"") => InputError::IsScenario(name),
+            empty => InputError::NoLayout(name, empty),
+        });
     };
+    useful(&name, &text, Some(format), options)?;
     let read = if moves { import::roads } else { import::layout };
     match read(format, &text, options, &mut warnings) {
-        Ok(imported) => Ok((imported, warnings)),
-        Err(error) => Err(InputError::Foreign(name, format, error)),
-    }
-}
-
-/// A line of JSON Lines that is not blank.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    /// Counted from 1, blank lines included.
-    pub number: usize,
-    /// The scenario, or the name as far as it could be read and what is wrong.
-    pub scenario: Result<Scenario, (String, String)>,
-}
-
-/// The scenarios in JSON Lines, one at a time as they come in.
-#[derive(Debug)]
-pub struct Lines<R> {
-    reader: R,
-    number: usize,
-}
-
-impl<R: BufRead> Lines<R> {
-    /// The lines that `reader` gives.
-    pub fn new(reader: R) -> Self {
-        Self { reader, number: 0 }
-    }
-}
-
-impl<R: BufRead> Iterator for Lines<R> {
-    type Item = Result<Line, InputError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            let mut bytes = Vec::new();
-            match self.reader.read_until(b'\n', &mut bytes) {
-                Ok(0) => return None,
-                Ok(_) => self.number += 1,
-                Err(error) => return Some(Err(InputError::Unreadable(None, error))),
-            }
-            let scenario = match String::from_utf8(bytes) {
-                Ok(text) if text.trim_start_matches('\u{feff}').trim().is_empty() => continue,
-                Ok(text) => {
-                    Scenario::from_json(&text).map_err(|error| (error.scenario().to_owned(), error.to_string()))
-                }
-                Err(_) => Err((String::new(), "not text in UTF-8".to_owned())),
-            };
-            let number = self.number;
-            let scenario = scenario.map_err(|(name, problem)| (name, format!("line {number}: {problem}")));
-            return Some(Ok(Line { number, scenario }));
+        Ok(mut imported) => {
+            or_stem(&mut imported.layout.name, file);
+            Ok((imported, warnings))
         }
+        Err(error) => Err(InputError::Foreign(name, format, error)),
     }
 }

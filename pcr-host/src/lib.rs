@@ -8,6 +8,7 @@
 //! rows       regions of fleets of any size, an agent at a time       Row, Grid
 //! check      the conflicts of the motions as given              Verdict
 //! locks      which edges of a layout exclude one another        Locks
+//! nodes      what a layout holds                                Listing
 //! plan       delays without conflicts                           Plan
 //! traffic    random missions on a layout, and their plan             Traffic
 //! simulate   plans in closed loop, with noise and delays        run, Task
@@ -15,6 +16,7 @@
 //! evaluate   the paper's evaluation and more, as a document
 //! report     JSON, CSV and tables
 //! input      files and JSON Lines, errors with their places
+//! output     files that are written whole or not at all
 //! import     layouts, orders and plans in the formats of others Format, Layout
 //! picture    SVG, PNG and a page for the browser                  write
 //! paper      the embedded scenario and the paper's numbers
@@ -22,6 +24,8 @@
 //! progress   a line on the terminal about long work
 //! ```
 
+pub mod certificate;
+pub mod certify;
 pub mod check;
 pub mod compare;
 pub mod evaluate;
@@ -32,6 +36,8 @@ pub mod input;
 mod json;
 pub mod lifelong;
 pub mod locks;
+pub mod nodes;
+pub mod output;
 pub mod paper;
 pub mod picture;
 pub mod plan;

@@ -240,7 +240,7 @@ fn step(
         let fleet = motions(&ways);
         let hold = |(k, robot): (usize, &Robot<'_>)| {
             let far = robot.horizon(abilities).max(progress[k].stop);
-            match orders.hold_before(&fleet, k, &progress, Hold::At(far)) {
+            match orders.hold_before(&fleet, k, &progress, Hold::At(far)).expect("the table of the fleet") {
                 Hold::At(hold) => hold,
                 Hold::Free => far,
                 Hold::Inside => f64::NEG_INFINITY,

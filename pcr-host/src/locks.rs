@@ -11,7 +11,7 @@ mod rides;
 
 use crate::fleet::build_ecm;
 use crate::footprint::{Bodies, Disc};
-use crate::import::{self, Edge, Id, ImportError, Imported, Node};
+use crate::import::{self, Edge, Id, ImportError, Imported, Layout, Node};
 use crate::scenario::{Agent, Scenario};
 use rides::Ride;
 pub(crate) use rides::{Rides, corridor};
@@ -33,6 +33,8 @@ pub struct Locks {
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// The vehicle of a table of locks.
@@ -121,26 +123,18 @@ impl Locks {
             locks: Vec::new(),
             nodes: nodes.then(Vec::new),
             node_pairs: nodes.then(Vec::new),
+            warnings: layout.warnings.iter().cloned().chain(rounded(layout)).collect(),
         };
         for level in 0..layout.levels.len() {
-            let edges = layout.edges.iter().filter(|edge| layout.level(edge) == level);
-            let mut places: Vec<Place<'_>> =
-                edges.map(|edge| Place { at: At::Edge(edge), rides: rides.on(edge) }).collect();
-            places.sort_by(|a, b| a.at.id().cmp(b.at.id()));
-            if nodes {
-                let there = layout.nodes.iter().enumerate().filter(|(_, node)| node.level == level);
-                let mut there: Vec<Place<'_>> =
-                    there.map(|(k, node)| Place { at: At::Node(node), rides: vec![rides.at(k)] }).collect();
-                there.sort_by(|a, b| a.at.id().cmp(b.at.id()));
-                places.extend(there);
-            }
-            locks.add(&places)?;
+            locks.add(&places(layout, &rides, level, nodes))?;
         }
         locks.locks.sort_by(|a, b| {
             let lengths = |lock: &Lock| [lock.a_length[0], lock.b_length[0]];
             let ids = (&a.a, &a.b).cmp(&(&b.a, &b.b));
             ids.then(lengths(a)[0].total_cmp(&lengths(b)[0])).then(lengths(a)[1].total_cmp(&lengths(b)[1]))
         });
+        // Two that are both on two levels.
+        locks.locks.dedup();
         Ok(locks)
     }
 
@@ -165,19 +159,65 @@ impl Locks {
     }
 }
 
+/// What has to be said of layouts of which routes round the corners.
+fn rounded(layout: &Layout) -> Option<String> {
+    let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
+    Some(format!(
+        "corners: routes round them with {radius} m, off their edges by up to {radius} m (1 - cos(a/2)) in a turn by a; locks are those of \
+         vehicles that keep to the edges: give that as --margin"
+    ))
+}
+
+/// The edges of a level, one that leads from level to level on both, and its nodes if asked for.
+fn places<'a>(layout: &'a Layout, rides: &Rides<'_>, level: usize, nodes: bool) -> Vec<Place<'a>> {
+    let edges = layout.edges.iter().filter(|edge| layout.is_on(edge, level));
+    let mut places: Vec<Place<'_>> = edges.map(|edge| Place { at: At::Edge(edge), rides: rides.on(edge) }).collect();
+    places.sort_by(|a, b| a.at.id().cmp(b.at.id()));
+    if nodes {
+        let there = layout.nodes.iter().enumerate().filter(|(_, node)| node.level == level);
+        let mut there: Vec<Place<'_>> =
+            there.map(|(k, node)| Place { at: At::Node(node), rides: vec![rides.at(k)] }).collect();
+        there.sort_by(|a, b| a.at.id().cmp(b.at.id()));
+        places.extend(there);
+    }
+    places
+}
+
+/// What vehicles sweep on all edges and nodes of each level, as the agents whose regions the locks are made of: what has to be certified
+/// of a table of locks.
+///
+/// # Errors
+/// As [`Locks::of`].
+pub fn scenarios(imported: &Imported) -> Result<Vec<Scenario>, ImportError> {
+    let (layout, rides) = (&imported.layout, Rides::new(imported));
+    let levels = layout.levels.iter().enumerate();
+    levels
+        .map(|(level, name)| {
+            let places = places(layout, &rides, level, true);
+            let rides: Vec<&Ride> = places.iter().flat_map(|place| &place.rides).collect();
+            Ok(Scenario { name: format!("{} {name}", layout.name).trim().to_owned(), ..scenario(&rides)? })
+        })
+        .collect()
+}
+
+/// The rides as agents.
+fn scenario(rides: &[&Ride]) -> Result<Scenario, ImportError> {
+    let agents = rides.iter().enumerate().map(|(k, ride)| Agent { id: k as u64, ..ride.agent.clone() });
+    import::checked(&Scenario::new("", agents.collect()))
+}
+
 /// Of every two places, the first one before the second, the extents of the regions of their discs.
 fn extents(places: &[Place<'_>]) -> Result<BTreeMap<[usize; 2], Vec<Extents>>, ImportError> {
     let refused = |problem: &dyn ToString| ImportError::new(problem.to_string());
     let rides: Vec<(usize, &Ride)> =
         places.iter().enumerate().flat_map(|(k, place)| place.rides.iter().map(move |ride| (k, ride))).collect();
-    let agents = rides.iter().enumerate().map(|(k, (_, ride))| Agent { id: k as u64, ..ride.agent.clone() });
-    let scenario = import::checked(&Scenario { name: String::new(), agents: agents.collect() })?;
+    let scenario = scenario(&rides.iter().map(|&(_, ride)| ride).collect::<Vec<_>>())?;
     let Bodies { fleet, discs, .. } = Bodies::<f64>::new(&scenario).map_err(|problem| refused(&problem))?;
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| refused(&full))?;
     let mut extents: BTreeMap<[usize; 2], Vec<Extents>> = BTreeMap::new();
     for (k, disc) in discs.iter().enumerate() {
-        for region in ecm.row(&motions, k).filter(|region| region.other() > k) {
+        for region in ecm.row(&motions, k).expect("the table of the fleet").filter(|region| region.other() > k) {
             let Some(other) = discs.get(region.other()) else { continue };
             let [Some((a, own)), Some((b, their))] = [rides.get(disc.agent), rides.get(other.agent)] else { continue };
             if a != b {

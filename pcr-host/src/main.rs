@@ -2,14 +2,18 @@
 
 mod commands;
 
-use clap::Parser;
-use commands::{Arguments, Stop, complain};
+use commands::{Stop, complain};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match Arguments::parse().run() {
+    match commands::run(std::env::args_os().collect()) {
         Ok(status) => status,
         Err(Stop::Closed) => ExitCode::SUCCESS,
+        Err(Stop::Usage(error)) => {
+            // Where standard error is closed, the exit status has to do.
+            let _ = error.print();
+            ExitCode::from(2)
+        }
         Err(Stop::Error(message, status)) => {
             complain(&message);
             ExitCode::from(status)

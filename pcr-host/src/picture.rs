@@ -38,6 +38,7 @@ mod workspace;
 use crate::fleet::{Fleet, build_ecm};
 use crate::import::Imported;
 use crate::locks::Locks;
+use crate::output;
 use crate::scenario::Scenario;
 pub use layout::Ground;
 pub(crate) use overlay::{Bar, Overlay};
@@ -45,7 +46,7 @@ use scene::Scene;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::{fs, io, thread};
+use std::{io, thread};
 
 /// Writes all pictures of a scenario into a directory, which is created where it does not exist:
 ///
@@ -69,7 +70,7 @@ pub fn write(
     progress: &mut dyn FnMut(usize, usize),
 ) -> io::Result<Vec<PathBuf>> {
     with_scene(scenario, ground, |scene| {
-        fs::create_dir_all(directory)?;
+        output::folder(directory)?;
         let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
         pictures.extend((0..scene.motions.len()).map(Picture::Map));
         let mut files = vec![Vec::new(); pictures.len()];
@@ -78,7 +79,7 @@ pub fn write(
         draw_all(scene, &pictures, &mut |place, drawn| {
             for (name, content) in drawn? {
                 let file = directory.join(name);
-                fs::write(&file, content)?;
+                output::write(&file, content)?;
                 files[place].push(file);
             }
             done += 1;
@@ -103,10 +104,10 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
         files.extend(formats.files(&name, svg)?);
     }
-    fs::create_dir_all(directory)?;
+    output::folder(directory)?;
     let write = |(name, content): (String, Vec<u8>)| {
         let file = directory.join(name);
-        fs::write(&file, content).map(|()| file)
+        output::write(&file, content).map(|()| file)
     };
     files.into_iter().map(write).collect()
 }
@@ -226,6 +227,7 @@ fn draw_all(
 mod tests {
     use super::*;
     use serde_json::{Value, json};
+    use std::fs;
 
     /// Writes the pictures into a directory of its own, checks that all files are well formed, and returns them.
     fn pictures(test: &str, scenario: &Value) -> Vec<(String, Vec<u8>)> {

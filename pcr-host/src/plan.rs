@@ -4,17 +4,21 @@
 //! a later start, or by its speed along the path. Starts are planned with the discs of footprints, speeds with the one disc
 //! around them: another speed along the path is none of a disc beside it. Every plan is checked as `pcr check` does before it is returned.
 
+mod bound;
 mod circle;
 mod forbidden;
+mod reason;
 
+use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::fleet::Fleet;
 use crate::fleet::HostEcm;
 use crate::regions::{self, Failure};
-use crate::scenario::{MotionSpec, Scenario};
+use crate::scenario::{Labels, MotionSpec, Scenario};
 pub(crate) use circle::sides;
 pub(crate) use forbidden::{Forbidden, Schedule};
-use pcr_core::{Encounter, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
+use pcr_core::{Drive, Encounter, Motion, Profile, Station, Unsolved as Never, plan_delays, plan_speeds};
+pub use reason::Spot;
 use serde::Serialize;
 
 /// How conflicts are avoided.
@@ -55,6 +59,9 @@ pub enum Priority {
 pub struct Plan {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// How conflicts are avoided.
     pub method: &'static str,
     /// The agents by priority.
@@ -65,10 +72,15 @@ pub struct Plan {
     pub makespan: f64,
     /// Sum over the agents from their start in the file to their arrival \[s\].
     pub sum_of_costs: f64,
-    /// The sum of costs if nobody had to wait \[s\].
+    /// No plan by this method costs less \[s\]: the sum of costs if nobody else were there.
     pub lower_bound: f64,
     /// Who cannot be planned.
     pub unsolved: Vec<Unsolved>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+    /// What an independent checker has proved of the plan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
 }
 
 /// An agent of a plan.
@@ -89,16 +101,21 @@ pub struct Unsolved {
     pub ids: Vec<u64>,
     /// Why.
     pub why: String,
+    /// Where, if it is about two agents and a place.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub spot: Option<Spot>,
 }
 
 impl Unsolved {
     /// The first agent cannot start because of the second, `always` or after it.
-    pub(crate) fn of(ids: [u64; 2], always: bool) -> Self {
-        let why = match always {
-            true => "they meet whenever they start: head-on without a passing place, or starts or ends that overlap",
-            false => "the first cannot start because of the second in any order that was tried",
-        };
-        Self { ids: ids.to_vec(), why: why.to_owned() }
+    pub(crate) fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
+        let (why, spot) = reason::reason(scenario, ids, always);
+        Self { ids: ids.to_vec(), why, spot }
+    }
+
+    /// Without a place.
+    fn nowhere(ids: Vec<u64>, why: impl Into<String>) -> Self {
+        Self { ids, why: why.into(), spot: None }
     }
 }
 
@@ -144,8 +161,17 @@ impl Plan {
             && let Some(circle) = circle::circle(&ecm, &motions)
         {
             let ids = circle.into_iter().map(|agent| planner.id(agent)).collect();
-            let why = "each has to let the next one pass first, the last one the first, however they move".into();
-            best.0.unsolved.insert(0, Unsolved { ids, why });
+            let why = "each has to let the next one pass first, the last one the first, however they move";
+            best.0.unsolved.insert(0, Unsolved::nowhere(ids, why));
+        }
+        if let Some(solved) = &best.1 {
+            let proof = Proof::of::<f64>(solved)?;
+            if let Some(contact) = proof.contacts.first() {
+                let why = format!("the plan has a contact at {} s", contact.t);
+                best.0.unsolved.push(Unsolved::nowhere(vec![contact.i, contact.j], why));
+                best.1 = None;
+            }
+            best.0.certificate = Some(proof);
         }
         Ok(best)
     }
@@ -187,7 +213,8 @@ impl Planner<'_> {
             order
         };
         let longest = || sorted(&|agent| self.motions[agent].time().length());
-        let crowded = || sorted(&|agent| self.ecm.row(self.motions, agent).count() as f64);
+        let crowded =
+            || sorted(&|agent| self.ecm.row(self.motions, agent).expect("the table of the fleet").count() as f64);
         Ok(match priority {
             Priority::Given(given) => {
                 let mut order = given.iter().map(place).collect::<Result<Vec<usize>, Failure>>()?;
@@ -215,6 +242,14 @@ impl Planner<'_> {
         Some(core::iter::once(latest).chain(order.into_iter().filter(|&agent| agent != latest)).collect())
     }
 
+    /// The least time in which an agent can travel its path by this method \[s\].
+    fn least(&self, motion: &Motion<'_, f64>) -> f64 {
+        match self.method {
+            Method::Delay => motion.time().length(),
+            Method::Speed => bound::fastest(Drive::of(motion), motion.path().length()),
+        }
+    }
+
     /// A plan by this order, or one that it leads to.
     fn plan(&self, mut order: Vec<usize>) -> Result<Answer, Failure> {
         let agents = self.motions.len();
@@ -231,13 +266,16 @@ impl Planner<'_> {
         };
         let mut plan = Plan {
             name: self.scenario.name.clone(),
+            labels: Labels::of(self.scenario),
             method: self.method.name(),
             order: order.iter().map(|&agent| self.id(agent)).collect(),
             agents: Vec::new(),
             makespan: 0.0,
             sum_of_costs: 0.0,
-            lower_bound: self.motions.iter().map(|motion| motion.time().length()).sum(),
+            lower_bound: self.motions.iter().map(|motion| self.least(motion)).sum(),
             unsolved: Vec::new(),
+            warnings: self.scenario.warnings.clone(),
+            certificate: None,
         };
         if let Err(never) = outcome {
             plan.unsolved.push(self.unsolved(never));
@@ -249,7 +287,8 @@ impl Planner<'_> {
         let verdict = Verdict::of::<f64>(&solved, false)?;
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);
-            plan.unsolved.push(Unsolved { ids: vec![conflict.i, conflict.j], why });
+            plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
+            (plan.agents, plan.makespan, plan.sum_of_costs) = (Vec::new(), 0.0, 0.0);
             return Ok((plan, None));
         }
         Ok((plan, Some(solved)))
@@ -271,20 +310,24 @@ impl Planner<'_> {
     }
 
     fn unsolved(&self, never: Never) -> Unsolved {
-        let pair = |agents: [usize; 2], why: &str| Unsolved {
-            ids: agents.map(|agent| self.id(agent)).to_vec(),
-            why: why.into(),
+        let pair = |agents: [usize; 2], why: &str, ends: bool| {
+            let ids = agents.map(|agent| self.id(agent)).to_vec();
+            let [Some(a), Some(b)] = agents.map(|agent| self.motions.get(agent)) else {
+                return Unsolved::nowhere(ids, why);
+            };
+            let spot = Spot::standing([a, b], ends);
+            Unsolved { ids, why: format!("{why}, {}", spot.words()), spot: Some(spot) }
         };
         match never {
-            Never::Starts(agents) => pair(agents, "they overlap at their starts"),
-            Never::Ends(agents) => pair(agents, "they overlap at the ends of their paths"),
-            Never::Always([a, b]) => Unsolved::of([self.id(a), self.id(b)], true),
-            Never::Priorities([a, b]) => Unsolved::of([self.id(a), self.id(b)], false),
-            Never::Full(agent) => Unsolved {
-                ids: vec![self.id(agent)],
-                why: "its plan takes too many profiles or phases, or too long".into(),
-            },
-            other => Unsolved { ids: Vec::new(), why: other.to_string() },
+            Never::Starts(agents) => pair(agents, "they overlap at their starts", false),
+            Never::Ends(agents) => pair(agents, "they overlap at the ends of their paths", true),
+            Never::Always([a, b]) => Unsolved::of(self.scenario, [self.id(a), self.id(b)], true),
+            Never::Priorities([a, b]) => Unsolved::of(self.scenario, [self.id(a), self.id(b)], false),
+            Never::Full(agent) => {
+                let why = "its plan takes too many profiles or phases, or too long";
+                Unsolved::nowhere(vec![self.id(agent)], why)
+            }
+            other => Unsolved::nowhere(Vec::new(), other.to_string()),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -12,6 +12,13 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Time between two looks at the counts.
 const INTERVAL: Duration = Duration::from_millis(200);
+
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// From now on nothing is told.
+pub fn silence() {
+    SILENT.store(true, Ordering::Relaxed);
+}
 
 /// Tells what goes on, on standard error, if that is a terminal and the work takes more than a second. The line is
 /// wiped when the value is dropped.
@@ -32,7 +39,8 @@ impl Progress {
     /// Begins to watch over some work.
     pub fn new(what: impl Into<String>) -> Self {
         let counts = Arc::<Counts>::default();
-        let running = if io::stderr().is_terminal() { watch(what.into(), Arc::clone(&counts)) } else { None };
+        let told = io::stderr().is_terminal() && !SILENT.load(Ordering::Relaxed);
+        let running = if told { watch(what.into(), Arc::clone(&counts)) } else { None };
         Self { counts, running }
     }
 

@@ -6,9 +6,11 @@
 mod outlines;
 mod record;
 
+use crate::certify;
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
 use crate::footprint::{Bodies, Disc, Disced};
-use crate::scenario::{Agent, Scenario};
+use crate::scenario::{Agent, Labels, Scenario};
+use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
 use record::Work;
 pub use record::{Descriptor, Piece, Region, Slice};
@@ -20,6 +22,9 @@ use std::fmt;
 pub struct Answer {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// Number format of the computation.
     pub scalar: &'static str,
     /// Sorted by `i`, `j`, start time and start length.
@@ -30,8 +35,13 @@ pub struct Answer {
     /// The covers of the agents that have footprints, if any has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
+    /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Vec<Table>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// The discs that an agent with a footprint is computed with.
@@ -58,6 +68,8 @@ pub struct Request {
     pub agent: Option<u64>,
     /// Number of slices a region.
     pub slices: Option<usize>,
+    /// The tables as they are held.
+    pub certificate: bool,
 }
 
 /// Why there is no answer.
@@ -72,6 +84,14 @@ pub enum Failure {
     Overfull([u64; 2]),
     /// There is no agent of the number asked for; these are there.
     NoSuchAgent(u64, Vec<u64>),
+    /// The path of this robot, or its disc with the margins of a simulation, is out of range.
+    Robot(u64),
+    /// An obstacle of a simulation, by its centre \[m\], is out of range.
+    Obstacle([f64; 2]),
+    /// There is no agent of the label asked for; these are there.
+    NoSuchLabel(String, Vec<String>),
+    /// Several agents have the label asked for.
+    Ambiguous(String, Vec<u64>),
 }
 
 impl fmt::Display for Failure {
@@ -85,14 +105,24 @@ impl fmt::Display for Failure {
                 f,
                 "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
             ),
+            Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),
+            Self::Obstacle([x, y]) => write!(f, "obstacle at {x}, {y}: it is out of range"),
             Self::NoSuchAgent(asked, there) => {
+                let there = there.iter().map(u64::to_string).collect();
+                Self::NoSuchLabel(asked.to_string(), there).fmt(f)
+            }
+            Self::NoSuchLabel(asked, there) => {
                 write!(f, "no agent {asked}; ")?;
-                let listed: Vec<String> = there.iter().take(LISTED).map(u64::to_string).collect();
+                let listed = there.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
                 match there.len() {
                     0 => f.write_str("there are none"),
-                    1..=LISTED => write!(f, "there are {}", listed.join(", ")),
-                    all => write!(f, "there are {all}: {}, ...", listed.join(", ")),
+                    1..=LISTED => write!(f, "there are {listed}"),
+                    all => write!(f, "there are {all}: {listed}, ..."),
                 }
+            }
+            Self::Ambiguous(asked, ids) => {
+                let ids = ids.iter().take(LISTED).map(u64::to_string).collect::<Vec<_>>().join(", ");
+                write!(f, "several agents are called {asked}; say which by its number: {ids}")
             }
         }
     }
@@ -125,6 +155,26 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
         },
         _ => Failure::Full(full),
     })
+}
+
+/// The number of the agent that is asked for by its number or, where there is no such number, by its label.
+///
+/// # Errors
+/// [`Failure::NoSuchAgent`] and, for texts, [`Failure::NoSuchLabel`] or, where several have it, [`Failure::Ambiguous`].
+pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, Failure> {
+    let number = asked.parse::<u64>().ok();
+    let ids = || scenario.agents.iter().map(|agent| agent.id);
+    if let Some(id) = number.filter(|number| ids().any(|id| id == *number)) {
+        return Ok(id);
+    }
+    let labelled: Vec<u64> =
+        scenario.agents.iter().filter(|agent| agent.label == asked).map(|agent| agent.id).collect();
+    match (labelled.as_slice(), number) {
+        ([id], _) => Ok(*id),
+        ([], Some(number)) => Err(Failure::NoSuchAgent(number, ids().collect())),
+        ([], None) => Err(Failure::NoSuchLabel(asked.to_owned(), scenario.agents.iter().map(Agent::called).collect())),
+        _ => Err(Failure::Ambiguous(asked.to_owned(), labelled)),
+    }
 }
 
 impl Answer {
@@ -160,6 +210,7 @@ impl Answer {
         let margin_regions = margins.then(|| regions(&inflated)).transpose()?;
         Ok(Self {
             name: scenario.name.clone(),
+            labels: Labels::of(scenario),
             scalar: S::NAME,
             regions: regions(&motions)?,
             margin_regions,
@@ -169,6 +220,8 @@ impl Answer {
                 .enumerate()
                 .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
                 .collect(),
+            warnings: scenario.warnings.clone(),
+            certificate: request.certificate.then(|| certify::table_of::<S>(scenario)).transpose()?,
             error: None,
         })
     }
@@ -177,10 +230,13 @@ impl Answer {
     pub fn refused<S: Format>(name: &str, error: String) -> Self {
         Self {
             name: name.to_owned(),
+            labels: Labels::default(),
             scalar: S::NAME,
             regions: Vec::new(),
             margin_regions: None,
             footprints: Vec::new(),
+            warnings: Vec::new(),
+            certificate: None,
             error: Some(error),
         }
     }

@@ -1,45 +1,101 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
+mod certified;
 mod columns;
 mod comparison;
 mod conflicts;
 pub(crate) mod figures;
 mod locks;
+mod nodes;
 mod overview;
 mod plans;
 mod simulation;
 mod table;
 mod traffic;
 
+pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use comparison::{COMPARISON_CSV_HEADER, comparison_csv, comparison_table};
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
-pub use locks::{LOCKS_HEADER, locks_csv, locks_json, locks_table};
+pub use locks::{LOCKS_HEADER, locks_csv, locks_table};
+pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
 pub use plans::{PLAN_CSV_HEADER, plan_csv, plan_table};
 pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;
 pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
+use crate::certify::Certified;
+use crate::check::Verdict;
+use crate::compare::Comparison;
+use crate::locks::Locks;
+use crate::nodes::Listing;
+use crate::plan::Plan;
 use crate::regions::{Answer, Region};
+use crate::scenario::Labels;
+use crate::simulate::Simulation;
+use crate::traffic::Traffic;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+/// What is printed as JSON: it says what it is, and in which version of its fields.
+pub trait Document: Serialize {
+    /// What it is; its schema is `docs/schema/FORMAT.schema.json`.
+    const FORMAT: &'static str;
+    /// Counts changes that a program which reads it has to know of; new fields are none.
+    const VERSION: u32 = 1;
+}
+
+impl Document for Answer {
+    const FORMAT: &'static str = "pcr-regions";
+}
+impl Document for Verdict {
+    const FORMAT: &'static str = "pcr-conflicts";
+}
+impl Document for Certified {
+    const FORMAT: &'static str = "pcr-certificate";
+}
+impl Document for Plan {
+    const FORMAT: &'static str = "pcr-plan";
+}
+impl Document for Simulation {
+    const FORMAT: &'static str = "pcr-simulation";
+}
+impl Document for Comparison {
+    const FORMAT: &'static str = "pcr-comparison";
+}
+impl Document for Locks {
+    const FORMAT: &'static str = "pcr-locks";
+}
+impl Document for Traffic {
+    const FORMAT: &'static str = "pcr-traffic";
+}
+impl Document for Listing<'_> {
+    const FORMAT: &'static str = "pcr-nodes";
+}
+
 /// One line of JSON.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn json(answer: &impl Serialize, out: &mut impl Write) -> io::Result<()> {
-    serde_json::to_writer(&mut *out, answer)?;
+pub fn json<D: Document>(answer: &D, out: &mut impl Write) -> io::Result<()> {
+    #[derive(Serialize)]
+    struct Versioned<'a, D> {
+        format: &'static str,
+        version: u32,
+        #[serde(flatten)]
+        answer: &'a D,
+    }
+    serde_json::to_writer(&mut *out, &Versioned { format: D::FORMAT, version: D::VERSION, answer })?;
     out.write_all(b"\n")
 }
 
 /// The header line of [`csv`].
-pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin\n";
+pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin,i_label,j_label\n";
 
 /// A line a region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`. Those of the discs with their
-/// margins come last, with 1 in the last column.
+/// margins come last, with 1 in the column `margin`.
 ///
 /// # Errors
 /// Those of the writer.
@@ -52,7 +108,9 @@ pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
         let (open_start, open_end) = (u8::from(region.open_start), u8::from(region.open_end));
         let crossings = crossings(region);
         let types = types(region);
-        writeln!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings},{margin}")?;
+        let [a, b] = [i, j].map(|id| quoted(answer.labels.get(*id)));
+        write!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings},{margin}")?;
+        writeln!(out, ",{a},{b}")?;
     }
     Ok(())
 }
@@ -88,6 +146,21 @@ fn types(region: &Region) -> String {
         let _ = write!(text, "{plus}{count}{piece_type}");
     }
     text
+}
+
+/// The titles of the columns of two agents: labels are set to the left.
+fn agents(labels: &Labels) -> [&'static str; 2] {
+    if labels.is_empty() { ["i", "j"] } else { ["<i", "<j"] }
+}
+
+/// An agent in a table.
+fn called(labels: &Labels, id: u64) -> String {
+    printable(&labels.called(id))
+}
+
+/// Some agents in a sentence.
+fn all_called(labels: &Labels, ids: &[u64]) -> String {
+    ids.iter().map(|id| called(labels, *id)).collect::<Vec<_>>().join(" and ")
 }
 
 /// The name of a scenario in a heading.

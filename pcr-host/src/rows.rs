@@ -10,7 +10,7 @@ mod grid;
 pub use grid::Grid;
 
 use crate::fleet::{Format, HostEcm, table_of};
-use pcr_core::{Full, Motion, RegionRef, excess};
+use pcr_core::{Full, Mismatch, Motion, RegionRef, excess};
 use rayon::prelude::*;
 
 /// The regions of an agent with those after it.
@@ -33,6 +33,9 @@ impl<'a, S: Format> Row<'a, S> {
     ///
     /// # Errors
     /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 32767 pieces.
+    ///
+    /// # Panics
+    /// For an agent that the fleet does not have: without it the row would say that it is free of it.
     pub fn new(motions: &[Motion<'a, S>], ego: usize, others: &[u32]) -> Result<Self, Full> {
         let mut row = Self::default();
         row.fill(motions, ego, others)?;
@@ -45,10 +48,8 @@ impl<'a, S: Format> Row<'a, S> {
         self.agents.push(ego as u32);
         self.agents.extend_from_slice(others);
         self.motions.clear();
-        self.motions.extend(self.agents.iter().filter_map(|&agent| motions.get(agent as usize)));
-        // All that is in the table belongs to the agent of the row.
-        self.table.remove(0);
-        match self.table.insert(&self.motions, 0) {
+        self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
+        match self.table.fill_row(&self.motions, 0) {
             Err(Full::Regions | Full::Pieces) => {
                 let agents = self.agents.len();
                 self.table = table_of(&self.motions, 0, [2 * agents, 3 * agents])?;
@@ -68,11 +69,16 @@ impl<'a, S: Format> Row<'a, S> {
         &self.table
     }
 
-    /// The regions of two agents of the fleet; none if they are not of this row.
-    pub fn pair(&self, ego: usize, other: usize) -> impl Iterator<Item = RegionRef<'_, S>> {
+    /// The regions of the agent of the row with another one of the fleet, either of whom comes first; none with one that is not
+    /// of this row, which says nothing of those before its agent, and of those after it that they are far away.
+    ///
+    /// # Errors
+    /// [`Mismatch::OnlyRow`] for two others.
+    pub fn pair(&self, ego: usize, other: usize) -> Result<impl Iterator<Item = RegionRef<'_, S>>, Mismatch> {
         let place = |agent: usize| self.agents.iter().position(|&there| there as usize == agent);
         let places = place(ego).zip(place(other));
-        places.into_iter().flat_map(|(ego, other)| self.table.pair(&self.motions, ego, other))
+        let regions = places.map(|(ego, other)| self.table.pair(&self.motions, ego, other)).transpose()?;
+        Ok(regions.into_iter().flatten())
     }
 }
 

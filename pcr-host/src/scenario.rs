@@ -27,7 +27,11 @@
 //!   from 1): what the vehicle carries there.
 //! - `{ "kind": "turn", "sweep": 1.57 }` in a path is a turn in place, an arc of 1 nm radius. With `v_max` and `a_max` it needs
 //!   `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\], and the vehicle comes to rest before and after it.
+//! - `"warnings": [ "..." ]` beside `agents` is what `pcr import` had to say about the file that the scenario is from.
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
+//! - `"label": "AGV-7"` is what people call the agent. Ids may be texts, too, if all are: then the agents are numbered from 1 in the
+//!   order of the file, and the texts are their labels.
+//! - `"format": "pcr-scenario"` and `"version": 1` are what files of the tool begin with; they may be left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
 //! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
@@ -35,6 +39,7 @@
 mod decode;
 mod encode;
 mod fields;
+mod labels;
 mod load;
 mod outline;
 mod parts;
@@ -45,6 +50,8 @@ pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::speed_after;
 pub(crate) use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
+pub(crate) use labels::label;
+pub use labels::{LONGEST_LABEL, Labels};
 pub use load::Load;
 pub(crate) use parts::Part;
 use std::f64::consts::TAU;
@@ -53,12 +60,14 @@ use std::f64::consts::TAU;
 mod tests;
 
 /// A fleet as a file describes it. SI units, angles in radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scenario {
     /// Name, empty if the file gives none.
     pub name: String,
     /// The agents, in the order of the file.
     pub agents: Vec<Agent>,
+    /// What was read otherwise than it was written, if it comes from a file of another format.
+    pub warnings: Vec<String>,
 }
 
 /// One agent.
@@ -66,6 +75,8 @@ pub struct Scenario {
 pub struct Agent {
     /// Number, unique in its scenario.
     pub id: u64,
+    /// What people call it: printable text, empty if the file gives none.
+    pub label: String,
     /// Radius of the disc \[m\]; with a footprint that of the disc around all of it.
     pub radius: f64,
     /// Its outline, if it is no disc.
@@ -102,6 +113,11 @@ pub enum PathSegment {
 }
 
 impl Scenario {
+    /// Agents that nobody has to be warned about.
+    pub fn new(name: impl Into<String>, agents: Vec<Agent>) -> Self {
+        Self { name: name.into(), agents, warnings: Vec::new() }
+    }
+
     /// Gives this margin, from 0 \[m\], to every agent that has none.
     pub fn give_margin(&mut self, margin: f64) {
         for agent in self.agents.iter_mut().filter(|agent| agent.margin == 0.0) {
@@ -176,8 +192,8 @@ impl Agent {
     /// A disc of this radius \[m\] without a margin that sets off at the time 0; `start` is abscissa \[m\], ordinate \[m\], heading
     /// \[rad\].
     pub fn disc(id: u64, radius: f64, start: [f64; 3], path: Vec<PathSegment>, motion: MotionSpec) -> Self {
-        let (footprint, loads) = (None, Vec::new());
-        Self { id, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }
+        let (label, footprint, loads) = (String::new(), None, Vec::new());
+        Self { id, label, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }
     }
 
     /// Length of the path \[m\].

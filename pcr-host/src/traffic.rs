@@ -7,6 +7,7 @@ mod crowd;
 mod missions;
 mod schedule;
 
+use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::import::{Id, Imported};
 use crate::plan::{Forbidden, Schedule, Unsolved};
@@ -37,8 +38,10 @@ pub struct Traffic {
     pub asked: usize,
     /// Agents that have a mission; for the others there is no room to start or to end.
     pub placed: usize,
-    /// Missions that were drawn and passed over, because no order of starts would have let them through with those before them.
+    /// Missions that were drawn and passed over, in all draws.
     pub passed_over: usize,
+    /// Why, and how many each.
+    pub passed_over_because: Vec<PassedOver>,
     /// Agents that have a mission and a plan.
     pub planned: usize,
     /// Collision regions of the agents that have a mission, both directions of every pair.
@@ -47,6 +50,8 @@ pub struct Traffic {
     pub conflicts_before: usize,
     /// Conflicts with the plan.
     pub conflicts_after: usize,
+    /// What an independent checker has proved of the plan.
+    pub certificate: Proof,
     /// From the start of all to the last arrival \[s\].
     pub makespan: f64,
     /// Sum over the agents of the time until they arrive \[s\].
@@ -59,6 +64,17 @@ pub struct Traffic {
     pub missions: Vec<Travel>,
     /// Why agents have no plan, the first of each `ids`.
     pub unsolved: Vec<Unsolved>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// Why missions were passed over.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassedOver {
+    /// In words.
+    pub why: String,
+    /// How many.
+    pub missions: usize,
 }
 
 /// A mission and what became of it.
@@ -87,15 +103,19 @@ impl Traffic {
         let Drawn { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
         let layout = &imported.layout;
         let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
-        let missions = Scenario { name: layout.name.clone(), agents };
+        let mut missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
+        if layout.levels.len() > 1 {
+            let level = &layout.levels[layout.largest_level()];
+            let problem = format!("levels: missions are drawn on {level} only, of {}", layout.levels.len());
+            missions.warnings.push(problem);
+        }
         let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
         let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
         let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
         let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
-        let at_once =
-            Scenario { name: missions.name.clone(), agents: kept.clone().map(|(agent, _)| agent.clone()).collect() };
+        let at_once = Scenario { agents: kept.clone().map(|(agent, _)| agent.clone()).collect(), ..missions.clone() };
         let later = kept.map(|(agent, delay)| Agent { t_start: delay, ..agent.clone() });
-        let plan = Scenario { name: missions.name.clone(), agents: later.collect() };
+        let plan = Scenario { agents: later.collect(), ..missions.clone() };
         let conflicts = |scenario: &Scenario| Verdict::of::<f64>(scenario, false).map(|found| found.conflicts.len());
         let travels: Vec<Travel> =
             drawn.iter().zip(&delays).map(|(mission, delay)| Travel::of(mission, imported, *delay)).collect();
@@ -107,17 +127,20 @@ impl Traffic {
             radius: imported.vehicle.radius,
             asked: request.agents,
             placed: drawn.len(),
-            passed_over,
+            passed_over: passed_over.values().sum(),
+            passed_over_because: passed_over.into_iter().map(|(why, missions)| PassedOver { why, missions }).collect(),
             planned: plan.agents.len(),
             regions,
             conflicts_before: conflicts(&at_once)?,
             conflicts_after: conflicts(&plan)?,
+            certificate: Proof::of::<f64>(&plan)?,
             makespan,
             sum_of_costs: ends().sum(),
             lower_bound: at_once.agents.iter().map(Agent::duration).sum(),
             missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
             missions: travels,
-            unsolved: out.iter().map(|out| Unsolved::of([id(out.agent), id(out.by)], out.always)).collect(),
+            unsolved: out.iter().map(|out| Unsolved::of(&missions, [id(out.agent), id(out.by)], out.always)).collect(),
+            warnings: missions.warnings.clone(),
         };
         Ok((traffic, [missions, plan]))
     }

@@ -94,7 +94,7 @@ fn shortened<S: Format>(ego: &Disc, other: &Disc, effort: Effort) {
     println!("  ego {ego:?}\n  other {other:?}");
     if let Ok(audit) = Audit::<S>::new(&ego, &other) {
         let (motions, ecm) = audit.table();
-        for region in ecm.pair(&motions, 0, 1) {
+        for region in ecm.pair(&motions, 0, 1).expect("the table of the fleet") {
             println!(
                 "  region s {:?} l {:?}, {} pieces",
                 region.other_length(),

@@ -91,7 +91,10 @@ impl<S: Format> Audit<S> {
     /// The first violation.
     pub fn transpose(&self) -> Result<(), Violation> {
         let (motions, ecm) = self.table();
-        let (regions, transposed) = (ecm.pair(&motions, 0, 1), ecm.pair(&motions, 1, 0));
+        let (regions, transposed) = (
+            ecm.pair(&motions, 0, 1).expect("the table of the fleet"),
+            ecm.pair(&motions, 1, 0).expect("the table of the fleet"),
+        );
         let (count, mirrored) = (regions.clone().count(), transposed.clone().count());
         ensure!(count == mirrored, "{count} regions, {mirrored} from the other side");
         for (region, mirror) in regions.zip(transposed) {
@@ -110,7 +113,7 @@ impl<S: Format> Audit<S> {
         let (motions, ecm) = self.table();
         let mirrored = Pair { ego: self.oracle.other.clone(), other: self.oracle.ego.clone(), ..self.oracle };
         for (ego, pair) in [(0, &self.oracle), (1, &mirrored)] {
-            for region in ecm.pair(&motions, ego, 1 - ego) {
+            for region in ecm.pair(&motions, ego, 1 - ego).expect("the table of the fleet") {
                 seen.regions += 1 - ego;
                 self.contour(&region, pair, samples, seen)?;
             }
@@ -168,8 +171,8 @@ impl<S: Format> Audit<S> {
     /// The first violation.
     pub fn coverage(&self, samples: usize) -> Result<(), Violation> {
         let (motions, ecm) = self.table();
-        let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
-        let transposed: Vec<_> = ecm.pair(&motions, 1, 0).collect();
+        let regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of the fleet").collect();
+        let transposed: Vec<_> = ecm.pair(&motions, 1, 0).expect("the table of the fleet").collect();
         for (s, l) in self.sampled(samples) {
             let clearance = self.oracle.clearance(s.to_f64(), l.to_f64());
             let holding = regions.iter().filter(|region| region.contains(s, l)).count();
@@ -204,7 +207,11 @@ impl<S: Format> Audit<S> {
         for k in 0..=samples {
             let s = S::from_f64(self.oracle.other.length() * k as f64 / samples as f64).min(self.end(1));
             let overlap = |l| self.oracle.clearance(s.to_f64(), l) + self.doubt;
-            let slices: Vec<_> = ecm.pair(&motions, 0, 1).flat_map(|region| region.slice_at(s)).collect();
+            let slices: Vec<_> = ecm
+                .pair(&motions, 0, 1)
+                .expect("the table of the fleet")
+                .flat_map(|region| region.slice_at(s))
+                .collect();
             for (lo, hi) in line::below(overlap, 0.0, self.oracle.ego.length(), 0.0, tolerance).inner {
                 let holds = |slice: &Interval<S>| slice.lo.to_f64() <= lo && hi.min(end) <= slice.hi.to_f64();
                 ensure!(slices.iter().any(holds), "at {s:?} [{lo}, {hi}] is covered, the slices are {slices:?}");
@@ -246,7 +253,9 @@ impl<S: Format> Audit<S> {
     /// The first violation.
     pub fn ranges(&self) -> Result<(), Violation> {
         let (motions, ecm) = self.table();
-        for region in ecm.pair(&motions, 0, 1).filter(|region| self.depth(region) > self.bound()) {
+        for region in
+            ecm.pair(&motions, 0, 1).expect("the table of the fleet").filter(|region| self.depth(region) > self.bound())
+        {
             let (s, l) = (region.other_length(), region.length());
             let (s, l) = ((s.lo.to_f64(), s.hi.to_f64()), (l.lo.to_f64(), l.hi.to_f64()));
             let (bound, step) = (self.bound(), 0.5 * self.excess + 1e-12);
@@ -291,7 +300,7 @@ impl<S: Format> Audit<S> {
     /// The first violation.
     pub fn components(&self, effort: plane::Effort, seen: &mut Seen) -> Result<(), Violation> {
         let (motions, ecm) = self.table();
-        let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
+        let regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of the fleet").collect();
         let found = self.known(effort, self.bound());
         seen.certain += usize::from(found.certain());
         // Region that was found to be about an outer component.

@@ -3,8 +3,7 @@
 
 mod route;
 mod travel;
-mod twofold;
 
+pub use pcr_certify::twofold::Twofold;
 pub use route::{Place, Route};
 pub use travel::Travel;
-pub use twofold::Twofold;

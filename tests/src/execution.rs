@@ -220,7 +220,7 @@ pub fn run<S: Format>(seed: u64, robots: usize, missions_until: f64) -> Tally {
                     *place = progress[j];
                 }
             }
-            let hold = orders.hold(&motions, k, heard);
+            let hold = orders.hold(&motions, k, heard).expect("the table of the fleet");
             let kept = hold.allows(progress[k].stop - S::from_f64(tolerance)) || fleet[k].speed == 0.0;
             assert!(kept, "seed {seed}: robot {k} cannot keep {hold:?} from {:?} at {time} s", progress[k]);
             let robot = &mut fleet[k];
@@ -295,8 +295,10 @@ fn proposal<S: Format>(robot: &Robot<S>, dice: &mut Dice) -> (Option<Robot<S>>, 
 /// All that a refusal must not change.
 fn trace<S: Format>(orders: &Table<S>, motions: &[Motion<'_, S>], progress: &[Progress<S>]) -> String {
     let row = |agent: usize| {
-        let passes =
-            orders.row(motions, agent).map(|(place, region, pass)| (place, region.other(), region.length(), pass));
+        let passes = orders
+            .row(motions, agent)
+            .expect("the table of the fleet")
+            .map(|(place, region, pass)| (place, region.other(), region.length(), pass));
         format!("{:?} {:?}", orders.hold(motions, agent, progress), passes.collect::<Vec<_>>())
     };
     (0..motions.len()).map(row).collect::<Vec<_>>().join("\n") + &format!("{progress:?}")

@@ -5,12 +5,17 @@
 mod cases;
 mod dice;
 mod relations;
+mod tangencies;
+mod tangent;
 
 pub use cases::{Case, case};
 pub use dice::{Dice, FACES};
 pub use relations::{RELATIONS, Relation};
+pub use tangent::inner_tangent;
 
 use crate::disc::{Disc, Drive, Leg};
+use crate::outward::neighbour;
+use pcr_host::fleet::Format;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -124,4 +129,53 @@ pub fn moved(disc: &Disc, [dx, dy, turn]: [f64; 3]) -> Disc {
     let [x, y, heading] = disc.start;
     let (sin, cos) = turn.sin_cos();
     Disc { start: [cos * x - sin * y + dx, sin * x + cos * y + dy, heading + turn], ..disc.clone() }
+}
+
+/// A pair in motion for the checker of tables, in the format `S`: those of [`case`], others whose numbers are multiples of a few, that
+/// touch from inside an arc or are related to one another, each number of these a few last digits off now and then.
+pub fn certifiable<S: Format>(seed: u64) -> Case {
+    let (kind, seed) = (seed % 8, seed / 8);
+    if kind < 3 {
+        return case(seed.wrapping_mul(3).wrapping_add(kind)).0;
+    }
+    let mut dice = Dice::seeded(seed.wrapping_mul(8).wrapping_add(kind));
+    let pair = match kind {
+        3 | 4 => tangencies::lattice(&mut dice),
+        5 | 6 => tangencies::inside(&mut dice),
+        _ => {
+            let relation = RELATIONS[dice.below(RELATIONS.len())];
+            related(relation, &mut dice)
+        }
+    };
+    let mut dice = Dice::seeded(!seed);
+    let often = if dice.chance(0.5) { 0.0 } else { 0.3 };
+    let [first, second] = [pair.0, pair.1].map(|disc| nudged::<S>(disc.rounded::<S>(), often, &mut dice));
+    let drives = [&first, &second].map(|disc| match dice.below(4) {
+        0 => (drive(&mut dice, disc.length()), dice.range(-5.0, 50.0)),
+        _ => (Drive::Unit, 0.0),
+    });
+    ((first, second), drives)
+}
+
+/// The disc with some of its numbers one to three last digits off.
+fn nudged<S: Format>(mut disc: Disc, often: f64, dice: &mut Dice) -> Disc {
+    let mut nudge = |value: f64| {
+        // Beyond the limit there may be no other number; the library refuses it.
+        if !dice.chance(often) || value.abs() >= S::LIMIT.to_f64() {
+            return value;
+        }
+        let (steps, above) = (1 + dice.below(3), dice.chance(0.5));
+        (0..steps).fold(S::from_f64(value), |value, _| neighbour(value, above)).to_f64()
+    };
+    disc.radius = nudge(disc.radius);
+    disc.start[0] = nudge(disc.start[0]);
+    disc.start[1] = nudge(disc.start[1]);
+    for leg in &mut disc.legs {
+        *leg = match *leg {
+            Leg::Line(length) => Leg::Line(nudge(length)),
+            Leg::Left { radius, length } => Leg::Left { radius: nudge(radius), length: nudge(length) },
+            Leg::Right { radius, length } => Leg::Right { radius: nudge(radius), length: nudge(length) },
+        };
+    }
+    disc
 }

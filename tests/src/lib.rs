@@ -2,18 +2,23 @@
 //! but the definition of a collision region.
 
 pub mod audit;
+pub mod certified;
+pub mod clearance;
 pub mod constants;
 pub mod disc;
 pub mod exact;
 pub mod execution;
 pub mod generators;
+pub mod limits;
 pub mod oracle;
 pub mod outward;
 pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
+pub mod search;
 pub mod settings;
+pub mod shadow;
 pub mod velocity;
 
 /// The example of the README runs.

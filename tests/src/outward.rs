@@ -15,6 +15,7 @@ use pcr_core::scalar::Micro;
 use pcr_core::{Full, excess};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_host::fleet::{Format, build_ecm};
+pub use search::neighbour;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fmt, thread};
@@ -131,10 +132,27 @@ pub fn run<S: Format>(first: u64, count: u64) -> Tally {
     tally
 }
 
+/// What runs over many cases come to together.
+pub trait Total: Default + Send {
+    /// Counts another run as well.
+    fn add(&mut self, other: &Self);
+}
+
+impl Total for Tally {
+    fn add(&mut self, other: &Self) {
+        Self::add(self, other);
+    }
+}
+
 /// The same on all processors. What a batch of the cases has come to is told beside the sum of those that were done.
-pub fn run_on_all_processors(run: Run, first: u64, count: u64, tell: impl Fn(&Tally, &Tally) + Sync) -> Tally {
+pub fn run_on_all_processors<T: Total>(
+    run: fn(u64, u64) -> T,
+    first: u64,
+    count: u64,
+    tell: impl Fn(&T, &T) + Sync,
+) -> T {
     const BATCH: u64 = 1_000;
-    let (next, total) = (AtomicU64::new(0), Mutex::new(Tally::default()));
+    let (next, total) = (AtomicU64::new(0), Mutex::new(T::default()));
     let work = || {
         loop {
             let done = next.fetch_add(BATCH, Ordering::Relaxed);
@@ -219,7 +237,7 @@ impl<S: Format> Checked<S> {
                 routes,
                 radius: self.radius,
                 doubt: self.doubt,
-                regions: ecm.pair(&motions, ego, other).collect(),
+                regions: ecm.pair(&motions, ego, other).expect("the table of the fleet").collect(),
                 excess,
             };
             seen.regions += view.regions.len() as u64;

@@ -2,7 +2,7 @@
 //! `conflicts.rs` holds its contacts to the oracle.
 
 use pcr_core::scalar::Micro;
-use pcr_core::{Bounds, BroadPhase, Encounter, Full, Interval, Motion};
+use pcr_core::{Bounds, BroadPhase, Encounter, Full, Interval, Mismatch, Motion};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_host::fleet::{Fleet, Format};
 use pcr_host::scenario::Scenario;
@@ -109,11 +109,14 @@ fn a_fleet_has_the_contacts_of_its_pairs_however_many_the_parts() {
             // In any order.
             let mut shared: Vec<_> = broad_phase.candidates().collect();
             shared.reverse();
-            let mut shared: Vec<_> =
-                shared.into_iter().flat_map(|(agents, time)| broad_phase.contacts_of(agents, time)).collect();
+            let mut shared: Vec<_> = shared
+                .into_iter()
+                .flat_map(|(agents, time)| broad_phase.contacts_of(agents, time).expect("agents of the fleet"))
+                .collect();
             shared.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.lo.total_cmp(&b.1.lo)));
             assert_eq!(shared, found);
-            assert_eq!(broad_phase.contacts_of([0, motions.len()], time).count(), 0);
+            let stranger = broad_phase.contacts_of([0, motions.len()], time).err();
+            assert_eq!(stranger, Some(Mismatch::NoSuchAgent(motions.len())));
             // The more parts, the fewer pairs are left.
             let before = std::mem::replace(&mut candidates, pairs_of(&broad_phase));
             assert!(candidates <= before && (parts < 16 || candidates < most / 2), "{candidates} of {most} at {parts}");

@@ -181,8 +181,8 @@ fn coordination_space_does_not_know_the_motion() {
         let [a, b] = [&east, &north].map(|path| &*Box::leak(Box::new(path.clone())));
         let fleet = [motion(a, p), motion(b, q)];
         let ecm = Ecm::build([Region::EMPTY; 2], [Piece::EMPTY; 4], &fleet).unwrap();
-        let region = ecm.pair(&fleet, 0, 1).next().unwrap();
-        let transposed = ecm.pair(&fleet, 1, 0).next().unwrap();
+        let region = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").next().unwrap();
+        let transposed = ecm.pair(&fleet, 1, 0).expect("the table of the fleet").next().unwrap();
         assert_eq!((region.length(), region.other_length()), (transposed.other_length(), transposed.length()));
         // The time range is the image of the length range under the other's motion, whatever the phase it is in.
         let expected = fleet[1].time_in(region.other_length());

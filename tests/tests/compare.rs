@@ -110,8 +110,9 @@ fn rows_hold_the_regions_of_the_table() {
             for other in ego + 1..agents {
                 for [i, j] in [[ego, other], [other, ego]] {
                     let extents = |region: pcr_core::RegionRef<'_, f64>| (region.time(), region.length());
-                    let whole: Vec<_> = table.pair(&motions, i, j).map(extents).collect();
-                    let part: Vec<_> = row.pair(i, j).map(extents).collect();
+                    let whole: Vec<_> =
+                        table.pair(&motions, i, j).expect("the table of the fleet").map(extents).collect();
+                    let part: Vec<_> = row.pair(i, j).expect("the row of one of them").map(extents).collect();
                     assert_eq!(whole, part, "{i}, {j}");
                 }
             }
@@ -135,7 +136,10 @@ fn rows_in_the_storage_of_others_are_the_same() {
         );
         for &agent in &agents[1..] {
             let extents = |row: &FleetRow<'_, f64>| -> Vec<_> {
-                row.pair(agents[0] as usize, agent as usize).map(|region| (region.time(), region.length())).collect()
+                row.pair(agents[0] as usize, agent as usize)
+                    .expect("its row")
+                    .map(|region| (region.time(), region.length()))
+                    .collect()
             };
             assert_eq!(extents(row), extents(other), "{} {agent}", agents[0]);
         }
@@ -186,6 +190,9 @@ fn other_libraries_find_what_is_no_graze() {
         let comparison = Comparison::new(&crowd(12, seed), EFFORT, &filters, &mut |_, _| {}).expect("it fits");
         for Absent { method, reason } in &comparison.absent {
             assert!(!method.starts_with("parry"), "parry is a crate");
+            assert!(reason.contains("was not installed"), "{method}: {reason}");
+            // The build fails there if a library is missing.
+            assert!(std::env::var("CI").as_deref() != Ok("true"), "{method}: {reason}");
             println!("left out: {method}: {reason}");
         }
         let others: Vec<&Row> = comparison.rows.iter().filter(|row| !row.method.starts_with("pcr")).collect();

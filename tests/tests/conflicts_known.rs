@@ -131,7 +131,8 @@ fn the_first_conflict_with_a_row_has_known_answers() {
     let first = |courses: &[Course<f64>]| {
         let fleet: Vec<Motion<'_, f64>> = courses.iter().map(Course::motion).collect();
         let ecm = build_ecm(&fleet).expect("a small table");
-        first_conflict(&fleet[0], ecm.row(&fleet, 0), Interval::new(-1.0, 20.0)).map(|met| (met.other, met.conflict))
+        first_conflict(&fleet[0], ecm.row(&fleet, 0).expect("the table of the fleet"), Interval::new(-1.0, 20.0))
+            .map(|met| (met.other, met.conflict))
     };
     let ego = || line(0.25, [-4.0, 0.0, 0.0], 8.0, 0.0);
     // Two cross at right angles, the later one listed first: √2 v |t - 4 ∓ ...| <= R around 4 s and 2 s.

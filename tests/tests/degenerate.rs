@@ -36,7 +36,7 @@ fn regions(ego: &Disc, other: &Disc) -> Vec<Found> {
         let slices = (1..SLICES).map(|k| (at(k), region.slice_at(at(k)).collect())).collect();
         Found { s, l: region.length(), slices }
     };
-    let mut regions: Vec<_> = ecm.pair(&motions, 0, 1).map(found).collect();
+    let mut regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of the fleet").map(found).collect();
     regions.sort_by(|a, b| (a.s.lo + a.l.lo).total_cmp(&(b.s.lo + b.l.lo)));
     regions
 }
@@ -71,7 +71,7 @@ fn crossing_at_right_angles_is_a_circle() {
     // 3-4-5: 3 m before the crossing the slice reaches 4 m to both sides.
     let audit = Audit::<f64>::new(&ego, &other).expect("a valid pair");
     let (motions, ecm) = audit.table();
-    let region = ecm.pair(&motions, 0, 1).next().expect("one region");
+    let region = ecm.pair(&motions, 0, 1).expect("the table of the fleet").next().expect("one region");
     let slices: Vec<_> = region.slice_at(5.0).collect();
     assert_eq!(slices.len(), 1);
     assert_near(slices[0], 6.0, 14.0, EXACT);
@@ -244,7 +244,7 @@ fn an_agent_that_stands_in_the_way_is_one_slice_for_ever() {
     let other = disc(0.4, 5.0, 0.6, 1.0, &[]);
     let audit = Audit::<f64>::new(&ego, &other).expect("a valid pair");
     let (motions, ecm) = audit.table();
-    let region = ecm.pair(&motions, 0, 1).next().expect("one region");
+    let region = ecm.pair(&motions, 0, 1).expect("the table of the fleet").next().expect("one region");
     assert_eq!(ecm.len(), 1);
     assert_eq!((region.time().lo, region.time().hi), (0.0, 0.0));
     assert!(region.is_open_at_start() && region.is_open_at_end());
@@ -254,7 +254,7 @@ fn an_agent_that_stands_in_the_way_is_one_slice_for_ever() {
         assert_near(slices[0], 4.2, 5.8, EXACT);
     }
     // From the other side the standing agent sees it pass.
-    let seen = ecm.pair(&motions, 1, 0).next().expect("one region");
+    let seen = ecm.pair(&motions, 1, 0).expect("the table of the fleet").next().expect("one region");
     assert_near(seen.time(), 4.2, 5.8, EXACT);
     assert_eq!((seen.length().lo, seen.length().hi), (0.0, 0.0));
     assert!(seen.contains(5.0, 0.0) && !seen.contains(4.1, 0.0) && !seen.is_open_at_start());
@@ -360,5 +360,7 @@ fn a_joint_inside_a_region_does_not_cut_it() {
     let audit = Audit::<f64>::new(&ego, &other).expect("a valid pair");
     let (motions, ecm) = audit.table();
     assert_eq!(ecm.len(), 1);
-    assert!(ecm.pair(&motions, 0, 1).next().expect("one region").pieces().count() >= 8);
+    assert!(
+        ecm.pair(&motions, 0, 1).expect("the table of the fleet").next().expect("one region").pieces().count() >= 8
+    );
 }

@@ -24,7 +24,7 @@ fn audited<S: Format>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(
     };
     let fleet = [ego.motion(), other.motion()];
     let ecm = build_ecm(&fleet).expect("a small table");
-    let regions: Vec<RegionRef<'_, S>> = ecm.pair(&fleet, 0, 1).collect();
+    let regions: Vec<RegionRef<'_, S>> = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").collect();
     // A region that is all slack forbids what its ranges allow.
     let pair = Pair::new(&discs[0].rounded::<S>(), &discs[1].rounded::<S>());
     let tolerance = Encounter::new(&fleet[0], &fleet[1]).tolerance().to_f64();
@@ -135,7 +135,7 @@ fn line(start: [f64; 3], length: f64, speed: f64) -> Course<f64> {
 fn forbidden(courses: [&Course<f64>; 2]) -> Vec<Interval<f64>> {
     let fleet = courses.map(Course::motion);
     let ecm = build_ecm(&fleet).expect("a small table");
-    ecm.pair(&fleet, 0, 1).map(|region| region.forbidden_delays()).collect()
+    ecm.pair(&fleet, 0, 1).expect("the table of the fleet").map(|region| region.forbidden_delays()).collect()
 }
 
 #[test]
@@ -191,5 +191,5 @@ fn an_agent_that_parks_on_the_way_has_to_be_passed_before() {
 fn earliest_start_of(courses: [&Course<f64>; 2], from: f64) -> Option<f64> {
     let fleet = courses.map(Course::motion);
     let ecm = build_ecm(&fleet).expect("a small table");
-    earliest_start(ecm.row(&fleet, 0), from)
+    earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), from)
 }

@@ -69,7 +69,7 @@ fn compare_in<S: Format>(agents: &[Value], polygons: [&[Point]; 2], slack: f64) 
     let overhang: f64 = scenario.agents.iter().filter_map(|agent| Some(agent.footprint.as_ref()?.overhang())).sum();
     let fleet = references(&scenario);
     let motions = fleet.motions();
-    let answer = Answer::of::<S>(&scenario, Request { agent: None, slices: Some(SLICES) }).unwrap();
+    let answer = Answer::of::<S>(&scenario, Request { agent: None, slices: Some(SLICES), certificate: false }).unwrap();
     assert!(answer.footprints.iter().all(|cover| (0.0..=slack).contains(&cover.growth)), "{:?}", answer.footprints);
     let mut counts = [0, 0];
     for (own, other) in [(0, 1), (1, 0)] {
@@ -159,7 +159,8 @@ fn a_vehicle_that_turns_in_place_sweeps_what_is_beside_it() {
     assert!(inside > 100 && outside > 100, "{inside} {outside}");
     // The discs of its turn: while the reference point stands.
     let scenario = read(&agents);
-    let regions = Answer::of::<f64>(&scenario, Request { agent: Some(1), slices: None }).unwrap().regions;
+    let regions =
+        Answer::of::<f64>(&scenario, Request { agent: Some(1), slices: None, certificate: false }).unwrap().regions;
     assert!(regions.iter().any(|region| region.pieces.iter().any(|piece| piece.i_segment == Some(2))));
 }
 

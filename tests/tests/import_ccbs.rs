@@ -150,11 +150,23 @@ fn what_is_no_plan_is_refused_by_name() {
         scenario(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
     };
     for (text, expected) in [
-        (include_str!("../data/real/ccbs/example_grid_task.xml"), "root: there is no log in it, hence no plan"),
+        (
+            include_str!("../data/real/ccbs/example_grid_task.xml"),
+            "a task of Continuous-CBS without its plan; the plan is in the log that the program writes",
+        ),
         (include_str!("../data/real/ccbs/example_grid_map.xml"), "root: there is no log in it, hence no plan"),
         (include_str!("../data/real/ccbs/example_config.xml"), "root: there is no log in it, hence no plan"),
         ("<root><log/></root>", "log: there is no agent in it"),
         ("<root><log><agent number=\"4\"/></log></root>", "agent 4, path: missing"),
+        (
+            "<root><log><agent number=\"4\"><path/><path/></agent></log></root>",
+            "agent, path: there are several; one is expected",
+        ),
+        ("<root><log/><log/></root>", "root, log: there are several; one is expected"),
+        (
+            "<root><log><agent number=\"x\"/></log></root>",
+            "agent at place 1, number: a whole number from 0 is expected",
+        ),
         ("<root><log><agent number=\"4\"><path/></agent></log></root>", "agent 4: no point at all"),
     ] {
         assert_eq!(failed(text), expected);
@@ -165,4 +177,54 @@ fn what_is_no_plan_is_refused_by_name() {
     assert!(failed(&text).ends_with("duration: \"long\" where a number up to 1e10 is expected"), "{}", failed(&text));
     let negative = GRID.replacen("duration=\"1\"", "duration=\"-1\"", 1);
     assert!(failed(&negative).starts_with("agent 0: point "), "{}", failed(&negative));
+}
+
+#[test]
+fn a_roadmap_is_read_whole_or_refused() {
+    let node = |id: &str, at: &str| format!("<node id=\"{id}\"><data>{at}</data></node>");
+    let edge = |id: &str, from: &str, to: &str| format!("<edge id=\"{id}\" source=\"{from}\" target=\"{to}\"/>");
+    let graph = |attributes: &str, parts: &[String]| {
+        format!("<graphml><graph {attributes}>{}</graph></graphml>", parts.concat())
+    };
+    let read = |text: &str, partial: bool| {
+        let options = Options { radius: Some(0.3), partial, ..Options::default() };
+        layout(Format::Ccbs, text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    let square = [node("a", "0,0"), node("b", "4,0"), node("c", "2,-2"), node("d", "2,2")];
+    // One name for two edges that cross.
+    let twice = graph("", &[square.concat(), edge("e", "a", "b"), edge("e", "c", "d"), edge("e", "a", "b")]);
+    let imported = read(&twice, false).unwrap();
+    let ids: Vec<String> = imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
+    assert_eq!(ids, ["e", "e#2"]);
+    assert_eq!(pcr_host::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    let lost = graph("", &[square.concat(), edge("e", "a", "b"), edge("f", "a", "z"), node("g", "x")]);
+    let error = read(&lost, false).unwrap_err();
+    assert_eq!(
+        error,
+        "node g: its first datum is not x,y; edge f, target: there is no node z; --partial leaves that out"
+    );
+    assert_eq!(read(&lost, true).unwrap().layout.edges.len(), 1);
+    let moved = graph("", &[square.concat(), node("a", "1,1"), edge("e", "a", "b")]);
+    assert_eq!(
+        read(&moved, false).unwrap_err(),
+        "edge e, source: there are several different nodes a; --partial leaves that out"
+    );
+    // Directions as GraphML has them.
+    let ways = |attributes: &str, edge: &str| {
+        let text = graph(attributes, &[square.concat(), edge.to_owned()]);
+        read(&text, false).unwrap().layout.edges[0].two_way
+    };
+    assert!(
+        !ways("edgedefault=\"directed\"", &edge("e", "a", "b"))
+            && ways("edgedefault=\"undirected\"", &edge("e", "a", "b"))
+    );
+    assert!(ways("", "<edge source=\"a\" target=\"b\" directed=\"false\"/>"));
+    let still = read(&graph("", &[square.concat(), node("z", "0,0"), edge("e", "a", "z"), edge("f", "a", "b")]), false)
+        .unwrap()
+        .layout;
+    assert_eq!(still.edges.iter().map(|edge| edge.curve.len()).collect::<Vec<_>>(), [0, 1]);
+    assert!(still.warnings.contains(&"edge e: its length is 0".to_owned()), "{:?}", still.warnings);
+    assert!(!still.warnings.iter().any(|line| line.starts_with("edge f")), "{:?}", still.warnings);
+    let two = format!("<graphml>{}</graphml>", "<graph/>".repeat(2));
+    assert_eq!(read(&two, false).unwrap_err(), "graphml, graph: there are several; one is expected");
 }

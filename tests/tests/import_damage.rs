@@ -23,8 +23,11 @@ const FILES: [(Format, &str); 12] = [
 
 /// Reads the text in every way. What it becomes has to be fit for use.
 fn read(format: Format, text: &str) {
-    let options =
-        |routes: &[&str]| Options { routes: routes.iter().map(ToString::to_string).collect(), ..Options::default() };
+    let options = |routes: &[&str]| Options {
+        routes: routes.iter().map(ToString::to_string).collect(),
+        partial: true,
+        ..Options::default()
+    };
     let mut warnings = Warnings::default();
     if let Ok(imported) = layout(format, text, &options(&[]), &mut warnings) {
         let _ = Locks::of(&imported, true);

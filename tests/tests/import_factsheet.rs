@@ -39,12 +39,14 @@ fn a_factsheet_gives_contour_and_limits() {
         "physicalParameters": { "maximumSpeed": 1.5, "maximumAcceleration": 0.6, "maximumDeceleration": 0.4, "maximumAngularSpeed": 0.7 },
         "mobileRobotGeometry": { "envelopes2d": [ { "envelope2dId": "a", "vertices": [
             { "x": 1.3, "y": 0.4 }, { "x": -0.6, "y": 0.4 }, { "x": -0.6, "y": -0.4 }, { "x": 1.3, "y": -0.4 } ] },
-            { "envelope2dId": "b", "vertices": [] } ] } });
+            { "envelope2dId": "b", "vertices": [ { "x": 0.0, "y": 0.4 }, { "x": 0.0, "y": -0.6 }, { "x": 1.0, "y": 0.0 } ] } ] } });
     let (third, warned) = lines(&sheet);
     let third = third.unwrap();
     assert_eq!((third.speed, third.acceleration, third.rotation), (1.5, 0.4, 0.7));
-    assert_eq!(third.footprint, Some(footprint));
-    assert!(warned.contains("envelopes2d: the first of 2 is taken"), "{warned}");
+    // No corner of any of them is left out.
+    let corners = [[-0.6, -0.4], [0.0, -0.6], [1.3, -0.4], [1.3, 0.4], [-0.6, 0.4]];
+    assert_eq!(third.footprint.unwrap().polygon(), corners);
+    assert!(warned.contains("envelopes2d: there are 2; the convex hull of all is taken"), "{warned}");
 }
 
 #[test]
@@ -70,6 +72,9 @@ fn what_is_wrong_is_named() {
     let points = "/agvGeometry/envelopes2d/0/polygonPoints";
     assert!(wrong(points, json!([])).contains("envelopes2d: 0 corners"));
     assert!(wrong(&format!("{points}/1/x"), json!("1")).contains("envelopes2d, point 2, x: a text"));
+    let second = "/agvGeometry/envelopes2d";
+    let two = json!([{ "polygonPoints": [{ "x": 1, "y": 0 }] }, { "polygonPoints": [] }]);
+    assert_eq!(wrong(second, two), "factsheet, envelopes2d 2: 0 corners");
     assert!(wrong("/physicalParameters/speedMax", json!(-1)).contains("physicalParameters, speedMax: -1"));
     assert!(wrong("/agvGeometry", json!([])).contains("agvGeometry: a list where an object"));
     let neither = vehicle("{}", &Options::default(), &mut Warnings::default()).unwrap_err().to_string();

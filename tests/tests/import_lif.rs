@@ -126,12 +126,21 @@ fn maps_are_levels() {
     assert_eq!(layout.nodes.iter().map(|node| node.level).collect::<Vec<_>>(), [0, 0, 1, 1]);
 }
 
+/// What the reader refuses, and what it reads and warns about if that is left out.
+fn partly(value: &Value) -> (String, Layout, Vec<String>) {
+    let text = value.to_string();
+    let error = layout(Format::Lif, &text, &options(), &mut Warnings::default()).unwrap_err().to_string();
+    let (layout, warnings) = read(&text, &Options { partial: true, ..options() });
+    (error, layout, warnings)
+}
+
 #[test]
-fn what_is_wrong_is_left_out_and_named() {
+fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     let mut value: Value = serde_json::from_str(CURVES).unwrap();
     value["layouts"][0]["edges"][0]["vehicleTypeEdgeProperties"][0]["trajectory"]["degree"] = json!(3);
     value["layouts"][0]["edges"][1]["vehicleTypeEdgeProperties"][0]["trajectory"]["knotVector"][2] = json!("0");
-    let (layout, warnings) = read(&value.to_string(), &options());
+    let (error, layout, warnings) = partly(&value);
+    assert_eq!(error, "edge N2-N1, trajectory: a knot that is not a number; --partial leaves that out");
     // Seven knots say that degree 3 is meant as the order.
     assert_eq!(layout.edges.iter().map(|edge| edge.id.clone()).collect::<Vec<_>>(), [Id::Text("N1-N2".into())]);
     assert!(
@@ -143,13 +152,92 @@ fn what_is_wrong_is_left_out_and_named() {
     assert!(warnings.contains(&"edge N2-N1, trajectory: a knot that is not a number: left out".into()), "{warnings:?}");
     value["layouts"][0]["edges"][0]["endNodeId"] = json!("N9");
     value["layouts"][0]["nodes"][1]["nodePosition"]["x"] = json!(null);
-    let (layout, warnings) = read(&value.to_string(), &options());
+    let (error, layout, warnings) = partly(&value);
     assert_eq!((layout.nodes.len(), layout.edges.len()), (1, 0));
     for expected in [
-        "node N2, nodePosition, x: missing: left out",
-        "edge N1-N2, endNodeId: there is no node N9: left out",
-        "edge N2-N1, startNodeId: there is no node N2: left out",
+        "node N2, nodePosition, x: missing",
+        "edge N1-N2, endNodeId: there is no node N9",
+        "edge N2-N1, startNodeId: there is no node N2",
     ] {
-        assert!(warnings.join("\n").contains(expected.trim_end_matches(": left out")), "{expected} in {warnings:?}");
+        assert!(error.contains(expected), "{expected} in {error}");
+        assert!(warnings.join("\n").contains(expected), "{expected} in {warnings:?}");
     }
+    assert!(warnings.iter().any(|line| line.ends_with(": left out")), "{warnings:?}");
+}
+
+#[test]
+fn one_name_for_several_things_loses_none_of_them() {
+    let mut value: Value = serde_json::from_str(LEVELS).unwrap();
+    let list = |value: &Value, list: &str| value["layouts"][0][list].as_array().unwrap().clone();
+    let (mut nodes, mut edges) = (list(&value, "nodes"), list(&value, "edges"));
+    let (count, ways) = read(LEVELS, &options()).0.edges.iter().fold((0, 0), |(k, n), _| (k + 1, n + 1));
+    // A copy of a node and one of an edge, and an edge of the same name the other way round.
+    nodes.push(nodes[0].clone());
+    edges.push(edges[0].clone());
+    let mut back = edges[0].clone();
+    (back["startNodeId"], back["endNodeId"]) = (edges[0]["endNodeId"].clone(), edges[0]["startNodeId"].clone());
+    edges.push(back);
+    (value["layouts"][0]["nodes"], value["layouts"][0]["edges"]) = (json!(nodes), json!(edges));
+    let (layout, warnings) = read(&value.to_string(), &options());
+    assert_eq!((layout.nodes.len(), layout.edges.len()), (4, count.max(ways) + 1));
+    let name = edges[0]["edgeId"].as_str().unwrap();
+    assert!(layout.edges.iter().any(|edge| edge.id.to_string() == format!("{name}#2")), "{:?}", layout.edges);
+    assert!(warnings.iter().any(|line| line.contains("the name of several")), "{warnings:?}");
+    assert!(warnings.iter().any(|line| line.contains("given twice, the same each time")), "{warnings:?}");
+    // Another place for a node that edges join: which one they mean cannot be told.
+    let last = nodes.len() - 1;
+    nodes[last]["nodePosition"]["x"] = json!(77.0);
+    value["layouts"][0]["nodes"] = json!(nodes);
+    let error = layout_error(&value.to_string());
+    assert!(error.contains(": there are several different nodes "), "{error}");
+}
+
+fn layout_error(text: &str) -> String {
+    layout(Format::Lif, text, &options(), &mut Warnings::default()).unwrap_err().to_string()
+}
+
+#[test]
+fn every_type_keeps_its_own_way() {
+    let mut value: Value = serde_json::from_str(CURVES).unwrap();
+    let properties = value["layouts"][0]["edges"][0]["vehicleTypeEdgeProperties"].as_array_mut().unwrap();
+    let mut other = properties[0].clone();
+    other["vehicleTypeId"] = json!("straight");
+    other.as_object_mut().unwrap().remove("trajectory");
+    properties.push(other);
+    let text = value.to_string();
+    let (all, _) = read(&text, &options());
+    assert_eq!(all.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["N1-N2", "N1-N2#2", "N2-N1"]);
+    assert_ne!(all.edges[0].curve, all.edges[1].curve);
+    let (one, _) = read(&text, &Options { vehicle: Some("straight".into()), ..options() });
+    assert_eq!((one.edges.len(), &one.edges[0].curve), (1, &all.edges[1].curve));
+}
+
+#[test]
+fn edges_have_the_limits_and_the_gaps_of_the_file() {
+    let node = |id: &str, x: f64, y: f64| json!({ "nodeId": id, "nodePosition": { "x": x, "y": y } });
+    let line = |from: [f64; 2], to: [f64; 2]| {
+        let points = [from, to].map(|[x, y]| json!({ "x": x, "y": y }));
+        json!({ "degree": 1, "knotVector": [0, 0, 1, 1], "controlPoints": points })
+    };
+    let edge = |id: &str, to: &str, properties: Value| json!({ "edgeId": id, "startNodeId": "a", "endNodeId": to, "vehicleTypeEdgeProperties": properties });
+    let lif = json!({ "layouts": [{ "layoutId": "l", "nodes": [node("a", 1.0, 2.0), node("b", 4.0, 6.0), node("c", 1.0, 2.0)], "edges": [
+        edge("plain", "b", json!([])),
+        edge("slow", "b", json!([{ "vehicleTypeId": "t", "maxSpeed": 0.7, "maxRotationSpeed": 0.3 }])),
+        edge("near", "b", json!([{ "vehicleTypeId": "t", "trajectory": line([1.0, 2.0], [4.0, 6.0]) }])),
+        edge("off", "b", json!([{ "vehicleTypeId": "t", "trajectory": line([1.0, 2.0], [4.0, 6.5]) }])),
+        edge("none", "c", json!([])),
+    ] }] });
+    let (layout, warnings) = read(&lif.to_string(), &options());
+    let limits: Vec<_> = layout.edges.iter().map(|edge| (edge.id.to_string(), edge.speed, edge.rotation)).collect();
+    let expected = [
+        ("plain", None, None),
+        ("slow", Some(0.7), Some(0.3)),
+        ("near", None, None),
+        ("off", None, None),
+        ("none", None, None),
+    ];
+    assert_eq!(limits, expected.map(|(id, speed, rotation)| (id.to_owned(), speed, rotation)));
+    assert!(layout.edges.iter().all(|edge| !edge.two_way));
+    assert!((layout.edges[0].length() - 5.0).abs() < 1e-12 && layout.edges[4].curve.is_empty());
+    assert_eq!(warnings, ["edge off: its trajectory ends 0.500 m from its node", "edge none: its length is 0"]);
 }

@@ -3,7 +3,9 @@
 use pcr_core::{Curve, Motion};
 use pcr_host::fleet::Fleet;
 use pcr_host::import::{Format, Imported, Layout, Options, TURN, Warnings, layout, scenario};
+use pcr_host::locks::Locks;
 use pcr_host::scenario::{MotionSpec, Scenario};
+use serde_json::{Value, json};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 const AWS: &str = include_str!("../data/real/nav2/aws_graph.geojson");
@@ -196,4 +198,141 @@ fn wrong_routes_are_named() {
     assert!(failed(&[]).starts_with("a layout has no agents; ask for routes with --route FROM:TO"));
     let late = route(WAREHOUSE, &["0:1@12.5", "1:1"], 1.0);
     assert_eq!((late.agents[0].t_start, late.agents[1].path.len()), (12.5, 0));
+}
+
+const ONE_ID: &str = include_str!("../data/cases/one-id-two-edges.geojson");
+
+fn failed(graph: &Value) -> String {
+    layout(Format::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default()).unwrap_err().to_string()
+}
+
+#[test]
+fn two_edges_of_one_id_are_both_there() {
+    let mut warnings = Warnings::default();
+    let imported = layout(Format::Nav2, ONE_ID, &options(&[], 1.0), &mut warnings).unwrap();
+    let ids: Vec<String> = imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
+    assert_eq!(ids, ["101", "100", "101#2"]);
+    assert!(warnings.lines().contains(&"edge 101: the name of several; one of them is called 101#2 here".to_owned()));
+    let table = Locks::of(&imported, false).unwrap();
+    let [lock] = &table.locks[..] else { panic!("{:?}", table.locks) };
+    assert_eq!((lock.a.to_string(), lock.b.to_string()), ("100".into(), "101#2".into()));
+    // Where it came from is told with the answer.
+    assert!(table.warnings.iter().any(|line| line.contains("101#2")), "{:?}", table.warnings);
+    // The other way round as well, and where the first one is in the way.
+    let scenario = route(ONE_ID, &["4:5", "2:3"], 1.0);
+    assert_eq!(scenario.agents.iter().map(|agent| agent.length()).collect::<Vec<_>>(), [10.0, 10.0]);
+    assert!(scenario.warnings.iter().any(|line| line.contains("101#2")));
+}
+
+#[test]
+fn copies_are_there_once_and_edges_join_the_last_node_of_an_id() {
+    let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+    let features = graph["features"].as_array_mut().unwrap();
+    let copies = [features[0].clone(), features[7].clone()];
+    features.extend(copies);
+    let (whole, warnings) = read(&graph.to_string());
+    assert_eq!((whole.nodes.len(), whole.edges.len()), (6, 3));
+    for name in ["node 0", "edge 100"] {
+        assert!(warnings.iter().any(|line| line.contains(name) && line.ends_with("given twice, the same each time")));
+    }
+    // The loader of nav2 goes on with the last node of an id: edge 100 then begins at (0, 1).
+    let mut moved = graph["features"][0].clone();
+    moved["geometry"]["coordinates"] = json!([0, 1]);
+    graph["features"].as_array_mut().unwrap().push(moved);
+    let (whole, _) = read(&graph.to_string());
+    assert_eq!(
+        whole.nodes.iter().map(|node| node.id.to_string()).collect::<Vec<_>>(),
+        ["0", "1", "2", "3", "4", "5", "0#2"]
+    );
+    let edge = whole.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap();
+    assert_eq!(whole.nodes[edge.ends[0]].at, [0.0, 1.0]);
+    assert!((edge.length() - 101.0_f64.sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_by_name() {
+    let changed = |pointer: &str, value: Value| {
+        let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+        *graph.pointer_mut(pointer).unwrap() = value;
+        graph
+    };
+    let lost = "; --partial leaves that out";
+    let unknown = changed("/features/7/properties/endid", json!(44));
+    assert_eq!(failed(&unknown), format!("edge 100, endid: there is no node 44{lost}"));
+    let partial = Options { partial: true, ..options(&[], 1.0) };
+    let mut warnings = Warnings::default();
+    let rest = layout(Format::Nav2, &unknown.to_string(), &partial, &mut warnings).unwrap().layout;
+    assert_eq!(rest.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["101", "101#2"]);
+    assert_eq!(rest.warnings, warnings.all());
+    assert!(
+        rest.warnings.contains(&"edge 100, endid: there is no node 44: left out".to_owned()),
+        "{:?}",
+        rest.warnings
+    );
+    let nowhere = changed("/features/0/geometry/coordinates", json!([0]));
+    let failed_at = failed(&nowhere);
+    assert!(failed_at.starts_with("feature 1, geometry, coordinates: two numbers are expected; "), "{failed_at}");
+    assert!(failed_at.contains("edge 100, startid: there is no node 0"), "{failed_at}");
+    let nameless = changed("/features/1/properties/id", json!(-1));
+    assert!(failed(&nameless).starts_with("feature 2, properties, id: not a whole number from 0; "));
+    let elsewhere = changed("/features/1/properties/frame", json!("odom"));
+    assert_eq!(failed(&elsewhere), "graph: its nodes are in several frames (map, odom); one has to be given");
+    // Areas are no part of the graph, for nav2 either.
+    let (_, warnings) = read(&{
+        let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+        let area = json!({ "type": "Feature", "properties": {}, "geometry": { "type": "Polygon", "coordinates": [] } });
+        graph["features"].as_array_mut().unwrap().push(area);
+        graph.to_string()
+    });
+    assert!(warnings.iter().any(|line| line.starts_with("feature 10: it is no point and no line")), "{warnings:?}");
+}
+
+#[test]
+fn speed_limits_end_at_100_percent() {
+    let limited = |limit: Value| {
+        let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+        graph["features"][7]["properties"]["metadata"] = json!({ "speed_limit": limit });
+        let (layout, warnings) = read(&graph.to_string());
+        let edge = layout.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap().speed;
+        (edge, warnings.iter().any(|line| line.starts_with("edge 100: its speed_limit is not above 0 and up to 100")))
+    };
+    for (limit, expected) in [(json!(1), 1.0), (json!(0.5), 0.5), (json!(2), 0.02), (json!(100), 1.0)] {
+        assert_eq!(limited(limit.clone()), (Some(expected), false), "{limit}");
+    }
+    for limit in [json!(0), json!(-0.5), json!(100.5), json!(1e4), json!("fast")] {
+        assert_eq!(limited(limit.clone()), (None, true), "{limit}");
+    }
+}
+
+#[test]
+fn a_route_that_can_be_read_in_two_ways_is_refused() {
+    let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+    for (node, name) in [(0, "a"), (1, "b:c"), (2, "a:b"), (3, "c"), (4, "twin"), (5, "twin")] {
+        graph["features"][node]["properties"]["name"] = json!(name);
+    }
+    let failed = |route: &str| {
+        let options = options(&[route], 1.0);
+        scenario(Format::Nav2, &graph.to_string(), &options, &mut Warnings::default()).unwrap_err().to_string()
+    };
+    assert_eq!(failed("a:b:c"), "route a:b:c: there are nodes for more than one reading of it");
+    assert_eq!(failed("twin:a"), "route twin:a: 2 nodes have the name twin");
+    assert_eq!(failed("a:b:c@7"), "route a:b:c@7: there are nodes for more than one reading of it");
+}
+
+#[test]
+fn ids_speeds_and_directions_are_those_of_the_file() {
+    assert_eq!(Format::of("graph.json".as_ref(), ONE_ID), Some(Format::Nav2));
+    assert_eq!(Format::of("graph.json".as_ref(), r#"{ "type": "Feature" }"#), None);
+    let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
+    // Whole numbers, as texts or with a decimal point as well.
+    (graph["features"][0]["properties"]["id"], graph["features"][1]["properties"]["id"]) = (json!("0"), json!(1.0));
+    graph["features"][7]["properties"]["metadata"] = json!({ "speed_limit": 0.5 });
+    graph["features"][8]["properties"]["metadata"] = json!({ "speed_limit": 50 });
+    let fast = Options { speed: Some(3.0), ..options(&[], 1.0) };
+    let whole = layout(Format::Nav2, &graph.to_string(), &fast, &mut Warnings::default()).unwrap().layout;
+    let speeds: Vec<Option<f64>> = whole.edges.iter().map(|edge| edge.speed).collect();
+    assert_eq!(speeds, [None, Some(1.5), Some(1.5)]);
+    assert!(whole.edges.iter().all(|edge| !edge.two_way && edge.curve.len() == 1));
+    graph["features"][1]["properties"]["id"] = json!(1.5);
+    assert!(failed(&graph).starts_with("feature 2, properties, id: not a whole number from 0; "));
 }

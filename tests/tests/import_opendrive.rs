@@ -94,7 +94,7 @@ fn roads_that_start_together_lock_each_other() {
 }
 
 #[test]
-fn what_is_wrong_is_left_out_and_named() {
+fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     let road = |id: &str, geometry: &str| format!("<road id=\"{id}\"><planView>{geometry}</planView></road>");
     let line = "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry>";
     let file = |roads: &[String]| format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
@@ -109,24 +109,192 @@ fn what_is_wrong_is_left_out_and_named() {
         road("12", &line.replace("<line/>", "<arc curvature=\"1e4\"/>")),
         road("11", ""),
     ]);
-    let (layout, warnings) = read(&text);
-    assert_eq!((layout.edges.len(), layout.nodes.len()), (1, 2));
-    let warnings = warnings.join("\n");
+    let error = layout_error(&text);
+    let mut warnings = Warnings::default();
+    let partial = Options { partial: true, ..Options::default() };
+    let read = layout(Format::OpenDrive, &text, &partial, &mut warnings).unwrap().layout;
+    assert_eq!((read.edges.len(), read.nodes.len()), (1, 2));
+    let warnings = warnings.lines().join("\n");
     for expected in [
         "road 8, geometry 1: spiral is not a line and not an arc",
         "road 9, geometry 2: it begins 1.000 m from the end of the one before",
         "road 10, geometry 1, length: \"1e300\" where a number up to 1e10 is expected",
         "road 12, geometry 1: its length, heading or sweep is out of range",
-        "road 7: given twice; the first is taken",
-        "road 11: left out: it has no geometry",
+        "road 11: it has no geometry",
     ] {
+        assert!(error.contains(expected), "{expected} in {error}");
         assert!(warnings.contains(expected), "{expected} in {warnings}");
     }
+    assert!(warnings.contains("edge 7: given twice, the same each time"), "{warnings}");
     let failed = |text: &str| layout_error(text);
     assert_eq!(failed("<a/>"), "a: not an OpenDRIVE file");
-    assert_eq!(failed(&file(&[road("1", &spiral)])), "OpenDRIVE: there is no road of lines and arcs in it");
+    assert_eq!(failed(&file(&[])), "OpenDRIVE: there is no road of lines and arcs in it");
+    let expected = "road 1, geometry 1: spiral is not a line and not an arc; --partial leaves that out";
+    assert_eq!(failed(&file(&[road("1", &spiral)])), expected);
+    let two =
+        format!("<planView>{line}</planView>{}", road("1", line).replace("<road id=\"1\">", "").replace("</road>", ""));
+    assert!(failed(&file(&[format!("<road id=\"1\">{two}</road>")])).starts_with("road, planView: there are several"));
+}
+
+#[test]
+fn limits_of_a_record_are_limits() {
+    let geometry = |attribute: &str, value: &str| {
+        let line = "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry>";
+        let zero = format!("{attribute}=\"{}\"", if attribute == "length" { "5" } else { "0" });
+        let changed = line.replace(&zero, &format!("{attribute}=\"{value}\""));
+        assert_ne!(changed, line);
+        format!("<OpenDRIVE><road id=\"1\"><planView>{changed}</planView></road></OpenDRIVE>")
+    };
+    let out = "road 1, geometry 1: its length, heading or sweep is out of range; --partial leaves that out";
+    for (attribute, value) in [("length", "-5"), ("length", "-1e-9"), ("hdg", "1.1e6"), ("hdg", "-1.1e6")] {
+        assert_eq!(layout_error(&geometry(attribute, value)), out, "{attribute} {value}");
+    }
+    assert_eq!(read(&geometry("hdg", "1e6")).0.edges.len(), 1);
+}
+
+#[test]
+fn roads_have_the_least_of_their_speed_limits() {
+    let limit =
+        |max: &str, unit: &str| format!("<type s=\"0\" type=\"town\"><speed max=\"{max}\" unit=\"{unit}\"/></type>");
+    let road = |limits: &str| {
+        let line = "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry>";
+        format!("<OpenDRIVE><road id=\"1\">{limits}<planView>{line}</planView></road></OpenDRIVE>")
+    };
+    // 25 mph are 25 miles of 1609.344 m in 3600 s.
+    let speed = |limits: &str| read(&road(limits)).0.edges[0].speed;
+    assert!((speed(&limit("25", "mph")).unwrap() - 25.0 * 1609.344 / 3600.0).abs() < 1e-12);
+    assert!((speed(&limit("36", "km/h")).unwrap() - 10.0).abs() < 1e-12);
+    assert_eq!((speed(&limit("7", "m/s")), speed(&limit("no limit", "mph")), speed("")), (Some(7.0), None, None));
+    assert_eq!((speed(&limit("0", "m/s")), speed(&limit("2e6", "m/s"))), (None, None), "no limits");
+    let (layout, warnings) = read(&road(&[limit("7", "m/s"), limit("5", "m/s"), limit("6", "m/s")].concat()));
+    assert_eq!(layout.edges[0].speed, Some(5.0));
+    assert_eq!(warnings, ["road 1: its speed limit changes on the way; the least one is taken for all of it"]);
+    let unknown = layout_error(&road(&limit("7", "knots")));
+    assert!(unknown.starts_with("road 1, speed, unit: knots is not known"), "{unknown}");
+}
+
+#[test]
+fn an_arc_that_is_nearly_straight_counts_as_deviation() {
+    let arc = "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"10000\"><arc curvature=\"1e-10\"/></geometry>";
+    let text = format!("<OpenDRIVE><road id=\"1\"><planView>{arc}</planView></road></OpenDRIVE>");
+    let edge = &read(&text).0.edges[0];
+    // At its end the arc is L² / 2R from its tangent.
+    assert!((edge.deviation - 5e-3).abs() < 1e-12, "{}", edge.deviation);
+}
+
+#[test]
+fn different_roads_of_one_name_are_both_there() {
+    let road = |y: &str| {
+        let line = format!("<geometry x=\"0\" y=\"{y}\" hdg=\"0\" length=\"5\"><line/></geometry>");
+        format!("<road id=\"3\"><planView>{line}</planView></road>")
+    };
+    let link = "<link><successor elementType=\"road\" elementId=\"3\" contactPoint=\"start\"/></link>";
+    let linked = road("9").replace("<road id=\"3\">", &format!("<road id=\"4\">{link}"));
+    let (layout, warnings) = read(&format!("<OpenDRIVE>{}{}{linked}</OpenDRIVE>", road("0"), road("1")));
+    assert_eq!(layout.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["3", "3#2", "4"]);
+    let expected = "road 4, successor: there are several different edges 3; no route leads over it";
+    assert!(warnings.contains(&expected.to_owned()), "{warnings:?}");
 }
 
 fn layout_error(text: &str) -> String {
     layout(Format::OpenDrive, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+}
+
+/// Two roads, one after the other, and a third on another lane; the first road is linked to both.
+fn lanes() -> String {
+    let road = |id: &str, at: [f64; 2], link: &str| {
+        let [x, y] = at;
+        format!(
+            "<road id=\"{id}\"><link>{link}</link><planView><geometry x=\"{x}\" y=\"{y}\" hdg=\"0\" length=\"10\">\
+             <line/></geometry></planView></road>"
+        )
+    };
+    let link = |side: &str, other: &str, point: &str| {
+        format!("<{side} elementType=\"road\" elementId=\"{other}\" contactPoint=\"{point}\"/>")
+    };
+    let roads = [
+        road("1", [0.0, 0.0], &link("successor", "2", "start")),
+        road("2", [10.0, 0.0], &link("predecessor", "1", "end")),
+        road("3", [10.0, 3.5], &link("predecessor", "1", "end")),
+    ];
+    format!("<OpenDRIVE><header name=\"lanes\"/>{}</OpenDRIVE>", roads.concat())
+}
+
+#[test]
+fn routes_take_every_end_of_every_road() {
+    let (layout, warnings) = read(&lanes());
+    assert_eq!((layout.edges.len(), layout.nodes.len()), (3, 5));
+    for text in [&lanes(), TOWN_1, TOWN_2] {
+        let (layout, _) = read(text);
+        for edge in &layout.edges {
+            for (end, node) in ["start", "end"].into_iter().zip(edge.ends) {
+                assert_eq!(layout.node(&format!("{}/{end}", edge.id)), Some(node), "{} {end}", edge.id);
+            }
+        }
+    }
+    let expected = "links of roads: 1 of 2 are between reference lines up to 3.500 m apart; no route passes there from road to road";
+    assert_eq!(warnings, [expected]);
+    let route = |route: &str| {
+        let options = Options { radius: Some(0.9), routes: vec![route.into()], ..Options::default() };
+        scenario(Format::OpenDrive, &lanes(), &options, &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    assert_eq!(route("1/start:2/end").unwrap().agents[0].length(), 20.0);
+    assert_eq!(route("1/end:2/end").unwrap(), route("2/start:2/end").unwrap());
+    assert_eq!(route("1/start:3/end").unwrap_err(), "route 1/start:3/end: there is no way from node to node");
+}
+
+/// Of two ways the one without a gap is taken, also where the other one is shorter.
+#[test]
+fn joints_without_gaps_are_preferred() {
+    let road = |id: &str, at: [f64; 2], length: f64, links: &str| {
+        let [x, y] = at;
+        format!(
+            "<road id=\"{id}\"><link>{links}</link><planView><geometry x=\"{x}\" y=\"{y}\" hdg=\"0\" length=\"{length}\">\
+             <line/></geometry></planView></road>"
+        )
+    };
+    let link = |side: &str, other: &str, point: &str| {
+        format!("<{side} elementType=\"road\" elementId=\"{other}\" contactPoint=\"{point}\"/>")
+    };
+    // From 1 to 9 over the short road 2, which lies 4 m beside, or over 3 and 4.
+    let text = [
+        road("1", [0.0, 0.0], 10.0, ""),
+        road("2", [10.0, 4.0], 20.0, &(link("predecessor", "1", "end") + &link("successor", "9", "start"))),
+        road("3", [10.0, 0.0], 10.0, &link("predecessor", "1", "end")),
+        road("4", [20.0, 0.0], 10.0, &(link("predecessor", "3", "end") + &link("successor", "9", "start"))),
+        road("9", [30.0, 0.0], 10.0, ""),
+    ];
+    let text = format!("<OpenDRIVE>{}</OpenDRIVE>", text.concat());
+    let options = Options { radius: Some(0.9), routes: vec!["1/start:9/end".into()], ..Options::default() };
+    let mut warnings = Warnings::default();
+    let scenario = scenario(Format::OpenDrive, &text, &options, &mut warnings).unwrap();
+    assert_eq!(scenario.agents[0].length(), 40.0);
+    assert!(
+        warnings.lines().iter().any(|line| line.contains("2 of 5 are between reference lines up to 4.000 m apart"))
+    );
+}
+
+#[test]
+fn records_without_length_windings_and_open_joints() {
+    let line = |x: f64, hdg: f64, length: f64| {
+        format!("<geometry x=\"{x}\" y=\"0\" hdg=\"{hdg}\" length=\"{length}\"><line/></geometry>")
+    };
+    let road = |records: &str| format!("<OpenDRIVE><road id=\"1\"><planView>{records}</planView></road></OpenDRIVE>");
+    let (layout, warnings) = read(&road(&[line(0.0, 0.0, 4.0), line(4.0, 0.0, 0.0), line(4.0, 0.0, 1.0)].concat()));
+    assert_eq!((layout.edges[0].curve.len(), layout.edges[0].two_way, warnings.len()), (2, true, 0));
+    // The widest of three joints, angles to either side.
+    let joints = [line(0.0, 0.0, 4.0), line(4.01, 1e-3, 4.0), line(8.01, -2e-3, 4.0), line(12.03, -2e-3, 1.0)];
+    let (_, warnings) = read(&road(&joints.concat()));
+    assert!(warnings[0].starts_with("road 1: joints are open, by 2.2e-2 m and 3.0e-3 rad at most;"), "{warnings:?}");
+    let arc = |turns: f64| {
+        let curvature = std::f64::consts::TAU * turns / 1000.0;
+        road(&format!(
+            "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"1000\"><arc curvature=\"{curvature}\"/></geometry>"
+        ))
+    };
+    assert_eq!((read(&arc(99.0)).0.edges.len(), read(&arc(-99.0)).0.edges.len()), (1, 1));
+    assert!(
+        layout_error(&arc(101.0)).contains("sweep is out of range")
+            && layout_error(&arc(-101.0)).contains("sweep is out")
+    );
 }

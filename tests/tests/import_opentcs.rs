@@ -66,3 +66,94 @@ fn vehicles_keep_the_velocity_of_a_path() {
     let scenario = scenario(Format::OpenTcs, DEMO, &options(&["Point-0001:Point-0003"]), &mut warnings).unwrap();
     assert!((scenario.agents[0].length() - 6.0).abs() < 1e-12);
 }
+
+#[test]
+fn a_plant_is_read_whole_or_refused() {
+    let point = |name: &str, x: i32, y: i32| format!("<point name=\"{name}\" positionX=\"{x}\" positionY=\"{y}\"/>");
+    let path = |name: &str, from: &str, to: &str, more: &str| {
+        format!("<path name=\"{name}\" sourcePoint=\"{from}\" destinationPoint=\"{to}\" length=\"4000\" {more}/>")
+    };
+    let points = [point("a", 0, 0), point("b", 4000, 0), point("c", 2000, -2000), point("d", 2000, 2000)].concat();
+    let read = |parts: &str, partial: bool| {
+        let options = Options { radius: Some(0.3), partial, ..Options::default() };
+        let text = format!("<model>{points}{parts}</model>");
+        layout(Format::OpenTcs, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    let twice = [path("p", "a", "b", ""), path("p", "c", "d", ""), path("p", "c", "d", "")].concat();
+    let imported = read(&twice, false).unwrap();
+    assert_eq!(imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["p", "p#2"]);
+    assert_eq!(pcr_host::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    let curved = "<path name=\"q\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"1\"><pathLayout connectionType=\"BEZIER\"/></path>";
+    let lost = [path("p", "a", "z", ""), curved.to_owned(), path("r", "a", "b", "maxVelocity=\"fast\"")].concat();
+    let expected = "path p, destinationPoint: there is no node z; path q: BEZIER with 0 control points is not read; \
+        path r, maxVelocity: \"fast\" where a number up to 1e10 is expected; --partial leaves that out";
+    assert_eq!(read(&lost, false).unwrap_err(), expected);
+    assert_eq!(read(&lost, true).unwrap().layout.edges.len(), 0);
+    let moved = [point("a", 5, 5), path("p", "a", "b", "")].concat();
+    assert!(read(&moved, false).unwrap_err().starts_with("path p, sourcePoint: there are several different nodes a"));
+    let scaled = |scale: &str| read(&format!("<visualLayout scaleX=\"{scale}\"/>"), false);
+    assert!(scaled("0").unwrap_err().starts_with("visualLayout, scaleX: 0 where a number above 0 is expected"));
+    assert!(scaled("x").is_err() && scaled("20").is_ok());
+    // What vehicles reach out to at a point is there to be seen, and not used.
+    let outline = "<point name=\"e\" positionX=\"9\" positionY=\"9\"><vehicleEnvelope key=\"k\"><vertex x=\"1\" y=\"1\"/></vehicleEnvelope></point>";
+    let warnings = read(outline, false).unwrap().layout.warnings;
+    assert!(warnings.iter().any(|line| line.starts_with("point e: its vehicleEnvelope is not read")), "{warnings:?}");
+    let reversed = read(&path("p", "a", "b", "maxReverseVelocity=\"500\" maxVelocity=\"1500\""), false).unwrap().layout;
+    assert_eq!((reversed.edges[0].two_way, reversed.edges[0].speed), (true, Some(1.5)));
+}
+
+#[test]
+fn paths_have_the_limits_and_the_shape_of_the_file() {
+    let read = |path: &str, controls: &[[i32; 2]], kind: &str| {
+        let controls: String = controls.iter().map(|[x, y]| format!("<controlPoint x=\"{x}\" y=\"{y}\"/>")).collect();
+        let text = format!(
+            "<model><point name=\"a\" positionX=\"0\" positionY=\"0\"/><point name=\"b\" positionX=\"4000\" positionY=\"0\">\
+            <vehicleEnvelope key=\"k\"/></point><path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\" {path}>\
+            <pathLayout connectionType=\"{kind}\">{controls}</pathLayout></path></model>"
+        );
+        let imported = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default());
+        imported.map(|imported| imported.layout).map_err(|error| error.to_string())
+    };
+    let stands = read("length=\"4000\" maxVelocity=\"0\" maxReverseVelocity=\"0\"", &[], "DIRECT").unwrap();
+    assert_eq!((stands.edges[0].two_way, stands.edges[0].speed), (false, None));
+    assert!(!stands.warnings.iter().any(|line| line.contains("vehicleEnvelope")), "{:?}", stands.warnings);
+    // One per cent is not warned about.
+    for (length, warned) in [(4000, false), (4030, false), (3970, false), (4050, true), (3950, true)] {
+        let plant = read(&format!("length=\"{length}\""), &[], "DIRECT").unwrap();
+        assert_eq!(plant.warnings.iter().any(|line| line.contains("its length is not that")), warned, "{length}");
+    }
+    // Units of 50 mm if the model names none, y down; twice the same point is no line.
+    let poly = read("", &[[40, -20], [40, -20]], "POLYPATH").unwrap();
+    let ends: Vec<[f64; 2]> = poly.edges[0].curve.iter().map(|piece| piece.end()).collect();
+    assert_eq!(ends.len(), 2);
+    assert!((ends[0][0] - 2.0).abs() < 1e-12 && (ends[0][1] - 1.0).abs() < 1e-12, "{ends:?}");
+    assert!(
+        read("", &[[1, 1], [2, 2], [3, 3]], "BEZIER").unwrap_err().contains("BEZIER with 3 control points is not read")
+    );
+}
+
+#[test]
+fn xml_is_known_by_its_first_element_and_not_nested_without_end() {
+    let format = |text: &str| Format::of("x.xml".as_ref(), text);
+    for text in [
+        "<model>",
+        "<model/>",
+        "<model name=\"a\"/>",
+        "<?xml version=\"1.0\"?>\n<!-- > -->\n <model>",
+        "\u{feff}<model>",
+    ] {
+        assert_eq!(format(text), Some(Format::OpenTcs), "{text}");
+    }
+    assert_eq!((format("<models>"), format("<graphml>"), format("model")), (None, Some(Format::Ccbs), None));
+    let read = |inner: &str| {
+        let text = format!("<model><point name=\"a\" positionX=\"0\" positionY=\"0\"/>{inner}</model>");
+        layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).map_err(|error| error.to_string())
+    };
+    let nested = |depth: usize| format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth));
+    assert!(read(&nested(190)).is_ok());
+    assert_eq!(read(&nested(210)).unwrap_err(), "not XML that is read: nested deeper than 200 elements");
+    // What is beside one another is not nested.
+    for many in ["<a></a>", "<a/>", "<a b=\"c\"/>", "<!-- a -->", "<?a b?>"] {
+        assert!(read(&many.repeat(300)).is_ok(), "{many}");
+    }
+}

@@ -145,7 +145,62 @@ fn what_is_wrong_is_named() {
     let config = std::fs::read_to_string(fleet("office_tinyRobot").unwrap()).unwrap();
     assert_eq!(failed(&config), "it is the configuration of a fleet; give it beside a building, with --fleet");
     assert!(failed("a: [").starts_with("not YAML: "));
-    let (broken, warnings) = read(&TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1), &tiny(&[]));
-    assert_eq!(broken.layout.edges.len(), 21);
-    assert_eq!(warnings, ["lane L1/0: left out: there is no vertex 999"]);
+    let broken = TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1);
+    assert_eq!(failed(&broken), "lane L1/0: there is no vertex 999; --partial leaves that out");
+    let (rest, warnings) = read(&broken, &Options { partial: true, ..tiny(&[]) });
+    assert_eq!(rest.layout.edges.len(), 21);
+    assert_eq!(warnings, ["lane L1/0: there is no vertex 999: left out"]);
+    let typed = TRIPLE_H.replacen("bidirectional: [4, ", "bidirectional: [4, perhaps ", 1);
+    assert_ne!(typed, TRIPLE_H);
+    assert!(failed(&typed).starts_with("lane L1/0: bidirectional: \"perhaps "), "{}", failed(&typed));
+}
+
+/// A level of 20 m by 10 m with the diagonal as a third vertex, lanes, and what else is in the building.
+fn building(measurements: &str, lanes: &[&str], more: &str) -> String {
+    let lanes: String = lanes.iter().map(|lane| format!("      - {lane}\n")).collect();
+    format!(
+        "levels:\n  L1:\n    vertices: [[0, 0, 0, a], [200, 0, 0, b], [0, 100, 0, c], [200, 0, 0, d]]\n    measurements: {measurements}\n    \
+        lanes:\n{lanes}{more}"
+    )
+}
+
+#[test]
+fn lanes_have_the_parameters_of_the_file() {
+    let measured = "[[0, 1, {distance: [3, 20.0]}]]";
+    let lanes = [
+        "[0, 1, {graph_idx: [2, 0], bidirectional: [4, true], speed_limit: [3, 0.5]}]",
+        "[0, 2, {graph_idx: [2, 1], speed_limit: [3, 0]}]",
+        "[2, 0, {graph_idx: [2, 1], bidirectional: [4, false], speed_limit: [3, 2e6]}]",
+        "[1, 3, {}]",
+    ];
+    let text = building(measured, &lanes, "lifts: {one: {}}\n");
+    let (imported, warnings) = read(&text, &tiny(&[]));
+    let edges: Vec<_> = imported.layout.edges.iter().map(|edge| (edge.two_way, edge.speed, edge.curve.len())).collect();
+    assert_eq!(edges, [(true, Some(0.5), 1), (false, None, 1), (false, None, 1), (false, None, 0)]);
+    assert!((imported.layout.edges[1].length() - 10.0).abs() < 1e-12);
+    // A lift of one level leads nowhere.
+    assert_eq!(warnings, ["lane L1/3: its length is 0", "graphs 0, 1: the lanes of all of them are taken (--graph N)"]);
+    for (graph, count) in [(0, 2), (1, 2)] {
+        let (one, _) = read(&text, &Options { graph: Some(graph), ..tiny(&[]) });
+        let all: Vec<_> = one.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
+        assert_eq!((all.len(), all.contains(&"L1/1".to_owned())), (count, graph == 1), "{all:?}");
+    }
+    // 20 m and 11 m for 10 m, of which the mean is 5 % off both.
+    let (_, warnings) =
+        read(&building("[[0, 1, {distance: [3, 20]}], [0, 2, {distance: [3, 11]}]]", &lanes[..1], ""), &tiny(&[]));
+    assert_eq!(warnings, ["level L1: its measurements differ from their mean by up to 4.8 %"]);
+    let (_, warnings) = read(&building("[[0, 1, {distance: [3, 20]}], [0, 9, {}]]", &lanes[..1], ""), &tiny(&[]));
+    assert_eq!(warnings, ["level L1, measurement 1: left out: it gives no scale"]);
+}
+
+#[test]
+fn limits_of_a_fleet_are_two_numbers_above_zero() {
+    let read = |linear: &str| {
+        let text = format!("rmf_fleet:\n  name: f\n  limits: {{linear: {linear}, angular: [1, 2]}}\n");
+        pcr_host::import::vehicle(&text, &Options::default(), &mut Warnings::default())
+    };
+    assert_eq!(read("[0.5, 0.75]").map(|vehicle| [vehicle.speed, vehicle.acceleration]), Ok([0.5, 0.75]));
+    for wrong in ["[0, 1]", "[1, 0]", "[-1, 1]", "[1]", "[1, 2, 3]", "[2e6, 1]", "[1, 2e6]", "[x, 1]"] {
+        assert!(read(wrong).unwrap_err().to_string().contains("speed and acceleration above 0"), "{wrong}");
+    }
 }

@@ -71,6 +71,30 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
     assert_eq!(warnings, ["order square: 1 of 3 edges are not released and left out (--horizon)"]);
     let (scenario, warnings) = read(&text, &Options { horizon: true, ..options() }).unwrap();
     assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("SASAS", 0));
+    // The base ends at the first node or edge that is not released.
+    let mut order = square();
+    for list in ["nodes", "edges"] {
+        for part in order[list].as_array_mut().unwrap() {
+            part["released"] = json!(true);
+        }
+    }
+    assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), "SASAS");
+    for (list, id, structure) in
+        [("nodes", "n2", "S"), ("edges", "e1", "S"), ("nodes", "n3", "SAS"), ("edges", "e2", "SAS")]
+    {
+        let mut order = order.clone();
+        let parts = order[list].as_array_mut().unwrap();
+        let part = parts.iter_mut().find(|part| part["nodeId"] == *id || part["edgeId"] == *id).unwrap();
+        part["released"] = json!(false);
+        assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), structure, "{id}");
+        let part = order[list].as_array_mut().unwrap().iter_mut();
+        part.for_each(|part| part["released"] = json!("no"));
+        assert!(
+            read(&order.to_string(), &options())
+                .unwrap_err()
+                .ends_with("released: a text where true or false is expected")
+        );
+    }
     // 0.5 m/s on the first edge: 1 s up and down, and 7 s; then a quarter turn.
     let MotionSpec::Profile { pieces, .. } = &scenario.agents[0].motion else { panic!() };
     let durations: Vec<f64> = pieces.iter().take(3).map(|(duration, _)| duration.round()).collect();
@@ -121,9 +145,22 @@ fn states_tell_paths_with_or_without_times() {
     let (scenario, _) =
         read(&state(json!({ "plannedPath": { "trajectory": quarter(), "traversedNodes": [] } })), &options()).unwrap();
     assert_eq!(scenario.agents[0].structure(), "AA");
-    let (scenario, warnings) = read(&state(json!({})), &options()).unwrap();
+    // Where it goes is told by nodes only: it does not stand.
+    let lost = "state of r7: its way is told by nodeStates only, give its order instead";
+    assert_eq!(read(&state(json!({})), &options()).unwrap_err(), format!("{lost}; --partial leaves that out"));
+    let partial = Options { partial: true, ..options() };
+    let (scenario, warnings) = read(&state(json!({})), &partial).unwrap();
     assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [4.0, 0.0, 0.0]));
-    assert_eq!(warnings, ["state of r7: it tells no path; it is taken as standing where it is"]);
+    assert_eq!(warnings, [format!("{lost}: left out")]);
+    assert_eq!(scenario.warnings, warnings);
+    let (scenario, warnings) = read(&state(json!({ "nodeStates": [] })), &options()).unwrap();
+    assert_eq!((scenario.agents[0].path.len(), warnings.len()), (0, 0));
+    let both = state(json!({ "plannedPath": {}, "intermediatePath": {} }));
+    assert!(read(&both, &options()).unwrap_err().contains("its plannedPath, which goes on"));
+    let elsewhere =
+        json!({ "plannedPath": { "trajectory": quarter() }, "mobileRobotPosition": { "x": 3.0, "y": 0.0 } });
+    let (_, warnings) = read(&state(elsewhere), &options()).unwrap();
+    assert!(warnings[0].ends_with("it begins 1.000 m from where the vehicle is; it is taken as there"), "{warnings:?}");
     let point = |x: f64, y: f64, eta: &str| json!({ "x": x, "y": y, "eta": eta });
     let polyline = [
         point(6.0, 0.0, "2026-11-21T08:00:02Z"),
@@ -179,6 +216,13 @@ fn loads_of_a_state_make_its_vehicle_larger() {
     assert!(reach == 0.4 && warnings[0].contains("no length and width"), "{warnings:?}");
     let (_, warnings) = radius(json!([load(0.0, 0.8, [0.0; 3])]));
     assert!(warnings[0].contains("not above 0"), "{warnings:?}");
+    let (_, warnings) = radius(json!([load(0.8, 0.0, [0.0; 3])]));
+    assert!(warnings[0].contains("not above 0"), "{warnings:?}");
+    // Turned by an angle of which sine and cosine are 0.6 and 0.8.
+    let (reach, _) = radius(json!([load(1.6, 0.4, [0.5, 0.2, 0.6_f64.asin()])]));
+    let corners =
+        [[0.8, 0.2], [0.8, -0.2]].map(|[x, y]: [f64; 2]| (0.5 + 0.8 * x - 0.6 * y).hypot(0.2 + 0.6 * x + 0.8 * y));
+    assert!((reach - corners[0].max(corners[1])).abs() < 1e-12, "{reach} {corners:?}");
     let wrong = read(&state(json!([{ "loadDimensions": { "length": "2", "width": 1 } }])), &options()).unwrap_err();
     assert_eq!(wrong, "state of r7, load 1, loadDimensions, length: a text where a number is expected");
     assert!(read(&state(json!({})), &options()).unwrap_err().contains("loads: an object where a list"));
@@ -210,8 +254,79 @@ fn what_is_wrong_is_named() {
         "order square, edge e0, maximumSpeed: -1 where a number above 0 is expected"
     );
     assert_eq!(
+        broken("/edges/2/maximumSpeed", json!(0)),
+        "order square, edge e0, maximumSpeed: 0 where a number above 0 is expected"
+    );
+    for degree in [json!(0), json!(1.5), json!(65)] {
+        let error = broken("/edges/1/trajectory", json!({ "degree": degree, "controlPoints": [] }));
+        assert_eq!(error, format!("order square, edge e1, trajectory: degree {degree}, which is no degree"));
+    }
+    assert_eq!(
         broken("/nodes/0/nodePosition/x", json!(1e300)),
         "order square, node n3, nodePosition, x: 1e300 is out of range; allowed is up to 1e10"
     );
     assert_eq!(broken("/nodes", json!(null)), "message 1, nodes or nodeStates: missing");
+}
+
+/// A curve that no two arcs are, from (4, 0) to (8, 2).
+fn curve() -> Value {
+    json!({ "degree": 3, "controlPoints": [{ "x": 4, "y": 0 }, { "x": 7, "y": 0 }, { "x": 5, "y": 2 }, { "x": 8, "y": 2 }] })
+}
+
+#[test]
+fn deviations_make_agents_larger_and_are_told() {
+    let mut order = square();
+    order["edges"][1]["trajectory"] = curve();
+    order["edges"][1]["corridor"] = json!({ "leftWidth": 1.0, "rightWidth": 1.0 });
+    order["nodes"][1]["nodePosition"] = json!({ "x": 8.0, "y": 2.0 });
+    let (scenario, warnings) = read(&order.to_string(), &options()).unwrap();
+    let radius = scenario.agents[0].radius;
+    assert!(radius > 0.4 + 1e-5 && radius < 0.4 + 1.1e-3, "{radius}");
+    assert!(warnings.iter().any(|line| line.starts_with("agent 1: its lines and arcs are up to")), "{warnings:?}");
+    assert!(
+        warnings.iter().any(|line| line.starts_with("order square, edge e1: its corridor is not read")),
+        "{warnings:?}"
+    );
+    let state = |y: f64| {
+        json!({ "serialNumber": "r", "nodeStates": [], "plannedPath": { "trajectory": curve() },
+            "mobileRobotPosition": { "x": 4.0, "y": y } })
+        .to_string()
+    };
+    let (scenario, warnings) = read(&state(0.0), &options()).unwrap();
+    assert!((scenario.agents[0].radius - radius).abs() < 1e-6);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].starts_with("agent 1: its lines and arcs are up to"), "{warnings:?}");
+    let beside = json!({ "serialNumber": "r", "nodeStates": [], "mobileRobotPosition": { "x": 0.0, "y": 2.5 },
+        "plannedPath": { "trajectory": { "controlPoints": [{ "x": 0, "y": 3 }, { "x": 5, "y": 3 }] } } });
+    assert!(read(&beside.to_string(), &options()).unwrap().1[0].contains("it begins 0.500 m from where"));
+    let (_, warnings) = read(&state(-0.25), &options()).unwrap();
+    assert!(warnings[0].contains("it begins 0.250 m from where the vehicle is"), "{warnings:?}");
+}
+
+#[test]
+fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
+    let node =
+        |id: &str, x: f64, map: &str| json!({ "nodeId": id, "nodePosition": { "x": x, "y": 1.0, "mapId": map } });
+    let order = |nodes: Value, edges: usize| {
+        let edges: Vec<Value> = (0..edges).map(|k| json!({ "edgeId": format!("e{k}") })).collect();
+        json!({ "orderId": "o", "nodes": nodes, "edges": edges }).to_string()
+    };
+    // Without `released` it all is.
+    let (scenario, warnings) = read(&order(json!([node("a", 0.0, "m"), node("b", 3.0, "m")]), 1), &options()).unwrap();
+    assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("S", 0));
+    let (scenario, _) = read(&order(json!([node("a", 2.0, "m")]), 0), &options()).unwrap();
+    assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [2.0, 1.0, 0.0]));
+    let nowhere = read(&order(json!([{ "nodeId": "a" }]), 0), &options()).unwrap_err();
+    assert_eq!(nowhere, "order o, node a, nodePosition: missing");
+    let across = order(json!([node("a", 0.0, "m"), node("b", 3.0, "n")]), 1);
+    assert_eq!(read(&across, &options()).unwrap_err(), "order o: it leads from map m to map n");
+    let two = format!("{} {}", order(json!([node("a", 0.0, "m")]), 0), order(json!([node("a", 0.0, "n")]), 0));
+    let (_, warnings) = read(&two, &options()).unwrap();
+    assert_eq!(warnings, ["maps m, n: the agents are on several, which a scenario does not tell apart"]);
+    // What is beyond the base is not travelled: neither its map nor its actions count.
+    let mut beyond = node("b", 3.0, "n");
+    (beyond["released"], beyond["actions"]) = (json!(false), json!([{ "actionType": "pick" }]));
+    let (scenario, warnings) = read(&order(json!([node("a", 0.0, "m"), beyond]), 1), &options()).unwrap();
+    assert_eq!(scenario.agents[0].path.len(), 0);
+    assert_eq!(warnings, ["order o: 1 of 1 edges are not released and left out (--horizon)"]);
 }

@@ -63,7 +63,7 @@ fn compare(scenario: &Scenario) -> usize {
     const STEPS: usize = 200;
     let fleet = Fleet::<f64>::new(scenario).unwrap();
     let motions = fleet.motions();
-    let answer = Answer::of::<f64>(scenario, Request { agent: None, slices: Some(15) }).unwrap();
+    let answer = Answer::of::<f64>(scenario, Request { agent: None, slices: Some(15), certificate: false }).unwrap();
     let mut inside = 0;
     for [own, other] in [[0, 1], [1, 0]] {
         let (agents, motions) = ([own, other].map(|k| &scenario.agents[k]), [own, other].map(|k| &motions[k]));

@@ -199,3 +199,19 @@ fn edges_of_different_levels_do_not_lock() {
     assert_eq!(table.locks.len(), 1);
     assert_eq!((&table.locks[0].a, &table.locks[0].b), (&Id::Text("N1-N2".into()), &Id::Text("N101-N102".into())));
 }
+
+#[test]
+fn an_edge_from_level_to_level_locks_those_of_both() {
+    let node =
+        |id: &str, map: &str, x: f64, y: f64| json!({ "nodeId": id, "mapId": map, "nodePosition": { "x": x, "y": y } });
+    let edge = |id: &str, from: &str, to: &str| json!({ "edgeId": id, "startNodeId": from, "endNodeId": to });
+    let lif = json!({ "layouts": [{ "layoutId": "a",
+        "nodes": [node("a", "low", 0.0, 0.0), node("b", "high", 10.0, 0.0), node("c", "high", 9.0, -3.0), node("d", "high", 9.0, 3.0),
+            node("e", "low", 1.0, -3.0), node("f", "low", 1.0, 3.0)],
+        "edges": [edge("ramp", "a", "b"), edge("back", "b", "a"), edge("upper", "c", "d"), edge("lower", "e", "f")] }] });
+    let table = Locks::of(&read(Format::Lif, &lif.to_string(), 0.3), false).unwrap();
+    let pairs: Vec<_> = table.locks.iter().map(|lock| [lock.a.to_string(), lock.b.to_string()]).collect();
+    // Both of the ramp are on both levels, and lock each other once.
+    let expected = [["back", "lower"], ["back", "ramp"], ["back", "upper"], ["lower", "ramp"], ["ramp", "upper"]];
+    assert_eq!(pairs, expected);
+}

@@ -61,7 +61,7 @@ fn orders_can_be_kept_if_and_only_if_there_is_a_way() {
         for choice in 0..1_u32 << count {
             for place in 0..count {
                 let pass = if choice >> place & 1 == 1 { Pass::First } else { Pass::Second };
-                orders.decide_at(&motions, place, 0, pass, 0.0);
+                orders.decide_at(&motions, place, 0, pass, 0.0).expect("the table of the fleet");
             }
             passes += u32::from(orders.check(&motions, &progress, EXACT, &mut reaches).is_ok());
         }
@@ -90,9 +90,11 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
         let motions: Vec<_> = courses.iter().map(Course::motion).collect();
         let mut orders = table(&motions);
         for place in 0..orders.ecm().len() {
-            let ego = (0..motions.len()).find(|&agent| orders.row(&motions, agent).any(|(at, ..)| at == place));
+            let ego = (0..motions.len()).find(|&agent| {
+                orders.row(&motions, agent).expect("the table of the fleet").any(|(at, ..)| at == place)
+            });
             let pass = if dice.chance(0.5) { Pass::First } else { Pass::Second };
-            orders.decide_at(&motions, place, ego.expect("its agent"), pass, 0.0);
+            orders.decide_at(&motions, place, ego.expect("its agent"), pass, 0.0).expect("the table of the fleet");
         }
         let start = vec![Progress::at_rest(0.0); motions.len()];
         let mut reaches = vec![Reach::EMPTY; motions.len()];
@@ -100,7 +102,7 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
         let mut progress = start.clone();
         let gain = |progress: &mut Vec<Progress<f64>>, agent: usize| {
             let end = motions[agent].path().length();
-            let to = orders.hold(&motions, agent, progress).length(end).unwrap_or(0.0);
+            let to = orders.hold(&motions, agent, progress).expect("the table of the fleet").length(end).unwrap_or(0.0);
             let gains = to > progress[agent].at.lo + 1e-4 || (to == end && progress[agent].at.lo < end);
             if gains {
                 progress[agent] = Progress::at_rest(to);
@@ -119,7 +121,7 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
             Err(Refused::Stuck { agent, by, place }) => {
                 stuck += 1;
                 assert!(unfinished.contains(&agent), "seed {seed}: {agent} is not stuck");
-                let row = orders.row(&motions, agent).find(|(at, ..)| *at == place);
+                let row = orders.row(&motions, agent).expect("the table of the fleet").find(|(at, ..)| *at == place);
                 assert_eq!(
                     row.map(|(_, region, pass)| (region.other(), pass)),
                     Some((by, Pass::Second)),
@@ -171,7 +173,7 @@ fn the_orders_of_a_plan_are_kept_by_the_plan() {
             let time = begin + (end - begin) * f64::from(k) / 60.0;
             let progress: Vec<_> = timed.iter().map(|motion| Progress::at_rest(motion.length_at(time))).collect();
             for (agent, place) in progress.iter().enumerate() {
-                let hold = orders.hold(&timed, agent, &progress);
+                let hold = orders.hold(&timed, agent, &progress).expect("the table of the fleet");
                 assert!(hold.allows(place.at.lo), "seed {seed}: {agent} at {place:?}, {time} s, {hold:?}");
             }
         }
@@ -202,18 +204,25 @@ fn all_that_wait_for_the_next_one_around_a_square_are_stuck_and_one_that_goes_fi
     let undecided = orders.check(&motions, &progress, EXACT, &mut reaches);
     assert!(matches!(undecided, Err(Refused::Stuck { .. })), "{undecided:?}");
     // Everybody is held before where it could meet anybody.
-    assert!(matches!(orders.hold(&motions, 0, &progress), Hold::At(hold) if (hold - 1.4).abs() < 1e-9));
+    assert!(
+        matches!(orders.hold(&motions, 0, &progress).expect("the table of the fleet"), Hold::At(hold) if (hold - 1.4).abs() < 1e-9)
+    );
     // On each lane the first crossing is with the one before it, who has come that far already.
     for k in 0..4 {
-        orders.decide(&motions, k, (k + 3) % 4, Pass::Second, 0.0);
+        orders.decide(&motions, k, (k + 3) % 4, Pass::Second, 0.0).expect("the table of the fleet");
     }
     let all_wait = orders.check(&motions, &progress, EXACT, &mut reaches);
     match all_wait {
         Err(Refused::Stuck { agent, by, .. }) => assert_eq!(by, (agent + 3) % 4),
         other => panic!("{other:?}"),
     }
-    let place = orders.row(&motions, 0).find(|(_, region, _)| region.other() == 3).expect("a crossing").0;
-    orders.decide_at(&motions, place, 0, Pass::First, 0.0);
+    let place = orders
+        .row(&motions, 0)
+        .expect("the table of the fleet")
+        .find(|(_, region, _)| region.other() == 3)
+        .expect("a crossing")
+        .0;
+    orders.decide_at(&motions, place, 0, Pass::First, 0.0).expect("the table of the fleet");
     assert_eq!(orders.check(&motions, &progress, EXACT, &mut reaches), Ok(()));
     assert_eq!(orders.check(&motions, &progress, EXACT, &mut []), Err(Refused::Full(Full::Reaches)));
 }
@@ -231,9 +240,12 @@ fn priorities_may_go_round_in_a_circle_where_all_follow_one_another() {
     let progress = [Progress::at_rest(0.0); 4];
     // Everybody is second to the one ahead of it, to whom it is nearer than that one is to it.
     for k in 0..4 {
-        let ahead = orders.row(&motions, k).filter(|(_, region, _)| region.hold(0.0, 0.0) != Hold::Inside);
+        let ahead = orders
+            .row(&motions, k)
+            .expect("the table of the fleet")
+            .filter(|(_, region, _)| region.hold(0.0, 0.0) != Hold::Inside);
         for place in ahead.map(|(place, ..)| place).collect::<Vec<_>>() {
-            orders.decide_at(&motions, place, k, Pass::Second, 0.0);
+            orders.decide_at(&motions, place, k, Pass::Second, 0.0).expect("the table of the fleet");
         }
     }
     let mut reaches = [Reach::EMPTY; 4];
@@ -260,12 +272,12 @@ fn who_stands_at_the_end_of_its_path_is_not_past_it_by_the_rounding_of_its_place
     let end = fleet[1].path().length();
     let mut progress = [Progress::at_rest(0.0), Progress::at_rest(end + 1e-12)];
     let mut orders = table(&fleet);
-    orders.decide(&fleet, 0, 1, Pass::Second, 0.0);
-    let region = orders.row(&fleet, 0).next().expect("a region").1;
+    orders.decide(&fleet, 0, 1, Pass::Second, 0.0).expect("the table of the fleet");
+    let region = orders.row(&fleet, 0).expect("the table of the fleet").next().expect("a region").1;
     assert!(!region.hold(0.0, end + 1e-12).allows(3.0));
     assert_eq!(region.clone().swapped().hold(end + 1e-12, 0.0), Hold::Inside);
     orders.passed(&progress);
-    assert!(!orders.hold(&fleet, 0, &progress).allows(3.0), "it is driven into");
+    assert!(!orders.hold(&fleet, 0, &progress).expect("the table of the fleet").allows(3.0), "it is driven into");
     let mut reaches = [Reach::EMPTY; 2];
     assert!(orders.check(&fleet, &progress, EXACT, &mut reaches).is_err());
     let mission = pcr_core::Mission { agent: 0, motion: fleet[0], progress: progress[0] };

@@ -30,7 +30,7 @@ fn audited<S: Format>(discs: [Disc; 2], [at, other_at]: [f64; 2]) -> Result<(), 
     let [end, other_end] = fleet.each_ref().map(|motion| motion.path().length());
     let [from, other_from] =
         [(at, end), (other_at, other_end)].map(|(part, end)| S::from_f64(part * end.to_f64()).min(end));
-    for region in ecm.pair(&fleet, 0, 1) {
+    for region in ecm.pair(&fleet, 0, 1).expect("the table of the fleet") {
         for from in [S::ZERO, from] {
             for other_from in [S::ZERO, other_from, region.other_length().lo, region.other_length().middle()] {
                 hold_is_that_of_the_definition(&pair, &region, from, other_from)?;
@@ -111,7 +111,7 @@ fn course(start: [f64; 3], legs: &[Leg]) -> Course<f64> {
 fn holds(ego: &Course<f64>, other: &Course<f64>, at: &[(f64, f64)]) -> Vec<Vec<Hold<f64>>> {
     let fleet = [ego.motion(), other.motion()];
     let ecm = build_ecm(&fleet).expect("two agents");
-    let regions: Vec<_> = ecm.pair(&fleet, 0, 1).collect();
+    let regions: Vec<_> = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").collect();
     regions.iter().map(|region| at.iter().map(|&(from, other)| region.hold(from, other)).collect()).collect()
 }
 

@@ -32,7 +32,7 @@ fn eq_38_a_region_may_have_two_intervals_at_one_time() {
     let profiles = [constant(6.0 + 0.5 * PI), constant(5.0)];
     let fleet = motions_of(&paths, &profiles, 0.7);
     let ecm = Ecm::build([Region::EMPTY; 8], [Piece::EMPTY; 32], &fleet).expect("room");
-    let regions: Vec<_> = ecm.pair(&fleet, 0, 1).collect();
+    let regions: Vec<_> = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").collect();
     assert_eq!(regions.len(), 1);
     let slices_at = |y: f64| regions[0].slice_at(y + 2.0).map(|slice| [slice.lo, slice.hi]).collect::<Vec<Range>>();
     let slices = slices_at(0.32);
@@ -60,7 +60,8 @@ fn eq_39_takes_the_length_along_the_wrong_path() {
     assert_range(eq_39::as_printed(&all[0]), [6.0, 3.0], SAME);
     assert_range(eq_39::corrected(&all[0]), [6.0, 1.0], SAME);
     let ecm = Ecm::build([Region::EMPTY; 2], [Piece::EMPTY; 4], &fleet).expect("room");
-    let holds = |[t, l]: [f64; 2]| ecm.pair(&fleet, 0, 1).any(|region| region.contains(t, l));
+    let holds =
+        |[t, l]: [f64; 2]| ecm.pair(&fleet, 0, 1).expect("the table of the fleet").any(|region| region.contains(t, l));
     assert!(holds(eq_39::corrected(&all[0])) && !holds(eq_39::as_printed(&all[0])));
 }
 

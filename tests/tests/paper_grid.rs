@@ -67,7 +67,7 @@ fn a_grid_in_coordination_space_has_the_same_regions() {
             for first in 0..second {
                 let r = motions[first].radius() + motions[second].radius();
                 let expected = connected_sets(&grids[first], &grids[second], r);
-                let found = ecm.pair(&motions, first, second).count();
+                let found = ecm.pair(&motions, first, second).expect("the table of the fleet").count();
                 assert_eq!(found, expected, "{name}: agents {} and {}", first + 1, second + 1);
             }
         }

@@ -40,7 +40,7 @@ fn crossing_counts(motions: &[Motion<'_, f64>]) -> Vec<Vec<usize>> {
 fn region_counts(motions: &[Motion<'_, f64>]) -> Vec<Vec<usize>> {
     let ecm = build_ecm(motions).expect("a fleet of fewer than 65535 agents");
     let mut counts = vec![vec![0; motions.len()]; motions.len()];
-    for region in ecm.regions(motions) {
+    for region in ecm.regions(motions).expect("the table of the fleet") {
         counts[region.ego()][region.other()] += 1;
     }
     counts
@@ -125,7 +125,7 @@ fn every_crossing_of_paper12_lies_in_exactly_one_region() {
     let ecm = build_ecm(&motions).expect("a small fleet");
     for (ego, other) in (0..12).flat_map(|ego| (0..12).map(move |other| (ego, other))).filter(|(a, b)| a != b) {
         for crossing in crossings(&motions[ego], &motions[other]) {
-            let holding = ecm.pair(&motions, ego, other);
+            let holding = ecm.pair(&motions, ego, other).expect("the table of the fleet");
             let holding = holding.filter(|region| region.contains(crossing.time, crossing.length)).count();
             assert_eq!(holding, 1, "agents {} and {}: {crossing:?}", ego + 1, other + 1);
         }
@@ -232,7 +232,7 @@ fn table_vii_has_one_region_a_row() {
     let (_, fleet) = load("paper12");
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).expect("a small fleet");
-    assert_eq!(ecm.row(&motions, 2).count(), 18);
+    assert_eq!(ecm.row(&motions, 2).expect("the table of the fleet").count(), 18);
 }
 
 /// Table VI: file, agents, crossings, longest travel time in tenths of a second; and the connected regions, which the

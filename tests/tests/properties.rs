@@ -137,8 +137,8 @@ fn grows<S: Format>(pair: &(Disc, Disc), by: f64) -> Result<(), TestCaseError> {
         return Ok(());
     }
     let ((motions, ecm), (large_motions, large_ecm)) = (small.table(), large.table());
-    let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
-    let large_regions: Vec<_> = large_ecm.pair(&large_motions, 0, 1).collect();
+    let regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of the fleet").collect();
+    let large_regions: Vec<_> = large_ecm.pair(&large_motions, 0, 1).expect("the table of the fleet").collect();
     let mut holder = vec![0; regions.len()];
     for (s, l) in small.sampled(SAMPLES) {
         let (s, l) = (s.to_f64(), l.to_f64());
@@ -165,8 +165,8 @@ fn same_regions<S: Format>(
     };
     let margin = MAPPED * (a.bound() + b.bound());
     let ((motions, ecm), (image_motions, image_ecm)) = (a.table(), b.table());
-    let regions: Vec<_> = ecm.pair(&motions, 0, 1).collect();
-    let image_regions: Vec<_> = image_ecm.pair(&image_motions, 0, 1).collect();
+    let regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of the fleet").collect();
+    let image_regions: Vec<_> = image_ecm.pair(&image_motions, 0, 1).expect("the table of the fleet").collect();
     let certain = a.known(GLANCE, margin).certain() && b.known(GLANCE, margin).certain();
     let mut partners: Vec<(usize, usize)> = Vec::new();
     for (s, l) in a.sampled(SAMPLES) {

@@ -40,7 +40,8 @@ fn audited<S: Format>(discs: [Disc; 2], drives: [(Drive, f64); 2], [from, to]: [
     let during = Interval::new(b.time().lo - one, b.time().hi + one);
     let motions = [a, b];
     let ecm = build_ecm(&motions).expect("two agents");
-    let by_regions = ecm.pair(&motions, 0, 1).flat_map(|region| region.blocked(part, during));
+    let by_regions =
+        ecm.pair(&motions, 0, 1).expect("the table of the fleet").flat_map(|region| region.blocked(part, during));
     for windows in [encounter.blocked(part, during).collect(), by_regions.collect::<Vec<_>>()] {
         let [lo, hi] = [part.lo.to_f64(), part.hi.to_f64()];
         let reaches_at = |time: f64, margin: f64| {
@@ -142,12 +143,16 @@ fn the_others_of_a_fleet_block_together_and_parked_ones_for_good() {
     ];
     let fleet = courses.each_ref().map(Course::motion);
     let time = Interval::new(-1.0, 20.0);
-    let at = |l: f64| safe_intervals(&fleet, 0, Interval::new(l, l), time).collect::<Vec<_>>();
+    let at = |l: f64| {
+        safe_intervals(&fleet, 0, Interval::new(l, l), time).expect("an agent of the fleet").collect::<Vec<_>>()
+    };
     assert!(close(&at(4.0), &[(-1.0, 1.5), (3.0, 20.0)]), "{:?}", at(4.0));
     assert!(close(&at(6.0), &[(-1.0, 2.5)]), "{:?}", at(6.0));
     assert!(close(&at(2.0), &[(5.5, 20.0)]), "{:?}", at(2.0));
     assert!(close(&at(0.0), &[(-1.0, 20.0)]), "{:?}", at(0.0));
-    let lengths = |lo: f64, hi: f64| safe_lengths(&fleet, 0, Interval::new(lo, hi)).collect::<Vec<_>>();
+    let lengths = |lo: f64, hi: f64| {
+        safe_lengths(&fleet, 0, Interval::new(lo, hi)).expect("an agent of the fleet").collect::<Vec<_>>()
+    };
     assert!(close(&lengths(10.0, 20.0), &[(0.0, 5.5), (6.5, 8.0)]), "{:?}", lengths(10.0, 20.0));
     assert!(close(&lengths(-1.0, 2.0), &[(0.0, 1.5), (2.5, 3.5), (4.5, 8.0)]), "{:?}", lengths(-1.0, 2.0));
 }
@@ -169,9 +174,9 @@ fn the_end_of_a_path_is_blocked_though_its_length_is_rounded() {
         let (at, time) = (Interval::new(end, end), Interval::new(0.0, 4.0));
         assert_eq!(Encounter::new(&fleet[0], &fleet[1]).blocked(at, time).count(), 1, "{k}");
         let ecm = build_ecm(&fleet).expect("two agents");
-        let region = ecm.pair(&fleet, 1, 0).next().expect("a crossing");
+        let region = ecm.pair(&fleet, 1, 0).expect("the table of the fleet").next().expect("a crossing");
         assert_eq!(region.swapped().blocked(at, time).count(), 1, "{k}");
-        let region = ecm.pair(&fleet, 1, 0).next().expect("a crossing");
+        let region = ecm.pair(&fleet, 1, 0).expect("the table of the fleet").next().expect("a crossing");
         assert!(!region.hold(0.0, end).allows(2.0), "{k}");
     }
     assert!(beyond > 10, "{beyond}");

@@ -238,3 +238,49 @@ fn the_same_seed_gives_the_same_run() {
         assert_ne!(first.trace, other.trace, "{controller:?}");
     }
 }
+
+#[test]
+fn robots_with_turns_in_place_get_where_they_go() {
+    let scenario =
+        Scenario::from_json(include_str!("../data/cases/simulate-two-robots-never-move.json")).expect("a scenario");
+    let task = Task::of(&scenario).expect("a task");
+    let outcome = run(&task, Controller::Pcr, settings(1, USUAL)).expect("a run");
+    assert_safe(&task, &outcome, "4.5 m apart");
+    // They go round a square, turning in place, across the ways of two others.
+    let agent = |id: u64, [x, y]: [f64; 2], path: &str, t: f64| {
+        format!(
+            r#"{{ "id": {id}, "radius": 0.2, "v_max": 1.0, "a_max": 0.8, "turn_v_max": 1.0, "turn_a_max": 1.0, "t_start": {t},
+                 "start": {{ "x": {x}, "y": {y}, "heading": 0.0 }}, "path": [ {path} ] }}"#
+        )
+    };
+    let line = |length: f64| format!(r#"{{ "kind": "line", "length": {length} }}"#);
+    let turn = |sweep: f64| format!(r#"{{ "kind": "turn", "sweep": {sweep} }}"#);
+    let round = [line(4.0), turn(PI / 2.0), line(4.0), turn(PI / 2.0), line(4.0)].join(", ");
+    for seed in 0..SEEDS {
+        let late = 0.4 * seed as f64;
+        let agents = [
+            agent(1, [0.0, 0.0], &round, 0.0),
+            agent(2, [-3.0, 2.0], &line(9.0), late),
+            agent(3, [2.0, -3.0], &[turn(PI / 2.0), line(9.0)].join(", "), 2.0 * late),
+        ];
+        let scenario = Scenario::from_json(&format!(r#"{{ "agents": [{}] }}"#, agents.join(","))).expect("a scenario");
+        let task = Task::of(&scenario).expect("a task");
+        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        assert_safe(&task, &outcome, &format!("seed {seed}"));
+    }
+}
+
+#[test]
+fn loads_take_their_room() {
+    let agent = |loads: &str| {
+        format!(
+            r#"{{ "agents": [ {{ "id": 1, "radius": 0.2, {loads} "v_max": 1.0, "a_max": 1.0,
+                 "start": {{ "x": 0.0, "y": 0.0, "heading": 0.0 }}, "path": [ {{ "kind": "line", "length": 4.0 }} ] }} ] }}"#
+        )
+    };
+    let radius = |loads: &str| {
+        let scenario = Scenario::from_json(&agent(loads)).expect("a scenario");
+        Task::of(&scenario).expect("a task").robots[0].radius
+    };
+    assert_eq!((radius(""), radius(r#""loads": [ { "segments": [1, 1], "radius": 0.7 } ],"#)), (0.2, 0.7));
+}

@@ -17,7 +17,7 @@ fn planned<S: Format>(courses: &[Course<S>], drive: Speeds<S>) -> Result<SpeedPl
     let fleet: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
     let mut stations = vec![Station::EMPTY; 40];
-    plan_speed(&fleet[0], drive, ecm.row(&fleet, 0), &mut stations)
+    plan_speed(&fleet[0], drive, ecm.row(&fleet, 0).expect("the table of the fleet"), &mut stations)
 }
 
 fn limits<S: Format>() -> Limits<S> {

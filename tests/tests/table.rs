@@ -1,6 +1,9 @@
 //! The table of a fleet: order, exchange of agents, and what happens when it is full.
 
-use pcr_core::{Ecm, Full, Interval, Motion, Piece, Region, RegionRef};
+use pcr_core::{
+    Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef, Turn,
+    Unchanged, Unsolved, plan_delays,
+};
 use pcr_host::fleet::{Fleet, HostEcm, build_ecm};
 use pcr_host::scenario::Scenario;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
@@ -19,7 +22,7 @@ where
     R: AsRef<[Region]>,
     P: AsRef<[Piece<f64>]>,
 {
-    ecm.regions(motions).map(|region| entry(&region)).collect()
+    ecm.regions(motions).expect("the table of the fleet").map(|region| entry(&region)).collect()
 }
 
 fn twelve() -> Fleet<f64> {
@@ -50,11 +53,13 @@ fn rows_are_in_the_order_of_the_agents_and_complete() {
     assert_eq!(all.len(), 2 * ecm.len());
     assert!(all.iter().map(|entry| entry.0).is_sorted(), "by ego, then by the other");
     for ego in 0..motions.len() {
-        let row: Vec<_> = ecm.row(&motions, ego).map(|region| entry(&region)).collect();
+        let row: Vec<_> =
+            ecm.row(&motions, ego).expect("the table of the fleet").map(|region| entry(&region)).collect();
         let expected: Vec<_> = all.iter().filter(|entry| entry.0[0] == ego).copied().collect();
         assert_eq!(row, expected);
         for other in 0..motions.len() {
-            let pair: Vec<_> = ecm.pair(&motions, ego, other).map(|region| entry(&region)).collect();
+            let pair: Vec<_> =
+                ecm.pair(&motions, ego, other).expect("the table of the fleet").map(|region| entry(&region)).collect();
             let expected: Vec<_> = row.iter().filter(|entry| entry.0[1] == other).copied().collect();
             assert_eq!(pair, expected);
         }
@@ -79,7 +84,7 @@ fn an_agent_that_crosses_seventy_others_has_a_region_with_each() {
         let mut motions = fleet.motions();
         let mut ecm = build_ecm(&motions).unwrap();
         let others = |ecm: &HostEcm<f64>, motions: &[Motion<'_, f64>]| -> Vec<usize> {
-            ecm.row(motions, place).map(|region| region.other()).collect()
+            ecm.row(motions, place).expect("the table of the fleet").map(|region| region.other()).collect()
         };
         let all: Vec<_> = (0..=70).filter(|&other| other != place).collect();
         assert_eq!((others(&ecm, &motions), ecm.len()), (all.clone(), 70));
@@ -90,37 +95,137 @@ fn an_agent_that_crosses_seventy_others_has_a_region_with_each() {
 }
 
 #[test]
-fn agents_that_are_not_there_have_no_regions() {
+fn agents_that_are_not_there_are_refused() {
     let fleet = twelve();
     let mut motions = fleet.motions();
     let mut ecm = build_ecm(&motions).expect("a small fleet");
     let before = entries(&ecm, &motions);
-    assert_eq!(ecm.row(&motions, 12).count() + ecm.pair(&motions, 0, 12).count() + ecm.pair(&motions, 3, 3).count(), 0);
-    ecm.remove(12);
-    ecm.remove(usize::MAX);
-    assert_eq!(ecm.insert(&motions, 99), Ok(()));
+    assert_eq!(ecm.row(&motions, 12).err(), Some(Mismatch::NoSuchAgent(12)));
+    assert_eq!(ecm.pair(&motions, 0, 12).err(), Some(Mismatch::NoSuchAgent(12)));
+    assert_eq!(ecm.pair(&motions, usize::MAX, 0).err(), Some(Mismatch::NoSuchAgent(usize::MAX)));
+    assert_eq!(ecm.pair(&motions, 3, 3).map(Iterator::count), Ok(0), "nobody meets itself");
+    assert_eq!(ecm.remove(&motions, 12), Err(Mismatch::NoSuchAgent(12)));
+    assert_eq!(ecm.insert(&motions, 99), Err(Unchanged::Mismatch(Mismatch::NoSuchAgent(99))));
     let motion = motions[0];
-    assert_eq!(ecm.replace(&mut motions, 12, motion), Ok(()));
+    assert_eq!(ecm.replace(&mut motions, 12, motion), Err(Unchanged::Mismatch(Mismatch::NoSuchAgent(12))));
     assert_eq!(entries(&ecm, &motions), before);
     let nobody: [Motion<'_, f64>; 0] = [];
-    assert!(Ecm::<f64, _, _>::build([], [], &nobody).expect("nothing to store").is_empty());
+    let empty = Ecm::<f64, _, _>::build([], [], &nobody).expect("nothing to store");
+    assert!(empty.is_empty() && empty.regions(&nobody).expect("nobody").next().is_none());
+}
+
+/// Of every table but that of the fleet nothing is told, above all not that there is nothing.
+#[test]
+fn the_table_of_another_fleet_is_refused() {
+    let fleet = twelve();
+    let motions = fleet.motions();
+    let ecm = build_ecm(&motions).expect("a small fleet");
+    let refused = |fleet: &[Motion<'_, f64>], why: &str| {
+        assert_eq!(ecm.row(fleet, 0).err(), Some(Mismatch::OtherFleet), "{why}");
+        assert_eq!(ecm.pair(fleet, 0, 1).err(), Some(Mismatch::OtherFleet), "{why}");
+        assert_eq!(ecm.regions(fleet).err(), Some(Mismatch::OtherFleet), "{why}");
+        let (mut plan, mut order) = (fleet.to_vec(), [0]);
+        let refused = Err(Unsolved::Table(Mismatch::OtherFleet));
+        assert_eq!(plan_delays(&ecm, fleet, &mut plan, &mut order), refused, "{why}");
+    };
+    refused(&motions[..11], "a shorter fleet");
+    refused(&[&motions[..], &motions[..1]].concat(), "a longer one");
+    for (a, b) in (0..12).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let mut swapped = motions.clone();
+        swapped.swap(a, b);
+        refused(&swapped, "another order");
+    }
+    let detours: Vec<_> = (0..12).map(detour).collect();
+    for agent in 0..12 {
+        let mut other = motions.clone();
+        other[agent] = detours[agent].motion();
+        refused(&other, "another path");
+        let motion = &motions[agent];
+        let radius = motion.radius().next_up();
+        other[agent] = Motion::new(motion.path(), motion.profile(), radius, motion.time().lo).expect("a disc");
+        refused(&other, "another radius");
+    }
+    // The last digit of any number of a path.
+    let path = |numbers: [f64; 6]| {
+        let [x, y, heading, line, radius, arc] = numbers;
+        let start = Pose { position: Point::new(x, y), heading: Radians(heading) };
+        let path = Path::<f64, 2>::starting_at(start).and_then(|path| path.line(line)?.arc(radius, Turn::Left, arc));
+        path.expect("a path")
+    };
+    let numbers = [1.0, 2.0, 0.5, 3.0, 1.5, 2.0];
+    let standing = |path: &Path<f64, 2>| {
+        let profile =
+            Profile::<f64, 3>::rest_to_rest(path.as_path().length(), Limits { speed: 1.0, acceleration: 1.0 });
+        let profile = profile.expect("a profile");
+        let motion = Motion::new(path.as_path(), profile.as_profile(), 0.5, 0.0).expect("a motion");
+        Ecm::<f64, _, _>::build([], [], &[motion]).map(|table| (table, path.clone(), profile)).expect("one agent")
+    };
+    let (table, ..) = standing(&path(numbers));
+    for place in 0..numbers.len() {
+        let mut other = numbers;
+        other[place] = other[place].next_up();
+        let (_, path, profile) = standing(&path(other));
+        let motion = Motion::new(path.as_path(), profile.as_profile(), 0.5, 0.0).expect("a motion");
+        assert_eq!(table.row(&[motion], 0).err(), Some(Mismatch::OtherFleet), "number {place}");
+    }
+    // What may change: start, profile, margin and lateness; and the same path in another place of memory.
+    let again = twelve();
+    let mut others = again.motions();
+    others[3] = others[3].delayed(1.0).and_then(|late| late.with_margin(0.1)?.with_lateness(0.5)).expect("a motion");
+    assert_eq!(ecm.row(&others, 0).map(Iterator::count).ok(), ecm.row(&motions, 0).map(Iterator::count).ok());
 }
 
 #[test]
-fn removing_an_agent_leaves_the_rows_of_the_others() {
+fn the_row_of_one_agent_answers_for_that_one_only() {
+    let fleet = twelve();
+    let motions = fleet.motions();
+    let full = build_ecm(&motions).expect("a small fleet");
+    let mut row = Ecm::new(vec![Region::EMPTY; full.len()], vec![Piece::EMPTY; full.pieces()]);
+    for agent in 0..12 {
+        row.fill_row(&motions, agent).expect("enough room");
+        let all = |ecm: &HostEcm<f64>| -> Vec<Entry> {
+            ecm.row(&motions, agent).expect("its row").map(|region| entry(&region)).collect()
+        };
+        assert_eq!(all(&row), all(&full));
+        for other in (0..12).filter(|&other| other != agent) {
+            assert_eq!(row.row(&motions, other).err(), Some(Mismatch::OnlyRow(agent)));
+            let pairs = [[agent, other], [other, agent]].map(|[a, b]| row.pair(&motions, a, b).map(Iterator::count));
+            let expected = full.pair(&motions, agent, other).map(Iterator::count);
+            assert_eq!(pairs, [expected; 2]);
+            let third = (0..12).find(|&third| third != agent && third != other).expect("twelve");
+            assert_eq!(row.pair(&motions, other, third).err(), Some(Mismatch::OnlyRow(agent)));
+        }
+        assert_eq!(row.regions(&motions).err(), Some(Mismatch::OnlyRow(agent)));
+        assert!(row.insert(&motions, agent).is_err() && row.remove(&motions, agent).is_err());
+    }
+    row.fill(&motions).expect("enough room");
+    assert_eq!(entries(&row, &motions), entries(&full, &motions));
+}
+
+#[test]
+fn an_agent_is_removed_and_inserted_once() {
     let fleet = twelve();
     let motions = fleet.motions();
     let full = entries(&build_ecm(&motions).expect("a small fleet"), &motions);
     for agent in 0..motions.len() {
         let mut ecm = build_ecm(&motions).expect("a small fleet");
-        ecm.remove(agent);
-        let kept: Vec<_> = full.iter().filter(|entry| !entry.0.contains(&agent)).copied().collect();
-        assert_eq!(entries(&ecm, &motions), kept);
-        // Nothing is left to remove, and all of it comes back.
-        ecm.remove(agent);
-        assert_eq!(entries(&ecm, &motions), kept);
+        let all = (ecm.len(), ecm.pieces());
+        let twice = Err(Unchanged::Mismatch(Mismatch::OtherFleet));
+        assert_eq!(ecm.insert(&motions, agent), twice, "it is there");
+        ecm.remove(&motions, agent).expect("it is there");
+        // A fleet of which it does not know an agent.
+        assert_eq!(ecm.row(&motions, (agent + 1) % 12).err(), Some(Mismatch::OtherFleet));
+        assert_eq!(ecm.remove(&motions, agent), Err(Mismatch::OtherFleet));
+        let lost = full.iter().filter(|entry| entry.0[0] == agent).count();
+        assert_eq!(ecm.len(), all.0 - lost);
+        if agent == 11 {
+            let kept: Vec<_> = full.iter().filter(|entry| !entry.0.contains(&agent)).copied().collect();
+            assert_eq!(entries(&ecm, &motions[..11]), kept);
+        }
+        let other = (agent + 1) % 12;
+        assert_eq!(ecm.insert(&motions, other), twice, "another one is missing");
         ecm.insert(&motions, agent).expect("there was room before");
-        assert_eq!(entries(&ecm, &motions), full);
+        assert_eq!((entries(&ecm, &motions), (ecm.len(), ecm.pieces())), (full.clone(), all));
     }
 }
 
@@ -190,18 +295,18 @@ fn an_agent_that_does_not_fit_leaves_the_table_as_it_was() {
     {
         let storage = (vec![Region::EMPTY; room], vec![Piece::EMPTY; space]);
         let mut ecm = Ecm::build(storage.0, storage.1, others).expect("room for the others");
-        let before = entries(&ecm, motions);
+        let before = entries(&ecm, others);
         let outcome = ecm.insert(motions, 5);
         if room == regions && space == pieces {
             assert_eq!(outcome, Ok(()));
             continue;
         }
-        assert_eq!(outcome, Err(if room < regions { Full::Regions } else { Full::Pieces }));
-        assert_eq!(entries(&ecm, motions), before, "{room} regions, {space} pieces");
+        assert_eq!(outcome, Err(Unchanged::Full(if room < regions { Full::Regions } else { Full::Pieces })));
+        assert_eq!(entries(&ecm, others), before, "{room} regions, {space} pieces");
         // And it still works: what was given back is free again.
-        ecm.remove(4);
+        ecm.remove(others, 4).expect("it is there");
         ecm.insert(others, 4).expect("it fitted before");
-        assert_eq!(entries(&ecm, motions), before);
+        assert_eq!(entries(&ecm, others), before);
     }
 }
 

@@ -142,3 +142,40 @@ fn where_there_is_no_room_fewer_are_placed() {
     assert!(traffic.placed < 30 && traffic.placed > 0, "{}", traffic.placed);
     assert_eq!(traffic.asked, 96);
 }
+
+#[test]
+fn missions_that_are_passed_over_are_told_with_their_reasons() {
+    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let (traffic, _) = Traffic::of(&imported, Request { agents: 16, seed: 1 }).unwrap();
+    let because: Vec<_> =
+        traffic.passed_over_because.iter().map(|reason| (reason.why.as_str(), reason.missions)).collect();
+    assert!(traffic.passed_over > 0, "{traffic:?}");
+    assert_eq!(because, [("no order of starts lets it through with those before it", traffic.passed_over)]);
+    // Its trajectories are metres from its nodes: no way is a path.
+    let apart = include_str!("../data/real/lif/example_17.lif.json");
+    let imported = read(Format::Lif, apart, 0.4);
+    let (traffic, _) = Traffic::of(&imported, Request { agents: 1, seed: 1 }).unwrap();
+    assert_eq!((traffic.placed, traffic.passed_over), (0, 8), "two ways in four draws");
+    let mut reasons = traffic.passed_over_because.iter();
+    assert!(reasons.all(|reason| reason.why.starts_with("the way is no path: edge N") && reason.missions == 4));
+    let mut text = Vec::new();
+    pcr_host::report::traffic_table(&traffic, &mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    assert!(
+        text.contains("4 missions passed over: the way is no path: edge N1-N2: its curve begins 5.000 m"),
+        "{text}"
+    );
+    assert!(
+        traffic.warnings.iter().any(|line| line.contains("its trajectory begins 5.000 m")),
+        "{:?}",
+        traffic.warnings
+    );
+}
+
+#[test]
+fn levels_without_missions_are_told() {
+    let hotel = read(Format::Rmf, include_str!("../data/real/rmf/hotel.building.yaml"), 0.3);
+    let (traffic, [missions, plan]) = Traffic::of(&hotel, Request { agents: 2, seed: 1 }).unwrap();
+    let told = "levels: missions are drawn on L1 only, of 3".to_owned();
+    assert!([&traffic.warnings, &missions.warnings, &plan.warnings].iter().all(|warnings| warnings.contains(&told)));
+}

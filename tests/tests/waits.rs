@@ -73,7 +73,7 @@ fn waits<S: Format>() {
                 if time < leaves { travel.length_at(time) } else { travel.length_at((time - wait).max(leaves)) }
             }
         };
-        match earliest_departure(ecm.row(&fleet, 0), at, S::ZERO) {
+        match earliest_departure(ecm.row(&fleet, 0).expect("the table of the fleet"), at, S::ZERO) {
             Some(wait) => {
                 found += 1;
                 waited += u32::from(wait > S::ZERO);
@@ -122,6 +122,7 @@ fn durations<S: Format>() {
         let ecm = build_ecm(&fleet).expect("a small table");
         let forbidden: Vec<Interval<S>> = ecm
             .row(&fleet, 0)
+            .expect("the table of the fleet")
             .filter_map(|region: RegionRef<'_, S>| region.forbidden_durations::<PHASES>().expect("room"))
             .collect();
         let travel = Travel::new(&pair[0].1, pair[0].0.length(), pair[0].2);
@@ -148,7 +149,8 @@ fn durations<S: Format>() {
                 assert!(met.is_empty(), "seed {seed}: met in {duration} s at {met:?}: {forbidden:?}");
             }
         }
-        let least = least_duration::<S, PHASES>(ecm.row(&fleet, 0), S::from_f64(own)).expect("room");
+        let least = least_duration::<S, PHASES>(ecm.row(&fleet, 0).expect("the table of the fleet"), S::from_f64(own))
+            .expect("room");
         if let Some(least) = least {
             assert!(!is_forbidden(least.to_f64()) && least.to_f64() >= own - 1e-3, "seed {seed}: {least:?}");
             let stretched = Profile::<S, PHASES>::stretched(fleet[0].profile(), least).expect("a duration");
@@ -187,7 +189,7 @@ fn a_crossing_forbids_the_scale_factors_of_the_closed_form() {
     let courses = [line([-2.0, 0.0, 0.0], 4.0, 1.0), line([0.0, -2.0, PI / 2.0], 4.0, 1.0)];
     let fleet = courses.each_ref().map(Course::motion);
     let ecm = build_ecm(&fleet).expect("a small table");
-    let region = ecm.row(&fleet, 0).next().expect("a crossing");
+    let region = ecm.row(&fleet, 0).expect("the table of the fleet").next().expect("a crossing");
     let found = region.forbidden_durations::<1>().expect("room").expect("a conflict");
     for (end, root) in [(found.lo, 16.0 + 31.0_f64.sqrt()), (found.hi, 16.0 - 31.0_f64.sqrt())] {
         assert!((4.0 / end - root / 15.0).abs() < 1e-8, "{found:?}");
@@ -195,7 +197,7 @@ fn a_crossing_forbids_the_scale_factors_of_the_closed_form() {
     let head_on = [line([0.0, 0.0, 0.0], 4.0, 1.0), line([4.0, 0.0, PI], 4.0, 1.0)];
     let fleet = head_on.each_ref().map(Course::motion);
     let ecm = build_ecm(&fleet).expect("a small table");
-    assert_eq!(least_duration::<f64, 1>(ecm.row(&fleet, 0), 4.0), Ok(None));
+    assert_eq!(least_duration::<f64, 1>(ecm.row(&fleet, 0).expect("the table of the fleet"), 4.0), Ok(None));
 }
 
 /// Fleets in which everybody may be late, as planned, met by nobody however late they are.
@@ -215,9 +217,14 @@ fn plans_with_lateness_hold_for_all_delays_in_it() {
             .collect();
         let ecm = build_ecm(&fleet).expect("a small table");
         let mut stations = vec![Station::EMPTY; 80];
-        let by_delay = earliest_start(ecm.row(&fleet, 0), 0.0).map(|delay| (pair[0].1.clone(), pair[0].2 + delay));
-        let speeds =
-            plan_speed::<f64, 48>(&fleet[0], pcr_core::Drive::of(&fleet[0]), ecm.row(&fleet, 0), &mut stations);
+        let by_delay = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)
+            .map(|delay| (pair[0].1.clone(), pair[0].2 + delay));
+        let speeds = plan_speed::<f64, 48>(
+            &fleet[0],
+            pcr_core::Drive::of(&fleet[0]),
+            ecm.row(&fleet, 0).expect("the table of the fleet"),
+            &mut stations,
+        );
         let by_speed = speeds.ok().map(|plan| {
             let phases = plan.profile.as_profile().phases();
             let speed = phases.first().map_or(0.0, |first| first.speed()[0]);
@@ -252,12 +259,19 @@ fn lateness_makes_windows_and_delays_longer_by_itself() {
     let late = [fleet[0].with_lateness(0.25).expect("valid"), fleet[1].with_lateness(0.5).expect("valid")];
     let blocked = |fleet: &[Motion<'_, f64>]| -> Vec<f64> {
         let middle = Interval::new(2.0, 2.0);
-        safe_intervals(fleet, 0, middle, Interval::new(0.0, 10.0)).flat_map(|safe| [safe.lo, safe.hi]).collect()
+        safe_intervals(fleet, 0, middle, Interval::new(0.0, 10.0))
+            .expect("an agent of the fleet")
+            .flat_map(|safe| [safe.lo, safe.hi])
+            .collect()
     };
     assert_eq!(blocked(&late), [0.0, blocked(&fleet)[1] - 0.25, blocked(&fleet)[2] + 0.5, 10.0]);
     let forbidden = |fleet: &[Motion<'_, f64>; 2]| {
         let ecm = build_ecm(fleet).expect("a small table");
-        ecm.row(fleet, 0).map(|region| region.forbidden_delays()).next().expect("a crossing")
+        ecm.row(fleet, 0)
+            .expect("the table of the fleet")
+            .map(|region| region.forbidden_delays())
+            .next()
+            .expect("a crossing")
     };
     let (exact, wide) = (forbidden(&fleet), forbidden(&late));
     assert!((wide.lo - exact.lo + 0.25).abs() < 1e-12 && (wide.hi - exact.hi - 0.5).abs() < 1e-12);

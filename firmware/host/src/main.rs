@@ -31,10 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 const USAGE: &str =
     "usage: pcr-link table FORMAT | pcr-link serial FORMAT COMMAND...; formats: f32, micro, q12, q16, q20";
 
-fn run<S: Number + Send>(what: &str, agents: BuiltIn<S>, rest: &[&str]) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
+fn run<S: Number>(what: &str, agents: BuiltIn<S>, rest: &[&str]) -> Result<(), Box<dyn Error>> {
     match (what, rest) {
         ("table", []) => table(agents),
         ("serial", command) => serial::check(agents, command),
@@ -57,11 +54,11 @@ fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S, AGENTS, SEGMENTS>, Bo
 /// Prints what the demo prints.
 fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let fleet = store.motions();
+    let fleet = store.motions()?;
     let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let mut out = io::stdout().lock();
     out.write_all(dump::HEADING)?;
-    for region in ecm.regions(&fleet) {
+    for region in ecm.regions(&fleet)? {
         out.write_all(dump::region(&region).as_bytes())?;
     }
     writeln!(out, "{} regions, {} pieces", ecm.len(), ecm.pieces())?;

@@ -2,10 +2,10 @@
 
 use crate::{BuiltIn, store};
 use pcr_core::{Ecm, Limits, Motion, Piece, Region, earliest_start};
-use pcr_supervisor::frame::{self, Damage, Receiver, VERSION};
+use pcr_supervisor::frame::{self, Damage, Reads, Receiver, Tag, VERSION};
 use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, text};
 use pcr_supervisor::scenario::{AGENTS, PIECES, REGIONS};
-use pcr_supervisor::{Agent, Answer, Number, Request};
+use pcr_supervisor::{Agent, Answer, Client, Event, Number, Request, Step};
 use std::error::Error;
 use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -13,50 +13,47 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// How long the supervisor may take for an answer. Only a supervisor that says nothing takes that long.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// After how long a request is sent again; that does no harm where the first one is still being answered.
+const AGAIN: Duration = Duration::from_secs(20);
+/// How often. Only a supervisor that says nothing lets that much time pass.
+const PATIENCE: u32 = 90;
 
 /// A supervisor behind a serial line.
-struct Link<S: Number> {
+struct Link {
     child: Child,
     to: ChildStdin,
-    from: mpsc::Receiver<(u8, Result<Answer<S>, Damage>)>,
-    sequence: u8,
-    /// Bytes received in frames of regions.
-    bytes: mpsc::Receiver<usize>,
+    from: mpsc::Receiver<u8>,
+    client: Client,
+    /// Bytes received.
+    bytes: usize,
 }
 
-impl<S: Number + Send> Link<S>
-where
-    S::Angle: Send,
-{
+impl Link {
     fn start(command: &[&str]) -> Result<Self, Box<dyn Error>> {
         let (program, arguments) = command.split_first().ok_or("no command")?;
         let mut child = Command::new(program).args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
         let to = child.stdin.take().ok_or("no line to the supervisor")?;
         let mut from = child.stdout.take().ok_or("no line from the supervisor")?;
-        let (send, answers) = mpsc::channel();
-        let (count, bytes) = mpsc::channel();
+        let (send, bytes) = mpsc::channel();
         thread::spawn(move || {
-            let (mut receiver, mut byte, mut length) = (Receiver::new(), [0], 0);
-            while from.read_exact(&mut byte).is_ok() {
-                length += 1;
-                if let Some(answer) = receiver.take::<Answer<S>>(byte[0]) {
-                    if count.send(length).is_err() || send.send(answer).is_err() {
-                        return;
-                    }
-                    length = 0;
-                }
-            }
+            let mut byte = [0];
+            while from.read_exact(&mut byte).is_ok() && send.send(byte[0]).is_ok() {}
         });
-        Ok(Self { child, to, from: answers, sequence: 0, bytes })
+        Ok(Self { child, to, from: bytes, client: Client::new(), bytes: 0 })
     }
 
     /// Sends a request.
-    fn ask(&mut self, request: &Request<S>) -> Result<(), Box<dyn Error>> {
-        self.sequence = self.sequence.wrapping_add(1);
-        let bytes = frame::encode(self.sequence, request).ok_or("a request is too long")?;
-        self.send(&bytes)
+    fn ask<S: Number>(&mut self, request: &Request<S>) -> Result<(), Box<dyn Error>> {
+        if !self.client.ask(request) {
+            return Err("a request is too long".into());
+        }
+        self.repeat()
+    }
+
+    /// Sends the request again.
+    fn repeat(&mut self) -> Result<(), Box<dyn Error>> {
+        self.to.write_all(self.client.frame())?;
+        Ok(self.to.flush()?)
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
@@ -64,27 +61,60 @@ where
         Ok(self.to.flush()?)
     }
 
-    /// The next answer to the last request.
-    fn hear(&mut self) -> Result<Answer<S>, Box<dyn Error>> {
-        let (sequence, answer) = self.from.recv_timeout(PATIENCE).map_err(|error| match error {
-            RecvTimeoutError::Timeout => "the supervisor does not answer",
-            RecvTimeoutError::Disconnected => "the supervisor has ended",
-        })?;
-        let answer = answer.map_err(|damage| format!("a damaged answer: {damage:?}"))?;
-        if sequence != self.sequence {
-            return Err(format!("answer {sequence} to request {}: {answer:?}", self.sequence).into());
+    /// The next byte; `None` where it takes long.
+    fn byte(&mut self) -> Result<Option<u8>, Box<dyn Error>> {
+        match self.from.recv_timeout(AGAIN) {
+            Ok(byte) => {
+                self.bytes += 1;
+                Ok(Some(byte))
+            }
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => Err("the supervisor has ended".into()),
         }
-        Ok(answer)
+    }
+
+    /// The next answer to the last request.
+    fn hear<S: Number>(&mut self) -> Result<Answer<S>, Box<dyn Error>> {
+        let mut patience = PATIENCE;
+        loop {
+            let event = match self.byte()? {
+                Some(byte) => self.client.take(byte),
+                None => Some(Event::Again),
+            };
+            match event {
+                None => {}
+                Some(Event::Answer(answer) | Event::Last(answer)) => return Ok(answer),
+                Some(Event::OutOfStep) => return Err("the supervisor has started anew".into()),
+                Some(Event::Again) => {
+                    patience = patience.checked_sub(1).ok_or("the supervisor does not answer")?;
+                    self.repeat()?;
+                }
+            }
+        }
+    }
+
+    /// The next answer whatever its request.
+    fn overhear<S: Number>(&mut self) -> Result<(u16, Answer<S>), Box<dyn Error>> {
+        let mut receiver = Receiver::new(Reads::Answers);
+        for _ in 0..PATIENCE {
+            while let Some(byte) = self.byte()? {
+                if let Some(frame) = receiver.take(byte) {
+                    let frame = frame.map_err(|damage| format!("a damaged answer: {damage:?}"))?;
+                    return Ok((frame.tag.sequence, frame.message));
+                }
+            }
+        }
+        Err("the supervisor does not answer".into())
     }
 
     /// Sends a request and compares the answer.
-    fn expect(&mut self, request: &Request<S>, expected: &Answer<S>) -> Result<(), Box<dyn Error>> {
+    fn expect<S: Number>(&mut self, request: &Request<S>, expected: &Answer<S>) -> Result<(), Box<dyn Error>> {
         self.ask(request)?;
         same(&self.hear()?, expected)
     }
 }
 
-impl<S: Number> Drop for Link<S> {
+impl Drop for Link {
     fn drop(&mut self) {
         // It never ends by itself.
         let _ = self.child.kill();
@@ -97,40 +127,36 @@ fn same<T: PartialEq + std::fmt::Debug>(seen: &T, expected: &T) -> Result<(), Bo
 }
 
 /// Runs the whole conversation.
-pub(crate) fn check<S: Number + Send>(agents: BuiltIn<S>, command: &[&str]) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
-    let mut link = Link::<S>::start(command)?;
-    greet(&mut link)?;
-    damage(&mut link)?;
+pub(crate) fn check<S: Number>(agents: BuiltIn<S>, command: &[&str]) -> Result<(), Box<dyn Error>> {
+    let mut link = Link::start(command)?;
+    greet::<S>(&mut link)?;
+    damage::<S>(&mut link)?;
     refusals(&mut link, agents)?;
+    exchange(&mut link, agents)?;
 
-    link.expect(&Request::Clear, &Answer::Done)?;
+    link.expect(&Request::<S>::Clear, &Answer::Done)?;
     for (index, agent) in agents.iter().enumerate() {
-        let expected = Answer::Added { agents: u16::try_from(index + 1)? };
+        let expected = Answer::Fleet { agents: u16::try_from(index + 1)? };
         link.expect(&Request::Add(sendable(agent)?), &expected)?;
     }
     println!("sent {} agents", agents.len());
+    repeated(&mut link, agents)?;
     table(&mut link, agents)?;
 
-    link.expect(&Request::Load, &Answer::Added { agents: u16::try_from(agents.len())? })?;
+    link.expect(&Request::<S>::Load, &Answer::Fleet { agents: u16::try_from(agents.len())? })?;
     table(&mut link, agents)?;
     println!("the fleet that is built in has the same table");
     replan(&mut link, agents)
 }
 
-fn sendable<S: Number>(agent: &Agent<S, &'static [pcr_supervisor::Step<S>]>) -> Result<Agent<S>, Box<dyn Error>> {
+fn sendable<S: Number>(agent: &Agent<S, &'static [Step<S>]>) -> Result<Agent<S>, Box<dyn Error>> {
     let path = agent.path.iter().copied().collect();
     Ok(Agent { radius: agent.radius, start_time: agent.start_time, limits: agent.limits, start: agent.start, path })
 }
 
-fn greet<S: Number + Send>(link: &mut Link<S>) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
-    link.ask(&Request::Hello)?;
-    let Answer::Hello { format, agents, .. } = link.hear()? else {
+fn greet<S: Number>(link: &mut Link) -> Result<(), Box<dyn Error>> {
+    link.ask(&Request::<S>::Hello)?;
+    let Answer::<S>::Hello { format, agents, .. } = link.hear()? else {
         return Err("no greeting".into());
     };
     same(&(&format[..], usize::from(agents)), &(S::NAME.as_bytes(), AGENTS))?;
@@ -139,89 +165,105 @@ where
 }
 
 /// Damaged frames are refused by name, and the next good one is understood.
-fn damage<S: Number + Send>(link: &mut Link<S>) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
-    link.sequence = 7;
-    let good = frame::encode(7, &Request::<S>::Hello).ok_or("a greeting is too long")?;
-    let flipped = |at: usize| {
-        let mut bytes = good.clone();
-        bytes[at] ^= 0x40;
-        bytes
-    };
+fn damage<S: Number>(link: &mut Link) -> Result<(), Box<dyn Error>> {
+    let tag = Tag { sequence: 7, place: Tag::REQUEST };
+    let good = frame::encode(tag, &Request::<S>::Hello).ok_or("a greeting is too long")?;
+    let other = frame::encode_version(VERSION + 1, tag, &Request::<S>::Hello).ok_or("a greeting is too long")?;
+    let mut flipped = good.clone();
+    flipped[good.len() - 3] ^= 0x40;
     let mut long = vec![0x11; 300];
     long.push(0);
-    // A byte in the middle is turned over; the version is (and the check with it); a run goes on behind the end.
-    let other_version = other_version::<S>()?;
-    let cases: [(&[u8], Damage); 4] = [
-        (&flipped(good.len() - 3), Damage::Check),
-        (&other_version, Damage::Version(VERSION + 1)),
+    // A bit is turned over; the version is another; a run goes on behind the end; there is no check; it never ends.
+    let cases: [(&[u8], Damage); 5] = [
+        (&flipped, Damage::Check),
+        (&other, Damage::Version(VERSION + 1)),
         (&[3, 7, 0], Damage::Stuffing),
         (&[2, 7, 0], Damage::TooShort),
+        (&long, Damage::TooLong),
     ];
     for (bytes, damage) in cases {
         link.send(bytes)?;
-        let (_, answer) = link.from.recv_timeout(PATIENCE)?;
-        same(&answer, &Ok(Answer::Refused(Refusal::Frame(damage))))?;
+        same(&link.overhear::<S>()?, &(0, Answer::Refused(Refusal::Frame(damage))))?;
     }
-    link.send(&long)?;
-    let (_, answer) = link.from.recv_timeout(PATIENCE)?;
-    same(&answer, &Ok(Answer::Refused(Refusal::Frame(Damage::TooLong))))?;
     // Zeros between frames are nothing.
     link.send(&[0, 0, 0])?;
-    greet(link)?;
+    greet::<S>(link)?;
     println!("damaged frames are refused, and the line recovers");
     Ok(())
 }
 
-/// A greeting of the next version, with a good check.
-fn other_version<S: Number>() -> Result<Vec<u8>, Box<dyn Error>> {
-    let bytes = frame::encode_version(VERSION + 1, 7, &Request::<S>::Hello).ok_or("a greeting is too long")?;
-    Ok(bytes.to_vec())
-}
-
 /// What does not fit is refused by name and changes nothing.
-fn refusals<S: Number + Send>(link: &mut Link<S>, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
+fn refusals<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let agent = sendable(agents.first().ok_or("no agents")?)?;
-    let refused = |what, why| Answer::Refused(Refusal::Agent { what: text(what), why });
-    link.expect(&Request::Clear, &Answer::Done)?;
+    let refused = |agent, what, why| Answer::Refused(Refusal::Agent { agent, what: text(what), why });
+    link.expect(&Request::<S>::Clear, &Answer::Done)?;
     let flat = Agent { radius: S::ZERO, ..agent.clone() };
-    link.expect(&Request::Add(flat), &refused("radius", Reason::NonPositive))?;
+    link.expect(&Request::Add(flat), &refused(0, "radius", Reason::NonPositive))?;
     let fast = Limits { speed: -agent.limits.speed, ..agent.limits };
     link.expect(
         &Request::Add(Agent { limits: fast, ..agent.clone() }),
-        &refused("largest speed", Reason::NonPositive),
+        &refused(0, "largest speed", Reason::NonPositive),
     )?;
     // One that stands takes the least room.
     let agent = Agent { path: [].into_iter().collect(), ..agent };
-    for count in 1..=u16::try_from(AGENTS)? {
-        link.expect(&Request::Add(agent.clone()), &Answer::Added { agents: count })?;
+    let most = u16::try_from(AGENTS)?;
+    for agents in 1..=most {
+        link.expect(&Request::Add(agent.clone()), &Answer::Fleet { agents })?;
     }
-    link.expect(&Request::Add(agent), &refused("agent", Reason::Full))?;
+    link.expect(&Request::Add(agent), &refused(most, "agent", Reason::Full))?;
     println!("agents that do not fit are refused by name");
+    link.expect(&Request::<S>::Row { ego: 0 }, &Answer::Refused(Refusal::NotComputed))?;
+    link.expect(&Request::<S>::Replan { agent: 0 }, &Answer::Refused(Refusal::NotComputed))?;
+    link.expect(&Request::<S>::Row { ego: most }, &Answer::Refused(Refusal::NoSuchAgent { agent: most }))?;
+    println!("so is what is asked of a table that there is not, and of nobody");
+    Ok(())
+}
+
+/// A request that is sent again is not done again; one that is late is refused.
+fn repeated<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
+    let late = link.client.frame().to_vec();
+    let sequence = link.client.next().wrapping_sub(1);
+    let fleet = Answer::<S>::Fleet { agents: u16::try_from(agents.len())? };
+    link.send(&late)?;
+    same(&link.overhear()?, &(sequence, fleet))?;
+    link.ask(&Request::<S>::Compute)?;
+    link.hear::<S>()?;
+    link.send(&late)?;
+    let next = link.client.next();
+    same(&link.overhear::<S>()?, &(sequence, Answer::Refused(Refusal::Sequence { next })))?;
+    println!("a request that comes twice is done once, and one that comes late is refused");
+    Ok(())
+}
+
+/// Agents are exchanged and removed until the fleet is another one, and its table is that of the same fleet sent at once.
+fn exchange<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
+    let [first, second, third, ..] = agents else { return Err("too few agents".into()) };
+    link.expect(&Request::<S>::Load, &Answer::Fleet { agents: u16::try_from(agents.len())? })?;
+    for count in (3..u16::try_from(agents.len())?).rev() {
+        link.expect(&Request::<S>::Remove { agent: 1 }, &Answer::Fleet { agents: count })?;
+    }
+    for (agent, with) in [(1, second), (2, third), (0, first)] {
+        link.expect(&Request::Replace { agent, with: sendable(with)? }, &Answer::Fleet { agents: 3 })?;
+    }
+    link.expect(&Request::Row::<S> { ego: 0 }, &Answer::Refused(Refusal::NotComputed))?;
+    table(link, &agents[..3])?;
+    println!("agents that were exchanged and removed have the table of those that are there");
     Ok(())
 }
 
 /// The table of the fleet that was sent is that of the same fleet here, bit by bit.
-fn table<S: Number + Send>(link: &mut Link<S>, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
+fn table<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let fleet = store.motions();
+    let fleet = store.motions()?;
     let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let computed = Answer::Computed { regions: u16::try_from(ecm.len())?, pieces: u16::try_from(ecm.pieces())? };
-    link.expect(&Request::Compute, &computed)?;
-    link.bytes.try_iter().for_each(drop);
+    link.expect(&Request::<S>::Compute, &computed)?;
+    let before = link.bytes;
     let (mut regions, mut pieces) = (0, 0);
     for ego in 0..fleet.len() {
-        link.ask(&Request::Row { ego: u16::try_from(ego)? })?;
+        link.ask(&Request::<S>::Row { ego: u16::try_from(ego)? })?;
         let mut row = 0;
-        for region in ecm.row(&fleet, ego) {
+        for region in ecm.row(&fleet, ego)? {
             same(&link.hear()?, &Answer::Region(RegionRecord::of(&region)))?;
             for piece in region.pieces() {
                 same(&link.hear()?, &Answer::Piece(PieceRecord::of(&piece)))?;
@@ -229,11 +271,11 @@ where
             }
             row += 1;
         }
-        same(&link.hear()?, &Answer::End { count: row })?;
+        same(&link.hear::<S>()?, &Answer::End { count: row })?;
         regions += usize::from(row);
     }
     same(&regions, &(2 * ecm.len()))?;
-    let bytes: usize = link.bytes.try_iter().sum();
+    let bytes = link.bytes - before;
     println!("{regions} regions with {pieces} pieces in {bytes} bytes, equal to those computed here bit by bit");
     let conflicts = conflicts(link, &fleet)?;
     println!("{conflicts} pairs that conflict, and where they do first, equal bit by bit");
@@ -241,37 +283,34 @@ where
 }
 
 /// The first conflicts are those of these motions; how many are more than a touch.
-fn conflicts<S: Number + Send>(link: &mut Link<S>, fleet: &[Motion<'_, S>]) -> Result<u16, Box<dyn Error>>
-where
-    S::Angle: Send,
-{
-    link.ask(&Request::Conflicts)?;
+fn conflicts<S: Number>(link: &mut Link, fleet: &[Motion<'_, S>]) -> Result<u16, Box<dyn Error>> {
+    link.ask(&Request::<S>::Conflicts)?;
     let (mut conflicts, mut touching) = (0, 0);
     for first in 0..fleet.len() {
         for second in first + 1..fleet.len() {
-            if let Some(conflict) = ConflictRecord::first(fleet, [first, second]) {
+            if let Some(conflict) =
+                ConflictRecord::first(fleet, [first, second]).map_err(|refusal| format!("{refusal:?}"))?
+            {
                 touching += u16::from(conflict.touching);
                 conflicts += 1;
                 same(&link.hear()?, &Answer::Conflict(conflict))?;
             }
         }
     }
-    same(&link.hear()?, &Answer::End { count: conflicts })?;
+    same(&link.hear::<S>()?, &Answer::End { count: conflicts })?;
     Ok(conflicts - touching)
 }
 
 /// Agents are replanned as they are here, one after the other; then nobody meets anybody, but for a touch.
-fn replan<S: Number + Send>(link: &mut Link<S>, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>>
-where
-    S::Angle: Send,
-{
+fn replan<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let mut fleet = store.motions();
+    let mut fleet = store.motions()?;
     let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;
     for agent in 0..fleet.len() {
-        let answer = match earliest_start(ecm.row(&fleet, agent), S::ZERO) {
+        let delay = earliest_start(ecm.row(&fleet, agent)?, S::ZERO);
+        let answer = match delay {
             Some(delay) => {
                 fleet[agent] = fleet[agent].delayed(delay)?;
                 planned += 1;
@@ -279,10 +318,10 @@ where
             }
             None => Answer::Refused(Refusal::NoPlan),
         };
-        link.expect(&Request::Replan { agent: u16::try_from(agent)? }, &answer)?;
+        link.expect(&Request::<S>::Replan { agent: u16::try_from(agent)? }, &answer)?;
     }
     let nobody = u16::try_from(fleet.len())?;
-    link.expect(&Request::Replan { agent: nobody }, &Answer::Refused(Refusal::NoSuchAgent))?;
+    link.expect(&Request::<S>::Replan { agent: nobody }, &Answer::Refused(Refusal::NoSuchAgent { agent: nobody }))?;
     let after = conflicts(link, &fleet)?;
     println!("{planned} agents replanned: {before} pairs that conflict before, {after} after, equal bit by bit");
     if planned == fleet.len() && after == 0 { Ok(()) } else { Err("there are conflicts left".into()) }

@@ -2,12 +2,13 @@
 
 use crate::agent::{Agent, Step};
 use heapless::Vec;
-use pcr_core::{Curve, Invalid, Motion, PathRef, Phase, Profile, ProfileRef, Scalar, Segment};
+use pcr_core::{Curve, Interval, Invalid, Motion, PathRef, Phase, Profile, ProfileRef, Scalar, Segment};
 
 /// The motions of up to `A` agents.
 pub type Motions<'a, S, const A: usize> = Vec<Motion<'a, S>, A>;
 
-/// What the motions of up to `A` agents with `N` segments in all borrow.
+/// What the motions of up to `A` agents with `N` segments in all borrow. [`Store::replace`] needs room for the segments
+/// of the new path beside those of the old one.
 #[derive(Debug)]
 pub struct Store<S: Scalar, const A: usize, const N: usize> {
     agents: Vec<Parts<S>, A>,
@@ -16,16 +17,39 @@ pub struct Store<S: Scalar, const A: usize, const N: usize> {
 
 #[derive(Debug)]
 struct Parts<S> {
-    /// Number of its segments, which follow those of the agent before.
-    segments: usize,
+    /// The first of its segments, and how many there are.
+    begin: u16,
+    segments: u16,
     phases: Vec<Phase<S>, 3>,
     radius: S,
     start: S,
 }
 
+/// Why an agent of a fleet was not changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rejected {
+    /// There is no agent of this index.
+    NoSuchAgent(usize),
+    /// What it was to become is refused.
+    Invalid(Invalid),
+}
+
+impl From<Invalid> for Rejected {
+    fn from(invalid: Invalid) -> Self {
+        Self::Invalid(invalid)
+    }
+}
+
+impl<S: Scalar, const A: usize, const N: usize> Default for Store<S, A, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     /// No agents.
     pub const fn new() -> Self {
+        const { assert!(A <= u16::MAX as usize && N <= u16::MAX as usize, "places are sent in 16 bits") };
         Self { agents: Vec::new(), segments: Vec::new() }
     }
 
@@ -51,14 +75,56 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     /// What the constructors of its path, its profile and its motion refuse; [`Invalid::Full`] where there is no room.
     pub fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<usize, Invalid> {
         let (index, begin) = (self.agents.len(), self.segments.len());
-        let added = self.place(agent, begin);
+        let added = self.parts(agent).and_then(|parts| self.agents.push(parts).map_err(|_| Invalid::Full("agent")));
         if added.is_err() {
             self.segments.truncate(begin);
         }
         added.map(|()| index)
     }
 
-    fn place<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>, begin: usize) -> Result<(), Invalid> {
+    /// Puts another agent in the place of one. O(segments).
+    ///
+    /// # Errors
+    /// As [`Store::add`], and [`Rejected::NoSuchAgent`]; the fleet is then as it was.
+    pub fn replace<P: AsRef<[Step<S>]>>(&mut self, index: usize, agent: &Agent<S, P>) -> Result<(), Rejected> {
+        let begin = self.segments.len();
+        let parts = self.parts(agent).inspect_err(|_| self.segments.truncate(begin))?;
+        let Some(place) = self.agents.get_mut(index) else {
+            self.segments.truncate(begin);
+            return Err(Rejected::NoSuchAgent(index));
+        };
+        let before = core::mem::replace(place, parts);
+        self.forget(before.begin, before.segments);
+        Ok(())
+    }
+
+    /// Removes an agent; those behind it move up by one index. O(segments).
+    ///
+    /// # Errors
+    /// [`Rejected::NoSuchAgent`].
+    pub fn remove(&mut self, index: usize) -> Result<(), Rejected> {
+        let gone = self.agents.get(index).ok_or(Rejected::NoSuchAgent(index))?;
+        let (begin, segments) = (gone.begin, gone.segments);
+        take_out(&mut self.agents, index);
+        self.forget(begin, segments);
+        Ok(())
+    }
+
+    /// Closes the gap that an agent's segments leave.
+    fn forget(&mut self, begin: u16, segments: u16) {
+        for _ in 0..segments {
+            take_out(&mut self.segments, usize::from(begin));
+        }
+        for parts in &mut self.agents {
+            if parts.begin > begin {
+                parts.begin = parts.begin.wrapping_sub(segments);
+            }
+        }
+    }
+
+    /// Puts an agent's segments behind all others. Whoever does not keep it takes them away again.
+    fn parts<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, Invalid> {
+        let begin = self.segments.len();
         let origin = Segment::standing(agent.start)?;
         for step in agent.path.as_ref() {
             let last = self.segments.get(begin..).and_then(<[_]>::last).unwrap_or(&origin);
@@ -78,48 +144,64 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         for phase in profile.as_profile().phases() {
             phases.push(*phase).map_err(|_| Invalid::Full("phase"))?;
         }
-        let segments = self.segments.len().saturating_sub(begin);
-        let parts = Parts { segments, phases, radius: agent.radius, start: agent.start_time };
-        self.agents.push(parts).map_err(|_| Invalid::Full("agent"))
+        // There are at most 65535.
+        let [begin, end] = [begin, self.segments.len()].map(|place| place as u16);
+        let segments = end.saturating_sub(begin);
+        Ok(Parts { begin, segments, phases, radius: agent.radius, start: agent.start_time })
     }
 
-    /// Lets an agent set off later by `delay`, which its motion must allow ([`Motion::delayed`]).
-    pub fn delay(&mut self, agent: usize, delay: S) {
-        if let Some(parts) = self.agents.get_mut(agent) {
-            parts.start = parts.start + delay;
+    /// Lets an agent set off later by `delay` \[s\]; when it moves then.
+    ///
+    /// # Errors
+    /// [`Rejected::NoSuchAgent`], and what [`Motion::delayed`] refuses.
+    pub fn delay(&mut self, index: usize, delay: S) -> Result<Interval<S>, Rejected> {
+        let parts = self.agents.get(index).ok_or(Rejected::NoSuchAgent(index))?;
+        let time = parts.motion(&self.segments)?.delayed(delay)?.time();
+        if let Some(parts) = self.agents.get_mut(index) {
+            parts.start = time.lo;
         }
+        Ok(time)
     }
 
     /// The motions of all agents.
+    ///
+    /// # Errors
+    /// As [`Store::put_motions`].
     // Inlined, its copies of the motions would lie on the stack of all that is done with them.
     #[inline(never)]
-    pub fn motions(&self) -> Motions<'_, S, A> {
+    pub fn motions(&self) -> Result<Motions<'_, S, A>, Invalid> {
         let mut motions = Vec::new();
-        self.put_motions(&mut motions);
-        motions
+        self.put_motions(&mut motions)?;
+        Ok(motions)
     }
 
     /// Puts the motions of all agents behind those that are there.
-    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) {
-        let mut rest = &self.segments[..];
+    ///
+    /// # Errors
+    /// [`Invalid::Full`] where there is no room for all of them. A motion itself is not refused: it was accepted when its
+    /// agent came.
+    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), Invalid> {
         for parts in &self.agents {
-            let Some((own, others)) = rest.split_at_checked(parts.segments) else {
-                break;
-            };
-            rest = others;
-            // Each was accepted once, when the agent was added.
-            let Ok(motion) = parts.motion(own) else {
-                break;
-            };
-            if motions.push(motion).is_err() {
-                break;
-            }
+            motions.push(parts.motion(&self.segments)?).map_err(|_| Invalid::Full("agent"))?;
         }
+        Ok(())
     }
 }
 
 impl<S: Scalar> Parts<S> {
     fn motion<'a>(&'a self, segments: &'a [Segment<S>]) -> Result<Motion<'a, S>, Invalid> {
-        Motion::new(PathRef::new(segments)?, ProfileRef::new(&self.phases)?, self.radius, self.start)
+        let [begin, count] = [self.begin, self.segments].map(usize::from);
+        let own = segments.get(begin..begin.saturating_add(count)).ok_or(Invalid::Full("segment"))?;
+        Motion::new(PathRef::new(own)?, ProfileRef::new(&self.phases)?, self.radius, self.start)
     }
+}
+
+/// Takes an item that is there out of a list. As [`Vec::remove`], which panics where there is none.
+fn take_out<T, const N: usize>(list: &mut Vec<T, N>, index: usize) {
+    for place in index..list.len() {
+        if let Some([item, next]) = list.get_mut(place..).and_then(<[T]>::first_chunk_mut) {
+            core::mem::swap(item, next);
+        }
+    }
+    list.pop();
 }

@@ -1,31 +1,58 @@
 //! Frames on a serial line: one message each, found again after noise, checked, versioned.
 //!
 //! ```text
-//! COBS( version  sequence  postcard message ...  CRC-16/X-25, low byte first )  0
+//! 0  COBS( version  sequence  place  postcard message ...  CRC-32 )  0
 //! ```
 //!
-//! COBS (Cheshire and Baker 1999) takes the zeros out of a frame, so that a zero ends it and a receiver is in step
-//! after the first. An answer has the sequence number of its request. A new version may change everything behind the
+//! COBS (Cheshire and Baker 1999) takes the zeros out of a frame, so that a zero begins and ends it: noise before a frame
+//! does it no harm, and a receiver is in step after the first zero. Numbers have their low byte first. An answer has the
+//! sequence number of its request, and its place among the answers to it; a request has [`Tag::REQUEST`] for a place. The
+//! check has 32 bits because 16 let one damaged frame of 65,536 through. A new version may change everything behind the
 //! first byte; within a version, kinds of messages are only ever added.
 
-use crc::{CRC_16_IBM_SDLC, Crc};
+use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Version of the protocol.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 
 /// Longest frame before it is encoded: header, message, check.
 pub const MAX_PLAIN: usize = 192;
-/// Longest frame on the line: one more byte for COBS, and the zero at the end.
-pub const MAX_FRAME: usize = MAX_PLAIN + 2;
+/// Longest frame on the line: one more byte for COBS, and the zeros around it.
+pub const MAX_FRAME: usize = MAX_PLAIN + 3;
 
-const HEADER: usize = 2;
-const CHECK: usize = 2;
-const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
+const HEADER: usize = 5;
+const CHECK: usize = 4;
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 // COBS adds one byte up to this length.
 const _: () = assert!(MAX_PLAIN <= 254);
+
+/// Where a message belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tag {
+    /// Number of the request.
+    pub sequence: u16,
+    /// Place among the answers to it.
+    pub place: u16,
+}
+
+impl Tag {
+    /// The place of a request.
+    pub const REQUEST: u16 = u16::MAX;
+}
+
+/// A frame that was received.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame<T> {
+    /// Where it belongs.
+    pub tag: Tag,
+    /// Its check.
+    pub check: u32,
+    /// What it says.
+    pub message: T,
+}
 
 /// What is wrong with a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,15 +72,16 @@ pub enum Damage {
 }
 
 /// A message as the bytes of a frame. `None` where it is too long.
-pub fn encode<T: Serialize>(sequence: u8, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
-    encode_version(VERSION, sequence, message)
+pub fn encode<T: Serialize>(tag: Tag, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
+    encode_version(VERSION, tag, message)
 }
 
 /// As [`encode`], with the header of any version: to test that others are refused.
-pub fn encode_version<T: Serialize>(version: u8, sequence: u8, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
+pub fn encode_version<T: Serialize>(version: u8, tag: Tag, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
     let mut plain = [0; MAX_PLAIN];
     let (header, rest) = plain.split_first_chunk_mut::<HEADER>()?;
-    *header = [version, sequence];
+    let [[a, b], [c, d]] = [tag.sequence, tag.place].map(u16::to_le_bytes);
+    *header = [version, a, b, c, d];
     let length = postcard::to_slice(message, rest).ok()?.len().checked_add(HEADER)?;
     let check = CRC.checksum(plain.get(..length)?).to_le_bytes();
     plain.get_mut(length..)?.first_chunk_mut::<CHECK>()?.clone_from(&check);
@@ -63,6 +91,7 @@ pub fn encode_version<T: Serialize>(version: u8, sequence: u8, message: &T) -> O
 /// COBS: every zero is replaced by the distance to the next one, and so is the end.
 fn stuff(plain: &[u8]) -> Option<Vec<u8, MAX_FRAME>> {
     let mut frame = Vec::new();
+    frame.push(0).ok()?;
     for run in plain.split(|&byte| byte == 0) {
         frame.push(u8::try_from(run.len()).ok()?.checked_add(1)?).ok()?;
         run.iter().try_for_each(|&byte| frame.push(byte)).ok()?;
@@ -71,9 +100,19 @@ fn stuff(plain: &[u8]) -> Option<Vec<u8, MAX_FRAME>> {
     Some(frame)
 }
 
+/// Which frames a receiver is for. Some lines bring back what one has sent; that is passed over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// Those of requests.
+    Requests,
+    /// Those of answers.
+    Answers,
+}
+
 /// Collects the bytes of a line into frames.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Receiver {
+    reads: Reads,
     bytes: Vec<u8, MAX_PLAIN>,
     /// Bytes until the next stuffed one; 0 is one.
     run: u8,
@@ -83,20 +122,17 @@ pub struct Receiver {
 
 impl Receiver {
     /// Nothing received.
-    pub const fn new() -> Self {
-        Self { bytes: Vec::new(), run: 0, damage: None, started: false }
+    pub const fn new(reads: Reads) -> Self {
+        Self { reads, bytes: Vec::new(), run: 0, damage: None, started: false }
     }
 
-    /// Takes a byte; at the end of a frame, its sequence number and message, or what is wrong with it and, as far as it
-    /// can be told, its sequence number.
-    pub fn take<T: for<'de> Deserialize<'de>>(&mut self, byte: u8) -> Option<(u8, Result<T, Damage>)> {
+    /// Takes a byte; at the end of a frame, the frame, or what is wrong with it.
+    pub fn take<T: for<'de> Deserialize<'de>>(&mut self, byte: u8) -> Option<Result<Frame<T>, Damage>> {
         if byte == 0 {
-            let sequence = self.bytes.get(1).copied().unwrap_or(0);
-            let message = self.message();
-            let started = self.started;
-            *self = Self::new();
             // Between two zeros there is no frame.
-            return started.then_some((sequence, message));
+            let frame = if self.started { self.frame().transpose() } else { None };
+            *self = Self::new(self.reads);
+            return frame;
         }
         match self.run.checked_sub(1) {
             None => {
@@ -121,7 +157,8 @@ impl Receiver {
         }
     }
 
-    fn message<T: for<'de> Deserialize<'de>>(&self) -> Result<T, Damage> {
+    /// The frame, if it is one of those to be read.
+    fn frame<T: for<'de> Deserialize<'de>>(&self) -> Result<Option<Frame<T>>, Damage> {
         if let Some(damage) = self.damage {
             return Err(damage);
         }
@@ -129,15 +166,20 @@ impl Receiver {
             return Err(Damage::Stuffing);
         }
         let (content, check) = self.bytes.split_last_chunk::<CHECK>().ok_or(Damage::TooShort)?;
-        if CRC.checksum(content) != u16::from_le_bytes(*check) {
+        let check = u32::from_le_bytes(*check);
+        if CRC.checksum(content) != check {
             return Err(Damage::Check);
         }
-        let ([version, _], message) = content.split_first_chunk::<HEADER>().ok_or(Damage::TooShort)?;
-        if *version != VERSION {
-            return Err(Damage::Version(*version));
+        let (&[version, a, b, c, d], message) = content.split_first_chunk::<HEADER>().ok_or(Damage::TooShort)?;
+        if version != VERSION {
+            return Err(Damage::Version(version));
+        }
+        let [sequence, place] = [[a, b], [c, d]].map(u16::from_le_bytes);
+        if (place == Tag::REQUEST) != (self.reads == Reads::Requests) {
+            return Ok(None);
         }
         match postcard::take_from_bytes(message) {
-            Ok((message, [])) => Ok(message),
+            Ok((message, [])) => Ok(Some(Frame { tag: Tag { sequence, place }, check, message })),
             _ => Err(Damage::Message),
         }
     }

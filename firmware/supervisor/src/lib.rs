@@ -7,14 +7,17 @@
 //! agent      an agent as it is sent, and its motion                      Agent, Step
 //! fleet      storage for the motions of a fleet, without a heap          Store
 //! message    requests and answers, regions as they are sent              Request, Answer
-//! frame      their bytes on the line: COBS, check, version               encode, Receiver
+//! frame      their bytes on the line: COBS, check, version               Frame, Receiver
 //! service    answers requests                                            Service
+//! session    does each once, whatever the line does to them              Session
+//! client     who asks                                                    Client
 //! scenario   the paper's 12 agents, in each format                       (generated)
 //! dump       the table as text                                           region
 //! ```
 #![no_std]
 
 pub mod agent;
+pub mod client;
 pub mod dump;
 pub mod fleet;
 pub mod frame;
@@ -22,9 +25,12 @@ pub mod message;
 pub mod number;
 pub mod scenario;
 pub mod service;
+pub mod session;
 
 pub use agent::{Agent, Step};
+pub use client::{Client, Event};
 pub use fleet::{Motions, Store};
 pub use message::{Answer, Request};
 pub use number::Number;
 pub use service::Service;
+pub use session::Session;

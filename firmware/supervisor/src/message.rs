@@ -1,44 +1,66 @@
-//! What the two ends of the line say to each other. Kinds are only ever added, at the end of each list.
+//! What the two ends of the line say to each other. Within a version of the protocol, kinds are only ever added, at the
+//! end of each list.
 
 use crate::agent::Agent;
+use crate::fleet::Rejected;
 use crate::frame::Damage;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Encounter, Full, Interval, Invalid, Motion, PieceRef, RegionRef};
+use pcr_core::{Encounter, Full, Interval, Invalid, Mismatch, Motion, PieceRef, RegionRef};
 use serde::{Deserialize, Serialize};
 
 /// A request to the supervisor. Each is answered before the next is read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub enum Request<S: Number> {
-    /// Who are you? [`Answer::Hello`].
+    /// Who are you? [`Answer::Hello`]. Answered whatever its sequence number is.
     Hello,
     /// Forget the fleet. [`Answer::Done`].
     Clear,
-    /// Add an agent. [`Answer::Added`], [`Answer::Refused`].
+    /// Add an agent. [`Answer::Fleet`].
     Add(Agent<S>),
-    /// Take the fleet that is built in. [`Answer::Added`].
+    /// Take the fleet that is built in; where one of its agents is refused, there are none. [`Answer::Fleet`].
     Load,
-    /// Compute the table of the fleet. [`Answer::Computed`], [`Answer::Refused`].
+    /// Compute the table of the fleet. [`Answer::Computed`].
     Compute,
-    /// All regions of an agent: an [`Answer::Region`] each, an [`Answer::Piece`] for each of its pieces, and
-    /// [`Answer::End`].
+    /// All regions of an agent, of a table that was computed since the fleet last changed: an [`Answer::Region`] each, an
+    /// [`Answer::Piece`] for each of its pieces, and [`Answer::End`].
     Row {
         /// The agent.
         ego: u16,
     },
     /// The first conflict of every two agents that have one, moving as they were given: an [`Answer::Conflict`] each,
-    /// by the lower index, and [`Answer::End`].
+    /// by the lower index, and [`Answer::End`]. The first overlap; where there is none, the first touch.
     Conflicts,
     /// Let an agent set off as late as it must to meet none of the others, moving as they do, and no later; what is
-    /// answered from then on is about its new motion. [`Answer::Replanned`], [`Answer::Refused`].
+    /// answered from then on is about its new motion. The table, which must be that of the fleet, serves on.
+    /// [`Answer::Replanned`].
     Replan {
+        /// The agent.
+        agent: u16,
+    },
+    /// Put another agent in the place of one. [`Answer::Fleet`].
+    Replace {
+        /// Its place.
+        agent: u16,
+        /// The other agent.
+        with: Agent<S>,
+    },
+    /// Remove an agent; those behind it move up by one place. [`Answer::Fleet`].
+    Remove {
         /// The agent.
         agent: u16,
     },
 }
 
-/// An answer of the supervisor.
+impl<S: Number> Request<S> {
+    /// Whether it may change the fleet or its table; it has one answer then.
+    pub fn changes(&self) -> bool {
+        !matches!(self, Self::Hello | Self::Row { .. } | Self::Conflicts)
+    }
+}
+
+/// An answer of the supervisor. Any request may be answered by [`Answer::Refused`] alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub enum Answer<S: Number> {
@@ -54,11 +76,13 @@ pub enum Answer<S: Number> {
         regions: u16,
         /// Most pieces of regions.
         pieces: u16,
+        /// The sequence number of the next request.
+        next: u16,
     },
     /// It is done.
     Done,
-    /// There are so many agents now.
-    Added {
+    /// There are so many agents now, and no table of them.
+    Fleet {
         /// Number of agents.
         agents: u16,
     },
@@ -89,6 +113,13 @@ pub enum Answer<S: Number> {
         /// From setting off to arrival \[s\].
         time: Interval<S>,
     },
+}
+
+impl<S: Number> Answer<S> {
+    /// Whether more answers to the same request follow.
+    pub fn goes_on(&self) -> bool {
+        matches!(self, Self::Region(_) | Self::Piece(_) | Self::Conflict(_))
+    }
 }
 
 /// A region as it is sent.
@@ -142,38 +173,71 @@ pub struct ConflictRecord<S: Number> {
 }
 
 impl<S: Number> ConflictRecord<S> {
-    /// The first conflict of two agents of a fleet, if they have one.
-    pub fn first(fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Option<Self> {
-        let encounter = Encounter::new(fleet.get(agents[0])?, fleet.get(agents[1])?);
-        let conflict = encounter.conflicts(encounter.time()).next()?;
-        Some(Self {
+    /// The first overlap of two agents of a fleet; the first touch where they do no more; `None` where they do neither.
+    ///
+    /// # Errors
+    /// [`Refusal::NoSuchAgent`].
+    pub fn first(fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<Option<Self>, Refusal> {
+        let motion = |agent| fleet.get(agent).ok_or(Refusal::NoSuchAgent { agent: short(agent) });
+        let encounter = Encounter::new(motion(agents[0])?, motion(agents[1])?);
+        let mut conflicts = encounter.conflicts(encounter.time());
+        let Some(first) = conflicts.next() else { return Ok(None) };
+        let overlap = if first.touching { conflicts.find(|conflict| !conflict.touching) } else { None };
+        let conflict = overlap.unwrap_or(first);
+        Ok(Some(Self {
             agents: agents.map(short),
             time: conflict.time,
             lengths: [conflict.length, conflict.other_length],
             depth: conflict.depth,
             touching: conflict.touching,
-        })
+        }))
     }
 }
 
 /// Why a request was not done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// The frame was damaged.
+    /// A frame was damaged. Whose it was cannot be told: the sequence number is 0.
     Frame(Damage),
+    /// The request is not the next one, nor the last one again: it comes too late, or the supervisor has started anew and
+    /// knows of no fleet.
+    Sequence {
+        /// The sequence number of the next request.
+        next: u16,
+    },
     /// A value of an agent was refused: which, and why.
     Agent {
+        /// The index that the agent has or was to have.
+        agent: u16,
         /// The quantity, empty where there is no name for it.
         what: Vec<u8, 24>,
         /// What is wrong with it.
         why: Reason,
     },
-    /// The table has no room for all regions.
-    TableFull,
+    /// The table has no room for all regions; there is no table now.
+    TableFull(Room),
     /// There is no such agent.
-    NoSuchAgent,
+    NoSuchAgent {
+        /// The one that was named.
+        agent: u16,
+    },
+    /// There is no table of the fleet as it is: [`Request::Compute`] comes first.
+    NotComputed,
     /// However late the agent sets off, it meets another one.
     NoPlan,
+}
+
+/// What of a table is full.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Room {
+    /// More regions are needed.
+    Regions,
+    /// More pieces are needed.
+    Pieces,
+    /// No table holds these two agents: they have too many pieces.
+    Pair([u16; 2]),
+    /// Something else.
+    Other,
 }
 
 /// [`Invalid`] without its words.
@@ -218,24 +282,47 @@ impl<S: Number> PieceRecord<S> {
     }
 }
 
-impl From<Invalid> for Refusal {
-    fn from(invalid: Invalid) -> Self {
+impl Refusal {
+    /// An agent is refused.
+    pub fn agent(agent: usize, invalid: Invalid) -> Self {
         let (why, what) = match invalid {
             Invalid::NonFinite(what) => (Reason::NonFinite, what),
             Invalid::Negative(what) => (Reason::Negative, what),
             Invalid::NonPositive(what) => (Reason::NonPositive, what),
-            Invalid::OutOfRange(what) => (Reason::OutOfRange, what),
+            Invalid::OutOfRange(what) | Invalid::TooSmall(what) => (Reason::OutOfRange, what),
             Invalid::SweepOverOneTurn => (Reason::SweepOverOneTurn, ""),
             Invalid::Full(what) => (Reason::Full, what),
             _ => (Reason::Other, ""),
         };
-        Self::Agent { what: text(what), why }
+        Self::Agent { agent: short(agent), what: text(what), why }
+    }
+
+    /// A change of an agent is refused.
+    pub fn change(agent: usize, rejected: Rejected) -> Self {
+        match rejected {
+            Rejected::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
+            Rejected::Invalid(invalid) => Self::agent(agent, invalid),
+        }
     }
 }
 
 impl From<Full> for Refusal {
-    fn from(_: Full) -> Self {
-        Self::TableFull
+    fn from(full: Full) -> Self {
+        Self::TableFull(match full {
+            Full::Regions => Room::Regions,
+            Full::Pieces => Room::Pieces,
+            Full::Pair(agents) => Room::Pair(agents.map(short)),
+            _ => Room::Other,
+        })
+    }
+}
+
+impl From<Mismatch> for Refusal {
+    fn from(mismatch: Mismatch) -> Self {
+        match mismatch {
+            Mismatch::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
+            _ => Self::NotComputed,
+        }
     }
 }
 

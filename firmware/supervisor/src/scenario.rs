@@ -7,6 +7,8 @@
 pub const AGENTS: usize = 12;
 /// Lines and arcs of the scenario.
 pub const SEGMENTS: usize = 36;
+/// Lines and arcs with room for the path of one agent more, which comes in the place of another one.
+pub const ROOM: usize = SEGMENTS + crate::agent::MAX_STEPS;
 /// Collision regions of the scenario, each for both directions of its pair, with room for a few more.
 pub const REGIONS: usize = 80;
 /// Pieces of these regions, with room for a few more.

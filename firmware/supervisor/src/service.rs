@@ -1,137 +1,177 @@
 //! The supervisor itself: keeps a fleet and its table, and answers requests.
 
 use crate::agent::{Agent, Step};
-use crate::fleet::Store;
+use crate::fleet::{Motions, Store};
 use crate::message::{Answer, ConflictRecord, PieceRecord, Refusal, RegionRecord, Request, short, text};
 use crate::number::Number;
-use crate::scenario::{AGENTS, PIECES, REGIONS, SEGMENTS};
-use pcr_core::{Ecm, Interval, Piece, Region, earliest_start};
+use pcr_core::{Ecm, Full, Interval, Motion, Piece, Region, earliest_start};
 
-/// A fleet and its table, made to be a `static`.
+/// A fleet and its table, made to be a `static`: at most `A` agents with `N` segments in all, those of an agent that comes
+/// in the place of another one included while both are there, `R` regions and `P` pieces of them.
 #[derive(Debug)]
-pub struct Service<S: Number> {
-    fleet: Store<S, AGENTS, SEGMENTS>,
-    table: Ecm<S, [Region; REGIONS], [Piece<S>; PIECES]>,
+pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> {
+    fleet: Store<S, A, N>,
+    table: Ecm<S, [Region; R], [Piece<S>; P]>,
     /// Whether the table is that of the fleet.
     computed: bool,
     built_in: &'static [Agent<S, &'static [Step<S>]>],
 }
 
-impl<S: Number> Service<S> {
+impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P> {
     /// No agents yet, and a fleet to load.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
-        let table = Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]);
+        // A row is all of it at most, and each record of it has its place in 16 bits.
+        const { assert!(R + P < u16::MAX as usize, "places are sent in 16 bits") };
+        let table = Ecm::new([Region::EMPTY; R], [Piece::EMPTY; P]);
         Self { fleet: Store::new(), table, computed: false, built_in }
     }
 
-    /// Answers a request: one call of `send` for each answer.
-    pub fn answer(&mut self, request: Request<S>, mut send: impl FnMut(Answer<S>)) {
-        match request {
-            Request::Hello => send(Answer::Hello {
+    // What it calls is not inlined: the stack of the one would lie under that of the other.
+    /// Answers a request: one call of `send` for each answer. `next` is the sequence number that a greeting tells.
+    pub fn answer(&mut self, request: Request<S>, next: u16, mut send: impl FnMut(Answer<S>)) {
+        let outcome = match request {
+            Request::Hello => Ok(Answer::Hello {
                 format: text(S::NAME),
-                agents: short(AGENTS),
-                segments: short(SEGMENTS),
-                regions: short(REGIONS),
-                pieces: short(PIECES),
+                agents: short(A),
+                segments: short(N),
+                regions: short(R),
+                pieces: short(P),
+                next,
             }),
             Request::Clear => {
                 self.clear();
-                send(Answer::Done);
+                Ok(Answer::Done)
             }
-            Request::Add(agent) => send(self.add(&agent)),
-            Request::Load => {
-                self.clear();
-                let built_in = self.built_in.iter();
-                let added = built_in.map(|agent| self.add(agent)).last();
-                send(added.unwrap_or(Answer::Done));
-            }
-            Request::Compute => send(match self.compute() {
-                Ok(()) => Answer::Computed { regions: short(self.table.len()), pieces: short(self.table.pieces()) },
-                Err(refusal) => Answer::Refused(refusal),
-            }),
-            Request::Row { ego } => self.row(usize::from(ego), send),
-            Request::Conflicts => self.conflicts(send),
-            Request::Replan { agent } => send(match self.replan(agent) {
-                Ok(time) => Answer::Replanned { agent, time },
-                Err(refusal) => Answer::Refused(refusal),
-            }),
-        }
+            Request::Add(agent) => self.add(&agent),
+            Request::Load => self.load(),
+            Request::Compute => self.compute(),
+            Request::Row { ego } => self.row(usize::from(ego), &mut send),
+            Request::Conflicts => self.conflicts(&mut send),
+            Request::Replan { agent } => self.replan(usize::from(agent)).map(|time| Answer::Replanned { agent, time }),
+            Request::Replace { agent, with } => self.replace(usize::from(agent), &with),
+            Request::Remove { agent } => self.remove(usize::from(agent)),
+        };
+        send(outcome.unwrap_or_else(Answer::Refused));
     }
 
     fn clear(&mut self) {
-        self.empty_table();
+        self.computed = false;
+        self.table.clear();
         self.fleet.clear();
     }
 
-    fn empty_table(&mut self) {
+    /// What is told of a fleet that has changed.
+    fn changed(&mut self) -> Answer<S> {
         self.computed = false;
-        (0..AGENTS).for_each(|agent| self.table.remove(agent));
+        Answer::Fleet { agents: short(self.fleet.len()) }
     }
 
-    fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Answer<S> {
-        match self.fleet.add(agent) {
-            Ok(_) => {
-                self.computed = false;
-                Answer::Added { agents: short(self.fleet.len()) }
-            }
-            Err(invalid) => Answer::Refused(invalid.into()),
+    #[inline(never)]
+    fn add<Q: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, Q>) -> Result<Answer<S>, Refusal> {
+        let index = self.fleet.len();
+        self.fleet.add(agent).map_err(|invalid| Refusal::agent(index, invalid))?;
+        Ok(self.changed())
+    }
+
+    #[inline(never)]
+    fn load(&mut self) -> Result<Answer<S>, Refusal> {
+        self.clear();
+        let built_in = self.built_in;
+        let loaded = built_in.iter().try_for_each(|agent| self.add(agent).map(drop));
+        if loaded.is_err() {
+            self.clear();
         }
+        loaded.map(|()| self.changed())
     }
 
-    fn compute(&mut self) -> Result<(), Refusal> {
-        self.empty_table();
-        let motions = self.fleet.motions();
-        // Agent by agent, each against those before it.
-        let outcome = (0..motions.len()).try_for_each(|agent| {
-            let fleet = motions.get(..=agent).unwrap_or_default();
-            self.table.insert(fleet, agent)
-        });
+    #[inline(never)]
+    fn replace(&mut self, index: usize, agent: &Agent<S>) -> Result<Answer<S>, Refusal> {
+        self.fleet.replace(index, agent).map_err(|rejected| Refusal::change(index, rejected))?;
+        Ok(self.changed())
+    }
+
+    #[inline(never)]
+    fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
+        self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
+        Ok(self.changed())
+    }
+
+    #[inline(never)]
+    fn compute(&mut self) -> Result<Answer<S>, Refusal> {
+        self.computed = false;
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        fill(&mut self.table, &motions)?;
         drop(motions);
-        if outcome.is_err() {
-            self.empty_table();
+        self.computed = true;
+        Ok(Answer::Computed { regions: short(self.table.len()), pieces: short(self.table.pieces()) })
+    }
+
+    /// Puts the motions of the fleet, whose table there is and that has this agent, where they are to be.
+    fn put_computed<'a>(&'a self, agent: usize, motions: &mut Motions<'a, S, A>) -> Result<(), Refusal> {
+        if agent >= self.fleet.len() {
+            return Err(Refusal::NoSuchAgent { agent: short(agent) });
         }
-        self.computed = outcome.is_ok();
-        Ok(outcome?)
+        if !self.computed {
+            return Err(Refusal::NotComputed);
+        }
+        put(&self.fleet, motions)
     }
 
     /// When the agent moves now.
-    fn replan(&mut self, agent: u16) -> Result<Interval<S>, Refusal> {
-        if !self.computed {
-            self.compute()?;
-        }
-        let (agent, motions) = (usize::from(agent), self.fleet.motions());
-        let motion = motions.get(agent).ok_or(Refusal::NoSuchAgent)?;
-        let delay = earliest_start(self.table.row(&motions, agent), S::ZERO).ok_or(Refusal::NoPlan)?;
-        let time = motion.delayed(delay)?.time();
+    #[inline(never)]
+    fn replan(&mut self, agent: usize) -> Result<Interval<S>, Refusal> {
+        let mut motions = Motions::new();
+        self.put_computed(agent, &mut motions)?;
+        let delay = earliest_start(self.table.row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
         drop(motions);
         // The table is of paths: it stays as it is.
-        self.fleet.delay(agent, delay);
-        Ok(time)
+        self.fleet.delay(agent, delay).map_err(|rejected| Refusal::change(agent, rejected))
     }
 
-    fn row(&self, ego: usize, mut send: impl FnMut(Answer<S>)) {
-        let motions = self.fleet.motions();
+    #[inline(never)]
+    fn row(&self, ego: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
+        let mut motions = Motions::new();
+        self.put_computed(ego, &mut motions)?;
         let mut count = 0_u16;
-        for region in self.table.row(&motions, ego) {
+        for region in self.table.row(&motions, ego)? {
             send(Answer::Region(RegionRecord::of(&region)));
             region.pieces().for_each(|piece| send(Answer::Piece(PieceRecord::of(&piece))));
             count = count.saturating_add(1);
         }
-        send(Answer::End { count });
+        Ok(Answer::End { count })
     }
 
-    fn conflicts(&self, mut send: impl FnMut(Answer<S>)) {
-        let motions = self.fleet.motions();
-        let agents = 0..motions.len();
+    #[inline(never)]
+    fn conflicts(&self, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
         let mut count = 0_u16;
-        for pair in
-            agents.clone().flat_map(|first| agents.clone().skip_while(move |&k| k <= first).map(move |k| [first, k]))
-        {
-            if let Some(conflict) = ConflictRecord::first(&motions, pair) {
-                send(Answer::Conflict(conflict));
-                count = count.saturating_add(1);
+        for first in 0..motions.len() {
+            for second in first.saturating_add(1)..motions.len() {
+                if let Some(conflict) = ConflictRecord::first(&motions, [first, second])? {
+                    send(Answer::Conflict(conflict));
+                    count = count.saturating_add(1);
+                }
             }
         }
-        send(Answer::End { count });
+        Ok(Answer::End { count })
     }
+}
+
+/// Puts the motions of a fleet where they are to be. What is returned would lie on the stack more than once.
+fn put<'a, S: Number, const A: usize, const N: usize>(
+    fleet: &'a Store<S, A, N>,
+    motions: &mut Motions<'a, S, A>,
+) -> Result<(), Refusal> {
+    fleet.put_motions(motions).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+}
+
+// By itself, with a stack of its own.
+#[inline(never)]
+fn fill<S: Number, const R: usize, const P: usize>(
+    table: &mut Ecm<S, [Region; R], [Piece<S>; P]>,
+    fleet: &[Motion<'_, S>],
+) -> Result<(), Full> {
+    table.fill(fleet)
 }

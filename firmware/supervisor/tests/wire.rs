@@ -1,20 +1,25 @@
 //! What goes over the line: every kind of message comes back as it was, and so many bytes does a region take.
 
 use pcr_core::{Curve, Interval, Limits, Point, Pose, Turn};
-use pcr_supervisor::frame::{self, Damage, Receiver};
-use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, text};
+use pcr_supervisor::agent::MAX_STEPS;
+use pcr_supervisor::frame::{self, Damage, Frame, Reads, Receiver, Tag};
+use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, Room, text};
 use pcr_supervisor::{Agent, Answer, Number, Request, Step};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Debug;
 
+const TAG: Tag = Tag { sequence: 900, place: 9 };
+
 fn there_and_back<T: Serialize + DeserializeOwned + PartialEq + Debug>(message: T) -> usize {
-    let frame = frame::encode(9, &message).expect("a message fits a frame");
-    let mut receiver = Receiver::new();
-    let (last, before) = frame.split_last().expect("not empty");
-    assert!(before.iter().all(|&byte| byte != 0 && receiver.take::<T>(byte).is_none()));
-    assert_eq!(receiver.take::<T>(*last), Some((9, Ok(message))));
-    frame.len()
+    let bytes = frame::encode(TAG, &message).expect("a message fits a frame");
+    let mut receiver = Receiver::new(Reads::Answers);
+    let (last, before) = bytes.split_last().expect("not empty");
+    assert!(before.iter().all(|&byte| receiver.take::<T>(byte).is_none()));
+    assert!(bytes[1..bytes.len() - 1].iter().all(|&byte| byte != 0));
+    let Some(Ok(Frame { tag, message: seen, .. })) = receiver.take::<T>(*last) else { panic!("a frame") };
+    assert_eq!((tag, seen), (TAG, message));
+    bytes.len()
 }
 
 fn region<S: Number>(number: impl Fn(f64) -> S) -> RegionRecord<S> {
@@ -36,15 +41,15 @@ fn piece<S: Number>(number: impl Fn(f64) -> S) -> PieceRecord<S> {
     PieceRecord { segments: [1, 2], length: range(4.125, 5.0625), other_length: range(0.75, 2.375) }
 }
 
-/// The bytes of the README's table: header, check and delimiter included.
+/// The bytes that docs/firmware.md tells: header, check and delimiters included.
 #[test]
 fn a_region_takes_so_many_bytes_on_the_wire() {
     let float = |value: f64| value as f32;
-    assert_eq!(there_and_back(Answer::Region(region(float))), 36);
-    assert_eq!(there_and_back(Answer::Piece(piece(float))), 25);
+    assert_eq!(there_and_back(Answer::Region(region(float))), 42);
+    assert_eq!(there_and_back(Answer::Piece(piece(float))), 31);
     let fixed = |value: f64| pcr_fixed::Q16::from_f64(value).expect("in range");
-    assert_eq!(there_and_back(Answer::Region(region(fixed))), 31);
-    assert_eq!(there_and_back(Answer::Piece(piece(fixed))), 21);
+    assert_eq!(there_and_back(Answer::Region(region(fixed))), 37);
+    assert_eq!(there_and_back(Answer::Piece(piece(fixed))), 27);
 }
 
 #[test]
@@ -58,7 +63,10 @@ fn every_message_comes_back_as_it_was() {
             .map(|k| Step { curve: Curve::Arc { radius: 0.5, turn: Turn::Right }, length: 1.0 + k as f32 })
             .collect(),
     };
-    there_and_back(Request::Add(agent));
+    there_and_back(Request::Add(agent.clone()));
+    there_and_back(Request::Replace { agent: 65535, with: agent });
+    there_and_back(Request::<f32>::Remove { agent: 65535 });
+    largest_agent();
     for request in [Request::<f32>::Hello, Request::Clear, Request::Load, Request::Compute, Request::Conflicts] {
         there_and_back(request);
     }
@@ -69,29 +77,68 @@ fn every_message_comes_back_as_it_was() {
     let conflict =
         ConflictRecord { agents: [0, 1], time: range, lengths: [range; 2], depth: 0.25_f32, touching: false };
     there_and_back(Answer::Conflict(conflict));
-    there_and_back(Answer::<f32>::Hello { format: text("f32"), agents: 12, segments: 36, regions: 80, pieces: 112 });
+    there_and_back(Answer::<f32>::Hello {
+        format: text("f32"),
+        agents: 12,
+        segments: 36,
+        regions: 80,
+        pieces: 112,
+        next: 65535,
+    });
+    there_and_back(Answer::<f32>::Fleet { agents: 65535 });
     for refusal in [
         Refusal::Frame(Damage::Version(2)),
-        Refusal::Agent { what: text("length of the profile"), why: Reason::OutOfRange },
-        Refusal::TableFull,
-        Refusal::NoSuchAgent,
+        Refusal::Sequence { next: 65535 },
+        Refusal::Agent { agent: 65535, what: text("duration of the profile"), why: Reason::OutOfRange },
+        Refusal::TableFull(Room::Pair([65535; 2])),
+        Refusal::NoSuchAgent { agent: 65535 },
+        Refusal::NotComputed,
         Refusal::NoPlan,
     ] {
         there_and_back(Answer::<f32>::Refused(refusal));
     }
 }
 
+/// The request that takes most bytes: every number of fixed point its five.
+fn largest_agent() {
+    let most = pcr_fixed::Q16::from_bits(i32::MIN);
+    let step = Step { curve: Curve::Arc { radius: most, turn: Turn::Right }, length: most };
+    let agent = Agent {
+        radius: most,
+        start_time: most,
+        limits: Limits { speed: most, acceleration: most },
+        start: Pose { position: Point::new(most, most), heading: pcr_fixed::Turns::from_bits(-(1 << 30)) },
+        path: [step; MAX_STEPS].into_iter().collect(),
+    };
+    there_and_back(Request::Replace { agent: 65535, with: agent });
+    let range = Interval::new(most, most);
+    let record = RegionRecord {
+        ego: 65535,
+        other: 65535,
+        time: range,
+        length: range,
+        other_length: range,
+        open_at_start: true,
+        open_at_end: true,
+        pieces: 65535,
+    };
+    there_and_back(Answer::Region(record));
+    let conflict = ConflictRecord { agents: [65535; 2], time: range, lengths: [range; 2], depth: most, touching: true };
+    there_and_back(Answer::Conflict(conflict));
+}
+
 #[test]
 fn no_damage_of_one_byte_goes_unnoticed() {
     let message = Answer::Region(region(|value: f64| value as f32));
-    let frame = frame::encode(9, &message).expect("a message fits a frame");
-    for at in 0..frame.len() - 1 {
+    let frame = frame::encode(TAG, &message).expect("a message fits a frame");
+    // Of the two zeros around it, each may be lost.
+    for at in 1..frame.len() - 1 {
         for bit in 0..8 {
             let mut damaged = frame.clone();
             damaged[at] ^= 1 << bit;
-            let mut receiver = Receiver::new();
+            let mut receiver = Receiver::new(Reads::Answers);
             for &byte in &damaged {
-                if let Some((_, seen)) = receiver.take::<Answer<f32>>(byte) {
+                if let Some(seen) = receiver.take::<Answer<f32>>(byte) {
                     assert!(seen.is_err(), "byte {at}, bit {bit}");
                 }
             }

@@ -6,7 +6,7 @@
 //! admitted is safe and free of deadlock.
 
 use crate::ecm::Region;
-use crate::error::Full;
+use crate::error::{Full, Mismatch};
 use crate::motion::Motion;
 use crate::orders::check::{Reach, Refused, Tolerances};
 use crate::orders::order::{Order, Pass, Progress};
@@ -68,8 +68,8 @@ where
     /// let (tolerances, mut reaches) = (Tolerances { width: 0.01, gain: 0.001 }, [Reach::EMPTY; 2]);
     /// let mission = Mission { agent: 1, motion: motion(north.as_path())?, progress: Progress::at_rest(0.0) };
     /// orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut reaches, |_| Pass::Second)?;
-    /// assert!(matches!(orders.hold(&fleet, 1, &progress), Hold::At(hold) if (hold - 1.5).abs() < 1e-9));
-    /// assert_eq!(orders.hold(&fleet, 0, &progress), Hold::Free);
+    /// assert!(matches!(orders.hold(&fleet, 1, &progress)?, Hold::At(hold) if (hold - 1.5).abs() < 1e-9));
+    /// assert_eq!(orders.hold(&fleet, 0, &progress)?, Hold::Free);
     ///
     /// // An agent that stands on the crossing is in the way for good.
     /// let stands = Path::<f64, 1>::starting_at(pose(0.0, 0.0, 0.0))?;
@@ -90,8 +90,9 @@ where
         prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
     ) -> Result<(), Refused> {
         let Mission { agent, motion, progress: own } = mission;
+        self.ecm.holds_all(fleet)?;
         let (Some(&before), Some(place)) = (fleet.get(agent), progress.get_mut(agent)) else {
-            return Err(Refused::NoSuchAgent(agent));
+            return Err(Mismatch::NoSuchAgent(agent).into());
         };
         let stood = core::mem::replace(place, own);
         let replaced = self.exchange(fleet, agent, motion);
@@ -121,7 +122,7 @@ where
     ) -> Result<usize, Refused> {
         let saved = self.places(agent).fold(0_usize, |count, _| count.saturating_add(1));
         let room = self.orders.as_ref().len().saturating_sub(saved);
-        let Some(&before) = fleet.get(agent) else { return Err(Refused::NoSuchAgent(agent)) };
+        let Some(&before) = fleet.get(agent) else { return Err(Mismatch::NoSuchAgent(agent).into()) };
         if self.ecm.len() > room {
             return Err(Full::Orders.into());
         }

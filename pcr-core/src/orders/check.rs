@@ -6,7 +6,7 @@
 //! not (docs/theory.md).
 
 use crate::ecm::Region;
-use crate::error::Full;
+use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
 use crate::orders::hold::Hold;
 use crate::orders::order::{Order, Pass, Progress};
@@ -48,8 +48,8 @@ pub enum Refused {
     },
     /// By their motions two agents meet, or pass so near that it cannot be told who is first.
     Meeting([usize; 2]),
-    /// There is no such agent.
-    NoSuchAgent(usize),
+    /// The fleet is not that of the table, or there is no such agent.
+    Mismatch(Mismatch),
     /// There is no room.
     Full(Full),
 }
@@ -61,8 +61,8 @@ impl core::fmt::Display for Refused {
             Self::Late { agent, by, .. } => write!(f, "agent {agent} is where agent {by} was to go first"),
             Self::Blocked { agent, by } => write!(f, "agent {by} is in the way of agent {agent}, whoever goes first"),
             Self::Meeting([a, b]) => write!(f, "agents {a} and {b} meet"),
-            Self::NoSuchAgent(agent) => write!(f, "there is no agent {agent} in the fleet"),
-            Self::Full(full) => write!(f, "{full}"),
+            Self::Mismatch(mismatch) => mismatch.fmt(f),
+            Self::Full(full) => full.fmt(f),
         }
     }
 }
@@ -72,6 +72,21 @@ impl core::error::Error for Refused {}
 impl From<Full> for Refused {
     fn from(full: Full) -> Self {
         Self::Full(full)
+    }
+}
+
+impl From<Mismatch> for Refused {
+    fn from(mismatch: Mismatch) -> Self {
+        Self::Mismatch(mismatch)
+    }
+}
+
+impl From<Unchanged> for Refused {
+    fn from(unchanged: Unchanged) -> Self {
+        match unchanged {
+            Unchanged::Full(full) => Self::Full(full),
+            Unchanged::Mismatch(mismatch) => Self::Mismatch(mismatch),
+        }
     }
 }
 
@@ -135,7 +150,7 @@ where
     ///
     /// # Errors
     /// [`Refused::Stuck`] names one agent that would wait for ever, [`Refused::Late`] one that is beyond its hold, by more
-    /// than the least gain; [`Full::Reaches`] for too few places.
+    /// than the least gain; [`Full::Reaches`] for too few places; [`Mismatch`] for another fleet or the row of one agent only.
     pub fn check(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -143,6 +158,7 @@ where
         tolerances: Tolerances<S>,
         reaches: &mut [Reach<S>],
     ) -> Result<(), Refused> {
+        self.ecm.holds_all(fleet)?;
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();

@@ -88,7 +88,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     ///     Motion::new(other.as_path(), long.as_profile(), 0.25, 0.0)?,
     /// ];
     /// let ecm = Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 4], &fleet)?;
-    /// let region = ecm.pair(&fleet, 0, 1).next().unwrap();
+    /// let region = ecm.pair(&fleet, 0, 1)?.next().unwrap();
     /// let at = |length| match region.hold(0.0, length) {
     ///     Hold::At(hold) => hold,
     ///     _ => f64::NAN,

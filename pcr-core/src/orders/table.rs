@@ -1,7 +1,7 @@
 //! The table of orders: one for each region, in the same places.
 
 use crate::ecm::{Ecm, Region};
-use crate::error::Full;
+use crate::error::{Full, Mismatch, Unchanged};
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::orders::check::Refused;
@@ -16,12 +16,12 @@ use crate::scalar::Scalar;
 ///
 /// Every agent that keeps its [`Orders::hold`] never touches another one, however late whoever is; if [`Orders::check`] has
 /// passed, everybody arrives (`docs/theory.md` has the proofs). Only paths and radii matter, not when the motions say an agent
-/// is where, but for [`Orders::as_planned`].
+/// is where, but for [`Orders::as_planned`]. As with [`Ecm`], the fleet is handed to each method, and another one is refused.
 ///
 /// The storage is the caller's, as that of [`Ecm`]. There must be an [`Order`] a region; [`Orders::admit`] needs as
 /// many more as its agent has regions.
 ///
-/// A robot that has but its own row ([`Orders::insert`] on an empty table, and [`Orders::decide`] as it is told) computes its
+/// A robot that has but its own row ([`Orders::fill_row`], and [`Orders::decide`] as it is told) computes its
 /// own hold from that: it needs to know how far those before it have come, and nothing about clocks or speeds.
 ///
 /// ```
@@ -35,12 +35,12 @@ use crate::scalar::Scalar;
 ///
 /// // What robot 1 knows: its own row, and that robot 0 goes first.
 /// let mut orders = Orders::new([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 4]);
-/// orders.insert(&fleet, 1)?;
-/// orders.decide(&fleet, 1, 0, Pass::Second, 0.0);
+/// orders.fill_row(&fleet, 1)?;
+/// orders.decide(&fleet, 1, 0, Pass::Second, 0.0)?;
 /// let mut progress = [Progress::at_rest(0.0); 2];
-/// assert!(matches!(orders.hold(&fleet, 1, &progress), Hold::At(hold) if (hold - 1.5).abs() < 1e-9));
+/// assert!(matches!(orders.hold(&fleet, 1, &progress)?, Hold::At(hold) if (hold - 1.5).abs() < 1e-9));
 /// progress[0] = Progress::at_rest(2.6);
-/// assert_eq!(orders.hold(&fleet, 1, &progress), Hold::Free);
+/// assert_eq!(orders.hold(&fleet, 1, &progress)?, Hold::Free);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -89,15 +89,19 @@ where
         self.orders.as_ref().get(place).copied().unwrap_or_default()
     }
 
-    /// The regions of an agent's row, their places in the table, and whether it passes them first. O(regions).
+    /// The regions of an agent's row, their places in the table, and whether it passes them first. O(agents + regions).
+    ///
+    /// # Errors
+    /// [`Mismatch`]: none is an answer.
     pub fn row<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
         agent: usize,
-    ) -> impl Iterator<Item = (usize, RegionRef<'a, S>, Pass)> {
-        self.places(agent).filter_map(move |(place, agents, order)| {
+    ) -> Result<impl Iterator<Item = (usize, RegionRef<'a, S>, Pass)>, Mismatch> {
+        self.ecm.holds(fleet, [agent, agent])?;
+        Ok(self.places(agent).filter_map(move |(place, agents, order)| {
             Some((place, self.ecm.at(fleet, place, agent)?, order.pass_of(agent, agents)))
-        })
+        }))
     }
 
     /// How far an agent may go, given what is known of the others: it has to brake so that it stays there, wherever it may be
@@ -106,20 +110,27 @@ where
     ///
     /// It must not be asked with places on another path than that of `fleet`.
     ///
-    /// Cost: O(regions) to find the row, and that of [`RegionRef::hold`] for each region of it that may be the nearest.
-    pub fn hold(&self, fleet: &[Motion<'_, S>], agent: usize, progress: &[Progress<S>]) -> Hold<S> {
+    /// Cost: O(agents + regions) to find the row, and that of [`RegionRef::hold`] for each region of it that may be the nearest.
+    ///
+    /// # Errors
+    /// As [`Orders::row`].
+    pub fn hold(&self, fleet: &[Motion<'_, S>], agent: usize, progress: &[Progress<S>]) -> Result<Hold<S>, Mismatch> {
         self.hold_before(fleet, agent, progress, Hold::Free)
     }
 
     /// The hold, or this other one if that leaves less way: regions that begin beyond it are not looked at. An agent that needs
     /// to know no more than whether it may go on for a while asks so.
+    ///
+    /// # Errors
+    /// As [`Orders::row`].
     pub fn hold_before(
         &self,
         fleet: &[Motion<'_, S>],
         agent: usize,
         progress: &[Progress<S>],
         other: Hold<S>,
-    ) -> Hold<S> {
+    ) -> Result<Hold<S>, Mismatch> {
+        self.ecm.holds(fleet, [agent, agent])?;
         let mut hold = other;
         for (place, agents, order) in self.places(agent) {
             let other = if agents[0] == agent { agents[1] } else { agents[0] };
@@ -134,7 +145,7 @@ where
             };
             hold = hold.min(held.unwrap_or(Hold::Inside));
         }
-        hold
+        Ok(hold)
     }
 }
 
@@ -151,48 +162,102 @@ where
     /// [`Full`] where the storage is too small.
     pub fn build(regions: R, pieces: P, orders: O, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let mut table = Self { ecm: Ecm::build(regions, pieces, fleet)?, orders };
-        let room = table.orders.as_mut().get_mut(..table.ecm.len()).ok_or(Full::Orders)?;
-        room.fill(Order::EMPTY);
-        Ok(table)
+        table.undecide().map(|()| table)
     }
 
-    /// Adds the regions of one agent with all others of the fleet, nothing decided. The table must not hold any of it.
+    /// Becomes the table of one agent's row only, nothing decided, in the storage that it has: that agent asks it for its holds.
+    /// Cost: that of [`Ecm::fill_row`].
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the table is then as it was.
-    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+        self.ecm.fill_row(fleet, agent)?;
+        self.undecide()
+    }
+
+    /// No order for any region.
+    fn undecide(&mut self) -> Result<(), Full> {
+        if let Some(orders) = self.orders.as_mut().get_mut(..self.ecm.len()) {
+            orders.fill(Order::EMPTY);
+            return Ok(());
+        }
+        self.ecm.clear();
+        Err(Full::Orders)
+    }
+
+    /// Adds the regions of one agent with all others of the fleet, nothing decided, as [`Ecm::insert`].
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small, and [`Mismatch`]; the table is then as it was.
+    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
         let kept = self.ecm.len();
         self.ecm.insert(fleet, agent)?;
         if self.ecm.len() > self.orders.as_ref().len() {
-            self.ecm.remove(agent);
-            return Err(Full::Orders);
+            self.ecm.remove(fleet, agent)?;
+            return Err(Full::Orders.into());
         }
         self.spread(agent, kept, |_| Order::EMPTY);
         Ok(())
     }
 
-    /// Removes the regions of one agent with all others, and their orders. O(regions).
-    pub fn remove(&mut self, agent: usize) {
-        self.gather(agent, |_, _| {});
-        self.ecm.remove(agent);
+    /// Removes one agent, its regions and their orders, as [`Ecm::remove`]. O(agents + regions).
+    ///
+    /// # Errors
+    /// [`Mismatch`]; the table is then as it was.
+    pub fn remove(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        self.ecm.holds_all(fleet)?;
+        if agent < fleet.len() {
+            self.gather(agent, |_, _| {});
+        }
+        self.ecm.remove(fleet, agent)
     }
 
     /// Decides about all regions that `ego` and `other` have and that are not decided yet: whether the ego passes them first or
     /// second. `since` is the least length at which the second of the two is now \[m\]: what is behind it is passed.
-    pub fn decide(&mut self, fleet: &[Motion<'_, S>], ego: usize, other: usize, pass: Pass, since: S) {
+    ///
+    /// # Errors
+    /// [`Mismatch`].
+    pub fn decide(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        ego: usize,
+        other: usize,
+        pass: Pass,
+        since: S,
+    ) -> Result<(), Mismatch> {
+        self.ecm.holds(fleet, [ego, other])?;
         for place in 0..self.ecm.len() {
             let undecided = self.order(place).pass == Pass::Undecided;
             let agents = self.ecm.agents_at(place);
             if undecided && agents == Some([ego.min(other), ego.max(other)]) {
-                self.decide_at(fleet, place, ego, pass, since);
+                self.set(fleet, place, ego, pass, since);
             }
         }
+        Ok(())
     }
 
     /// The same for the region in one place of the table, of which `ego` is an agent, whether it is decided or not.
     ///
     /// It is not checked whether both can still keep it, nor whether everybody can finish: [`Orders::check`] does the latter.
-    pub fn decide_at(&mut self, fleet: &[Motion<'_, S>], place: usize, ego: usize, pass: Pass, since: S) {
+    ///
+    /// # Errors
+    /// [`Mismatch`], also where there is no region of `ego` in the place.
+    pub fn decide_at(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        place: usize,
+        ego: usize,
+        pass: Pass,
+        since: S,
+    ) -> Result<(), Mismatch> {
+        let agents = self.ecm.agents_at(place).filter(|agents| agents.contains(&ego));
+        self.ecm.holds(fleet, agents.unwrap_or([ego, ego]))?;
+        agents.ok_or(Mismatch::NoSuchRegion(place))?;
+        self.set(fleet, place, ego, pass, since);
+        Ok(())
+    }
+
+    fn set(&mut self, fleet: &[Motion<'_, S>], place: usize, ego: usize, pass: Pass, since: S) {
         let Some(region) = self.ecm.at(fleet, place, ego) else { return };
         if let Some(order) = self.orders.as_mut().get_mut(place) {
             *order = Order::new(&region, pass, since);
@@ -203,8 +268,9 @@ where
     /// Decisions that were made before are overwritten. Cost: a few slices a region.
     ///
     /// # Errors
-    /// [`Refused::Meeting`] for two that meet, or pass so near that it cannot be told who is first.
+    /// [`Refused::Meeting`] for two that meet, or pass so near that it cannot be told who is first; [`Refused::Mismatch`].
     pub fn as_planned(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Refused> {
+        self.ecm.holds_all(fleet)?;
         for place in 0..self.ecm.len() {
             let Some([lower, higher]) = self.ecm.agents_at(place) else { continue };
             let Some(region) = self.ecm.at(fleet, place, lower) else { continue };

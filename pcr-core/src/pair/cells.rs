@@ -2,22 +2,23 @@
 //!
 //! The events cut the second segment into slabs, in each of which the disc covers something of the first one all along or
 //! nothing at all: its middle tells. Neighbouring slabs that are covered are parts of one piece, if one lap at most of the
-//! first segment can be covered and no disc fits an arc ([`super::laps`] is for the others).
+//! first segment can be covered ([`super::laps`] is for the others).
 //!
 //! The lengths of a piece are the hull of its slices where it begins and ends, of the ends of the first segment where they
 //! are covered, and of the turning points: nothing between them can be extreme. Inside the second segment a piece begins
 //! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
 //! to rounding.
 
-use super::events::{add_events, add_turning_lengths, contact, wraps};
+use super::events::{add_events, add_turning_lengths, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
 use super::lengths::Lengths;
+use super::offset::on_first_lap;
 use crate::bits::Runs;
 use crate::error::Full;
 use crate::geometry::Interval;
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
-use crate::segment::{Curve, Segment};
+use crate::segment::Segment;
 
 /// Two segments, by their places in the two paths.
 #[derive(Clone, Copy)]
@@ -50,7 +51,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);
         events.sort();
         let in_order = events.as_slice();
-        let by_laps = wraps(self.first, self.radius) || self.fits(self.first) || self.fits(self.second);
+        let by_laps = wraps(self.first, self.radius);
         let begin = pieces.last_pending();
         if by_laps {
             self.find_laps(in_order, pieces)?;
@@ -61,19 +62,9 @@ impl<S: Scalar> SegmentPair<'_, S> {
             return Ok(());
         }
         for &l in turning.as_slice() {
-            if let Some(s) = contact(self.first, l, self.second, self.radius + self.slack) {
-                let slices = if by_laps { self.slices(s) } else { [Some(Interval::new(l, l)), None] };
-                self.turn_back(pieces, begin, slices, s, by_laps);
-            }
+            self.turn_back(pieces, begin, l, by_laps);
         }
         Ok(())
-    }
-
-    /// Whether a disc fits an arc so well that contact from inside is contact all around: then rounding decides where
-    /// it is, and slices are taken everywhere.
-    fn fits(&self, segment: &Segment<S>) -> bool {
-        let around = (0..6).fold(self.slack, |slack, _| slack.double());
-        matches!(segment.curve, Curve::Arc { radius, .. } if (radius - self.radius).abs() <= around)
     }
 
     /// Whether this slab, between two neighbouring events, is one. Events may coincide; a second segment of length 0 has one
@@ -145,23 +136,42 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Interval::new(foot - half, foot + half).widen(S::ZERO, Interval::new(S::ZERO, self.first.length))
     }
 
-    /// Adds the slices at a turning point to the pieces after `begin` that cover it.
+    /// Adds a turning point to the pieces after `begin` whose second range comes within reach of it: by one of its ends, where
+    /// its foot `s` is not in it.
+    ///
+    /// The foot alone would not do: its error is not a few slacks but ϱ / |ϱ - R| times that beside the centre of an arc, and two
+    /// turning points on either side of a gap may be one by rounding, whose foot is in the gap. The distance is right
+    /// whatever the foot, and of all points of a range it is least at the foot or at an end.
     fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         pieces: &mut Pieces<S, P>,
         begin: u32,
-        slices: [Option<Interval<S>>; 2],
-        s: S,
+        l: S,
         by_laps: bool,
     ) {
+        let point = self.first.point_at(l);
+        let footprint = Footprint::of(point, self.second);
+        if footprint.offset.abs() > self.radius + self.slack {
+            return;
+        }
+        let reach = self.radius + self.slack.half();
+        let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
+        let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
         let mut index = pieces.pending_after(begin);
         while let Some(piece) = pieces.get_mut(index) {
-            if piece.second.contains(s) {
-                // With one lap there is no doubt whose end it is.
-                let own = if by_laps { piece.share.of(slices, self.first, piece.first) } else { slices };
-                for slice in own {
-                    piece.first = slice.map_or(piece.first, |slice| piece.first.hull(slice));
+            let Interval { lo, hi } = piece.second;
+            let place = if piece.second.contains(s) { Some(s) } else { [lo, hi].into_iter().find(|&end| near(end)) };
+            let belongs = place.is_some_and(|s| {
+                if !by_laps {
+                    return true;
                 }
+                // With a slack more, what is but one interval by rounding is that of both pieces.
+                let footprint = Footprint::of(self.second.point_at(s), self.first);
+                let laps = footprint.reach(self.first, self.radius + self.slack).intervals(self.first);
+                piece.share.holds(l, laps, self.first, piece.first)
+            });
+            if belongs {
+                piece.first = piece.first.hull(Interval::new(l, l));
             }
             index = piece.next;
         }

@@ -6,9 +6,8 @@
 //!
 //! - the ends of the second segment;
 //! - contacts with an end of the first segment: P1 about it;
-//! - contacts normal to the first segment, `c = ±R` from its carrier: intervals begin and end (P3);
-//! - where the disc begins or ceases to cover the whole circle of the first segment, touches it all around from inside, or
-//!   covers most of it: P1 about its centre, because P3 compares squares and these distances are small;
+//! - contacts normal to the first segment: intervals begin and end, or the disc begins or ceases to cover the whole circle
+//!   (P3, or P1 about the centre);
 //! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
 //!
 //! An end of a covered interval turns back only where the contact is normal to the second segment
@@ -18,7 +17,7 @@ use super::footprint::{Footprint, Reach};
 use super::lengths::Lengths;
 use super::offset::{Carrier, Relative, on_first_lap};
 use crate::geometry::Direction;
-use crate::scalar::{Scalar, Wide};
+use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
 /// Adds the events along `second`, its ends among them, for discs whose radii add up to `radius`, distances right within
@@ -36,34 +35,19 @@ pub(crate) fn add_events<S: Scalar>(
     if first.length > S::ZERO {
         add_ends(&end, second, radius, slack, events);
     }
-    let normal = Relative::new(second, Carrier::from(first), &start);
-    normal.lengths_at(&[radius, -radius], S::ZERO, slack.half(), events);
-    if let Curve::Arc { radius: own, .. } = first.curve {
-        let (wraps, ring) = (wraps(first, radius), inner_ring(own, radius));
-        if wraps || ring.is_some() {
-            let diameter = middle_diameter(first, own);
-            let centre = Footprint::of(diameter.start, second);
-            if let Some(ring) = ring {
-                add_ends(&centre, second, ring, slack, events);
-                // Where it covers most, √|ϱ² - R²| from the centre, R without its slack: a path through the centre is
-                // normal to the contact there, but P3 cannot tell whether there is one.
-                let most = (ring + slack).times(own + radius).sqrt();
-                add_ends(&centre, second, most, slack, events);
-            }
-            if wraps {
-                let diameter = Relative::new(second, diameter, &centre);
-                diameter.lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
-            }
-        }
+    add_normals(first, &start, second, radius, slack, events);
+    if let (Curve::Arc { radius: own, .. }, true) = (first.curve, wraps(first, radius)) {
+        let diameter = middle_diameter(first, own);
+        let centre = Footprint::of(diameter.start, second);
+        Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
     }
     // Last, where it belongs: fewer are out of order.
     events.add(second.length, true);
     [start.offset, end.offset]
 }
 
-/// Adds the lengths of `first` at which a contact with it may be normal to `second`. Contacts from beyond the centre of `second`
-/// are left out: there an interval is shortest. The ends of `first` that touch it, by their distances from it, are among them:
-/// rounding may have taken a contact just beyond one of them.
+/// Adds the lengths of `first` at which a contact with it may be normal to `second`. The ends of `first` that touch it, by
+/// their distances from it, are among them: rounding may have taken a contact just beyond one of them.
 pub(crate) fn add_turning_lengths<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
@@ -76,35 +60,31 @@ pub(crate) fn add_turning_lengths<S: Scalar>(
     let touches = |offset: S| (radius - slack <= offset) & (offset <= radius + slack.half());
     lengths.add(S::ZERO, touches(start.abs()));
     lengths.add(first.length, touches(end.abs()));
-    let start = Footprint::of(second.start, first);
-    let relative = Relative::new(first, Carrier::from(second), &start);
-    let ring = match second.curve {
-        Curve::Arc { radius: own, .. } if own >= radius => inner_ring(own, radius).zip(Some(own)),
-        _ => None,
-    };
-    match ring {
-        None => relative.lengths_at(&[radius, -radius], S::ZERO, S::ZERO, lengths),
-        Some((ring, own)) => {
-            relative.lengths_at(&[relative.outward(radius)], S::ZERO, S::ZERO, lengths);
-            let centre = Footprint::of(middle_diameter(second, own).start, first);
-            add_ends(&centre, first, ring, slack, lengths);
+    add_normals(second, &Footprint::of(second.start, first), first, radius, slack, lengths);
+}
+
+/// Adds the lengths of `segment` at which a contact may be normal to `other`, whose start has this footprint on it: by P3.
+///
+/// P3 compares squares, d² with (ϱ - R)² on the inside of an arc: what rounding does to them, 2ϱ times a distance, is
+/// ϱ / |ϱ - R| times as much in d. That is no more than twice from ϱ = 2R on. Below, d is compared with |ϱ - R| by P1
+/// about the centre, which is no further than 2R then: of a larger arc it is not known as well as its start.
+fn add_normals<S: Scalar>(
+    other: &Segment<S>,
+    start: &Footprint<S>,
+    segment: &Segment<S>,
+    radius: S,
+    slack: S,
+    lengths: &mut Lengths<S>,
+) {
+    let relative = Relative::new(segment, Carrier::from(other), start);
+    match other.curve {
+        Curve::Arc { radius: own, .. } if own < radius.double() => {
+            relative.lengths_at(&[relative.outward(radius)], S::ZERO, slack.half(), lengths);
+            let centre = Footprint::of(other.centre(own), segment);
+            add_ends(&centre, segment, (own - radius).abs(), slack, lengths);
         }
+        _ => relative.lengths_at(&[radius, -radius], S::ZERO, slack.half(), lengths),
     }
-}
-
-/// The length of `second` whose normal meets `first` at `l`, if there is contact: rounding makes roots where there are none,
-/// and what is no contact is no end of an interval either.
-pub(crate) fn contact<S: Scalar>(first: &Segment<S>, l: S, second: &Segment<S>, reach: S) -> Option<S> {
-    let footprint = Footprint::of(first.point_at(l), second);
-    let s = on_first_lap(footprint.foot(second), second, S::ZERO);
-    (S::ZERO <= s && s <= second.length && footprint.offset.abs() <= reach).then_some(s)
-}
-
-/// Distance from the centre of an arc at which the disc touches its circle from inside, or begins to cover all of it:
-/// always for a disc that can, and where that is so near the centre that P3 would lose it.
-fn inner_ring<S: Scalar>(own: S, radius: S) -> Option<S> {
-    let ring = (own - radius).abs();
-    (own <= radius || ring.double().double() < own).then_some(ring)
 }
 
 /// Adds the lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from

@@ -209,7 +209,7 @@ impl<S: Scalar> Reach<S> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub(crate) enum Share {
+pub enum Share {
     /// The only one.
     Only,
     /// Of two, the one at the start of the segment. There are two where the gap between them lies inside the segment.
@@ -245,6 +245,19 @@ impl Share {
                     }
             })
         })
+    }
+
+    /// Whether the length `l` is its own, of those that are covered. One that none of the intervals holds, by rounding, may be
+    /// anybody's.
+    pub(crate) fn holds<S: Scalar>(
+        self,
+        l: S,
+        intervals: [Option<Interval<S>>; 2],
+        segment: &Segment<S>,
+        hull: Interval<S>,
+    ) -> bool {
+        let hold = |intervals: [Option<Interval<S>>; 2]| intervals.into_iter().flatten().any(|slice| slice.contains(l));
+        hold(self.of(intervals, segment, hull)) || !hold(intervals)
     }
 }
 

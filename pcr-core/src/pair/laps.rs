@@ -1,5 +1,5 @@
 //! From events to pieces where two laps of the first segment can be covered at once: an arc of half a turn or more, or one
-//! that the disc can hold. And where a disc fits one of the arcs, so that slices have to be taken everywhere.
+//! that the disc can hold.
 //!
 //! In a slab, every lap that the disc covers is a cell; cells of neighbouring slabs with the same lap are parts of one
 //! piece. Cells of different laps can only meet where the disc covers the whole circle.
@@ -60,11 +60,6 @@ impl<S: Scalar> SegmentPair<'_, S> {
             self.limit_open(pieces, &open, &self.section(self.second.length), before);
         }
         Ok(())
-    }
-
-    /// What is covered of the first segment at the length `s` of the second one.
-    pub(super) fn slices(&self, s: S) -> [Option<Interval<S>>; 2] {
-        self.section(s).reach.intervals(self.first)
     }
 
     fn section(&self, s: S) -> Section<S> {

@@ -9,10 +9,10 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 /// Delays the starts of the agents so that none collides, and puts the motions into `plan`, in the order of the
-/// fleet.
+/// fleet. It begins with motions of the same agents: those of the fleet, or an earlier plan.
 ///
-/// `order` lists the agents by priority, the highest first; agents that are not in it are left out of the plan. It may
-/// come back changed: agents that could not start otherwise are moved up, at most as often as there are agents in it.
+/// `order` lists the agents by priority, the highest first; nobody looks out for agents that are not in it, and nobody checks
+/// them: their motions in `plan` stay as they were. It may come back changed: agents that could not start otherwise are moved up, at most as often as there are agents in it.
 /// Plan with radii that are larger by [`Encounter::tolerance`](crate::Encounter::tolerance), so that agents of the true
 /// radii do not even touch.
 ///
@@ -38,7 +38,7 @@ where
             return Err(Blocked::Never(Unsolved::NoSuchAgent(agent)));
         };
         *planned = motion;
-        let regions = ecm.row(plan, agent).filter(|region| before.contains(&region.other()));
+        let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
         let delayed = earliest(motion, regions.clone()).ok_or_else(|| blocking(agent, regions, before))?;
         if let Some(planned) = plan.get_mut(agent) {
             *planned = delayed;

@@ -72,8 +72,8 @@ impl<S: Scalar> Edge<S> {
             return None;
         }
         let ramp = (fast - slow).quotient(acceleration);
-        let mut way = (slow + fast).times(ramp).narrow().half();
-        let rounding = S::slack(length);
+        let mut way = (slow + fast).times(ramp).half().narrow();
+        let rounding = S::rounding(length);
         if way > length + rounding.double() {
             return None;
         }
@@ -163,6 +163,11 @@ impl<S: Scalar> Lattice<S> {
         let ramp = peak.times(peak.quotient(acceleration)).narrow().half();
         // Shorter on a path that is but a part of a ramp.
         let mut cell = ramp.half().half().min(length.half().half());
+        // A quarter of a few last digits is nothing, and nothing doubled is no more.
+        if cell <= S::ZERO {
+            cell = S::slack(length);
+        }
+        positive(cell, "length of the path")?;
         let mut count = cells(length, cell, most);
         while count.is_none() && cell < length {
             cell = cell.double();
@@ -224,7 +229,7 @@ fn cells<S: Scalar>(length: S, cell: S, most: usize) -> Option<(usize, S)> {
         }
     }
     // Each difference may be off by a rounding.
-    let rounding = S::slack(length);
+    let rounding = S::rounding(length);
     if cell - rest <= rounding {
         (count, rest) = (count.saturating_add(1), S::ZERO);
     } else if rest <= rounding {

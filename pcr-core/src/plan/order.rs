@@ -4,6 +4,7 @@
 //! start) is moved up before it in the order, and the search goes on from there; a bounded number of times.
 
 use crate::ecm::{Ecm, Region};
+use crate::error::Mismatch;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pieces::Piece;
@@ -30,6 +31,14 @@ pub enum Unsolved {
     Full(usize),
     /// There is no such agent, or not as many plans as motions.
     NoSuchAgent(usize),
+    /// The table is not that of the fleet, or the motions that the plan begins with are not.
+    Table(Mismatch),
+}
+
+impl From<Mismatch> for Unsolved {
+    fn from(mismatch: Mismatch) -> Self {
+        Self::Table(mismatch)
+    }
 }
 
 impl core::fmt::Display for Unsolved {
@@ -42,6 +51,7 @@ impl core::fmt::Display for Unsolved {
             Self::Overlap([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap by the plan"),
             Self::Full(agent) => write!(f, "there is no room for a plan of agent {agent} of the fleet"),
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
+            Self::Table(mismatch) => mismatch.fmt(f),
         }
     }
 }
@@ -54,6 +64,12 @@ pub(super) enum Blocked {
     By(usize),
     /// With none.
     Never(Unsolved),
+}
+
+impl From<Mismatch> for Blocked {
+    fn from(mismatch: Mismatch) -> Self {
+        Self::Never(mismatch.into())
+    }
 }
 
 /// Plans the agents of an order, each after those before it; the order may change.
@@ -97,9 +113,9 @@ where
     let time = time.unwrap_or_default();
     // `enumerate` would check its counter for overflow.
     for (place, &agent) in (0..order.len()).zip(order) {
-        let Some(motion) = plan.get(agent) else { continue };
+        let motion = plan.get(agent).ok_or(Unsolved::NoSuchAgent(agent))?;
         let before = order.get(..place).unwrap_or_default();
-        let regions = ecm.row(plan, agent).filter(|region| before.contains(&region.other()));
+        let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
         if let Some(region) = regions.into_iter().find(|region| region.overlap(motion, time).is_some()) {
             return Err(Unsolved::Overlap([agent, region.other()]));
         }

@@ -111,7 +111,10 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
                     };
                     let departures = self.departures(reached, &edge.passes, &blocked);
                     let Some(arrivals) = next.reached_mut(to) else { continue };
-                    departures.iter().for_each(|times| arrivals.add(later(times, edge.duration())));
+                    departures
+                        .iter()
+                        .filter_map(|times| later(times, edge.duration()))
+                        .for_each(|times| arrivals.add(times));
                 }
             }
             if let Some(times) = next.reached.first_mut().filter(|_| self.levels(false, is_last).contains(&0)) {
@@ -184,7 +187,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
                     continue;
                 };
                 for times in self.departures(reached, &edge.passes, &blocked).iter() {
-                    let arrivals = later(times, edge.duration());
+                    let Some(arrivals) = later(times, edge.duration()) else { continue };
                     let at = arrivals.hi.min(next.leaves);
                     let possible = arrivals.lo <= at && if waits { since <= at } else { at >= next.leaves };
                     // The least wait, at the highest speed.
@@ -211,15 +214,15 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
         for ((here, next), (_, is_middle)) in pairs.zip(self.lattice.cells()) {
             let wait = here.leaves - now;
             if here.level == 0 && wait > S::ZERO {
-                phase = phase.until(wait, here.length, S::ZERO, S::ZERO);
-                profile.extend(phase)?;
+                let stand = phase.until(wait, phase.length().hi, S::ZERO, S::ZERO);
+                profile.extend(&mut phase, stand)?;
             }
             let edge = self.lattice.edge(is_middle, here.level, next.level).ok_or(Invalid::Disconnected("phase"))?;
             let mut parts = edge.phases().peekable();
             while let Some((duration, way, speed, acceleration)) = parts.next() {
                 let to = if parts.peek().is_some() { phase.length().hi + way } else { next.length };
-                phase = phase.until(duration, to, speed, acceleration);
-                profile.extend(phase)?;
+                let next = phase.until(duration, to, speed, acceleration);
+                profile.extend(&mut phase, next)?;
             }
             now = here.leaves.max(now) + edge.duration();
         }
@@ -238,9 +241,10 @@ pub(super) fn stands<'a, S: Scalar>(
     met.map_or(Ok(()), |region| Err(NoSpeedPlan::AtStart(region.other())))
 }
 
-/// All times later by a duration.
-fn later<S: Scalar>(times: Interval<S>, duration: S) -> Interval<S> {
-    Interval::new(times.lo + duration, (times.hi + duration).min(S::LIMIT).max(times.lo + duration))
+/// All times later by a duration, as far as the format holds them.
+fn later<S: Scalar>(times: Interval<S>, duration: S) -> Option<Interval<S>> {
+    let lo = times.lo + duration;
+    (lo <= S::LIMIT).then(|| Interval::new(lo, (times.hi + duration).min(S::LIMIT)))
 }
 
 /// Lets the agent wait from each of the times on until its place is blocked.

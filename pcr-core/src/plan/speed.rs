@@ -111,14 +111,13 @@ impl<S> From<Invalid> for NoSpeedPlan<S> {
     }
 }
 
-impl<S: core::fmt::Debug> core::fmt::Display for NoSpeedPlan<S> {
+// The length is not told: what writes floating point can panic, for all that a linker knows.
+impl<S> core::fmt::Display for NoSpeedPlan<S> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::AtStart(other) => write!(f, "agent {other} of the fleet is met at the start"),
             Self::AtGoal(other) => write!(f, "agent {other} of the fleet blocks the goal for good"),
-            Self::Beyond { length, other } => {
-                write!(f, "there is no way further than {length:?} m because of agent {other} of the fleet")
-            }
+            Self::Beyond { other, .. } => write!(f, "agent {other} of the fleet blocks the way on"),
             Self::Invalid(invalid) => write!(f, "{invalid}"),
         }
     }
@@ -159,7 +158,7 @@ impl<S: core::fmt::Debug> core::error::Error for NoSpeedPlan<S> {}
 ///
 /// let mut stations = [const { Station::EMPTY }; 32];
 /// let drive = Drive::rest_to_rest(limits);
-/// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0), &mut stations)?;
+/// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0)?, &mut stations)?;
 /// let planned = Motion::new(paths[0].as_path(), plan.profile.as_profile(), 0.25, plan.start)?;
 /// // It passes behind the other one, R √2 / v later.
 /// assert!((planned.time().hi - fleet[0].time().hi - 0.5 * 2.0_f64.sqrt()).abs() < 1e-6);
@@ -190,6 +189,7 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     // Contacts are those of agents in time.
     if !search.regions.clone().any(|region| region.is_uncertain()) {
         search.tighten(ego, &mut plan)?;
+        search.check(ego, &plan)?;
     }
     Ok(plan)
 }

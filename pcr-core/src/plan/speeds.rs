@@ -12,7 +12,7 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 /// Plans how fast the agents go along their paths so that none collides, and puts the motions into `plan`, in the
-/// order of the fleet.
+/// order of the fleet. It begins with motions of the same agents: those of the fleet, or an earlier plan.
 ///
 /// Each agent goes under the largest speed and acceleration of the motion that the fleet gives it, and begins and ends
 /// at the same speeds ([`Drive::of`]): by [`plan_speed`], or as given but later, whichever arrives first. `order` is as in
@@ -46,7 +46,7 @@ where
         };
         *planned = motion;
         let chosen = {
-            let regions = ecm.row(plan, agent).filter(|region| before.contains(&region.other()));
+            let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
             let later = earliest(motion, regions.clone());
             // What is but a rounding earlier is not worth another profile.
             let earlier = |end: S| later.is_none_or(|later| end < later.time().hi - S::tolerance(end.abs()));

@@ -115,8 +115,8 @@ impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
         let mut last = phases.first().map_or(Phase::origin(S::ZERO), |first| Phase::origin(first.speed()[0]));
         for (k, phase) in (0..phases.len()).zip(phases) {
             let duration = phase.time().length() - if k == place { by } else { S::ZERO };
-            last = last.until(duration, phase.length().hi, phase.speed()[1], phase.acceleration());
-            profile.extend(last)?;
+            let next = last.until(duration, phase.length().hi, phase.speed()[1], phase.acceleration());
+            profile.extend(&mut last, next)?;
         }
         Ok(Self { start: self.start, profile })
     }

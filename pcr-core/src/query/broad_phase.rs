@@ -7,7 +7,7 @@
 //! parts in which the boxes of a pair meet are bits of a word, and runs of them are looked at by [`Encounter::contacts`].
 
 use crate::bits::{self, Runs};
-use crate::error::Full;
+use crate::error::{Full, Mismatch};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
 use crate::query::contact::{Contacts, Encounter};
@@ -59,13 +59,14 @@ impl<S: Scalar + defmt::Format, B> defmt::Format for BroadPhase<'_, S, B> {
 impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S, B> {
     /// The fleet during an interval of time \[s\], in 32, 16, 8, 4, 2 parts or 1: as many as there is room for. Each agent
     /// needs a box more than there are parts. More parts sort out more pairs and take more time themselves; about 16 are
-    /// best where a fleet crosses its floor once.
+    /// best where a fleet crosses its floor once. The interval is cut as by [`Encounter::contacts`].
     ///
     /// Cost: a point of the path a part.
     ///
     /// # Errors
     /// [`Full::Boxes`] where there is room for less than two boxes an agent.
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, Full> {
+        let during = during.limited();
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
         let halvings = room.saturating_sub(1).checked_ilog2().ok_or(Full::Boxes)?.min(MOST_PARTS.ilog2());
         let parts = 1_u32.wrapping_shl(halvings);
@@ -129,30 +130,33 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
                     return Some((*agents, time));
                 }
                 let (agents, during) = candidates.next()?;
-                current = self.encounter(agents).map(|encounter| (agents, encounter.contacts(during)));
+                // Both are of the fleet.
+                current = self.encounter(agents).ok().map(|encounter| (agents, encounter.contacts(during)));
             }
         })
     }
 
     /// When two agents of the fleet, by their places in it, are in contact during an interval of time \[s\]: of one of the
-    /// [`BroadPhase::candidates`], which may be looked at in any order, on several cores as well. Never for an agent that
-    /// the fleet does not have.
+    /// [`BroadPhase::candidates`], which may be looked at in any order, on several cores as well.
     ///
     /// Cost: that of [`Encounter::contacts`].
+    ///
+    /// # Errors
+    /// [`Mismatch::NoSuchAgent`].
     pub fn contacts_of(
         &self,
         agents: [usize; 2],
         during: Interval<S>,
-    ) -> impl Iterator<Item = ([usize; 2], Interval<S>)> + use<'_, S, B> {
-        let mut contacts = self.encounter(agents).map(|encounter| encounter.contacts(during));
-        iter::from_fn(move || Some((agents, contacts.as_mut()?.next()?)))
+    ) -> Result<impl Iterator<Item = ([usize; 2], Interval<S>)> + use<'_, S, B>, Mismatch> {
+        let contacts = self.encounter(agents)?.contacts(during);
+        Ok(contacts.map(move |time| (agents, time)))
     }
 }
 
 impl<'a, S: Scalar, B> BroadPhase<'a, S, B> {
-    fn encounter(&self, agents: [usize; 2]) -> Option<Encounter<'a, S>> {
-        let [first, second] = agents.map(|agent| self.fleet.get(agent));
-        Some(Encounter::new(first?, second?))
+    fn encounter(&self, agents: [usize; 2]) -> Result<Encounter<'a, S>, Mismatch> {
+        let [first, second] = agents.map(|agent| self.fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent)));
+        Ok(Encounter::new(first?, second?))
     }
 }
 

@@ -35,6 +35,8 @@ impl<S: Scalar> Chord<S> {
 
     /// The part of the chord within `radius` of the origin.
     pub(crate) fn within(&self, radius: S) -> Option<Interval<S>> {
+        // No relative position is further away, and the sum below has room.
+        let radius = radius.min(S::LIMIT.double().double());
         if radius < self.offset {
             return None;
         }

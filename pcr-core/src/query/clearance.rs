@@ -28,6 +28,7 @@ impl<S: Scalar> Encounter<'_, S> {
     /// Cost: a comparison of boxes a pair of segments and a few steps for those that come nearer than the ones before.
     pub fn closest(&self, during: Interval<S>) -> Approach<S> {
         let separation = |time: S| (self.other.position_at(time) - self.ego.position_at(time)).norm_squared().sqrt();
+        let during = during.limited();
         let mut best = Approach { time: during.lo, separation: separation(during.lo) };
         // A bound that holds for the first windows as well.
         let eighth = during.length().half().half().half();

@@ -62,7 +62,8 @@ pub struct Met<S> {
 
 /// The earliest conflict of a motion with the agents of some regions, those of its row in the table, during an interval of
 /// time \[s\]; of two at the same time the one that comes first among the regions. The motion may differ from the one that
-/// the regions are told of, but not in path and radius: a delay, or another profile.
+/// the regions are told of, but not in path and radius: a delay, or another profile. It may be a mere touch
+/// ([`Conflict::touching`]), which plans make on purpose: what overlaps first, [`first_overlap`] tells.
 ///
 /// Cost: four times of lengths a region, and that of [`Encounter::contacts`] for those where both are at the same time, up to
 /// the earliest contact that is known already.
@@ -77,10 +78,10 @@ pub struct Met<S> {
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
-/// let met = first_conflict(&fleet[0], ecm.row(&fleet, 0), Interval::new(0.0, 9.0)).unwrap();
+/// let met = first_conflict(&fleet[0], ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0)).unwrap();
 /// assert!(met.other == 1 && (met.conflict.depth - 0.5).abs() < 1e-9);
 /// let later = fleet[0].delayed(1.0)?;
-/// assert_eq!(first_conflict(&later, ecm.row(&fleet, 0), Interval::new(0.0, 9.0)), None);
+/// assert_eq!(first_conflict(&later, ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0)), None);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn first_conflict<'a, S: Scalar>(
@@ -88,18 +89,40 @@ pub fn first_conflict<'a, S: Scalar>(
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
 ) -> Option<Met<S>> {
+    first(ego, regions, during, |_, _| true)
+}
+
+/// As [`first_conflict`], the earliest conflict that is deeper than a touch.
+///
+/// Cost: that of [`first_conflict`], and for each touch on the way that of [`Encounter::closest`].
+pub fn first_overlap<'a, S: Scalar>(
+    ego: &Motion<'_, S>,
+    regions: impl Iterator<Item = RegionRef<'a, S>>,
+    during: Interval<S>,
+) -> Option<Met<S>> {
+    first(ego, regions, during, |encounter, contact| !encounter.conflict(encounter.whole(contact, during)).touching)
+}
+
+/// The conflict of the earliest contact that counts.
+fn first<'a, S: Scalar>(
+    ego: &Motion<'_, S>,
+    regions: impl Iterator<Item = RegionRef<'a, S>>,
+    during: Interval<S>,
+    counts: impl Fn(&Encounter<'_, S>, Interval<S>) -> bool,
+) -> Option<Met<S>> {
+    let during = during.limited();
     let (mut first, mut until) = (None, during.hi);
     for region in regions {
         let Some(window) = region.window(ego, Interval::new(during.lo, until)) else { continue };
         let encounter = Encounter::new(ego, region.other_motion());
-        let contact = encounter.contacts(window).next();
-        if let Some(contact) = contact.filter(|contact| first.is_none() || contact.lo < until) {
+        let mut earlier = encounter.contacts(window).take_while(|contact| first.is_none() || contact.lo < until);
+        if let Some(contact) = earlier.find(|contact| counts(&encounter, *contact)) {
             until = contact.lo;
-            first = Some((region.other(), encounter));
+            first = Some((region.other(), encounter, contact));
         }
     }
-    let (other, encounter) = first?;
-    encounter.conflicts(Interval::new(until, during.hi)).next().map(|conflict| Met { other, conflict })
+    let (other, encounter, contact) = first?;
+    Some(Met { other, conflict: encounter.conflict(encounter.whole(contact, during)) })
 }
 
 impl<S: Scalar> RegionRef<'_, S> {
@@ -122,16 +145,30 @@ impl<S: Scalar> Iterator for Conflicts<'_, S> {
 
     fn next(&mut self) -> Option<Conflict<S>> {
         let time = self.contacts.next()?;
-        let Encounter { ego, other, .. } = self.encounter;
-        let deepest = self.encounter.closest(time);
-        let depth = (self.encounter.radius() - deepest.separation).max(S::ZERO);
-        Some(Conflict {
+        Some(self.encounter.conflict(time))
+    }
+}
+
+impl<S: Scalar> Encounter<'_, S> {
+    /// A contact to its end, of which a search in a part of the time may have found the begin only. A search from there on
+    /// need not find a touch again.
+    fn whole(&self, contact: Interval<S>, during: Interval<S>) -> Interval<S> {
+        let again = self.contacts(Interval::new(contact.lo, during.hi)).next();
+        again.filter(|again| again.lo <= contact.hi).map_or(contact, |again| contact.hull(again))
+    }
+
+    /// Where a contact is and how deep.
+    fn conflict(&self, time: Interval<S>) -> Conflict<S> {
+        let Self { ego, other, .. } = self;
+        let deepest = self.closest(time);
+        let depth = (self.radius() - deepest.separation).max(S::ZERO);
+        Conflict {
             time,
             length: Interval::new(ego.length_at(time.lo), ego.length_at(time.hi)),
             other_length: Interval::new(other.length_at(time.lo), other.length_at(time.hi)),
             deepest,
             depth,
-            touching: depth <= self.encounter.tolerance(),
-        })
+            touching: depth <= self.tolerance(),
+        }
     }
 }

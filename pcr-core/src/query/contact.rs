@@ -59,8 +59,9 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     pub fn new(ego: &'a Motion<'a, S>, other: &'a Motion<'a, S>) -> Self {
         let extent = ego.extent().max(other.extent());
         let quadruple = |length: S| length.double().double();
-        // The last digit of a time counts with the speed.
-        let pad = quadruple(S::slack(extent + ego.reach() + other.reach())) + ego.drift() + other.drift();
+        // The slack of both positions (docs/errors.md); the last digit of a time counts with the speed.
+        let pad = S::slack(extent + ego.reach() + other.reach());
+        let pad = [ego, other].into_iter().fold(pad, |pad, motion| pad + motion.drift() + motion.lag() + motion.leap());
         Self { ego, other, pad, tolerance: S::tolerance(extent).max(quadruple(pad)) }
     }
 
@@ -75,15 +76,17 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     }
 
     /// ε: contacts deeper than this are never missed, clearances above it never taken for a contact \[m\]. The larger
-    /// of [`Scalar::tolerance`] of the larger extent and 16 slacks of that extent and both ways at top speed since the
-    /// time 0, with four times the [`Scalar::drift`] of both; 2e-10 of the extent in `f64` unless times are beyond 1e5
+    /// of [`Scalar::tolerance`] of the larger extent and 4 slacks of that extent and both ways at top speed since the
+    /// time 0, with four times the [`Scalar::drift`] and the [`Scalar::lag`] of both, and, in fixed point, their ways at top
+    /// speed in five last digits; 2e-10 of the extent in `f64` unless times are beyond 1e5
     /// extents.
     pub fn tolerance(&self) -> S {
         self.tolerance
     }
 
     /// When the discs are in contact during an interval of time \[s\], in increasing order, each as long as it lasts.
-    /// Both stand at their start before they set off and at their end after their arrival.
+    /// Both stand at their start before they set off and at their end after their arrival. Beyond [`Scalar::LIMIT`] nobody
+    /// moves: an interval that goes further is cut there.
     ///
     /// Cost: a comparison of boxes a pair of segments, four times of lengths where two come near each other, and 50 to
     /// 100 ns a step on a desktop: one to a few where they do so at the same time, about nine for a contact.
@@ -91,7 +94,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     pub fn contacts(&self, during: Interval<S>) -> Contacts<'a, S> {
         let reach = self.radius() + self.pad;
         let apart = !self.ego.bounds().expanded(reach).meets(self.other.bounds());
-        let windows = (!apart).then(|| Windows::new([self.ego, self.other], during, self.pad));
+        let windows = (!apart).then(|| Windows::new([self.ego, self.other], during.limited(), self.pad));
         Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
     }
 }

@@ -7,6 +7,7 @@
 //! the box of the region allows lies outside, a delay with a contact inside (`bracket`). The outer end is taken, at which
 //! there was none. Where agents may be late, the interval is longer by as much.
 
+use crate::error::in_range;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::query::bracket::Bracket;
@@ -117,7 +118,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 }
 
 /// The least delay of the ego's start, from `from` \[s\] on, at which it meets none of the regions: those of its row in
-/// the table, or of some of the others. `None` where no delay helps; [`RegionRef::forbidden_delays`] tells which regions
+/// the table, or of some of the others. `None` where no delay helps that the format holds; [`RegionRef::forbidden_delays`] tells which regions
 /// forbid all late ones.
 ///
 /// Cost: a comparison of ranges a region, 10 to 30 searches for contacts for each that is met.
@@ -133,11 +134,12 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
 /// // At 1 m/s on crossing lines: R √2.
-/// let delay = earliest_start(ecm.row(&fleet, 0), 0.0).unwrap();
+/// let delay = earliest_start(ecm.row(&fleet, 0)?, 0.0).unwrap();
 /// assert!((delay - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn earliest_start<'a, S: Scalar>(regions: impl Iterator<Item = RegionRef<'a, S>> + Clone, from: S) -> Option<S> {
+    let from = in_range(from, "delay").ok()?;
     settle(regions, from, RegionRef::next_free)
 }
 

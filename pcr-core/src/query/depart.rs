@@ -3,6 +3,7 @@
 //! What comes after the length is a motion that is delayed by the wait, so that the forbidden waits are found as the
 //! forbidden delays are (`delay`); how long the agent may stand there is told by the windows in which its place is blocked.
 
+use crate::error::in_range;
 use crate::geometry::Interval;
 use crate::query::bracket::Bracket;
 use crate::query::delay::{earliest_start, settle};
@@ -12,6 +13,7 @@ use crate::scalar::Scalar;
 impl<S: Scalar> RegionRef<'_, S> {
     /// The least wait from `wait` on at a length of the path, after which the ego does not meet the rest of this region.
     fn next_free_after(&self, at: S, wait: S) -> Option<S> {
+        let at = self.ego_motion().path().length().min(at);
         let part = Interval::new(self.length().lo.max(at), self.length().hi);
         if part.lo > part.hi {
             return Some(wait);
@@ -43,13 +45,14 @@ impl<S: Scalar> RegionRef<'_, S> {
 
     /// How long the ego can stand at a length of its path, from when it leaves it by its motion on.
     fn longest_wait(&self, at: S) -> S {
+        let at = self.ego_motion().path().length().min(at);
         let leaves = self.leaves(at);
         let windows = self.blocked(Interval::new(at, at), Interval::new(leaves, S::LIMIT));
         windows.map(|window| window.lo - leaves).fold(S::LIMIT, S::min)
     }
 }
 
-/// The least further wait of the ego at a length of its path \[m\], from `from` \[s\] on, after which it goes on by its motion and
+/// The least further wait of the ego at a length of its path \[m\], limited to it, from `from` \[s\] on, after which it goes on by its motion and
 /// meets none of the regions: those of its row in the table, or of some of the others. At the length 0 it is a delay of
 /// the start. `None` where no wait helps, or the agent is in someone's way before. Whether it can stop there is not asked: a
 /// motion that is at rest at this length can.
@@ -70,9 +73,9 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
 /// // 1 m from the start it waits as long as at the start; 0.4 m before the crossing the other would meet it standing.
-/// let wait = earliest_departure(ecm.row(&fleet, 0), 1.0, 0.0).unwrap();
+/// let wait = earliest_departure(ecm.row(&fleet, 0)?, 1.0, 0.0).unwrap();
 /// assert!((wait - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
-/// assert_eq!(earliest_departure(ecm.row(&fleet, 0), 1.6, 0.0), None);
+/// assert_eq!(earliest_departure(ecm.row(&fleet, 0)?, 1.6, 0.0), None);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn earliest_departure<'a, S: Scalar>(
@@ -83,6 +86,7 @@ pub fn earliest_departure<'a, S: Scalar>(
     if length <= S::ZERO {
         return earliest_start(regions, from);
     }
+    let from = in_range(from, "wait").ok()?;
     let wait = settle(regions.clone(), from, |region, wait| region.next_free_after(length, wait))?;
     let longest = regions.map(|region| region.longest_wait(length)).fold(S::LIMIT, S::min);
     (wait <= S::ZERO || wait <= longest).then_some(wait)

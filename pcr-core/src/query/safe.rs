@@ -5,6 +5,7 @@
 //! whose middle something of the part is covered: closed forms. The other's motion turns lengths into times; an agent
 //! that stands before its start or after its arrival blocks all of that time.
 
+use crate::error::Mismatch;
 use crate::geometry::{Interval, Pose};
 use crate::intervals::{gaps, union};
 use crate::motion::Motion;
@@ -17,13 +18,13 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
-/// Parts of one segment that another one blocks, at most: the gaps between 14 events, no two of them neighbours.
-const PARTS: usize = 7;
+/// Parts of one segment that another one blocks, at most: the slabs between 16 events ([`Lengths`]), no two of them neighbours.
+const PARTS: usize = 8;
 
 impl<'a, S: Scalar> Encounter<'a, S> {
     /// When the other agent blocks a part of the ego's path \[m\], in an interval of time \[s\]: its disc is then within
     /// reach of the ego's on some of these lengths. Disjoint windows in increasing order, rounded outward. A single
-    /// length is a part, too; so is a whole segment.
+    /// length is a part, too; so is a whole segment. Lengths are limited to the path.
     ///
     /// Cost: a comparison of boxes a pair of segments, and a few hundred operations a pair that comes near, for each
     /// window.
@@ -39,6 +40,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     /// Lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint, in
     /// increasing order, rounded outward. Cost as that of [`Encounter::blocked`].
     pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        let during = during.limited();
         let times = [during.lo - self.other.lateness(), during.hi + self.ego.lateness()];
         let lengths = times.map(|time| self.other.length_at(time));
         // The length that belongs to a time is right within what rounding does to a distance.
@@ -55,6 +57,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         on: &'a Motion<'a, S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let slack = Pair::new(by, on).slack;
+        let part = on_path(by, part);
         // The cut of a segment adds roundings of its own.
         let radius = self.radius() + slack.double();
         let length = Interval::new(S::ZERO, on.path().length());
@@ -81,6 +84,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
+        let length = on_path(ego, length);
         // The cut of a segment adds roundings of its own.
         let radius = ego.radius() + other.radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
@@ -100,6 +104,9 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 ///
 /// Cost: that of [`Encounter::blocked`] for every other agent, for each interval.
 ///
+/// # Errors
+/// [`Mismatch::NoSuchAgent`].
+///
 /// ```
 /// use pcr_core::{Interval, Motion, Path, Point, Pose, Profile, Radians, safe_intervals};
 /// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
@@ -110,7 +117,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
 ///
 /// // The middle of the path of agent 0 is blocked while agent 1 passes at 1 m/s, within 0.5 m of it at 3 s.
-/// let mut safe = safe_intervals(&fleet, 0, Interval::new(2.0, 2.0), Interval::new(0.0, 10.0));
+/// let mut safe = safe_intervals(&fleet, 0, Interval::new(2.0, 2.0), Interval::new(0.0, 10.0))?;
 /// let (before, after) = (safe.next().unwrap(), safe.next().unwrap());
 /// assert!(before.lo == 0.0 && (before.hi - 2.5).abs() < 1e-12 && (after.lo - 3.5).abs() < 1e-12 && after.hi == 10.0);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
@@ -120,33 +127,43 @@ pub fn safe_intervals<'a, S: Scalar>(
     ego: usize,
     length: Interval<S>,
     during: Interval<S>,
-) -> impl Iterator<Item = Interval<S>> + Clone {
-    gaps(union(encounters(fleet, ego).flat_map(move |pair| pair.blocked(length, during))), during)
+) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
+    let pairs = encounters(fleet, ego)?;
+    Ok(gaps(union(pairs.flat_map(move |pair| pair.blocked(length, during))), during))
 }
 
 /// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the dual
-/// of [`safe_intervals`], at the same cost.
+/// of [`safe_intervals`], at the same cost and with the same error.
 pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
     during: Interval<S>,
-) -> impl Iterator<Item = Interval<S>> + Clone {
+) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
+    let pairs = encounters(fleet, ego)?;
     let length = fleet.get(ego).map_or(S::ZERO, |ego| ego.path().length());
-    let blocked = union(encounters(fleet, ego).flat_map(move |pair| pair.blocked_lengths(during)));
-    gaps(blocked, Interval::new(S::ZERO, length))
+    let blocked = union(pairs.flat_map(move |pair| pair.blocked_lengths(during)));
+    Ok(gaps(blocked, Interval::new(S::ZERO, length)))
 }
 
 /// The ego with every other agent.
-fn encounters<'a, S: Scalar>(fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = Encounter<'a, S>> + Clone {
-    let own = fleet.get(ego);
+fn encounters<'a, S: Scalar>(
+    fleet: &'a [Motion<'a, S>],
+    ego: usize,
+) -> Result<impl Iterator<Item = Encounter<'a, S>> + Clone, Mismatch> {
+    let own = fleet.get(ego).ok_or(Mismatch::NoSuchAgent(ego))?;
     // `enumerate` would check its counter for overflow.
     let others = (0..fleet.len()).zip(fleet).filter(move |&(other, _)| other != ego);
-    others.filter_map(move |(_, other)| Some(Encounter::new(own?, other)))
+    Ok(others.map(move |(_, other)| Encounter::new(own, other)))
+}
+
+/// The part of a path, limited to it: an end that is off by a rounding is on it.
+fn on_path<S: Scalar>(motion: &Motion<'_, S>, part: Interval<S>) -> Interval<S> {
+    Interval::new(motion.path().length().min(part.lo), S::ZERO.max(part.hi))
 }
 
 /// The part of a segment between these lengths of its path, if there is any.
 pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
-    // Not from + length: lengths of a path are rounded once, so that its end may lie beyond that.
+    // Not `from` + `length`, which is another number in floating point: a joint, and the end of the path, is on a segment.
     let own = Interval::new(segment.from, segment.to);
     if !own.meets(part) {
         return None;
@@ -154,8 +171,9 @@ pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<
     if part.lo <= own.lo && own.hi <= part.hi {
         return Some(*segment);
     }
-    let to = if part.hi < own.hi { (part.hi - own.lo).min(segment.length) } else { segment.length };
-    let from = (part.lo.max(own.lo) - own.lo).min(to);
+    let along = |length: S| (length - own.lo).min(segment.length);
+    let from = along(part.lo.max(own.lo));
+    let to = if part.hi < own.hi { along(part.hi) } else { segment.length };
     let pose = Pose { position: segment.point_at(from), heading: segment.heading_at(from) };
     let length = to - from;
     let cut = Segment::standing(pose).and_then(|start| match segment.curve {
@@ -214,9 +232,13 @@ fn kept_from<S: Scalar>(
     during: Interval<S>,
 ) -> Option<Interval<S>> {
     let (early, late) = (ego.lateness(), other.lateness());
-    let window = times(other, lengths, Interval::new(during.lo - late, during.hi + early))?;
-    let window = Interval::new((window.lo - early).max(during.lo), (window.hi + late).min(during.hi));
-    (window.lo <= window.hi).then_some(window)
+    let inner = during.limited();
+    let window = times(other, lengths, Interval::new(inner.lo - late, inner.hi + early))?;
+    let (lo, hi) = (window.lo - early, window.hi + late);
+    // Beyond the limits nobody moves.
+    let lo = if lo <= inner.lo { during.lo } else { lo };
+    let hi = if hi >= inner.hi { during.hi } else { hi };
+    (lo <= hi).then_some(Interval::new(lo, hi))
 }
 
 /// The times of an interval at which an agent is on these lengths of its path, standing included.

@@ -7,13 +7,13 @@
 //! slow, it is met) or the other stands in it at its end; down to 0 where it comes to the ego's end, or the other stands in
 //! it at its start. Finite ends are found as those of delays are.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, not_negative};
 use crate::geometry::Interval;
 use crate::profile::Profile;
 use crate::query::bracket::Bracket;
 use crate::query::delay::settle;
 use crate::region::RegionRef;
-use crate::scalar::{Scalar, Wide};
+use crate::scalar::Scalar;
 
 impl<S: Scalar> RegionRef<'_, S> {
     /// The durations of the ego's motion \[s\] at which it meets this region, if its profile is stretched or shortened as a
@@ -62,7 +62,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         let start = ego.time().lo;
         let since = ego.time_in(Interval::new(length, length)).lo - start;
         let then = other.time_in(Interval::new(other_length, other_length)).lo - start;
-        then.times(ego.profile().duration()).narrow().quotient(since)
+        then.portion(ego.profile().duration(), since)
     }
 
     /// The durations that the ranges of the region allow.
@@ -77,7 +77,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         let (own, their) = (ego.time_in(length), self.time());
         let slack = self.resolution();
         let then = self.with_lateness(Interval::new(their.lo - start - slack, their.hi - start + slack));
-        let scaled = |then: S, since: S| then.times(duration).narrow().quotient(since);
+        let scaled = |then: S, since: S| then.portion(duration, since);
         let (soonest, latest) = (own.lo - start - slack, own.hi - start + slack);
         let never = length.hi >= ego.path().length() || self.is_open_at_start() || then.lo <= S::ZERO;
         let ever = length.lo <= S::ZERO || self.is_open_at_end() || soonest <= S::ZERO;
@@ -121,7 +121,8 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// Cost: that of [`RegionRef::forbidden_durations`] for each region on the way, twice.
 ///
 /// # Errors
-/// [`Invalid::Full`] where the motion has more than `N` phases.
+/// [`Invalid::Full`] where the motion has more than `N` phases; [`Invalid::NonFinite`], [`Invalid::OutOfRange`] and
+/// [`Invalid::Negative`] for `from`.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, least_duration};
@@ -134,7 +135,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
 /// // At the speed v the ego passes |2 v - 2| / √(1 + v²) behind the other: 0.5 m for 15 v² - 32 v + 15 = 0.
-/// let duration = least_duration::<f64, 1>(ecm.row(&fleet, 0), 4.0)?.unwrap();
+/// let duration = least_duration::<f64, 1>(ecm.row(&fleet, 0)?, 4.0)?.unwrap();
 /// assert!((4.0 / duration - (16.0 - 31.0_f64.sqrt()) / 15.0).abs() < 1e-8);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
@@ -142,6 +143,7 @@ pub fn least_duration<'a, S: Scalar, const N: usize>(
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     from: S,
 ) -> Result<Option<S>, Invalid> {
+    not_negative(from, "duration")?;
     for region in regions.clone() {
         if region.ego_motion().profile().phases().len() > N {
             return Err(Invalid::Full("phase"));

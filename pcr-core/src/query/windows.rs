@@ -102,6 +102,7 @@ impl<'a, S: Scalar> Windows<'a, S> {
                 let Some(part) = own.beside(&their, reach) else { continue };
                 let Some(their_part) = their.beside(&own, reach) else { continue };
                 let time = own.time_in(part, self.during).common(their.time_in(their_part, self.during));
+                // What is passed at one time is near both its ends, as far as `Motion::leap`, and they are in windows of others.
                 if time.lo < time.hi || self.instant && time.lo <= time.hi {
                     return Some((time, [own, their]));
                 }

@@ -40,7 +40,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, bits: $bits:ident, limit: $limit:literal, slack: $slack:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, least: $least:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -48,6 +48,7 @@ macro_rules! impl_float {
 
             const ZERO: Self = 0.0;
             const LIMIT: Self = $limit;
+            const LEAST: Self = $least;
 
             fn is_finite(self) -> bool {
                 $t::is_finite(self)
@@ -57,6 +58,11 @@ macro_rules! impl_float {
             }
             fn scale(self, by: $t) -> Self {
                 self * by
+            }
+            fn digest(self) -> u32 {
+                // All bits of `f32`, the halves of `f64` on one another: a shift by 0 or 32.
+                let bits = u64::from(self.to_bits());
+                (bits ^ (bits >> 32)) as u32
             }
             fn half(self) -> Self {
                 0.5 * self
@@ -145,11 +151,15 @@ macro_rules! impl_float {
                 $tolerance * extent
             }
             fn slack(extent: Self) -> Self {
-                0.5 * $slack * $t::EPSILON * extent
+                0.5 * SLACK as $t * $t::EPSILON * extent
+            }
+            fn rounding(of: Self) -> Self {
+                2.0 * $t::EPSILON * of
             }
             fn lag(speed: Self, time: Self) -> Self {
-                // One roundoff of the time in the sum of a profile, one in what has elapsed of it.
-                $t::EPSILON * speed * time
+                // One roundoff of the time in what has elapsed of it, two at either end of a phase, two where a stop is, one
+                // of a phase that takes no time.
+                4.0 * $t::EPSILON * speed * time
             }
         }
 
@@ -224,10 +234,12 @@ macro_rules! impl_float {
     };
 }
 
-// `slack` in unit roundoffs of the extent; `tolerance` 2^-32 and 2^-16 of it; `split` is 1 more than the power
-// of 2 that halves a significand.
-impl_float!(f64, bits: u64, limit: 1e12, slack: 12.0, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
-impl_float!(f32, bits: u32, limit: 1e6, slack: 12.0, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
+/// Slack in unit roundoffs of the extent: the sum of the worst cases, docs/errors.md.
+const SLACK: u8 = 64;
+
+// `tolerance` 2^-32 and 2^-16 of the extent; `split` is 1 more than the power of 2 that halves a significand.
+impl_float!(f64, bits: u64, limit: 1e12, least: 1e-75, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
+impl_float!(f32, bits: u32, limit: 1e6, least: 1e-9, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
 
 #[cfg(feature = "std")]
 extern crate std;

@@ -57,8 +57,7 @@ impl<S: Scalar> Segment<S> {
         };
         // A centre far away is not known any better.
         let reach = reach + S::slack(radius.double());
-        let centre = self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()));
-        let apart = other.middle - centre;
+        let apart = other.middle - self.centre(radius);
         let (along, across) = (apart.along(other.axis).abs(), apart.across(other.axis).abs());
         let [half_along, half_across] = other.half;
         let squares = |x: S, y: S| x.times(x) + y.times(y);

@@ -2,7 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::work::{Work, run};
-use super::{CONFLICTS, Form, Stop, WRONG_INPUT};
+use super::{CONFLICTS, Form, Printed, Stop};
 use clap::Args;
 use pcr_host::check::Verdict;
 use pcr_host::import::Options;
@@ -15,31 +15,35 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  no conflicts
-  1  conflicts
-  2  wrong arguments, or a scenario that cannot be read or was refused (one line of JSON Lines is enough)
+  0  no conflicts; with --certify proved, too
+  1  conflicts; with --certify also what is not proved
+  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
   pcr check plan.json                                who collides when, where and how deep
   pcr check plan.json --closest                      and how near every two agents come
-  pcr check plan.json > /dev/null && echo free       for scripts: the exit status says it
+  pcr check plan.json --certify                      and the proof that they do not, by an independent checker
+  pcr check -q plan.json && echo free                for scripts: the exit status says it
   pcr check - --format json < plans.jsonl            JSON Lines: a scenario a line in, a line a scenario out";
 
-/// Tell whether the agents collide, moving as the scenario says: who, when, where, how deep
+/// Tell whether the agents collide, moving as the scenario says
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Scenario (JSON); `-` reads JSON Lines on standard input; the paper's 12 agents if left out
-    file: Option<PathBuf>,
-    /// Form of the output
-    #[arg(long, value_enum, default_value_t = Form::Table)]
-    format: Form,
+    /// Scenarios (JSON); standard input if left out or `-`, also one after the other
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    printed: Printed,
     /// Add how near every two agents come, and when (not in CSV)
     #[arg(long)]
     closest: bool,
-    /// Number format of the computation
+    /// Have it proved by a checker that shares nothing with the search for conflicts (not in CSV)
+    #[arg(long)]
+    certify: bool,
+    /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]
@@ -48,11 +52,14 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        if self.closest && self.format == Form::Csv {
-            return Err(Stop::Error("--closest is for --format json and table".into(), WRONG_INPUT));
+        if self.closest && self.printed.form() == Form::Csv {
+            return Err(Stop::arguments("--closest is for --format json and table"));
         }
-        let work = Check { scalar: self.scalar, closest: self.closest };
-        let found = run(&work, self.file.as_deref(), &self.import, self.format)?;
+        if self.certify && self.printed.form() == Form::Csv {
+            return Err(Stop::arguments("--certify is for --format json and table"));
+        }
+        let work = Check { scalar: self.scalar, closest: self.closest, certify: self.certify };
+        let found = run(&work, self.files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
 }
@@ -61,6 +68,7 @@ impl Arguments {
 struct Check {
     scalar: Number,
     closest: bool,
+    certify: bool,
 }
 
 impl Work for Check {
@@ -68,7 +76,12 @@ impl Work for Check {
     const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
 
     fn answer(&self, scenario: &Scenario) -> Result<Verdict, Failure> {
-        Ok(with_scalar!(self.scalar, S => Verdict::of::<S>(scenario, self.closest))?)
+        let verdict = if self.certify {
+            with_scalar!(self.scalar, S => Verdict::certified::<S>(scenario, self.closest))
+        } else {
+            with_scalar!(self.scalar, S => Verdict::of::<S>(scenario, self.closest))
+        };
+        Ok(verdict?)
     }
 
     fn refused(&self, name: &str, error: String) -> Verdict {
@@ -76,7 +89,7 @@ impl Work for Check {
     }
 
     fn found(&self, verdict: &Verdict) -> bool {
-        !verdict.conflicts.is_empty()
+        !verdict.conflicts.is_empty() || verdict.certificate.as_ref().is_some_and(|proof| proof.verdict != "proved")
     }
 
     fn print(&self, verdict: &Verdict, format: Form, out: &mut impl Write) -> io::Result<()> {

@@ -1,29 +1,30 @@
 //! `pcr compare`.
 
-use super::{STATUSES, Stop, scenario};
+use super::{STATUSES, Stop, quiet, scenario, sources};
 use clap::{Args, ValueEnum};
 use pcr_host::compare::{Comparison, Effort, Question};
 use pcr_host::import::Options;
+use pcr_host::output;
 use pcr_host::progress::Progress;
 use pcr_host::regions::Failure;
 use pcr_host::report;
-use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr compare                                        every method on the paper's 12 agents
+  pcr compare fleet.json                             every method
   pcr compare fleet.json --method polyline           pcr, and methods whose names hold a word
   pcr compare small.json large.json --format csv     a line a method and a scenario
   pcr compare fleet.json -o charts                   and time against error as pictures";
 
-/// Run this and other methods side by side: time, memory, and errors against the definition
+/// Run this and other methods side by side: time, memory, errors
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Scenarios (JSON); the paper's 12 agents if left out
+    /// Scenarios (JSON); standard input if left out
+    #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Only methods whose names hold this
     #[arg(long = "method", value_name = "WORD")]
@@ -31,9 +32,12 @@ pub(super) struct Arguments {
     /// Rounds in which all methods are run, 1 to 1000; slow methods take part in fewer
     #[arg(long, value_name = "N", default_value_t = 51, value_parser = clap::value_parser!(u16).range(1..=1000))]
     rounds: u16,
-    /// Form of the output
+    /// Form of the output: for reading, the same in Markdown, an object a scenario, or a line a method
     #[arg(long, value_enum, default_value_t = Output::Table)]
     format: Output,
+    /// The same as --format json
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
     /// Draw time against error to regions-1.svg and conflicts-1.svg in this directory, with the number of the scenario
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -43,13 +47,9 @@ pub(super) struct Arguments {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Output {
-    /// For reading
     Table,
-    /// The same in Markdown
     Markdown,
-    /// One object a scenario
     Json,
-    /// One line a method
     Csv,
 }
 
@@ -61,16 +61,17 @@ const SLICES: usize = 20_000;
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let files: Vec<Option<&Path>> = match &self.files[..] {
-            [] => vec![None],
-            files => files.iter().map(|file| Some(&**file)).collect(),
+        let files = sources(self.files)?;
+        let format = if self.json { Output::Json } else { self.format };
+        let mut out: Box<dyn Write> = match format {
+            Output::Table if quiet() => Box::new(io::sink()),
+            _ => Box::new(BufWriter::new(io::stdout().lock())),
         };
-        let mut out = BufWriter::new(io::stdout().lock());
-        if self.format == Output::Csv {
+        if format == Output::Csv {
             out.write_all(report::COMPARISON_CSV_HEADER.as_bytes())?;
         }
         let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
-        for (place, &file) in files.iter().enumerate() {
+        for (place, file) in files.iter().enumerate() {
             let scenario = scenario(file, &self.import)?;
             let progress = Progress::new("methods");
             let refused = |refused| Stop::wrong(file, Failure::Refused(refused));
@@ -78,11 +79,11 @@ impl Arguments {
                 Comparison::new(&scenario, effort, &self.methods, &mut |done, total| progress.set(done, total))
                     .map_err(refused)?;
             drop(progress);
-            match self.format {
+            match format {
                 Output::Table | Output::Markdown if place > 0 => writeln!(out)?,
                 _ => {}
             }
-            match self.format {
+            match format {
                 Output::Table => report::comparison_table(&comparison, false, &mut out)?,
                 Output::Markdown => report::comparison_table(&comparison, true, &mut out)?,
                 Output::Json => report::json(&comparison, &mut out)?,
@@ -98,10 +99,10 @@ impl Arguments {
 }
 
 fn draw(comparison: &Comparison, directory: &Path, number: usize) -> Result<(), Stop> {
-    fs::create_dir_all(directory).map_err(|error| Stop::not_written(directory, &error))?;
+    output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
     for (question, name) in [(Question::Regions, "regions"), (Question::Conflicts, "conflicts")] {
         let file = directory.join(format!("{name}-{number}.svg"));
-        fs::write(&file, comparison.chart(question)).map_err(|error| Stop::not_written(&file, &error))?;
+        output::write(&file, comparison.chart(question)).map_err(|error| Stop::not_written(&file, &error))?;
     }
     Ok(())
 }

@@ -1,8 +1,9 @@
 //! `pcr evaluate`.
 
-use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT};
+use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, quiet};
 use clap::Args;
 use pcr_host::evaluate::{self, Extent, Problem};
+use pcr_host::output;
 use pcr_host::progress::Progress;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -26,6 +27,8 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let extent = if self.quick { Extent::Quick } else { Extent::Full };
+        let written = |error| Stop::not_written(&self.output, &error);
+        output::folder(&self.output).map_err(written)?;
         let progress = Progress::new("sections");
         let files = evaluate::write(&self.data, &self.output, extent, &mut |done, total| progress.set(done, total));
         drop(progress);
@@ -33,7 +36,7 @@ impl Arguments {
             Problem::File(path, _) if path.starts_with(&self.output) => Stop::Error(problem.to_string(), NOT_WRITTEN),
             _ => Stop::Error(problem.to_string(), WRONG_INPUT),
         })?;
-        let mut out = io::stdout().lock();
+        let mut out: Box<dyn Write> = if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) };
         for file in files {
             writeln!(out, "{}", file.display())?;
         }

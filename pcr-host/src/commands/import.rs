@@ -1,11 +1,10 @@
 //! `pcr import`.
 
-use super::{STATUSES, Stop, scenario, warn, write_to};
+use super::sources::together;
+use super::{STATUSES, Stop, scenario, sources, write_to};
 use clap::Args;
 use pcr_host::import::{Format, Options};
-use pcr_host::input;
-use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
@@ -21,10 +20,10 @@ pub(super) struct Arguments {
     /// Format of the file
     #[arg(value_enum)]
     format: Format,
-    /// The file; `-` reads standard input. Several orders or states (VDA 5050), or paths, become agents of one scenario
-    #[arg(required = true, value_name = "FILE")]
+    /// The file; standard input if left out or `-`. Several orders or states (VDA 5050), or paths, become agents of one scenario
+    #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The scenario file; standard output if left out
+    /// The scenario file; standard output if left out or `-`
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -33,19 +32,17 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        if self.import.from.is_some() {
+            return Err(Stop::arguments("--from: the format is named already, as the first argument"));
+        }
         let import = Options { from: Some(self.format), ..self.import };
-        let scenario = match self.files.as_slice() {
-            [file] => scenario(Some(file), &import)?,
-            files => {
-                let (mut scenario, warnings) = input::read_all(files, &import)?;
-                warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
-                scenario.give_margin(import.margin.unwrap_or(0.0));
-                scenario
-            }
+        let scenario = match sources(self.files)?.as_slice() {
+            [file] => scenario(file, &import)?,
+            files => together(files, &import)?,
         };
         match &self.output {
-            Some(output) => write_to(output, &scenario)?,
-            None => io::stdout().lock().write_all(scenario.to_json().as_bytes())?,
+            Some(output) => write_to(output, &scenario.to_json())?,
+            None => write_to(Path::new("-"), &scenario.to_json())?,
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -1,11 +1,12 @@
 //! `pcr locks`.
 
-use super::{Form, STATUSES, Stop, warn};
+use super::sources::{layout, source};
+use super::{Form, Printed, STATUSES, Stop};
 use clap::Args;
 use pcr_host::import::Options;
 use pcr_host::locks::Locks;
-use pcr_host::{input, picture, report};
-use std::io::{self, BufWriter, Write};
+use pcr_host::{picture, report};
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -19,11 +20,10 @@ Examples:
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// The layout; `-` reads standard input
-    layout: PathBuf,
-    /// Form of the output
-    #[arg(long, value_enum, default_value_t = Form::Table)]
-    format: Form,
+    /// The layout; standard input if left out or `-`
+    layout: Option<PathBuf>,
+    #[command(flatten)]
+    printed: Printed,
     /// Add what a vehicle blocks that stands at a node
     #[arg(long)]
     nodes: bool,
@@ -36,16 +36,16 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let (imported, warnings) = input::read_layout(&self.layout, &self.import, false)?;
-        warn(&self.layout, &warnings);
-        let locks = Locks::of(&imported, self.nodes).map_err(|error| Stop::wrong(Some(&self.layout), error))?;
+        let file = &source(self.layout)?;
+        let imported = layout(file, &self.import, "locks", false)?;
+        let locks = Locks::of(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
         if let Some(directory) = &self.output {
             picture::write_locks(&imported, &locks, directory).map_err(|error| Stop::not_written(directory, &error))?;
         }
-        let mut out = BufWriter::new(io::stdout().lock());
-        match self.format {
+        let mut out = self.printed.out(false);
+        match self.printed.form() {
             Form::Table => report::locks_table(&locks, &mut out)?,
-            Form::Json => report::locks_json(&locks, &mut out)?,
+            Form::Json => report::json(&locks, &mut out)?,
             Form::Csv => report::locks_csv(&locks, &mut out)?,
         }
         out.flush()?;

@@ -1,6 +1,7 @@
 //! `pcr map`.
 
-use super::{STATUSES, Stop, scenario};
+use super::sources::source;
+use super::{STATUSES, Stop, quiet, scenario};
 use clap::Args;
 use pcr_host::fleet::Fleet;
 use pcr_host::import::Options;
@@ -14,14 +15,14 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr map -o pcr-out                  the paper's 12 agents
-  pcr map fleet.json -o pictures      any other scenario";
+  pcr map fleet.json -o pictures                 begin with pictures/index.html
+  pcr demo --scenario | pcr map -o pictures      the paper's 12 agents";
 
-/// Draw a scenario: its paths, and the extended collision map of each agent, as SVG and PNG
+/// Draw a scenario: its paths, and the collision map of each agent
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Scenario (JSON); `-` reads it from standard input; the paper's 12 agents if left out
+    /// Scenario (JSON); standard input if left out or `-`
     file: Option<PathBuf>,
     /// Directory for the pictures; created where it does not exist, files in it are overwritten
     #[arg(short, long, value_name = "DIR")]
@@ -32,13 +33,14 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = self.file.as_deref();
+        let file = &source(self.file)?;
         let scenario = scenario(file, &self.import)?;
         // What is wrong with the scenario is said before anything is written.
         let named = |failure: Failure| Stop::wrong(file, failure);
         let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
         regions::table(&scenario, &fleet.motions()).map_err(named)?;
-        draw(&scenario, None, &self.output, &mut io::stdout().lock())?;
+        let mut out: Box<dyn Write> = if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) };
+        draw(&scenario, None, &self.output, &mut out)?;
         Ok(ExitCode::SUCCESS)
     }
 }

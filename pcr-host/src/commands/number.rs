@@ -4,15 +4,10 @@ use clap::ValueEnum;
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(super) enum Number {
-    /// 64-bit floating point
     F64,
-    /// 32-bit floating point, as on a small machine
     F32,
-    /// Fixed point in 2⁻¹⁶ (15 µm), ±4096 m and 4096 s
     Q16,
-    /// Fixed point in 2⁻²⁰ (1 µm), ±256 m and 256 s
     Q20,
-    /// Fixed point in 2⁻¹² (0.24 mm), ±65 km and 18 h
     Q12,
 }
 

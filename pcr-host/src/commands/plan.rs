@@ -1,13 +1,16 @@
 //! `pcr plan`.
 
 use super::map::draw;
-use super::{CONFLICTS, Form, Stop, scenario, write_to};
+use super::printed::notes;
+use super::sources::{Source, gathered};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, is_standard, write_to};
 use clap::{Args, ValueEnum};
 use pcr_host::import::Options;
 use pcr_host::plan::{Method, Plan, Priority};
-use pcr_host::regions::Failure;
+use pcr_host::regions::{Failure, find};
 use pcr_host::report;
-use std::io::{self, BufWriter, Write};
+use pcr_host::scenario::Scenario;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,46 +18,45 @@ const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
   1  no plan
-  2  wrong arguments, or a scenario that cannot be read or was refused
+  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
   pcr plan fleet.json -o plan.json                    the scenario with start delays, without conflicts
+  pcr plan fleet.json -o - | pcr check                to standard output; the table goes to standard error
   pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
-  pcr plan fleet.json --priority 7,3 --format json    agents 7 and 3 first, then the others as in the file";
+  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first, then the others as in the file";
 
 /// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Scenario (JSON); `-` reads it from standard input; the paper's 12 agents if left out
-    file: Option<PathBuf>,
-    /// The scenario with the plan; none is written where there is no plan
+    /// Scenarios (JSON); standard input if left out or `-`
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The scenario with the plan, `-` for standard output; none is written where there is no plan
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draw the extended collision maps to DIR/before, and those of the plan to DIR/after
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
-    /// How conflicts are avoided
+    /// Later starts, or waits and other speeds on the way under the limits that the scenario gives
     #[arg(long, value_enum, default_value_t = Means::Delay)]
     method: Means,
-    /// Who goes first: agent numbers with commas between them, `longest`, `crowded` or `best`
-    #[arg(long, value_name = "ORDER", default_value = "best", value_parser = priority)]
-    priority: Priority,
-    /// Form of the output
-    #[arg(long, value_enum, default_value_t = Form::Table)]
-    format: Form,
+    /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best`
+    #[arg(long, value_name = "ORDER", default_value = "best", value_parser = asked)]
+    priority: Asked,
+    #[command(flatten)]
+    printed: Printed,
     #[command(flatten)]
     import: Options,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Means {
-    /// Agents start later and then move as the scenario says
     Delay,
-    /// Agents wait and change their speed on the way, under the limits that the scenario gives them
     Speed,
 }
 
@@ -68,51 +70,108 @@ impl From<Means> for Method {
 }
 
 /// An order of priority from the command line.
-fn priority(text: &str) -> Result<Priority, String> {
+#[derive(Clone)]
+enum Asked {
+    Known(Priority),
+    /// Agents by number or label.
+    Agents(Vec<String>),
+}
+
+fn asked(text: &str) -> Result<Asked, String> {
     match text {
-        "longest" => return Ok(Priority::Longest),
-        "crowded" => return Ok(Priority::Crowded),
-        "best" => return Ok(Priority::Best),
+        "longest" => return Ok(Asked::Known(Priority::Longest)),
+        "crowded" => return Ok(Asked::Known(Priority::Crowded)),
+        "best" => return Ok(Asked::Known(Priority::Best)),
         _ => {}
     }
-    let mut ids: Vec<u64> = Vec::new();
-    for part in text.split(',') {
-        let id = part.trim().parse().map_err(|_| format!("{part:?} is no number of an agent"))?;
-        if ids.contains(&id) {
-            return Err(format!("agent {id} is there twice"));
+    let agents: Vec<String> = text.split(',').map(|agent| agent.trim().to_owned()).collect();
+    for (place, agent) in agents.iter().enumerate() {
+        if agent.is_empty() {
+            return Err("an agent without a name".into());
         }
-        ids.push(id);
+        if agents.iter().take(place).any(|before| before == agent) {
+            return Err(format!("agent {agent} is there twice"));
+        }
     }
-    Ok(Priority::Given(ids))
+    Ok(Asked::Agents(agents))
+}
+
+impl Asked {
+    fn of(&self, scenario: &Scenario) -> Result<Priority, Failure> {
+        match self {
+            Self::Known(priority) => Ok(priority.clone()),
+            Self::Agents(agents) => {
+                let mut ids = Vec::new();
+                for agent in agents {
+                    let id = find(scenario, agent)?;
+                    if !ids.contains(&id) {
+                        ids.push(id);
+                    }
+                }
+                Ok(Priority::Given(ids))
+            }
+        }
+    }
 }
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = self.file.as_deref();
-        let scenario = scenario(file, &self.import)?;
-        let (plan, solved) = Plan::of(&scenario, self.method.into(), &self.priority)
-            .map_err(|failure: Failure| Stop::wrong(file, failure))?;
-        if let (Some(output), Some(solved)) = (&self.output, &solved) {
-            write_to(output, solved)?;
-        }
-        let mut out = BufWriter::new(io::stdout().lock());
-        match self.format {
-            Form::Table => report::plan_table(&plan, &mut out)?,
-            Form::Json => report::json(&plan, &mut out)?,
-            Form::Csv => {
-                out.write_all(report::PLAN_CSV_HEADER.as_bytes())?;
-                report::plan_csv(&plan, &mut out)?;
+        let sources = gathered(self.files.clone(), &self.import)?;
+        if sources.len() > 1 {
+            if self.output.as_ref().is_some_and(|output| !is_standard(Some(output))) {
+                return Err(Stop::arguments("--output: one file for the plans of several; - takes them all"));
             }
+            if self.pictures.is_some() {
+                return Err(Stop::arguments("--pictures: one folder for the plans of several"));
+            }
+        }
+        let mut out = self.printed.out(is_standard(self.output.as_ref()));
+        if self.printed.form() == Form::Csv {
+            out.write_all(report::PLAN_CSV_HEADER.as_bytes())?;
+        }
+        let (mut refused, mut unsolved) = (0, false);
+        for (place, source) in sources.iter().enumerate() {
+            if self.printed.form() == Form::Table && place > 0 {
+                writeln!(out)?;
+            }
+            match self.plan(source, &mut out) {
+                Ok(solved) => unsolved |= !solved,
+                Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
+                    refused += 1;
+                    complain(&message);
+                }
+                Err(stop) => return Err(stop),
+            }
+        }
+        match refused {
+            0 => Ok(if unsolved { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS }),
+            _ => Err(Stop::Error(format!("{refused} of {} scenarios refused", sources.len()), WRONG_INPUT)),
+        }
+    }
+
+    /// Whether there is a plan.
+    fn plan(&self, source: &Source, out: &mut impl Write) -> Result<bool, Stop> {
+        let scenario = source.scenario(&self.import)?;
+        let wrong = |failure: Failure| Stop::wrong(source.file(), failure);
+        let priority = self.priority.of(&scenario).map_err(wrong)?;
+        let (plan, solved) = Plan::of(&scenario, self.method.into(), &priority).map_err(wrong)?;
+        if let (Some(output), Some(solved)) = (&self.output, &solved) {
+            write_to(output, &solved.to_json())?;
+        }
+        match self.printed.form() {
+            Form::Table => report::plan_table(&plan, out)?,
+            Form::Json => report::json(&plan, out)?,
+            Form::Csv => report::plan_csv(&plan, out)?,
         }
         out.flush()?;
         if let Some(directory) = &self.pictures {
             // Beside the report, which may be for a machine.
-            let told = &mut io::stderr().lock();
+            let told = &mut notes();
             draw(&scenario, None, &directory.join("before"), told)?;
             if let Some(solved) = &solved {
                 draw(solved, None, &directory.join("after"), told)?;
             }
         }
-        Ok(if solved.is_some() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
+        Ok(solved.is_some())
     }
 }

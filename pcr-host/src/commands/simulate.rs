@@ -1,13 +1,14 @@
 //! `pcr simulate`.
 
-use super::{CONFLICTS, Form, Stop, scenario};
+use super::sources::source;
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, scenario, write_to};
 use clap::{Args, ValueEnum};
 use pcr_host::import::Options;
 use pcr_host::progress::Progress;
 use pcr_host::regions::Failure;
 use pcr_host::report;
 use pcr_host::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,17 +21,25 @@ Exit status:
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr simulate                                 four robots foraging, under each of the three controllers
-  pcr simulate --seed 7 -o replay.html         the same with other disturbances, and a page on which to watch it
-  pcr simulate fleet.json --controller pcr     any other scenario: each agent with a path is a robot
-  pcr simulate --noise 0.005 --delay 0         with a better camera, and nobody is held up";
+  pcr simulate --foraging                      four robots foraging, under each of the three controllers
+  pcr simulate --foraging -o replay.html       and a page on which to watch them
+  pcr simulate fleet.json --controller pcr     a scenario: each agent with a path is a robot
+  pcr simulate fleet.json --seed 7             the same with other disturbances
+  pcr simulate fleet.json --noise 0.005        with a better camera";
 
-/// Simulate robots in closed loop, with noise, slip and delays: planned with collision regions, and two other ways
+/// How often a foraging robot goes to its resource and back.
+const TRIPS: u32 = 3;
+
+/// Simulate robots in closed loop, with noise, slip and delays
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Scenario (JSON); `-` reads it from standard input; four robots foraging if left out
+    /// Scenario (JSON); standard input if left out or `-`
+    #[arg(conflicts_with = "foraging")]
     file: Option<PathBuf>,
+    /// Four robots that forage, instead of a scenario
+    #[arg(long)]
+    foraging: bool,
     /// Only this controller
     #[arg(long, value_enum)]
     controller: Option<Choice>,
@@ -40,38 +49,34 @@ pub(super) struct Arguments {
     /// Seconds from one plan to the next, 0.05 to 3600
     #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = |text: &str| within(text, 0.05, 3600.0))]
     replan: f64,
-    /// Largest error of an observed position in metres, 0 to 10
+    /// Largest error of observed positions in m, 0 to 10
     #[arg(long, value_name = "M", default_value_t = 0.015, value_parser = |text: &str| within(text, 0.0, 10.0))]
     noise: f64,
-    /// How far a robot may be off its path in metres, 0 to 10
+    /// How far robots may be off their paths in m, 0 to 10
     #[arg(long, value_name = "M", default_value_t = 0.005, value_parser = |text: &str| within(text, 0.0, 10.0))]
     drift: f64,
-    /// Largest part of its way that a robot loses to slip, 0 to 0.9
+    /// Largest part of its way that a robot loses, 0 to 0.9
     #[arg(long, value_name = "PART", default_value_t = 0.05, value_parser = |text: &str| within(text, 0.0, 0.9))]
     slip: f64,
-    /// Longest time for which a robot is held up, on average every 10 s, in seconds, 0 to 3600
+    /// Longest hold-up of a robot, about every 10 s, 0 to 3600 s
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| within(text, 0.0, 3600.0))]
     delay: f64,
-    /// How often each foraging robot goes to its resource and back
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    trips: u32,
-    /// A page on which to watch the runs, one HTML file
+    /// How often a foraging robot goes to and fro (3 if left out)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    trips: Option<u32>,
+    /// A page on which to watch the runs; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Form of the output
-    #[arg(long, value_enum, default_value_t = Form::Table)]
-    format: Form,
+    #[command(flatten)]
+    printed: Printed,
     #[command(flatten)]
     import: Options,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Choice {
-    /// A supervisor with collision regions
     Pcr,
-    /// An artificial potential field
     Potential,
-    /// Optimal reciprocal collision avoidance
     Orca,
 }
 
@@ -92,11 +97,19 @@ fn within(text: &str, lo: f64, hi: f64) -> Result<f64, String> {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = self.file.as_deref();
-        let named = |failure: Failure| Stop::wrong(file, failure);
-        let task = match file {
-            None => forage::task(self.seed, self.trips),
-            Some(_) => Task::of(&scenario(file, &self.import)?).map_err(named)?,
+        if self.foraging
+            && let Some(option) = self.import.given().first()
+        {
+            return Err(Stop::arguments(format!("{option} is of no use: the foraging robots are as they are")));
+        }
+        if !self.foraging && self.trips.is_some() {
+            return Err(Stop::arguments("--trips is of no use: only foraging robots go to and fro"));
+        }
+        let file = if self.foraging { PathBuf::from("--foraging") } else { source(self.file)? };
+        let named = |failure: Failure| Stop::wrong(&file, failure);
+        let task = match self.foraging {
+            true => forage::task(self.seed, self.trips.unwrap_or(TRIPS)),
+            false => Task::of(&scenario(&file, &self.import)?).map_err(named)?,
         };
         let Self { noise, slip, delay, drift, .. } = self;
         let disturbance = Disturbance { noise, slip, delay, drift };
@@ -110,12 +123,11 @@ impl Arguments {
         }
         drop(progress);
         if let Some(output) = &self.output {
-            let page = simulate::page(&task, &outcomes);
-            std::fs::write(output, page).map_err(|error| Stop::not_written(output, &error))?;
+            write_to(output, &simulate::page(&task, &outcomes))?;
         }
         let simulation = Simulation::of(&task, settings, &outcomes);
-        let mut out = BufWriter::new(io::stdout().lock());
-        match self.format {
+        let mut out = self.printed.out(is_standard(self.output.as_ref()));
+        match self.printed.form() {
             Form::Table => report::simulation_table(&simulation, &mut out)?,
             Form::Json => report::json(&simulation, &mut out)?,
             Form::Csv => report::simulation_csv(&simulation, &mut out)?,

@@ -1,13 +1,14 @@
 //! What commands share that answer scenario after scenario.
 
-use super::{Form, Stop, WRONG_INPUT, complain, scenario};
+use super::sources::{Source, gathered};
+use super::{Form, Printed, Stop, WRONG_INPUT, complain};
 use pcr_host::import::Options;
 use pcr_host::input::Lines;
 use pcr_host::progress::Progress;
 use pcr_host::regions::Failure;
 use pcr_host::scenario::Scenario;
-use std::io::{self, BufReader, BufWriter, IsTerminal, Write};
-use std::path::Path;
+use std::io::{self, BufReader, IsTerminal, Write};
+use std::path::PathBuf;
 
 /// What a command makes of each scenario that comes in.
 pub(super) trait Work {
@@ -22,34 +23,74 @@ pub(super) trait Work {
     fn print(&self, answer: &Self::Answer, format: Form, out: &mut impl Write) -> io::Result<()>;
 }
 
-/// Whether an answer is what the exit status tells.
-pub(super) fn run<W: Work>(work: &W, file: Option<&Path>, import: &Options, format: Form) -> Result<bool, Stop> {
-    let mut out = BufWriter::new(io::stdout().lock());
-    if format == Form::Csv {
-        out.write_all(W::CSV_HEADER.as_bytes())?;
-    }
-    let answer = match file {
-        Some(file) if file == Path::new("-") && import.from.is_none() => {
-            return lines(work, format, import.margin, &mut out);
-        }
-        Some(file) => {
-            let scenario = scenario(Some(file), import)?;
-            let _progress = Progress::new(format!("{}: {} agents", file.display(), scenario.agents.len()));
-            let named = |failure: Failure| Stop::wrong(Some(file), failure);
-            work.answer(&scenario).map_err(named)?
-        }
-        None => work.answer(&scenario(None, import)?)?,
-    };
-    work.print(&answer, format, &mut out)?;
-    out.flush()?;
-    Ok(work.found(&answer))
+/// What came of some scenarios.
+#[derive(Default)]
+struct Tally {
+    read: usize,
+    refused: usize,
+    /// Whether any answer is what the exit status tells.
+    found: bool,
 }
 
-/// JSON Lines from standard input, each answered before the next one is read.
-fn lines<W: Work>(work: &W, format: Form, margin: Option<f64>, out: &mut impl Write) -> Result<bool, Stop> {
+/// Whether an answer is what the exit status tells.
+pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, printed: &Printed) -> Result<bool, Stop> {
+    let sources = gathered(files, import)?;
+    let form = printed.form();
+    let mut out = printed.out(false);
+    if form == Form::Csv {
+        out.write_all(W::CSV_HEADER.as_bytes())?;
+    }
+    let mut tally = Tally::default();
+    for (place, source) in sources.iter().enumerate() {
+        if form == Form::Table && place > 0 {
+            writeln!(out)?;
+        }
+        if source.is_lines(import) {
+            lines(work, form, import.margin, &mut out, &mut tally)?;
+            continue;
+        }
+        tally.read += 1;
+        match one(work, source, import) {
+            Ok(answer) => {
+                tally.found |= work.found(&answer);
+                work.print(&answer, form, &mut out)?;
+            }
+            Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
+                tally.refused += 1;
+                if form == Form::Json {
+                    work.print(&work.refused(&source.stem(), message.clone()), form, &mut out)?;
+                }
+                complain(&message);
+            }
+            Err(stop) => return Err(stop),
+        }
+        out.flush()?;
+    }
+    let Tally { read, refused, found } = tally;
+    let place = if sources.len() == 1 { "standard input: " } else { "" };
+    match refused {
+        0 => Ok(found),
+        _ => Err(Stop::Error(format!("{place}{refused} of {read} scenarios refused"), WRONG_INPUT)),
+    }
+}
+
+fn one<W: Work>(work: &W, source: &Source, import: &Options) -> Result<W::Answer, Stop> {
+    let scenario = source.scenario(import)?;
+    let _progress = Progress::new(format!("{}: {} agents", source.file().display(), scenario.agents.len()));
+    work.answer(&scenario).map_err(|failure| Stop::wrong(source.file(), failure))
+}
+
+/// Scenarios from standard input, each answered before the next one is read.
+fn lines<W: Work>(
+    work: &W,
+    form: Form,
+    margin: Option<f64>,
+    out: &mut impl Write,
+    tally: &mut Tally,
+) -> Result<(), Stop> {
     // On a terminal the answers themselves show how far it is.
     let progress = (!io::stdout().is_terminal()).then(|| Progress::new("scenarios"));
-    let (mut read, mut refused, mut found) = (0, 0, false);
+    let before = tally.read;
     for line in Lines::new(BufReader::new(io::stdin().lock())) {
         let line = line?;
         let outcome = line.scenario.and_then(|mut scenario| {
@@ -59,26 +100,27 @@ fn lines<W: Work>(work: &W, format: Form, margin: Option<f64>, out: &mut impl Wr
         });
         match outcome {
             Ok(answer) => {
-                found |= work.found(&answer);
-                work.print(&answer, format, out)?;
+                tally.found |= work.found(&answer);
+                work.print(&answer, form, out)?;
             }
             Err((name, error)) => {
-                refused += 1;
-                match format {
-                    Form::Json => work.print(&work.refused(&name, error), format, out)?,
+                tally.refused += 1;
+                match form {
+                    Form::Json => work.print(&work.refused(&name, error), form, out)?,
                     Form::Table | Form::Csv => complain(&format!("standard input: {error}")),
                 }
             }
         }
         out.flush()?;
-        read += 1;
+        tally.read += 1;
         if let Some(progress) = &progress {
-            progress.set(read, 0);
+            progress.set(tally.read, 0);
         }
     }
     drop(progress);
-    match refused {
-        0 => Ok(found),
-        _ => Err(Stop::Error(format!("standard input: {refused} of {read} scenarios refused"), WRONG_INPUT)),
+    // Whoever should have written it has failed: that nothing collides is not known.
+    if tally.read == before {
+        return Err(Stop::Error("standard input: empty; no scenario came in".into(), WRONG_INPUT));
     }
+    Ok(())
 }

@@ -7,7 +7,7 @@
 
 use super::polyline::cuts;
 use super::track::{EMPTY, Point, Track, hull, near};
-use super::{Answer, Field, Found, Method, Question};
+use super::{Answer, Field, Found, Method, Outcome, Question};
 use parry2d_f64::math::{Pose, Vector};
 use parry2d_f64::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
 use parry2d_f64::shape::Ball;
@@ -37,7 +37,7 @@ impl Method for Casts {
         "first times"
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
         let pieces: Vec<Vec<Piece>> = field.tracks.iter().map(|track| pieces(track, field.horizon)).collect();
         let corners = |piece: &Piece| [[piece.bounds[0], piece.bounds[1]], [piece.bounds[2], piece.bounds[3]]];
         let bound = |pieces: &Vec<Piece>| {
@@ -53,7 +53,7 @@ impl Method for Casts {
                 }
             }
         }
-        Some(Answer::Conflicts(found))
+        Ok(Answer::Conflicts(found))
     }
 }
 

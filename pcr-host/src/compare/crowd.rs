@@ -30,7 +30,7 @@ pub fn crowd(agents: usize, seed: u64) -> Scenario {
         let motion = MotionSpec::RestToRest { v_max, a_max };
         Agent::disc(id as u64 + 1, random.within(0.11, 0.22), [at[0], at[1], heading], path, motion)
     };
-    Scenario { name: format!("crowd of {agents}"), agents: (0..agents).map(agent).collect() }
+    Scenario::new(format!("crowd of {agents}"), (0..agents).map(agent).collect())
 }
 
 /// A path on the square, unless it gets stuck.

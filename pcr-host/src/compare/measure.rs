@@ -29,6 +29,8 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Methods that were asked for and have no row.
     pub absent: Vec<Absent>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// A method without an answer.
@@ -37,7 +39,7 @@ pub struct Absent {
     /// With resolution or format.
     pub method: String,
     /// Why.
-    pub reason: &'static str,
+    pub reason: String,
 }
 
 /// A method on a scenario.
@@ -85,7 +87,8 @@ impl Comparison {
             });
         }
         let (rows, absent) = compare(&field, &methods, effort, progress);
-        Ok(Self { name: scenario.name.clone(), agents: scenario.agents.len(), rows, absent })
+        let warnings = scenario.warnings.clone();
+        Ok(Self { name: scenario.name.clone(), agents: scenario.agents.len(), rows, absent, warnings })
     }
 }
 
@@ -113,9 +116,9 @@ fn compare(
     let mut baseline = None;
     for (done, method) in methods.iter().enumerate() {
         let method = method.as_ref();
-        let mut leave_out = |reason| absent.push(Absent { method: method.name(), reason });
+        let mut leave_out = |reason: String| absent.push(Absent { method: method.name(), reason });
         if let Some(reason) = method.missing() {
-            leave_out(reason);
+            leave_out(reason.to_owned());
             continue;
         }
         if baseline.is_none_or(|of: &dyn Method| of.question() != method.question()) {
@@ -125,11 +128,11 @@ fn compare(
         let (took, answer) = method.timed(field);
         let rounds = ((effort.budget / took) as usize).clamp(1, effort.rounds);
         match answer {
-            Some(answer) => {
+            Ok(answer) => {
                 let row = row(&truth, method, &answer);
                 courses.push(Course { method, times: vec![[took, base]], rounds, row });
             }
-            None => leave_out("it has no answer for this fleet"),
+            Err(reason) => leave_out(reason),
         }
         progress(done + 1, total);
     }

@@ -2,7 +2,7 @@
 //! discrete queries of the crate `parry3d`, and boxes in front. The cylinders are drawn around the discs.
 
 use super::track::{Point, Track};
-use super::{Answer, Field, Found, Method, Question};
+use super::{Answer, BEYOND, Field, Found, Method, Outcome, Question};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::intersection_test;
 use parry3d_f64::shape::TriMesh;
@@ -39,9 +39,10 @@ impl Method for Mesh {
         "samples"
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
         let times = samples(field);
-        let bodies = field.tracks.iter().map(|track| Body::new(track, &times)).collect::<Option<Vec<_>>>()?;
+        let bodies =
+            field.tracks.iter().map(|track| Body::new(track, &times)).collect::<Option<Vec<_>>>().ok_or(BEYOND)?;
         let mut found = Vec::new();
         for (first, a) in bodies.iter().enumerate() {
             for (second, b) in bodies.iter().enumerate().skip(first + 1) {
@@ -55,7 +56,7 @@ impl Method for Mesh {
                 }
             }
         }
-        Some(Answer::Conflicts(found))
+        Ok(Answer::Conflicts(found))
     }
 }
 

@@ -1,6 +1,6 @@
 //! This library.
 
-use super::{Answer, Field, Found, Method, Number, Question, Regions};
+use super::{Answer, BEYOND, Field, Found, Method, Number, Outcome, Question, Regions};
 use crate::fleet::{HostEcm, build_ecm};
 use crate::rows::{Row, rows};
 use pcr_core::{Bounds, BroadPhase, Interval, Motion, Piece, Region, RegionRef};
@@ -70,11 +70,11 @@ impl<S: Number> Method for Map<S> {
         self.0 == Cores::All
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
-        let motions = S::motions(field)?;
-        Some(Answer::Regions(match self.0 {
-            Cores::One => Box::new(Whole { motions, table: build_ecm(motions).ok()? }),
-            Cores::All => Box::new(Rows(rows(motions).ok()?)),
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+        let motions = S::motions(field).ok_or(BEYOND)?;
+        Ok(Answer::Regions(match self.0 {
+            Cores::One => Box::new(Whole { motions, table: build_ecm(motions).map_err(|full| full.to_string())? }),
+            Cores::All => Box::new(Rows(rows(motions).map_err(|full| full.to_string())?)),
         }))
     }
 }
@@ -108,7 +108,7 @@ impl<S: Number> Regions for Whole<'_, '_, S> {
     }
 
     fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]> {
-        slice(self.table.pair(self.motions, ego, other), time)
+        slice(self.table.pair(self.motions, ego, other).expect("the table of the fleet"), time)
     }
 }
 
@@ -123,7 +123,7 @@ impl<S: Number> Regions for Rows<'_, S> {
 
     fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]> {
         let row = self.0.get(ego.min(other));
-        row.map_or(Vec::new(), |row| slice(row.pair(ego, other), time))
+        row.map_or(Vec::new(), |row| slice(row.pair(ego, other).expect("the row of one of them"), time))
     }
 }
 
@@ -144,19 +144,20 @@ impl<S: Number> Method for Conflicts<S> {
         self.0 == Cores::All
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
-        let motions = S::motions(field)?;
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+        let motions = S::motions(field).ok_or(BEYOND)?;
         let during = field.horizon.map(S::from_f64);
         let during = Interval::new(during[0], during[1]);
         let boxes = vec![Bounds::default(); motions.len() * (1 + PARTS)];
-        let broad_phase = BroadPhase::new(boxes, motions, during).ok()?;
+        let broad_phase = BroadPhase::new(boxes, motions, during).map_err(|full| full.to_string())?;
         let found = |(agents, time): Contact<S>| Found { agents, begin: time.lo.to_f64(), end: Some(time.hi.to_f64()) };
-        Some(Answer::Conflicts(match self.0 {
+        Ok(Answer::Conflicts(match self.0 {
             Cores::One => broad_phase.contacts().map(found).collect(),
             Cores::All => {
                 let candidates: Vec<_> = broad_phase.candidates().collect();
                 let contacts = candidates.into_par_iter();
-                contacts.flat_map_iter(|(agents, during)| broad_phase.contacts_of(agents, during)).map(found).collect()
+                let of = |(agents, during)| broad_phase.contacts_of(agents, during).expect("agents of the fleet");
+                contacts.flat_map_iter(of).map(found).collect()
             }
         }))
     }

@@ -3,7 +3,7 @@
 //! agents do that know lines only.
 
 use super::track::{EMPTY, Point, Track, hull, near};
-use super::{Answer, Field, Found, Method, Question};
+use super::{Answer, Field, Found, Method, Outcome, Question};
 
 /// With the largest distance from the path \[m\].
 struct Polyline {
@@ -27,7 +27,7 @@ impl Method for Polyline {
         "intervals, conservative"
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
         let knots: Vec<Vec<Knot>> =
             field.tracks.iter().map(|track| knots(track, self.tolerance, field.horizon)).collect();
         // Between its knots a path is within the tolerance of the box, which the reach of a pair holds.
@@ -44,7 +44,7 @@ impl Method for Polyline {
                 }
             }
         }
-        Some(Answer::Conflicts(found))
+        Ok(Answer::Conflicts(found))
     }
 }
 

@@ -3,7 +3,7 @@
 //! carrying the numbers does not count.
 
 use super::stopwatch::{Stopwatch, steady};
-use super::{Answer, Field, Found, Method, Question};
+use super::{Answer, Field, Found, Method, Outcome, Question};
 use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -39,7 +39,16 @@ impl Program {
     pub(super) fn library(self) -> String {
         match self.version.filter(|_| self.is_there()) {
             Some(version) => format!("{} {version}", self.name),
-            None => format!("{} is left out: {}", self.name, self.missing),
+            None => format!("{} is left out: {}", self.name, self.missing().unwrap_or_default()),
+        }
+    }
+
+    /// Why it cannot be run, if it cannot.
+    fn missing(self) -> Option<&'static str> {
+        match self.path {
+            None => Some(self.missing),
+            Some(_) if !self.is_there() => Some("its program is no longer where pcr was built"),
+            Some(_) => None,
         }
     }
 
@@ -94,18 +103,18 @@ impl Method for Peer {
     }
 
     fn missing(&self) -> Option<&'static str> {
-        (!self.program.is_there()).then_some(self.program.missing)
+        self.program.missing()
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
         self.timed(field).1
     }
 
-    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Option<Answer<'f>>) {
+    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Outcome<'f>) {
         let (made, input) = steady(Stopwatch::elapsed, || (self.input)(field));
         match self.program.contacts(&input, |time| (self.in_time)(field, time)) {
-            Ok((work, answer)) => (made + work, Some(answer)),
-            Err(_) => (made, None),
+            Ok((work, answer)) => (made + work, Ok(answer)),
+            Err(error) => (made, Err(format!("its program failed: {error}"))),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! as fast as it goes: single precision, sixteen distances at a time, runs of points instead of points.
 
 use super::track::{EMPTY, Track, hull, near};
-use super::{Answer, Field, Method, Question, Regions};
+use super::{Answer, Field, Method, Outcome, Question, Regions};
 use crate::picture::Bar;
 
 /// Distances that are computed together before any of them is looked at.
@@ -33,8 +33,8 @@ impl Method for Sampled {
         "points of regions"
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Option<Answer<'f>> {
-        Some(Answer::Regions(Box::new(self.map(field))))
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+        Ok(Answer::Regions(Box::new(self.map(field))))
     }
 }
 

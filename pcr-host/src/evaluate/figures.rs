@@ -62,7 +62,7 @@ fn cases() -> [(&'static str, &'static str, Scenario); 3] {
     let line = |length| PathSegment::Line { length };
     let arc = |radius, sweep| PathSegment::Arc { radius, sweep };
     let straight = || agent(1, [-2.0, 0.0, 0.0], vec![line(4.0)]);
-    let of = |name: &str, agents: Vec<Agent>| Scenario { name: name.into(), agents };
+    let of = |name: &str, agents: Vec<Agent>| Scenario::new(name, agents);
     [
         (
             "fig14a",

@@ -51,7 +51,7 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
             let mut counts = [0; 2];
             for ((count, pairs), contact) in counts.iter_mut().zip(cases).zip([true, false]) {
                 for (kind, input) in pairs {
-                    let found = collides(method.as_ref(), &input.field());
+                    let found = collides(method.as_ref(), &input.field())?;
                     *count += usize::from(found);
                     if found != contact {
                         wrong.push(kind);
@@ -83,10 +83,11 @@ fn sampled(method: &dyn Method) -> bool {
     method.name() == "sampled map 0.01 s, boxes"
 }
 
-fn collides(method: &dyn Method, field: &Field<'_>) -> bool {
-    match method.answer(field) {
-        Some(Answer::Conflicts(found)) => !found.is_empty(),
-        Some(Answer::Regions(regions)) => {
+fn collides(method: &dyn Method, field: &Field<'_>) -> Result<bool, Problem> {
+    let failed = |reason: String| Problem::Method(method.name(), reason);
+    Ok(match method.answer(field).map_err(failed)? {
+        Answer::Conflicts(found) => !found.is_empty(),
+        Answer::Regions(regions) => {
             let [begin, end] = field.horizon;
             let times = (0..=((end - begin) / LOOK) as usize).map(|k| begin + LOOK * k as f64);
             times.into_iter().any(|time| {
@@ -94,8 +95,7 @@ fn collides(method: &dyn Method, field: &Field<'_>) -> bool {
                 regions.slice(0, 1, time).iter().any(|[from, to]| (*from..=*to).contains(&length))
             })
         }
-        None => false,
-    }
+    })
 }
 
 fn agent(id: usize, t_start: f64, start: [f64; 3], segment: PathSegment) -> Agent {
@@ -111,7 +111,7 @@ fn pairs(clearance: f64) -> [Scenario; KINDS] {
     let reach = RADII[0] + RADII[1] + clearance;
     let line = |length| PathSegment::Line { length };
     let arc = |radius, sweep| PathSegment::Arc { radius, sweep };
-    let of = |name: &str, agents: [Agent; 2]| Scenario { name: name.into(), agents: agents.into() };
+    let of = |name: &str, agents: [Agent; 2]| Scenario::new(name, agents.into());
     let east = |t_start| agent(0, t_start, [-4.0, 0.0, 0.0], line(8.0));
     [
         of("opposite lines", [east(0.123), agent(1, 0.0, [4.0, reach, PI], line(8.0))]),

@@ -23,7 +23,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         Extent::Quick => &["pcr f64", "sampled map 0.1 s, boxes"],
     };
     for method in methods().iter().filter(|method| method.question() == Question::Regions) {
-        if let (true, Some(Answer::Regions(regions))) = (kept.contains(&&*method.name()), method.answer(&field)) {
+        if let (true, Ok(Answer::Regions(regions))) = (kept.contains(&&*method.name()), method.answer(&field)) {
             row(&format!("{}, as kept", method.name()), regions.bytes());
         }
     }

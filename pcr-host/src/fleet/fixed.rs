@@ -1,12 +1,14 @@
 //! Fixed point as a format of the tool.
 
 use super::Format;
+use pcr_certify::data::Angle;
 use pcr_fixed::{Q12, Q16, Q20, Turns};
 
 macro_rules! impl_format {
     ($t:ident, $name:literal) => {
         impl Format for $t {
             const NAME: &'static str = $name;
+            const EPSILON: f64 = 0.0;
             /// Saturates: what is beyond the format is above its limit, too, and refused by name.
             fn from_f64(value: f64) -> Self {
                 let largest = if value < 0.0 { i32::MIN } else { i32::MAX };
@@ -20,6 +22,9 @@ macro_rules! impl_format {
             }
             fn radians(angle: Turns) -> f64 {
                 angle.to_radians()
+            }
+            fn held_angle(angle: Turns) -> Angle {
+                Angle::Turns(f64::from(angle.to_bits()) / 4_294_967_296.0)
             }
         }
     };

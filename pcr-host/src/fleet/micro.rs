@@ -6,6 +6,7 @@ use pcr_core::scalar::Micro;
 
 impl Format for Micro {
     const NAME: &'static str = "micro";
+    const EPSILON: f64 = f32::EPSILON as f64;
     fn from_f64(value: f64) -> Self {
         Self(f32::from_f64(value))
     }

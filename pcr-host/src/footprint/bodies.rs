@@ -97,7 +97,7 @@ impl<S: Format> Bodies<S> {
             discs::<S>(agent, place, &mut bodies)?;
         }
         let (agents, discs) = bodies;
-        let scenario = Scenario { name: scenario.name.clone(), agents };
+        let scenario = Scenario::new(scenario.name.clone(), agents);
         Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
     }
 }
@@ -165,7 +165,7 @@ fn rounded<S: Format>(offset: Offset) -> Result<Offset, Refused> {
         return Ok(offset);
     }
     let offset = offset.map(settled::<S>);
-    let fleet = Fleet::<S>::new(&Scenario { name: String::new(), agents: vec![offset.agent.clone()] })?;
+    let fleet = Fleet::<S>::new(&Scenario::new("", vec![offset.agent.clone()]))?;
     let rounding = fleet.motions().first().map(|motion| Rounding::of(&offset.agent, motion));
     Ok(rounding.map_or(offset.clone(), |rounding| offset.rounded(rounding)))
 }

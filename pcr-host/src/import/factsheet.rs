@@ -1,5 +1,6 @@
 //! Factsheets of VDA 5050 (2.x and 3.0): the contour of a vehicle and its limits.
 
+use super::loads::hull;
 use super::value::Object;
 use super::vehicle::Given;
 use super::{ImportError, Warnings};
@@ -14,7 +15,7 @@ pub(super) fn is_factsheet(root: &Value) -> bool {
     ["physicalParameters", "mobileRobotGeometry", "agvGeometry"].iter().any(|member| root.get(member).is_some())
 }
 
-/// Reads one: the first contour in it or, if there is none, the rectangle of length and width around the reference point.
+/// Reads one: the contour in it, the hull of several or, if there is none, the rectangle of length and width around the reference point.
 pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
     let root = Object::new("factsheet", value)?;
     let mut given = Given::default();
@@ -31,15 +32,18 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, Impo
     }
     let geometry = root.object("mobileRobotGeometry")?.map_or_else(|| root.object("agvGeometry"), |it| Ok(Some(it)))?;
     let envelopes = geometry.as_ref().map_or(Ok(&[][..]), |geometry| geometry.list("envelopes2d"))?;
-    let polygon = match (envelopes.first(), &physical) {
-        (Some(first), _) => {
-            if envelopes.len() > 1 {
-                warnings.add("envelopes2d", format!("the first of {} is taken", envelopes.len()));
+    let polygon = match (envelopes, &physical) {
+        ([only], _) => Some(polygon(only)?),
+        ([], Some(physical)) => rectangle(physical, warnings)?,
+        ([], None) => None,
+        (several, _) => {
+            warnings.add("envelopes2d", format!("there are {}; the convex hull of all is taken", several.len()));
+            let corners = several.iter().map(polygon).collect::<Result<Vec<_>, _>>()?;
+            if let Some(empty) = corners.iter().position(Vec::is_empty) {
+                return Err(ImportError::new(format!("factsheet, envelopes2d {}: 0 corners", empty + 1)));
             }
-            Some(polygon(first)?)
+            Some(hull(corners.concat()))
         }
-        (None, Some(physical)) => rectangle(physical, warnings)?,
-        (None, None) => None,
     };
     if let Some(polygon) = polygon {
         let footprint = Footprint::new(polygon, None);

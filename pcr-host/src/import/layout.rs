@@ -138,15 +138,36 @@ pub struct Layout {
     pub nodes: Vec<Node>,
     /// The edges.
     pub edges: Vec<Edge>,
+    /// Other ids of nodes, with their places: names of ends of edges that are one node.
+    pub aliases: Vec<(String, usize)>,
+    /// Types of vehicles that the file tells apart.
+    pub vehicle_types: Vec<String>,
+    /// Vehicles that the file names.
+    pub vehicles: Vec<String>,
     /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
     pub corner_radius: Option<f64>,
+    /// What its reader had to say about the file.
+    pub warnings: Vec<String>,
 }
 
 impl Layout {
-    /// Place of the node of this id or, if there is none, of this name.
-    pub fn node(&self, name: &str) -> Option<usize> {
+    /// Places of the node of this id or of this other id or, if there is none, of those of this name.
+    pub fn nodes_called(&self, name: &str) -> Vec<usize> {
         let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);
-        by_id.or_else(|| self.nodes.iter().position(|node| node.name.as_deref() == Some(name)))
+        let by_name = || {
+            let named = self.nodes.iter().enumerate().filter(|(_, node)| node.name.as_deref() == Some(name));
+            named.map(|(place, _)| place).collect()
+        };
+        let by_alias = || self.aliases.iter().find(|(alias, _)| alias == name).map(|(_, place)| *place);
+        by_id.or_else(by_alias).map_or_else(by_name, |place| vec![place])
+    }
+
+    /// Place of the node of this id or, if there is none, of this other id, or of this name if only one has it.
+    pub fn node(&self, name: &str) -> Option<usize> {
+        match self.nodes_called(name)[..] {
+            [only] => Some(only),
+            _ => None,
+        }
     }
 
     /// The level that has most nodes; among equals the first.
@@ -158,5 +179,10 @@ impl Layout {
     /// Level of an edge: that of the node where it begins.
     pub fn level(&self, edge: &Edge) -> usize {
         self.nodes.get(edge.ends[0]).map_or(0, |node| node.level)
+    }
+
+    /// Whether an edge begins or ends on a level.
+    pub fn is_on(&self, edge: &Edge, level: usize) -> bool {
+        edge.ends.iter().any(|&node| self.nodes.get(node).is_some_and(|node| node.level == level))
     }
 }

@@ -1,13 +1,14 @@
 //! The Layout Interchange Format of the VDMA (LIF 0.11 to 1.x): layouts of nodes and edges with properties by vehicle type.
 //!
 //! An edge is the NURBS trajectory of the vehicle type, or the straight line between its nodes. Without a type asked for,
-//! every edge is there, with the properties of the first type that it names.
+//! every edge is there, and more than once where types have trajectories of their own.
 
 use super::layout::{Edge, Id, Layout, Node, Placed};
+use super::names::Names;
 use super::value::Object;
 use super::{ImportError, Options, Warnings, trajectory, value};
 use serde_json::Value;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::BTreeSet;
 
 /// Largest gap between the end of a trajectory and its node that goes without a warning \[m\].
 const GAP: f64 = 1e-3;
@@ -27,9 +28,9 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     let name = root.object("metaInformation").ok().flatten();
     let name = name.and_then(|meta| meta.text("projectIdentification").ok().flatten()).unwrap_or_default();
     let mut reader = Reader {
-        layout: Layout { name: name.to_owned(), corner_radius: options.corner_radius, ..Layout::default() },
-        nodes: HashMap::new(),
-        edges: HashSet::new(),
+        levels: Vec::new(),
+        nodes: Names::new(),
+        edges: Names::new(),
         types: BTreeSet::new(),
         options,
         warnings,
@@ -44,10 +45,13 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         edges.extend(layout.list("edges")?);
     }
     for (k, value) in edges.into_iter().enumerate() {
-        reader.edge(k, value);
+        if let Err(error) = reader.edge(k, value) {
+            reader.warnings.lose(error);
+        }
     }
-    let Reader { layout, types, .. } = reader;
-    if layout.nodes.is_empty() {
+    let Reader { levels, nodes, edges, types, .. } = reader;
+    let vehicle_types = types.iter().filter(|name| !name.is_empty()).cloned().collect();
+    if nodes.list().is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
     }
     match &options.vehicle {
@@ -58,17 +62,25 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         None if types.len() > 1 => {
             let there = types.into_iter().collect::<Vec<_>>().join(", ");
             warnings
-                .add(there, "several vehicle types; each edge is taken as for the first one it names (--vehicle TYPE)");
+                .add(there, "several vehicle types; the ways of all of them are taken, each with the speed of the first type it is for (--vehicle TYPE)");
         }
         _ => {}
     }
-    Ok(layout)
+    Ok(Layout {
+        name: name.to_owned(),
+        vehicle_types,
+        levels,
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    })
 }
 
 struct Reader<'a> {
-    layout: Layout,
-    nodes: HashMap<String, usize>,
-    edges: HashSet<String>,
+    levels: Vec<String>,
+    nodes: Names<Node>,
+    edges: Names<Edge>,
     types: BTreeSet<String>,
     options: &'a Options,
     warnings: &'a mut Warnings,
@@ -77,59 +89,58 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn node(&mut self, k: usize, value: &Value, layout: &str) {
         match read_node(k, value, layout) {
-            Err(error) => self.warnings.add(error, "left out"),
-            Ok((id, ..)) if self.nodes.contains_key(&id) => {
-                self.warnings.add(format_args!("node {id}"), "given twice; the first is taken");
-            }
+            Err(error) => self.warnings.lose(error),
             Ok((id, name, level, at)) => {
-                let known = self.layout.levels.iter().position(|other| *other == level);
+                let known = self.levels.iter().position(|other| *other == level);
                 let level = known.unwrap_or_else(|| {
-                    self.layout.levels.push(level);
-                    self.layout.levels.len() - 1
+                    self.levels.push(level);
+                    self.levels.len() - 1
                 });
-                self.nodes.insert(id.clone(), self.layout.nodes.len());
-                self.layout.nodes.push(Node { id: Id::Text(id), name, level, at });
+                self.nodes.add(Node { id: Id::Text(id), name, level, at }, self.warnings);
             }
         }
     }
 
-    fn edge(&mut self, k: usize, value: &Value) {
-        if let Err(error) = self.try_edge(k, value) {
-            self.warnings.add(error, "left out");
-        }
-    }
-
-    fn try_edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
+    fn edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
         let object = Object::new(format!("edge at place {}", k + 1), value)?;
         let id = object.text("edgeId")?.ok_or_else(|| object.missing("edgeId"))?.to_owned();
-        let object = Object::new(format!("edge {id}"), value)?;
-        if self.edges.contains(&id) {
-            return Err(ImportError::new(format!("edge {id}, given twice")));
-        }
+        let object = object.called(format!("edge {id}"));
         let place = |field: &str| {
             let node = object.text(field)?.ok_or_else(|| object.missing(field))?;
-            let place = self.nodes.get(node).copied();
-            place.ok_or_else(|| ImportError::new(format!("edge {id}, {field}: there is no node {node}")))
+            let place = self.nodes.place(&Id::Text(node.to_owned()));
+            place.map_err(|unclear| ImportError::new(format!("edge {id}, {field}: {unclear}")))
         };
         let ends = [place("startNodeId")?, place("endNodeId")?];
-        let mut chosen = None;
+        let mut edges: Vec<Edge> = Vec::new();
         let properties = object.list("vehicleTypeEdgeProperties")?;
         for (k, value) in properties.iter().enumerate() {
             let property = Object::new(format!("edge {id}, properties {}", k + 1), value)?;
             let vehicle = property.text("vehicleTypeId")?.unwrap_or_default().to_owned();
-            if chosen.is_none() && self.options.vehicle.as_ref().is_none_or(|asked| *asked == vehicle) {
-                chosen = Some(property);
-            }
+            let asked = self.options.vehicle.as_ref().is_none_or(|asked| *asked == vehicle);
             self.types.insert(vehicle);
+            if asked {
+                let edge = self.along(&id, ends, Some(&property))?;
+                // The same way at the speed of another type is the same edge.
+                if edges.iter().all(|known| known.curve != edge.curve) {
+                    edges.push(edge);
+                }
+            }
         }
-        if chosen.is_none() && self.options.vehicle.is_some() {
-            // Not for this vehicle.
-            return Ok(());
+        if properties.is_empty() && self.options.vehicle.is_none() {
+            edges.push(self.along(&id, ends, None)?);
         }
-        let at = ends.map(|node| self.layout.nodes.get(node).map_or([0.0; 2], |node| node.at));
+        for edge in edges {
+            self.edges.add(edge, self.warnings);
+        }
+        Ok(())
+    }
+
+    /// The edge with the properties of a vehicle type.
+    fn along(&mut self, id: &str, ends: [usize; 2], property: Option<&Object<'_>>) -> Result<Edge, ImportError> {
+        let at = ends.map(|node| self.nodes.list()[node].at);
         let straight = Placed::line(at[0], at[1]);
         let mut edge = Edge {
-            id: Id::Text(id.clone()),
+            id: Id::Text(id.to_owned()),
             ends,
             curve: if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() },
             two_way: false,
@@ -137,22 +148,20 @@ impl Reader<'_> {
             rotation: None,
             deviation: 0.0,
         };
-        if let Some(property) = chosen {
+        if let Some(property) = property {
             edge.speed = property.positive("maxSpeed")?;
             edge.rotation = property.positive("maxRotationSpeed")?;
             if let Some(trajectory) = property.object("trajectory")? {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
                 let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
-                self.gaps(&id, &fit.pieces, at);
+                self.gaps(id, &fit.pieces, at);
                 (edge.curve, edge.deviation) = (fit.pieces, fit.deviation);
             }
         }
         if edge.curve.is_empty() {
             self.warnings.add(format_args!("edge {id}"), "its length is 0");
         }
-        self.edges.insert(id);
-        self.layout.edges.push(edge);
-        Ok(())
+        Ok(edge)
     }
 
     /// Warns where a trajectory does not begin and end at its nodes.

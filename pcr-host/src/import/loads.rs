@@ -48,7 +48,7 @@ pub(super) fn loaded(state: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warni
 }
 
 /// The corners of the convex hull, to the left about (Andrew's monotone chain).
-fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+pub(super) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();
     let chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {

@@ -1,14 +1,16 @@
 //! Route graphs of the nav2 route server: GeoJSON with a point a node and a line an edge.
 //!
 //! As there, an edge is the straight line between its nodes, whatever its own coordinates are; `speed_limit` in its metadata
-//! is a fraction of the full speed up to 1 and a percentage above it. Zero-length edges are kept.
+//! is a fraction of the full speed up to 1 and a percentage above it. Zero-length edges are kept, and so are several edges
+//! of one id.
 
 use super::layout::{Edge, Id, Layout, Node, Placed};
+use super::names::Names;
 use super::value::Object;
 use super::vehicle::CORNER_RADIUS;
 use super::{ImportError, Options, Warnings, value};
 use serde_json::Value;
-use std::collections::{HashMap, HashSet};
+use std::collections::BTreeSet;
 
 /// Largest distance between the drawn end of an edge and its node that goes without a warning \[m\].
 const DRAWN: f64 = 1e-3;
@@ -30,37 +32,48 @@ pub(super) fn read(
     if root.get("features").is_none() {
         return Err(root.missing("features"));
     }
-    let mut layout = Layout {
-        name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
-        levels: vec![String::new()],
-        corner_radius: Some(options.corner_radius.unwrap_or(CORNER_RADIUS)),
-        ..Layout::default()
-    };
-    let mut graph = Graph { layout: &mut layout, places: HashMap::new(), edges: HashSet::new(), warnings };
-    let features = root.list("features")?;
+    let mut graph = Graph { nodes: Names::new(), edges: Names::new(), frames: BTreeSet::new(), warnings };
     let mut lines = Vec::new();
-    for (k, feature) in features.iter().enumerate() {
+    for (k, feature) in root.list("features")?.iter().enumerate() {
         match Feature::read(k, feature) {
-            Ok(Feature { id, properties, geometry: Geometry::Point(at) }) => graph.node(id, &properties, at),
-            Ok(line) => lines.push(line),
-            Err(error) => graph.warnings.add(format_args!("feature {}", k + 1), format!("left out: {error}")),
+            Ok(Some(Feature { id, properties, geometry: Geometry::Point(at) })) => graph.node(id, &properties, at),
+            Ok(Some(line)) => lines.push(line),
+            Ok(None) => graph
+                .warnings
+                .add(format_args!("feature {}", k + 1), "it is no point and no line, hence no part of the graph"),
+            Err(error) => graph.warnings.lose(error),
         }
     }
     for Feature { id, properties, geometry } in lines {
-        if let Err(problem) = graph.edge(&id, &properties, &geometry, full_speed) {
-            graph.warnings.add(format_args!("edge {id}"), problem);
+        if let Err(problem) = graph.edge(id, &properties, &geometry, full_speed) {
+            graph.warnings.lose(problem);
         }
     }
-    if layout.nodes.is_empty() {
+    let Graph { nodes, edges, frames, .. } = graph;
+    if nodes.list().is_empty() {
         return Err(ImportError::new("graph, features: no node (a Point with an id in its properties) among them"));
     }
-    Ok(layout)
+    if frames.len() > 1 {
+        let frames = frames.into_iter().collect::<Vec<_>>().join(", ");
+        return Err(ImportError::new(format!(
+            "graph: its nodes are in several frames ({frames}); one has to be given"
+        )));
+    }
+    Ok(Layout {
+        name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
+        levels: vec![String::new()],
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: Some(options.corner_radius.unwrap_or(CORNER_RADIUS)),
+        ..Layout::default()
+    })
 }
 
 struct Graph<'a> {
-    layout: &'a mut Layout,
-    places: HashMap<u64, usize>,
-    edges: HashSet<u64>,
+    nodes: Names<Node>,
+    edges: Names<Edge>,
+    /// Of the nodes that name theirs.
+    frames: BTreeSet<String>,
     warnings: &'a mut Warnings,
 }
 
@@ -103,50 +116,44 @@ fn ends(value: &Value) -> Option<[[f64; 2]; 2]> {
 }
 
 impl<'j> Feature<'j> {
-    fn read(k: usize, value: &'j Value) -> Result<Self, ImportError> {
+    /// A node or an edge; nothing of another geometry, which the route server passes over as well.
+    fn read(k: usize, value: &'j Value) -> Result<Option<Self>, ImportError> {
         let feature = Object::new(format!("feature {}", k + 1), value)?;
+        let geometry = feature.object("geometry")?.ok_or_else(|| feature.missing("geometry"))?;
+        let kind = geometry.text("type")?.ok_or_else(|| geometry.missing("type"))?;
+        if !["Point", "LineString", "MultiLineString"].contains(&kind) {
+            return Ok(None);
+        }
         let properties = feature.object("properties")?.ok_or_else(|| feature.missing("properties"))?;
         let id = whole(&properties, "id")?;
-        let geometry = feature.object("geometry")?.ok_or_else(|| feature.missing("geometry"))?;
         let coordinates = geometry.get("coordinates").ok_or_else(|| geometry.missing("coordinates"))?;
-        let geometry = match geometry.text("type")? {
-            Some("Point") => Geometry::Point(point(coordinates).ok_or_else(|| {
+        let geometry = match kind {
+            "Point" => Geometry::Point(point(coordinates).ok_or_else(|| {
                 ImportError::new(format!("{}, coordinates: two numbers are expected", geometry.name))
             })?),
-            Some("LineString" | "MultiLineString") => Geometry::Line(ends(coordinates)),
-            other => {
-                let other = other.unwrap_or("nothing");
-                return Err(ImportError::new(format!("{}, type: {other} is no node and no edge", geometry.name)));
-            }
+            _ => Geometry::Line(ends(coordinates)),
         };
-        Ok(Self { id, properties, geometry })
+        Ok(Some(Self { id, properties, geometry }))
     }
 }
 
 impl Graph<'_> {
     fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) {
-        if self.places.contains_key(&id) {
-            self.warnings.add(format_args!("node {id}"), "given twice; the first is taken");
-            return;
-        }
-        self.places.insert(id, self.layout.nodes.len());
         let name = properties.text("name").ok().flatten().map(str::to_owned);
-        self.layout.nodes.push(Node { id: Id::Number(id), name, level: 0, at });
+        self.frames.extend(properties.text("frame").ok().flatten().map(str::to_owned));
+        self.nodes.add(Node { id: Id::Number(id), name, level: 0, at }, self.warnings);
     }
 
-    /// Adds an edge, or says why it is left out.
-    fn edge(&mut self, id: &u64, properties: &Object<'_>, drawn: &Geometry, full_speed: f64) -> Result<(), String> {
-        if self.edges.contains(id) {
-            return Err("given twice; the first is taken".into());
-        }
+    /// Adds an edge. Of nodes of one name it joins the last one, as the route server does.
+    fn edge(&mut self, id: u64, properties: &Object<'_>, drawn: &Geometry, speed: f64) -> Result<(), ImportError> {
+        let named = format!("edge {id}");
         let place = |field: &str| {
-            let node = whole(properties, field).map_err(|error| format!("left out: {error}"))?;
-            self.places.get(&node).copied().ok_or_else(|| format!("left out: there is no node {node}"))
+            let node = Id::Number(whole(properties, field)?);
+            self.nodes.last_place(&node).map_err(|unclear| ImportError::new(format!("{named}, {field}: {unclear}")))
         };
         let ends = [place("startid")?, place("endid")?];
-        let at = ends.map(|node| self.layout.nodes.get(node).map_or([0.0; 2], |node| node.at));
+        let at = ends.map(|node| self.nodes.list()[node].at);
         let line = Placed::line(at[0], at[1]);
-        let named = format!("edge {id}");
         if let Geometry::Line(Some(drawn)) = drawn {
             let off = |k: usize| (drawn[k][0] - at[k][0]).hypot(drawn[k][1] - at[k][1]) > DRAWN;
             if off(0) || off(1) {
@@ -158,23 +165,23 @@ impl Graph<'_> {
         if !straight {
             self.warnings.add(&named, "its length is 0");
         }
-        let speed = self.speed_limit(&named, properties, full_speed);
+        let speed = self.speed_limit(&named, properties, speed)?;
         let curve = if straight { vec![line] } else { Vec::new() };
-        let edge = Edge { id: Id::Number(*id), ends, curve, two_way: false, speed, rotation: None, deviation: 0.0 };
-        self.edges.insert(*id);
-        self.layout.edges.push(edge);
+        let edge = Edge { id: Id::Number(id), ends, curve, two_way: false, speed, rotation: None, deviation: 0.0 };
+        self.edges.add(edge, self.warnings);
         Ok(())
     }
 
-    fn speed_limit(&mut self, edge: &str, properties: &Object<'_>, full_speed: f64) -> Option<f64> {
-        let limit = properties.object("metadata").ok()??.get("speed_limit")?.as_f64();
-        match limit {
-            Some(fraction) if fraction > 0.0 && fraction <= 1.0 => Some(fraction * full_speed),
-            Some(percent) if percent > 1.0 && percent <= 100.0 => Some(percent / 100.0 * full_speed),
+    fn speed_limit(&mut self, edge: &str, properties: &Object<'_>, full: f64) -> Result<Option<f64>, ImportError> {
+        let Some(metadata) = properties.object("metadata")? else { return Ok(None) };
+        let Some(limit) = metadata.get("speed_limit") else { return Ok(None) };
+        Ok(match limit.as_f64() {
+            Some(fraction) if fraction > 0.0 && fraction <= 1.0 => Some(fraction * full),
+            Some(percent) if percent > 1.0 && percent <= 100.0 => Some(percent / 100.0 * full),
             _ => {
                 self.warnings.add(edge, "its speed_limit is not above 0 and up to 100 (percent); it is not used");
                 None
             }
-        }
+        })
     }
 }

@@ -1,11 +1,13 @@
 //! OpenDRIVE: the reference lines of roads, whose lines and arcs are taken as they are.
 //!
-//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share. Joints within a road that
-//! are open by what maps are off by are closed: the rest of the road keeps its place, and the gap counts as deviation of its path. Lanes
-//! are not read.
+//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share where their reference lines meet: then
+//! the node has the names of all ends. Where lines of linked roads are apart, mostly sideways by lanes, no path leads from one onto the
+//! other, and there is a warning. Joints within a road that are open by what maps are off by are closed: the rest of the road
+//! keeps its place, and the gap counts as deviation of its path. Lanes are not read.
 
 use super::layout::{Edge, Id, Layout, Node, Placed};
-use super::xml::{child, children, number, parse};
+use super::names::Names;
+use super::xml::{child, children, number, only, parse};
 use super::{ImportError, Options, Warnings};
 use crate::scenario::PathSegment;
 use std::collections::HashMap;
@@ -16,7 +18,7 @@ const CLOSED: f64 = 1e-9;
 /// Largest gap that is closed \[m\].
 const GAP: f64 = 0.05;
 
-/// Largest radius of an arc \[m\]; beyond it, it is a line to the last digit of any coordinate.
+/// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
 const STRAIGHT: f64 = 1e9;
 
 /// Most turns of an arc: more is a damaged file.
@@ -29,8 +31,14 @@ fn windings(shape: &PathSegment) -> f64 {
     }
 }
 
-/// Gap and angle of the widest joint of a road.
-type Joint = [f64; 2];
+/// The reference line of a road.
+struct Curve {
+    pieces: Vec<Placed>,
+    /// Distance of `pieces` from it, but for open joints \[m\].
+    deviation: f64,
+    /// Gap \[m\] and angle \[rad\] of its widest joint.
+    joint: [f64; 2],
+}
 
 /// Reads the roads.
 pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
@@ -40,46 +48,40 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         return Err(ImportError::new(format!("{}: not an OpenDRIVE file", root.tag_name().name())));
     }
     let header = child(root, "header").and_then(|header| header.attribute("name")).unwrap_or_default();
-    let mut layout = Layout {
-        name: header.to_owned(),
-        levels: vec![String::new()],
-        corner_radius: options.corner_radius,
-        ..Layout::default()
-    };
-    let mut roads = HashMap::new();
+    let mut names = Names::new();
+    // Of each edge the first of its roads: a copy adds no links.
+    let mut links = Vec::new();
     let (mut widest, mut open) = ([0.0_f64; 2], Vec::new());
     for (k, road) in children(root, "road").enumerate() {
         let id = road.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         let name = format!("road {id}");
-        if roads.contains_key(&id) {
-            warnings.add(name, "given twice; the first is taken");
-            continue;
-        }
-        match curve(road, &name) {
-            Err(error) => warnings.add(error, "road left out"),
-            Ok((curve, _)) if curve.is_empty() => warnings.add(name, "left out: it has no geometry"),
-            Ok((curve, joint)) => {
+        match curve(road, &name).and_then(|found| Ok((found, speed(road, &name, warnings)?))) {
+            Err(error) => warnings.lose(error),
+            Ok((Curve { pieces, .. }, _)) if pieces.is_empty() => {
+                warnings.lose(format_args!("{name}: it has no geometry"))
+            }
+            Ok((Curve { pieces, deviation, joint }, speed)) => {
                 if joint.iter().any(|gap| *gap > CLOSED) {
                     widest = [widest[0].max(joint[0]), widest[1].max(joint[1])];
                     open.push(name);
                 }
-                roads.insert(id.clone(), layout.edges.len());
-                let id = id.parse().map_or(Id::Text(id), Id::Number);
-                let speed = speed(road);
                 // The nodes follow when all roads are known.
-                layout.edges.push(Edge {
-                    id,
+                let edge = Edge {
+                    id: named(&id),
                     ends: [0; 2],
-                    curve,
+                    curve: pieces,
                     two_way: true,
                     speed,
                     rotation: None,
-                    deviation: 0.0,
-                });
+                    deviation,
+                };
+                if names.add(edge, warnings) == links.len() {
+                    links.push(child(road, "link"));
+                }
             }
         }
     }
-    if layout.edges.is_empty() {
+    if names.list().is_empty() {
         return Err(ImportError::new("OpenDRIVE: there is no road of lines and arcs in it"));
     }
     for road in open {
@@ -89,15 +91,34 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         );
         warnings.add(road, problem);
     }
-    join(&mut layout, root, &roads);
+    let (group, Links { count, apart, widest }) = groups(&names, &links, warnings);
+    if apart > 0 {
+        let problem = format!(
+            "{apart} of {count} are between reference lines up to {widest:.3} m apart; no route passes there from road to road"
+        );
+        warnings.add("links of roads", problem);
+    }
+    let mut layout = Layout {
+        name: header.to_owned(),
+        levels: vec![String::new()],
+        edges: names.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    };
+    join(&mut layout, &group);
     Ok(layout)
 }
 
+/// The name of a road, a number where it is one.
+fn named(id: &str) -> Id {
+    id.parse().map_or_else(|_| Id::Text(id.to_owned()), Id::Number)
+}
+
 /// The lines and arcs of a road, and its widest joint.
-fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<(Vec<Placed>, Joint), ImportError> {
+fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError> {
     let mut curve: Vec<Placed> = Vec::new();
-    let mut joint = [0.0_f64; 2];
-    let view = child(road, "planView").ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
+    let (mut joint, mut deviation) = ([0.0_f64; 2], 0.0_f64);
+    let view = only(road, "planView")?.ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
     for (k, record) in children(view, "geometry").enumerate() {
         let name = format!("{name}, geometry {}", k + 1);
         let field = |attribute: &str| number(record, &name, attribute);
@@ -110,7 +131,11 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<(Vec<Placed>, Join
                 let sweep = length * curvature;
                 match curvature.abs().recip() {
                     radius if radius < STRAIGHT => PathSegment::Arc { radius, sweep },
-                    _ => PathSegment::Line { length },
+                    _ => {
+                        // How far the arc leaves its tangent.
+                        deviation = deviation.max(0.5 * length * sweep.abs());
+                        PathSegment::Line { length }
+                    }
                 }
             }
             Some((other, _)) => return Err(ImportError::new(format!("{name}: {other} is not a line and not an arc"))),
@@ -139,25 +164,48 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<(Vec<Placed>, Join
         }
         curve.push(placed);
     }
-    Ok((curve, joint))
+    Ok(Curve { pieces: curve, deviation, joint })
 }
 
-/// The first speed limit of a road \[m/s\].
-fn speed(road: roxmltree::Node<'_, '_>) -> Option<f64> {
-    let limit = children(road, "type").find_map(|road_type| child(road_type, "speed"))?;
-    let unit = match limit.attribute("unit") {
-        Some("mph") => 0.447_04,
-        Some("km/h") => 1.0 / 3.6,
-        _ => 1.0,
-    };
-    let speed = limit.attribute("max")?.parse::<f64>().ok()? * unit;
-    Some(speed).filter(|speed| *speed > 0.0 && *speed < 1e6)
+/// The speed limit of a road, the least one where it changes on the way \[m/s\].
+fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
+    let mut limits = Vec::new();
+    for limit in children(road, "type").flat_map(|part| children(part, "speed")) {
+        let unit = match limit.attribute("unit") {
+            Some("mph") => 0.447_04,
+            Some("km/h") => 1.0 / 3.6,
+            None | Some("m/s") => 1.0,
+            Some(other) => return Err(ImportError::new(format!("{name}, speed, unit: {other} is not known"))),
+        };
+        if !matches!(limit.attribute("max"), Some("no limit" | "undefined")) {
+            limits.push(number(limit, &format!("{name}, speed"), "max")? * unit);
+        }
+    }
+    let least = limits.iter().copied().reduce(f64::min);
+    if limits.iter().any(|limit| Some(*limit) != least) {
+        warnings.add(name, "its speed limit changes on the way; the least one is taken for all of it");
+    }
+    // 0 is what maps say that have no limits.
+    Ok(least.filter(|speed| *speed > 0.0 && *speed < 1e6))
 }
 
-/// Gives the roads their nodes: linked ends are one node.
-fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<String, usize>) {
-    // Ends by 2 × road, and one more for its end.
-    let mut group: Vec<usize> = (0..2 * layout.edges.len()).collect();
+/// Links between the ends of roads.
+struct Links {
+    count: usize,
+    /// Between ends that are apart.
+    apart: usize,
+    /// The largest distance of linked ends \[m\].
+    widest: f64,
+}
+
+/// For each end of a road, by 2 × road and one more for its end, the end that stands for all that are linked to it and meet it.
+fn groups(
+    roads: &Names<Edge>,
+    links: &[Option<roxmltree::Node<'_, '_>>],
+    warnings: &mut Warnings,
+) -> (Vec<usize>, Links) {
+    let mut gaps = HashMap::new();
+    let mut group: Vec<usize> = (0..2 * links.len()).collect();
     fn find(group: &mut [usize], mut end: usize) -> usize {
         while group[end] != end {
             group[end] = group[group[end]];
@@ -165,36 +213,64 @@ fn join(layout: &mut Layout, root: roxmltree::Node<'_, '_>, roads: &HashMap<Stri
         }
         end
     }
-    for road in children(root, "road") {
-        let (Some(place), Some(link)) = (road.attribute("id").and_then(|id| roads.get(id)), child(road, "link")) else {
-            continue;
-        };
+    for (place, link) in links.iter().enumerate() {
+        let Some(link) = link else { continue };
         for (side, name) in ["predecessor", "successor"].into_iter().enumerate() {
-            let linked = child(link, name).filter(|link| link.attribute("elementType") == Some("road"));
-            let other = linked.and_then(|link| {
-                let road = roads.get(link.attribute("elementId")?)?;
-                Some(2 * road + usize::from(link.attribute("contactPoint")? == "end"))
-            });
-            if let Some(other) = other {
-                let (a, b) = (find(&mut group, 2 * place + side), find(&mut group, other));
-                group[a.max(b)] = a.min(b);
+            // Junctions are roads that are linked to the roads that they join.
+            let Some(linked) = child(*link, name).filter(|link| link.attribute("elementType") == Some("road")) else {
+                continue;
+            };
+            let other = roads.place(&named(linked.attribute("elementId").unwrap_or_default()));
+            match (other, linked.attribute("contactPoint")) {
+                (Ok(road), Some(point @ ("start" | "end"))) => {
+                    let (end, other) = (2 * place + side, 2 * road + usize::from(point == "end"));
+                    let [a, b] = [end, other].map(|end| end_of(roads.list(), end));
+                    let gap = (a[0] - b[0]).hypot(a[1] - b[1]);
+                    // A link is mostly told by both of its roads.
+                    gaps.insert([end.min(other), end.max(other)], gap);
+                    if gap <= GAP {
+                        let (a, b) = (find(&mut group, end), find(&mut group, other));
+                        group[a.max(b)] = a.min(b);
+                    }
+                }
+                (other, _) => {
+                    let problem = other.map_or_else(|unclear| unclear.to_string(), |_| "it has no contactPoint".into());
+                    let road = roads.list()[place].id.clone();
+                    warnings.add(format_args!("road {road}, {name}"), format!("{problem}; no route leads over it"));
+                }
             }
         }
     }
+    let links = Links {
+        count: gaps.len(),
+        apart: gaps.values().filter(|gap| **gap > GAP).count(),
+        widest: gaps.values().fold(0.0, |widest, gap| f64::max(widest, *gap)),
+    };
+    ((0..group.len()).map(|end| find(&mut group, end)).collect(), links)
+}
+
+/// Gives the roads their nodes: linked ends that meet are one node, which has the names of all of them.
+fn join(layout: &mut Layout, group: &[usize]) {
     let mut nodes = HashMap::new();
     for place in 0..layout.edges.len() {
         for side in 0..2 {
-            let root = find(&mut group, 2 * place + side);
-            let edge = &layout.edges[place];
-            let at =
-                if side == 0 { edge.curve.first().map(|first| first.at) } else { edge.curve.last().map(Placed::end) };
+            let at = end_of(&layout.edges, 2 * place + side);
             let next = layout.nodes.len();
-            let node = *nodes.entry(root).or_insert(next);
+            let node = *nodes.entry(group[2 * place + side]).or_insert(next);
+            let id = format!("{}/{}", layout.edges[place].id, ["start", "end"][side]);
             if node == next {
-                let id = Id::Text(format!("{}/{}", edge.id, ["start", "end"][side]));
-                layout.nodes.push(Node { id, name: None, level: 0, at: at.unwrap_or_default() });
+                layout.nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+            } else {
+                layout.aliases.push((id, node));
             }
             layout.edges[place].ends[side] = node;
         }
     }
+}
+
+/// Where an end of a road is \[m\].
+fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
+    let curve = edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
+    let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    at.unwrap_or_default()
 }

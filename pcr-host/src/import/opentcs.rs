@@ -5,13 +5,16 @@
 
 use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node, Placed};
+use super::names::Names;
 use super::nurbs::Bezier;
-use super::xml::{child, children, number, parse};
+use super::xml::{children, number, only, optional, parse};
 use super::{ImportError, Options, Warnings};
-use std::collections::{HashMap, HashSet};
 
 /// Metres of a millimetre.
 const MILLI: f64 = 1e-3;
+
+/// Unit of the visual layout of a model that names none \[mm\].
+const UNIT: f64 = 50.0;
 
 /// Relative difference of a length from the geometry that goes without a warning.
 const DIFFERENCE: f64 = 0.01;
@@ -23,68 +26,92 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     if !root.has_tag_name("model") {
         return Err(ImportError::new(format!("{}: not a plant model of openTCS", root.tag_name().name())));
     }
-    let mut layout = Layout { levels: vec![String::new()], corner_radius: options.corner_radius, ..Layout::default() };
-    layout.name = root.attribute("name").unwrap_or_default().to_owned();
-    let mut places = HashMap::new();
+    let mut nodes = Names::new();
     for (k, point) in children(root, "point").enumerate() {
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         let name = format!("point {id}");
         let at = |attribute: &str| number(point, &name, attribute).map(|x| x * MILLI);
         match (at("positionX"), at("positionY")) {
-            (Err(error), _) | (_, Err(error)) => warnings.add(error, "left out"),
-            _ if places.contains_key(&id) => warnings.add(name, "given twice; the first is taken"),
+            (Err(error), _) | (_, Err(error)) => warnings.lose(error),
             (Ok(x), Ok(y)) => {
-                places.insert(id.clone(), layout.nodes.len());
-                layout.nodes.push(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] });
+                nodes.add(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] }, warnings);
             }
         }
     }
-    let visual = child(root, "visualLayout");
-    let unit = |attribute: &str| {
-        visual.and_then(|visual| number(visual, "", attribute).ok()).filter(|unit| *unit > 0.0).unwrap_or(50.0) * MILLI
-    };
-    let units = [unit("scaleX"), -unit("scaleY")];
-    let mut known = HashSet::new();
-    for (k, path) in children(root, "path").enumerate() {
-        let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        let name = format!("path {id}");
-        let end = |attribute: &str| path.attribute(attribute).and_then(|point| places.get(point).copied());
-        let (Some(from), Some(to)) = (end("sourcePoint"), end("destinationPoint")) else {
-            warnings.add(name, "left out: its source or its destination is no point");
-            continue;
-        };
-        if !known.insert(id.clone()) {
-            warnings.add(name, "given twice; the first is taken");
-            continue;
-        }
-        let ends = [from, to].map(|node| layout.nodes.get(node).map_or([0.0; 2], |node| node.at));
-        let fit = match curve(path, &name, ends, units, options.tolerance()) {
-            Ok(fit) => fit,
-            Err(error) => {
-                warnings.add(error, "left out");
-                continue;
-            }
-        };
-        let limit = |attribute: &str| number(path, &name, attribute).ok().map(|speed| speed * MILLI);
-        let edge = Edge {
-            id: Id::Text(id),
-            ends: [from, to],
-            curve: fit.pieces,
-            two_way: limit("maxReverseVelocity").is_some_and(|speed| speed > 0.0),
-            speed: limit("maxVelocity").filter(|speed| *speed > 0.0),
-            rotation: None,
-            deviation: fit.deviation,
-        };
-        let (typed, drawn) = (limit("length"), edge.length());
-        if typed.is_none_or(|typed| (typed - drawn).abs() > DIFFERENCE * drawn) {
-            warnings.add(name, "its length is not that of its geometry, which counts");
-        }
-        layout.edges.push(edge);
-    }
-    if layout.nodes.is_empty() {
+    if nodes.list().is_empty() {
         return Err(ImportError::new("model: there is no point in it"));
     }
-    Ok(layout)
+    let visual = only(root, "visualLayout")?;
+    let unit = |attribute: &str| match visual.map(|visual| optional(visual, "visualLayout", attribute)).transpose()? {
+        None | Some(None) => Ok(UNIT * MILLI),
+        Some(Some(unit)) if unit > 0.0 => Ok(unit * MILLI),
+        Some(Some(unit)) => {
+            Err(ImportError::new(format!("visualLayout, {attribute}: {unit} where a number above 0 is expected")))
+        }
+    };
+    let units = [unit("scaleX")?, -unit("scaleY")?];
+    let mut edges = Names::new();
+    for (k, path) in children(root, "path").enumerate() {
+        let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        match edge(path, id, &nodes, units, options.tolerance(), warnings) {
+            Ok(edge) => {
+                edges.add(edge, warnings);
+            }
+            Err(error) => warnings.lose(error),
+        }
+    }
+    let is_outline = |node: roxmltree::Node<'_, '_>| {
+        node.has_tag_name("vehicleEnvelope") && node.children().any(|vertex| vertex.is_element())
+    };
+    for element in root.children().filter(|element| element.children().any(is_outline)) {
+        let name = element.attribute("name").unwrap_or_default();
+        let name = format!("{} {name}", element.tag_name().name());
+        warnings.add(name, "its vehicleEnvelope is not read; the vehicle has its own outline everywhere");
+    }
+    let vehicles = children(root, "vehicle").filter_map(|vehicle| vehicle.attribute("name"));
+    Ok(Layout {
+        vehicles: vehicles.map(crate::scenario::label).filter(|name| !name.is_empty()).collect(),
+        name: root.attribute("name").unwrap_or_default().to_owned(),
+        levels: vec![String::new()],
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    })
+}
+
+/// The edge that a path is.
+fn edge(
+    path: roxmltree::Node<'_, '_>,
+    id: String,
+    nodes: &Names<Node>,
+    units: [f64; 2],
+    tolerance: f64,
+    warnings: &mut Warnings,
+) -> Result<Edge, ImportError> {
+    let name = format!("path {id}");
+    let end = |attribute: &str| {
+        let problem = |problem: &dyn std::fmt::Display| ImportError::new(format!("{name}, {attribute}: {problem}"));
+        let point = path.attribute(attribute).ok_or_else(|| problem(&"missing"))?;
+        nodes.place(&Id::Text(point.to_owned())).map_err(|unclear| problem(&unclear))
+    };
+    let ends = [end("sourcePoint")?, end("destinationPoint")?];
+    let fit = curve(path, &name, ends.map(|node| nodes.list()[node].at), units, tolerance)?;
+    let limit = |attribute: &str| Ok(optional(path, &name, attribute)?.map(|speed| speed * MILLI));
+    let edge = Edge {
+        id: Id::Text(id),
+        ends,
+        curve: fit.pieces,
+        two_way: limit("maxReverseVelocity")?.is_some_and(|speed| speed > 0.0),
+        speed: limit("maxVelocity")?.filter(|speed| *speed > 0.0),
+        rotation: None,
+        deviation: fit.deviation,
+    };
+    let (typed, drawn) = (limit("length")?, edge.length());
+    if typed.is_none_or(|typed| (typed - drawn).abs() > DIFFERENCE * drawn) {
+        warnings.add(name, "its length is not that of its geometry, which counts");
+    }
+    Ok(edge)
 }
 
 /// The lines and arcs of a path.
@@ -95,7 +122,7 @@ fn curve(
     units: [f64; 2],
     tolerance: f64,
 ) -> Result<Fit, ImportError> {
-    let layout = child(path, "pathLayout");
+    let layout = only(path, "pathLayout")?;
     let mut points = vec![from];
     for point in layout.into_iter().flat_map(|layout| children(layout, "controlPoint")) {
         points.push([number(point, name, "x")? * units[0], number(point, name, "y")? * units[1]]);

@@ -83,7 +83,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
             match level.lane(k, lane, options, &mut graphs) {
                 Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
-                Err(problem) => warnings.add(format_args!("lane {name}/{k}"), format!("left out: {problem}")),
+                Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
             }
         }
         layout.levels.push(name.clone());
@@ -194,7 +194,16 @@ impl Level<'_> {
         graphs: &mut BTreeSet<u64>,
     ) -> Result<Option<String>, String> {
         let parameters = value.get(2);
-        let graph = parameter(parameters, "graph_idx").and_then(Value::as_u64).unwrap_or(0);
+        // A parameter that is there and has the wrong type is not left aside.
+        fn typed<T>(
+            value: Option<&Value>,
+            name: &str,
+            read: impl Fn(&Value) -> Option<T>,
+        ) -> Result<Option<T>, String> {
+            let read = |value| read(value).ok_or_else(|| format!("{name}: {value} is not read"));
+            parameter(value, name).map(read).transpose()
+        }
+        let graph = typed(parameters, "graph_idx", Value::as_u64)?.unwrap_or(0);
         if options.graph.is_some_and(|asked| asked != graph) {
             return Ok(None);
         }
@@ -203,12 +212,12 @@ impl Level<'_> {
         let [from, to] = both.map(|(vertex, pixels)| self.node(vertex, pixels));
         let line = Placed::line(from.1, to.1);
         let straight = line.shape.length() > 0.0;
-        let speed = parameter(parameters, "speed_limit").and_then(Value::as_f64).filter(|speed| *speed > 0.0);
+        let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
         self.layout.edges.push(Edge {
             id: Id::Text(format!("{}/{k}", self.name)),
             ends: [from.0, to.0],
             curve: if straight { vec![line] } else { Vec::new() },
-            two_way: parameter(parameters, "bidirectional").and_then(Value::as_bool).unwrap_or(false),
+            two_way: typed(parameters, "bidirectional", Value::as_bool)?.unwrap_or(false),
             speed: speed.filter(|speed| *speed < 1e6),
             rotation: None,
             deviation: 0.0,

@@ -9,7 +9,7 @@ use super::layout::{Edge, Layout, Placed};
 use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, speed};
-use crate::scenario::{Agent, PathSegment, Scenario};
+use crate::scenario::{Agent, PathSegment, Scenario, label};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt;
@@ -217,17 +217,24 @@ pub(super) fn scenario(
     let mut agents = Vec::new();
     let mut levels = Vec::new();
     for (k, route) in options.routes.iter().enumerate() {
-        let asked = Asked::parse(route, |name| layout.node(name))?;
+        let asked = Asked::parse(route, |name| layout.nodes_called(name))?;
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
         let agent = mission(layout, vehicle, k as u64 + 1, asked.ends).map_err(|error| refused(&error))?;
         let agent = agent.ok_or_else(|| refused(&"there is no way from node to node"))?;
         levels.push(layout.nodes.get(asked.ends[0]).map_or(0, |node| node.level));
-        agents.push(Agent { t_start: asked.time, ..agent });
+        let name = |place: usize| {
+            let node = layout.nodes.get(place);
+            node.map_or_else(String::new, |node| node.name.clone().unwrap_or_else(|| node.id.to_string()))
+        };
+        let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
+        // Where the file names its vehicles, the routes are theirs in the order of both.
+        let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
+        agents.push(Agent { label, t_start: asked.time, ..agent });
     }
     if levels.windows(2).any(|pair| pair[0] != pair[1]) {
         warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
     }
-    Ok(Scenario { name: layout.name.clone(), agents })
+    Ok(Scenario::new(layout.name.clone(), agents))
 }
 
 /// The agent that travels the shortest way between two nodes from the time 0, if there is one.

@@ -32,7 +32,7 @@ pub(super) fn read(text: &str, options: &Options, vehicle: &Vehicle) -> Result<S
     if agents.is_empty() {
         return Err(ImportError::new("there is no point in it"));
     }
-    Ok(Scenario { name: String::new(), agents })
+    Ok(Scenario::new("", agents))
 }
 
 /// The points of each path.

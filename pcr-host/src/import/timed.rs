@@ -116,7 +116,7 @@ mod tests {
             ([0.0, 4.0], 12.5),
             ([-1.0, 4.0], 20.0),
         ];
-        let scenario = Scenario { name: String::new(), agents: vec![agent(1, 0.5, &stops).unwrap()] };
+        let scenario = Scenario::new("", vec![agent(1, 0.5, &stops).unwrap()]);
         let scenario = Scenario::from_json(&scenario.to_json()).unwrap();
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motion = fleet.motions()[0];

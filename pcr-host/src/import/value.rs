@@ -96,6 +96,12 @@ impl<'j> Object<'j> {
         self.get(field).map(|value| value.as_str().ok_or_else(|| self.unexpected(field, value, "a text"))).transpose()
     }
 
+    /// True or false.
+    pub(super) fn flag(&self, field: &str) -> Result<Option<bool>, ImportError> {
+        let flag = |value: &'j Value| value.as_bool().ok_or_else(|| self.unexpected(field, value, "true or false"));
+        self.get(field).map(flag).transpose()
+    }
+
     /// `x` and `y`.
     pub(super) fn point(&self) -> Result<[f64; 2], ImportError> {
         Ok([self.required("x")?, self.required("y")?])

@@ -4,15 +4,17 @@
 //! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed limits; the base
 //!   ends where the first node or edge is not released, and the horizon is travelled only if asked for.
 //! - A state with an `intermediatePath` is a plan with times, seconds since the time stamp of the first state; one with a
-//!   `plannedPath` travels that from rest; one with neither stands where it is. Its loads make the vehicle larger.
+//!   `plannedPath` travels that from rest; one with neither stands where it is, and is refused if it has nodes to go to. Its loads make the vehicle larger.
 
 use super::layout::Placed;
 use super::timed::{self, seconds};
 use super::trace::Tracer;
 use super::value::Object;
+use super::warnings::TOGETHER;
 use super::{ImportError, Options, Vehicle, Warnings, loads, route, trajectory};
-use crate::scenario::{Agent, MotionSpec, Scenario};
+use crate::scenario::{Agent, MotionSpec, Scenario, label};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// Largest gap between the end of a trajectory and its node: it counts as deviation of the path \[m\].
 const GAP: f64 = 0.05;
@@ -44,31 +46,39 @@ pub(super) fn read(
     if messages.is_empty() {
         return Err(ImportError::new("there is no order and no state in it"));
     }
-    let mut reader = Reader { options, vehicle, warnings, origin: None };
-    let mut scenario = Scenario { name: String::new(), agents: Vec::new() };
+    let mut reader = Reader { options, vehicle, warnings, origin: None, maps: BTreeSet::new() };
+    let mut scenario = Scenario::new("", Vec::new());
     let mut radii = Vec::new();
     for (k, value) in messages.iter().enumerate() {
         let id = k as u64 + 1;
         let message = Object::new(format!("message {id}"), value)?;
         let name = message.text("orderId").ok().flatten().unwrap_or_default();
+        let robot = message.text("serialNumber").ok().flatten().unwrap_or_default();
+        let called = label(&[robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "));
         let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];
         if message.get("nodes").is_some() {
             let order = message.called(format!("order {name}"));
-            scenario.agents.push(reader.order(id, &order)?);
+            scenario.agents.push(Agent { label: called, ..reader.order(id, &order)? });
             radii.push(vehicle.radius);
         } else if state.iter().any(|field| message.get(field).is_some()) {
-            let robot = message.text("serialNumber").ok().flatten();
+            let robot = Some(robot).filter(|robot| !robot.is_empty());
             let state =
                 message.called(robot.map_or_else(|| format!("state {id}"), |robot| format!("state of {robot}")));
             let loaded = loads::loaded(&state, vehicle, reader.warnings)?;
-            scenario.agents.push(reader.state(id, &state, &loaded)?);
+            scenario.agents.push(Agent { label: called, ..reader.state(id, &state, &loaded)? });
             radii.push(loaded.radius);
         } else {
             return Err(message.missing("nodes or nodeStates"));
         }
-        if k == 0 {
+        // Several have no name in common.
+        if messages.len() == 1 {
             scenario.name = name.to_owned();
         }
+    }
+    if reader.maps.len() > 1 {
+        let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
+        warnings
+            .add(format_args!("maps {maps}"), format!("{TOGETHER}on several, which a scenario does not tell apart"));
     }
     Ok((scenario, radii))
 }
@@ -79,6 +89,8 @@ struct Reader<'a> {
     warnings: &'a mut Warnings,
     /// Time stamp of the first state \[s\].
     origin: Option<f64>,
+    /// Of all agents.
+    maps: BTreeSet<String>,
 }
 
 /// A node or an edge in the order of travel.
@@ -94,7 +106,7 @@ fn parts<'j>(order: &Object<'j>, list: &str, what: &str, id: &str) -> Result<Vec
         let object = Object::new(format!("{}, {what} {}", order.name, k + 1), value)?;
         let name = object.text(id)?.ok_or_else(|| object.missing(id))?;
         let object = object.called(format!("{}, {what} {name}", order.name));
-        let released = object.get("released").and_then(Value::as_bool).unwrap_or(true);
+        let released = object.flag("released")?.unwrap_or(true);
         // Without numbers the lists are in the order of travel.
         parts.push(Part { sequence: object.number("sequenceId")?.unwrap_or(k as f64), released, object });
     }
@@ -123,6 +135,13 @@ impl Reader<'_> {
             }
             nodes.truncate(base + 1);
             edges.truncate(base);
+        }
+        self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
+        for edge in &edges {
+            if edge.object.get("corridor").is_some() {
+                self.warnings
+                    .add(&edge.object.name, "its corridor is not read; the vehicle keeps to the middle of its way");
+            }
         }
         let mut tracer = Tracer::default();
         let (mut position, mut deviation) = (position(nodes.first(), "nodePosition")?, 0.0_f64);
@@ -169,17 +188,48 @@ impl Reader<'_> {
         Ok(route::agent(id, &trace, self.vehicle, 0.0))
     }
 
+    /// Keeps the map on which an agent is, which has to be one, as what is on different maps has no common coordinates.
+    fn maps<'j>(
+        &mut self,
+        of: &Object<'_>,
+        positions: impl Iterator<Item = Result<Option<Object<'j>>, ImportError>>,
+    ) -> Result<(), ImportError> {
+        let mut own: Option<&str> = None;
+        for position in positions {
+            let Some(map) = position?.map(|position| position.text("mapId")).transpose()?.flatten() else { continue };
+            if own.is_some_and(|own| own != map) {
+                let own = own.unwrap_or_default();
+                return Err(ImportError::new(format!("{}: it leads from map {own} to map {map}", of.name)));
+            }
+            own = Some(map);
+        }
+        self.maps.extend(own.map(str::to_owned));
+        Ok(())
+    }
+
     fn state(&mut self, id: u64, state: &Object<'_>, vehicle: &Vehicle) -> Result<Agent, ImportError> {
         let pose =
             state.object("mobileRobotPosition")?.map_or_else(|| state.object("agvPosition"), |pose| Ok(Some(pose)))?;
+        self.maps(state, std::iter::once(Ok(pose.clone())))?;
         let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?.unwrap_or(0.0);
         let at = pose.map(|pose| pose.point()).transpose()?;
         if let Some(path) = state.object("intermediatePath")? {
+            if state.get("plannedPath").is_some() {
+                let problem = "its plannedPath, which goes on where the times of its intermediatePath end";
+                self.warnings.lose(format_args!("{}: {problem}", state.name));
+            }
             return self.timed(id, state, &path, at, vehicle.radius);
         }
         if let Some(path) = state.object("plannedPath")? {
             let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
             let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
+            let begin = fit.pieces.first().map(|piece| piece.at);
+            if let Some(gap) = at.zip(begin).map(|(at, begin)| (at[0] - begin[0]).hypot(at[1] - begin[1]))
+                && gap > GAP
+            {
+                self.warnings
+                    .add(&path.name, format!("it begins {gap:.3} m from where the vehicle is; it is taken as there"));
+            }
             let mut tracer = Tracer::default();
             fit.pieces.iter().for_each(|piece| tracer.follow(piece));
             let mut trace = tracer.finish(at.or(fit.pieces.first().map(|piece| piece.at)).unwrap_or_default());
@@ -188,7 +238,8 @@ impl Reader<'_> {
         }
         let [x, y] = at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
         if !state.list("nodeStates")?.is_empty() {
-            self.warnings.add(&state.name, "it tells no path; it is taken as standing where it is");
+            self.warnings
+                .lose(format_args!("{}: its way is told by nodeStates only, give its order instead", state.name));
         }
         let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
         let Vehicle { radius, margin, .. } = *vehicle;

@@ -45,22 +45,26 @@ pub const TOLERANCE: f64 = 1e-3;
 /// Corner radius of nav2 \[m\].
 pub const CORNER_RADIUS: f64 = 1.0;
 
+/// Heading of the options in the help.
+pub const HEADING: &str = "Layouts and other formats";
+
 /// How to read files that are not scenarios.
 ///
 /// Lengths are in metres, speeds in m/s and rad/s, accelerations in m/s² and rad/s². The command line takes numbers above 0,
 /// of margin and corner radius also 0, up to 1e6.
 #[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = HEADING)]
 pub struct Options {
-    /// Format of the file; by its name and content if left out
+    /// Format; by name and content if left out
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub from: Option<Format>,
-    /// Route on a layout: from node to node, setting off at a time in seconds (0 if left out); give one for each agent
+    /// Way of an agent; as often as there are agents
     #[arg(long = "route", value_name = "FROM:TO[@TIME]")]
     pub routes: Vec<String>,
     /// Radius of the vehicle
     #[arg(long, value_name = "M", value_parser = positive)]
     pub radius: Option<f64>,
-    /// Margin to keep around each disc that has none of its own; regions with margins are listed apart from contact
+    /// Margin to keep around discs that have none of their own
     #[arg(long, value_name = "M", value_parser = not_negative)]
     pub margin: Option<f64>,
     /// Largest speed of the vehicle
@@ -78,21 +82,24 @@ pub struct Options {
     /// Type of the vehicle, where a layout has several (LIF)
     #[arg(long, value_name = "TYPE")]
     pub vehicle: Option<String>,
-    /// Configuration of the fleet (Open-RMF), with speeds and radii, or factsheet of the vehicle (VDA 5050), with its contour
+    /// Fleet configuration (Open-RMF) or factsheet (VDA 5050)
     #[arg(long, value_name = "FILE")]
     pub fleet: Option<PathBuf>,
     /// Radius of corners (nav2: 1 if left out)
     #[arg(long, value_name = "M", value_parser = not_negative)]
     pub corner_radius: Option<f64>,
-    /// Largest distance of lines and arcs from a curve that they replace, added to the radius (0.001 if left out)
+    /// Largest distance of arcs from curves (0.001 if left out)
     #[arg(long, value_name = "M", value_parser = positive)]
     pub tolerance: Option<f64>,
-    /// Navigation graph, where a building has several (Open-RMF)
+    /// Navigation graph, where there are several (Open-RMF)
     #[arg(long, value_name = "N")]
     pub graph: Option<u64>,
-    /// Travel the horizon of an order as well, not only its base (VDA 5050)
+    /// Travel the horizon of an order, not only its base (VDA 5050)
     #[arg(long)]
     pub horizon: bool,
+    /// Read what can be read of a layout; without it, a file is refused for anything that would be left out
+    #[arg(long)]
+    pub partial: bool,
 }
 
 /// Largest value of an option: beyond it nothing is a vehicle.
@@ -113,20 +120,6 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl Options {
-    /// Whether anything is asked for that a scenario file has itself.
-    pub fn any(&self) -> bool {
-        let numbers = [
-            self.radius,
-            self.speed,
-            self.acceleration,
-            self.rotation,
-            self.rotation_acceleration,
-            self.corner_radius,
-            self.tolerance,
-        ];
-        numbers.iter().any(Option::is_some) || !self.routes.is_empty() || self.vehicle.is_some() || self.fleet.is_some()
-    }
-
     pub(super) fn tolerance(&self) -> f64 {
         self.tolerance.unwrap_or(TOLERANCE)
     }
@@ -178,25 +171,40 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons.
-    pub(super) fn parse(text: &str, node: impl Fn(&str) -> Option<usize>) -> Result<Self, ImportError> {
-        let ends = |text: &str| {
-            text.match_indices(':')
-                .find_map(|(colon, _)| Some([node(text.get(..colon)?)?, node(text.get(colon + 1..)?)?]))
+    /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons and `@`, as long as it can be read in one way only.
+    pub(super) fn parse(text: &str, nodes: impl Fn(&str) -> Vec<usize>) -> Result<Self, ImportError> {
+        let refused = |problem: String| Err(ImportError::new(format!("route {text}: {problem}")));
+        let splits = |text: &str| -> Vec<[String; 2]> {
+            let split = |(colon, _)| Some([text.get(..colon)?.to_owned(), text.get(colon + 1..)?.to_owned()]);
+            let names = text.match_indices(':').filter_map(split);
+            names.filter(|names| names.iter().all(|name| !nodes(name).is_empty())).collect()
         };
-        let timed = || {
-            let (text, time) = text.rsplit_once('@')?;
+        let timed = text.rsplit_once('@').and_then(|(names, time)| {
             let time = time.parse::<f64>().ok().filter(|time| time.abs() <= MOST)?;
-            Some(Self { ends: ends(text)?, time })
-        };
-        if let Some(asked) = ends(text).map(|ends| Self { ends, time: 0.0 }).or_else(timed) {
-            return Ok(asked);
+            Some((names, time))
+        });
+        let mut readings: Vec<([String; 2], f64)> = splits(text).into_iter().map(|names| (names, 0.0)).collect();
+        readings.extend(timed.into_iter().flat_map(|(text, time)| splits(text).into_iter().map(move |it| (it, time))));
+        match readings.as_slice() {
+            [(names, time)] => {
+                let mut ends = [0; 2];
+                for (end, name) in ends.iter_mut().zip(names) {
+                    match nodes(name)[..] {
+                        [only] => *end = only,
+                        ref several => return refused(format!("{} nodes have the name {name}", several.len())),
+                    }
+                }
+                Ok(Self { ends, time: *time })
+            }
+            [] => {
+                let names = text.rsplit_once('@').map_or(text, |(names, _)| names);
+                let unknown = names.split_once(':').map(|(from, to)| if nodes(from).is_empty() { from } else { to });
+                match unknown {
+                    Some(name) if nodes(name).is_empty() => refused(format!("there is no node {name}")),
+                    _ => refused("FROM:TO or FROM:TO@TIME is expected".into()),
+                }
+            }
+            _ => refused("there are nodes for more than one reading of it".into()),
         }
-        let names = text.rsplit_once('@').map_or(text, |(names, _)| names);
-        let unknown = names.split_once(':').map(|(from, to)| if node(from).is_none() { from } else { to });
-        Err(ImportError::new(match unknown {
-            Some(name) if node(name).is_none() => format!("route {text}: there is no node {name}"),
-            _ => format!("route {text}: FROM:TO or FROM:TO@TIME is expected"),
-        }))
     }
 }

@@ -1,6 +1,9 @@
-//! What a lenient reader has to say about a file that it reads nevertheless.
+//! What a reader has to say about a file: what it read otherwise than written, and what it could not read.
 
 use std::fmt;
+
+/// How warnings begin that are about agents together, who may be from several files.
+pub(super) const TOGETHER: &str = "the agents are ";
 
 /// Names of one warning that are listed; the others are counted.
 const LISTED: usize = 8;
@@ -9,6 +12,7 @@ const LISTED: usize = 8;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings {
     list: Vec<(String, Vec<String>)>,
+    lost: Vec<String>,
 }
 
 impl Warnings {
@@ -21,6 +25,23 @@ impl Warnings {
         }
     }
 
+    /// Adds a warning about something in the file that is not in what is read: the file is refused for it, unless the rest is
+    /// asked for.
+    pub(crate) fn lose(&mut self, problem: impl fmt::Display) {
+        self.lost.push(problem.to_string());
+        self.add(problem, "left out");
+    }
+
+    /// Adds what is said of several files together, which is about agents of more than one.
+    pub(crate) fn add_of_all(&mut self, all: &Self) {
+        self.list.extend(all.list.iter().filter(|(problem, _)| problem.starts_with(TOGETHER)).cloned());
+    }
+
+    /// What is in the file and not in what was read.
+    pub(super) fn lost(&self) -> &[String] {
+        &self.lost
+    }
+
     /// Whether there is nothing to warn about.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
@@ -31,16 +52,23 @@ impl Warnings {
         self.list.iter().map(|(problem, names)| (problem.as_str(), names.as_slice()))
     }
 
-    /// The lines in which they are told.
+    /// The lines in which they are told to people, who do not read hundreds of names.
     pub fn lines(&self) -> Vec<String> {
-        let line = |(problem, names): &(String, Vec<String>)| {
-            let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-            match names.len().saturating_sub(LISTED) {
-                0 => format!("{listed}: {problem}"),
-                more => format!("{listed} and {more} more: {problem}"),
-            }
-        };
-        self.list.iter().map(line).collect()
+        self.list.iter().map(|(problem, names)| format!("{}: {problem}", listed(names, ", "))).collect()
+    }
+
+    /// The lines in which programs get them, with all names.
+    pub fn all(&self) -> Vec<String> {
+        self.list.iter().map(|(problem, names)| format!("{}: {problem}", names.join(", "))).collect()
+    }
+}
+
+/// The first names of a list, and how many more there are.
+pub(super) fn listed(names: &[String], separator: &str) -> String {
+    let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(separator);
+    match names.len().saturating_sub(LISTED) {
+        0 => listed,
+        more => format!("{listed} and {more} more"),
     }
 }
 
@@ -57,5 +85,6 @@ mod tests {
         warnings.add("node 3", "given twice");
         let edges = (0..8).map(|k| format!("edge {k}")).collect::<Vec<_>>().join(", ");
         assert_eq!(warnings.lines(), [format!("{edges} and 2 more: too short"), "node 3: given twice".to_owned()]);
+        assert_eq!(warnings.all()[0], format!("{edges}, edge 8, edge 9: too short"));
     }
 }

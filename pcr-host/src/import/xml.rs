@@ -38,6 +38,11 @@ pub(super) fn root_of(text: &str) -> Option<&str> {
     name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()
 }
 
+/// An attribute as a number, where it is there.
+pub(super) fn optional(node: Node<'_, '_>, name: &str, attribute: &str) -> Result<Option<f64>, ImportError> {
+    node.attribute(attribute).map(|_| number(node, name, attribute)).transpose()
+}
+
 /// An attribute as a number.
 pub(super) fn number(node: Node<'_, '_>, name: &str, attribute: &str) -> Result<f64, ImportError> {
     let text = node.attribute(attribute).ok_or_else(|| ImportError::new(format!("{name}, {attribute}: missing")))?;
@@ -58,4 +63,16 @@ pub(super) fn children<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl I
 /// The first child of this name.
 pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
     children(node, name).next()
+}
+
+/// The only child of this name, if there is one.
+pub(super) fn only<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Result<Option<Node<'a, 'i>>, ImportError> {
+    let mut children = children(node, name);
+    match (children.next(), children.next()) {
+        (_, Some(_)) => {
+            let parent = node.tag_name().name();
+            Err(ImportError::new(format!("{parent}, {name}: there are several; one is expected")))
+        }
+        (only, None) => Ok(only),
+    }
 }

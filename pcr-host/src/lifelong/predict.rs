@@ -56,7 +56,8 @@ impl Prediction {
                 if wanted <= at && next > at {
                     continue;
                 }
-                let to = match orders.hold_before(&fleet, k, &places, Hold::At(wanted)) {
+                let hold = orders.hold_before(&fleet, k, &places, Hold::At(wanted));
+                let to = match hold.expect("the table of the fleet") {
                     Hold::At(hold) => hold.min(wanted).max(at),
                     Hold::Free | Hold::Inside => at,
                 };

@@ -10,6 +10,7 @@ use crate::import::{Edge, Imported, Layout, Node, Placed};
 use crate::locks::{Rides, corridor};
 use crate::scenario::PathSegment;
 use pcr_core::Interval;
+use serde_json::{Value, json};
 use std::f64::consts::PI;
 use std::fmt::Display;
 
@@ -34,8 +35,11 @@ pub struct Ground<'a> {
 /// Arcs of a smaller radius than this are turns in place, of which nothing is to be seen \[m\].
 const POINT: f64 = 1e-6;
 
+/// Steps of a metre in pages: coordinates are written to a hundredth of a step.
+pub(super) const STEPS: f64 = 1000.0;
+
 /// Lines and true arcs one after the other, by a map from metres to the picture; `flipped` where its y-axis points down.
-pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
+fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
     let mut data = PathData::default();
     for (k, piece) in curve.iter().enumerate() {
         if k == 0 {
@@ -56,6 +60,11 @@ pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64
         }
     }
     data
+}
+
+/// The same for a page, in [`STEPS`], y up.
+pub(super) fn line(curve: &[Placed]) -> String {
+    path(curve, STEPS, false, |point| point.map(|x| x * STEPS)).to_string()
 }
 
 /// Box around what is on a level, with room for discs of this radius \[m\].
@@ -93,6 +102,19 @@ impl Ground<'_> {
     /// Radius of the disc around the vehicle with its margin \[m\].
     fn reach(&self) -> f64 {
         self.imported.vehicle.radius + self.imported.vehicle.margin
+    }
+
+    /// Corridors and edges of the level, y up: what a page draws below the agents.
+    pub(super) fn lines(&self) -> Value {
+        let layout = &self.imported.layout;
+        let rides = Rides::new(self.imported);
+        let edges = || layout.edges.iter().filter(|edge| layout.level(edge) == self.level);
+        let corridors = edges().flat_map(|edge| corridor(&rides.on(edge)));
+        json!({
+            "steps": STEPS,
+            "corridors": corridors.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
+            "edges": edges().map(|edge| line(&edge.curve)).filter(|line| !line.is_empty()).collect::<Vec<_>>(),
+        })
     }
 
     /// The corridors, the edges and the nodes, these with their names if they are few.

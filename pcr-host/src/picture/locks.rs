@@ -1,6 +1,6 @@
 //! The page of a layout and its locks, in which an edge shows what it blocks.
 
-use super::layout::{bounds, path};
+use super::layout::{STEPS, bounds, line};
 use super::template::Page;
 use crate::import::{Id, Imported, Placed};
 use crate::locks::{Locks, Rides, corridor};
@@ -14,9 +14,6 @@ const PAGE: Page = Page {
     script: include_str!("locks/locks.js"),
 };
 
-/// Steps of a metre in the page: coordinates are written to a hundredth of a step.
-const STEPS: f64 = 1000.0;
-
 /// The page.
 pub(super) fn page(imported: &Imported, locks: &Locks) -> String {
     let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
@@ -27,7 +24,6 @@ pub(super) fn page(imported: &Imported, locks: &Locks) -> String {
 fn data(imported: &Imported, locks: &Locks) -> Value {
     let (layout, vehicle) = (&imported.layout, &locks.vehicle);
     let steps = |point: [f64; 2]| point.map(|x| x * STEPS);
-    let line = |curve: &[Placed]| path(curve, STEPS, false, steps).to_string();
     let rides = Rides::new(imported);
     let edges = layout.edges.iter().map(|edge| {
         let ends = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.id.to_string()).unwrap_or_default());

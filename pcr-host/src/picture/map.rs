@@ -58,7 +58,7 @@ fn title(scene: &Scene<'_>, ego: usize, shapes: &[Shape]) -> String {
         count => format!("{count} regions"),
     };
     let around = if scene.has_outlines() { " of the discs around all outlines" } else { "" };
-    format!("Extended collision map of agent {}: {regions}{around}", scene.id(ego))
+    format!("Extended collision map of agent {}: {regions}{around}", scene.called(ego))
 }
 
 /// The map in a frame.

@@ -32,7 +32,7 @@ pub(super) fn picture(scene: &Scene<'_>) -> String {
     let frame = Frame::new(time, length, [left, ROOM_ABOVE, left + SIDE, bottom]);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
     let legend = Legend::new(scene, ego, &shapes, [space.edges[0], frame.edges[2]]);
-    let title = format!("Workspace and extended collision map of agent {}", scene.id(ego));
+    let title = format!("Workspace and extended collision map of agent {}", scene.called(ego));
     let mut svg = Svg::new(frame.edges[2] + 12.0, bottom + ROOM_BELOW + legend.height() + 6.0, &title);
     workspace::draw(&mut svg, scene, &space);
     map::draw(&mut svg, scene, ego, &shapes, &frame);

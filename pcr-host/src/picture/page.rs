@@ -6,6 +6,7 @@
 use super::axis::Frame;
 use super::contour::{Outline, is_thin};
 use super::map::{THIN, places, spans};
+use super::palette::DISTINCT;
 use super::scene::{Scene, Shape};
 use super::template::Page;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
@@ -42,8 +43,10 @@ fn data(scene: &Scene<'_>) -> Value {
         "name": scene.scenario.name,
         "grid": GRID,
         "outlines": scene.has_outlines(),
+        "distinct": scene.motions.len() <= DISTINCT,
         "horizon": interval(scene.horizon()),
         "bounds": [x.lo, x.hi, y.lo, y.hi],
+        "ground": scene.ground.map(|ground| ground.lines()),
         "agents": agents.collect::<Vec<_>>(),
         "maps": maps.collect::<Vec<_>>(),
     })
@@ -79,6 +82,7 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
     json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
+        "name": scene.called(place),
         "radius": motion.radius(),
         "discs": discs,
         "outline": footprint.map_or(&[][..], |footprint| footprint.polygon()),

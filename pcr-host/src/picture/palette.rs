@@ -12,7 +12,10 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Colour(pub(super) [u8; 3]);
 
-const FIRST: [Colour; 12] = [
+/// How many colours can be told apart by eye.
+pub(super) const DISTINCT: usize = 12;
+
+const FIRST: [Colour; DISTINCT] = [
     Colour([0x20, 0x78, 0xbf]),
     Colour([0xf2, 0x97, 0x5a]),
     Colour([0x65, 0x00, 0x11]),

@@ -41,6 +41,9 @@ pub(super) struct Shape {
     pub(super) crossings: Vec<Crossing<f64>>,
 }
 
+/// Characters of a number and a label that pictures show.
+const LONGEST: usize = 32;
+
 /// Slices of a region among which a place for its label is sought.
 const LABEL_SLICES: usize = 15;
 
@@ -48,6 +51,16 @@ impl Scene<'_> {
     /// Number of the agent at this place of the scenario.
     pub(super) fn id(&self, place: usize) -> u64 {
         self.scenario.agents.get(place).map_or(0, |agent| agent.id)
+    }
+
+    /// The number of the agent at this place of the scenario and what it is called, shortened.
+    pub(super) fn called(&self, place: usize) -> String {
+        let Some(agent) = self.scenario.agents.get(place) else { return String::new() };
+        let called = agent.called();
+        match called.char_indices().nth(LONGEST) {
+            Some((end, _)) => format!("{}…", called.get(..end).unwrap_or_default()),
+            None => called,
+        }
     }
 
     /// The outline of the agent at this place of the scenario, if it is no disc and the same all the way.
@@ -85,7 +98,7 @@ impl Scene<'_> {
 
     /// Number of regions of an ego.
     pub(super) fn count(&self, ego: usize) -> usize {
-        self.ecm.row(self.motions, ego).count()
+        self.ecm.row(self.motions, ego).expect("the table of the fleet").count()
     }
 
     /// The regions of an ego, traced for pixels of this size \[s\], \[m\].
@@ -102,7 +115,7 @@ impl Scene<'_> {
             }
             Shape::new(&region, motion, &all, pixel)
         };
-        self.ecm.row(self.motions, ego).map(shape).collect()
+        self.ecm.row(self.motions, ego).expect("the table of the fleet").map(shape).collect()
     }
 }
 

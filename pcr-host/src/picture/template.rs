@@ -5,14 +5,15 @@ use serde_json::Value;
 
 /// What all pages have in common.
 const FRAME: &str = include_str!("template.html");
+const STYLE: &str = include_str!("template.css");
 
 /// A kind of page.
 pub(crate) struct Page {
     /// What the page shows, after the title of the window.
     pub(crate) kind: &'static str,
-    /// Its elements, in which `{{title}}` takes its place.
+    /// Its elements below the heading and `#summary`, which the script fills.
     pub(crate) body: &'static str,
-    /// CSS.
+    /// CSS that other kinds do not need.
     pub(crate) style: &'static str,
     /// JavaScript, which reads the element `data`.
     pub(crate) script: &'static str,
@@ -24,12 +25,12 @@ impl Page {
         let title = Escaped(title).to_string();
         // A text in the data cannot end the element that holds it.
         let data = data.to_string().replace('<', "\\u003c");
-        let body = replaced(self.body, &|key| (key == "title").then_some(title.as_str()));
         replaced(FRAME, &|key| match key {
             "title" => Some(title.as_str()),
             "kind" => Some(self.kind),
+            "common" => Some(STYLE),
             "style" => Some(self.style),
-            "body" => Some(body.as_str()),
+            "body" => Some(self.body),
             "data" => Some(data.as_str()),
             "script" => Some(self.script),
             _ => None,

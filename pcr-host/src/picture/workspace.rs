@@ -169,10 +169,9 @@ fn draw_numbers(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
         let point = motion.path().point_at(0.0);
         frame.at([point.x, point.y])
     };
-    let fits = |text: &str, motion: &Motion<'_, f64>| text_width(text, LABEL_SIZE) / 2.0 <= radius(motion, frame);
     for (place, motion) in scene.motions.iter().enumerate() {
         let ([x, y], r) = (start(motion), radius(motion, frame));
-        if !fits(&scene.id(place).to_string(), motion) {
+        if !fits(&scene.called(place), motion, frame) {
             labels.block([x - r, y - r, x + r, y + r]);
         }
         let length = motion.path().length();
@@ -189,27 +188,45 @@ fn draw_numbers(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame) {
         "g",
         &[("font-size", &Pixels(LABEL_SIZE)), ("stroke", &"#fff"), ("stroke-width", &"2"), ("paint-order", &"stroke")],
     );
-    for (place, motion) in scene.motions.iter().enumerate() {
-        let text = scene.id(place).to_string();
-        let size = [text_width(&text, LABEL_SIZE) + 1.0, LABEL_SIZE - 1.0];
-        let [x, y] = start(motion);
-        // Behind the start, where the path does not pass.
-        let behind = (radius(motion, frame) - text_width(&text, LABEL_SIZE).hypot(LABEL_SIZE) / 2.0).max(0.0);
-        let (sin, cos) = motion.path().pose_at(0.0).heading.0.sin_cos();
-        let inside = fits(&text, motion).then_some([x - behind * cos, y + behind * sin]);
-        let around = (0..3).flat_map(|ring| {
-            (0..16).map(move |k| {
-                let (sin, cos) = (f64::from(k) * PI / 8.0).sin_cos();
-                let gap = radius(motion, frame) + 2.0 + 6.0 * f64::from(ring);
-                [x + (gap + size[0] / 2.0) * cos, y - (gap + size[1] / 2.0) * sin]
-            })
-        });
-        let Some([x, y]) = labels.place(size, inside.into_iter().chain(around).map(|place| (0.0, place)), frame.edges)
-        else {
-            continue;
-        };
-        let ink = scene.colour(place).ink();
-        svg.label([x, y + 0.36 * LABEL_SIZE], "middle", &[("fill", &ink), ("stroke-linejoin", &"round")], &text);
+    for place in 0..scene.motions.len() {
+        let text = scene.called(place);
+        // Where a label finds no room, the number has to do.
+        for text in [text, scene.id(place).to_string()] {
+            if draw_number(svg, scene, frame, &mut labels, place, &text) {
+                break;
+            }
+        }
     }
     svg.end();
+}
+
+/// Whether a text fits into the disc.
+fn fits(text: &str, motion: &Motion<'_, f64>, frame: &Frame) -> bool {
+    text_width(text, LABEL_SIZE) / 2.0 <= radius(motion, frame)
+}
+
+/// Draws the text of an agent, if there is room for it.
+fn draw_number(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame, labels: &mut Labels, place: usize, text: &str) -> bool {
+    let Some(motion) = scene.motions.get(place) else { return true };
+    let point = motion.path().point_at(0.0);
+    let [x, y] = frame.at([point.x, point.y]);
+    let size = [text_width(text, LABEL_SIZE) + 1.0, LABEL_SIZE - 1.0];
+    // Behind the start, where the path does not pass.
+    let behind = (radius(motion, frame) - text_width(text, LABEL_SIZE).hypot(LABEL_SIZE) / 2.0).max(0.0);
+    let (sin, cos) = motion.path().pose_at(0.0).heading.0.sin_cos();
+    let inside = fits(text, motion, frame).then_some([x - behind * cos, y + behind * sin]);
+    let around = (0..3).flat_map(|ring| {
+        (0..16).map(move |k| {
+            let (sin, cos) = (f64::from(k) * PI / 8.0).sin_cos();
+            let gap = radius(motion, frame) + 2.0 + 6.0 * f64::from(ring);
+            [x + (gap + size[0] / 2.0) * cos, y - (gap + size[1] / 2.0) * sin]
+        })
+    });
+    let Some([x, y]) = labels.place(size, inside.into_iter().chain(around).map(|place| (0.0, place)), frame.edges)
+    else {
+        return false;
+    };
+    let ink = scene.colour(place).ink();
+    svg.label([x, y + 0.36 * LABEL_SIZE], "middle", &[("fill", &ink), ("stroke-linejoin", &"round")], text);
+    true
 }

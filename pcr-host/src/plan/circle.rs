@@ -22,7 +22,12 @@ struct Gate {
 /// The agents of a circle, each of which waits for the next one and the last one for the first; nothing if there is none.
 /// With radii that are larger by what rounding adds it is a proof that no plan exists for the true ones but touching.
 pub(super) fn circle(ecm: &HostEcm<f64>, motions: &[Motion<'_, f64>]) -> Option<Vec<usize>> {
-    let gates: Vec<Gate> = ecm.regions(motions).filter(is_second).flat_map(|region| gates(&region)).collect();
+    let gates: Vec<Gate> = ecm
+        .regions(motions)
+        .expect("the table of the fleet")
+        .filter(is_second)
+        .flat_map(|region| gates(&region))
+        .collect();
     let mut reach = vec![0.0; motions.len()];
     loop {
         let further: Vec<f64> = (0..motions.len())

@@ -66,7 +66,9 @@ impl Forbidden {
         let owner = |disc: usize| bodies.discs.get(disc).map(|disc| disc.agent);
         let count = scenario.agents.len();
         let mut intervals = vec![vec![Vec::new(); count]; count];
-        let regions = (0..motions.len()).flat_map(|disc| ecm.row(&motions, disc).map(move |region| (disc, region)));
+        let regions = (0..motions.len()).flat_map(|disc| {
+            ecm.row(&motions, disc).expect("the table of the fleet").map(move |region| (disc, region))
+        });
         // The other direction of a pair is the same, with the sign turned round.
         for (disc, region) in regions.filter(|(disc, region)| region.other() > *disc) {
             let (Some(agent), Some(other)) = (owner(disc), owner(region.other())) else { continue };
@@ -152,5 +154,5 @@ fn without_loads(scenario: &Scenario) -> Scenario {
         true => agent.clone(),
         false => Agent { radius: agent.reach(), footprint: None, loads: Vec::new(), ..agent.clone() },
     });
-    Scenario { name: scenario.name.clone(), agents: agents.collect() }
+    Scenario::new(scenario.name.clone(), agents.collect())
 }

@@ -68,7 +68,7 @@ pub(super) fn regions<S: Format>(work: &Work<'_, S>, discs: &[Disced], asked: Op
     let mut pairs: BTreeMap<[usize; 2], Vec<Part<'_, S>>> = BTreeMap::new();
     let id = |agent: usize| work.ids.get(agent).copied().unwrap_or_default();
     for (place, own) in discs.iter().enumerate().filter(|(_, disc)| asked.is_none_or(|asked| id(disc.agent) == asked)) {
-        for region in work.ecm.row(work.motions, place) {
+        for region in work.ecm.row(work.motions, place).expect("the table of the fleet") {
             let Some(other) = discs.get(region.other()).filter(|other| other.agent != own.agent) else { continue };
             let (time, length) = (region.time(), region.length());
             let part = Part {

@@ -96,7 +96,7 @@ impl<S: Format> Work<'_, S> {
     /// The regions of one ego.
     pub(super) fn row(&self, ego: usize) -> Vec<Region> {
         let mut row = Vec::new();
-        let mut regions = self.ecm.row(self.motions, ego).peekable();
+        let mut regions = self.ecm.row(self.motions, ego).expect("the table of the fleet").peekable();
         while let Some(first) = regions.next() {
             let other = first.other();
             let mut pair = vec![first];

@@ -1,12 +1,13 @@
 //! Conflicts as text.
 
 use super::columns::Columns;
-use super::{heading, quoted};
+use super::figures::small;
+use super::{agents, called, heading, quoted};
 use crate::check::{Conflict, Verdict};
 use std::io::{self, Write};
 
 /// The header line of [`conflicts_csv`].
-pub const CONFLICTS_CSV_HEADER: &str = "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a,l_j_b,touching\n";
+pub const CONFLICTS_CSV_HEADER: &str = "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a,l_j_b,touching,i_label,j_label\n";
 
 /// A line a conflict: numbers that read back exactly, flags as 0 and 1.
 ///
@@ -17,7 +18,8 @@ pub fn conflicts_csv(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> 
     for conflict in &verdict.conflicts {
         let Conflict { i, j, t: [t_a, t_b], depth, l_i: [l_i_a, l_i_b], l_j: [l_j_a, l_j_b], .. } = conflict;
         let touching = u8::from(conflict.touching);
-        writeln!(out, "{name},{i},{j},{t_a},{t_b},{depth},{l_i_a},{l_i_b},{l_j_a},{l_j_b},{touching}")?;
+        let [a, b] = [i, j].map(|id| quoted(verdict.labels.get(*id)));
+        writeln!(out, "{name},{i},{j},{t_a},{t_b},{depth},{l_i_a},{l_i_b},{l_j_a},{l_j_b},{touching},{a},{b}")?;
     }
     Ok(())
 }
@@ -34,28 +36,40 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()
         many => writeln!(out, "{name}: {many} conflicts")?,
     }
     if !verdict.conflicts.is_empty() {
+        let [i, j] = agents(&verdict.labels);
         let titles =
-            ["i", "j", "t_a [s]", "t_b [s]", "depth [m]", "l_i from [m]", "to [m]", "l_j from [m]", "to [m]", "<"];
+            [i, j, "t_a [s]", "t_b [s]", "depth [m]", "l_i from [m]", "to [m]", "l_j from [m]", "to [m]", "<touching"];
         let mut columns = Columns::new(&titles);
+        let touching = verdict.conflicts.iter().filter(|conflict| conflict.touching).count();
         for conflict in &verdict.conflicts {
-            let mut row = vec![conflict.i.to_string(), conflict.j.to_string()];
-            let [t_a, t_b] = conflict.t;
-            let numbers = [t_a, t_b, conflict.depth].into_iter().chain(conflict.l_i).chain(conflict.l_j);
-            row.extend(numbers.map(|number| format!("{number:.3}")));
-            row.push(if conflict.touching { "touching" } else { "" }.into());
+            let mut row = [conflict.i, conflict.j].map(|id| called(&verdict.labels, id)).to_vec();
+            row.extend(conflict.t.map(|time| format!("{time:.3}")));
+            row.push(small(conflict.depth));
+            row.extend(conflict.l_i.into_iter().chain(conflict.l_j).map(|length| format!("{length:.3}")));
+            row.push(if conflict.touching { "*" } else { "" }.into());
+            columns.row(row);
+        }
+        columns.write(out)?;
+        if touching > 0 {
+            writeln!(
+                out,
+                "* touching ({touching}): the depth is 0 within what the arithmetic can tell, so it may be no contact"
+            )?;
+        }
+    }
+    if let Some(closest) = &verdict.closest {
+        writeln!(out, "\nNearest to one another:")?;
+        let [i, j] = agents(&verdict.labels);
+        let mut columns = Columns::new(&[i, j, "t [s]", "separation [m]", "clearance [m]"]);
+        for pair in closest {
+            let mut row = [pair.i, pair.j].map(|id| called(&verdict.labels, id)).to_vec();
+            row.extend([format!("{:.3}", pair.t), small(pair.separation), small(pair.clearance)]);
             columns.row(row);
         }
         columns.write(out)?;
     }
-    if let Some(closest) = &verdict.closest {
-        writeln!(out, "\nNearest to one another:")?;
-        let mut columns = Columns::new(&["i", "j", "t [s]", "separation [m]", "clearance [m]"]);
-        for pair in closest {
-            let mut row = vec![pair.i.to_string(), pair.j.to_string()];
-            row.extend([pair.t, pair.separation, pair.clearance].map(|number| format!("{number:.3}")));
-            columns.row(row);
-        }
-        columns.write(out)?;
+    if let Some(proof) = &verdict.certificate {
+        writeln!(out, "{}", proof.sentence())?;
     }
     Ok(())
 }

@@ -7,6 +7,19 @@ pub(crate) fn digits(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
+/// A length in metres: to the millimetre, and three digits of what is shorter than that.
+pub(crate) fn small(length: f64) -> String {
+    if length == 0.0 {
+        return "0".into();
+    }
+    if length.abs() >= 1e-3 {
+        return format!("{length:.3}");
+    }
+    let text = format!("{length:.2e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
+}
+
 /// A time that is given in milliseconds.
 pub(crate) fn time(ms: f64) -> String {
     match ms {
@@ -40,4 +53,26 @@ pub(crate) fn seconds(time: f64) -> String {
 /// A share in per cent.
 pub(crate) fn share(part: f64) -> String {
     if part < 1e-4 { format!("{part:.0e}") } else { format!("{} %", digits(100.0 * part)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::small;
+
+    #[test]
+    fn what_is_small_is_not_zero() {
+        let expected = [
+            (0.0, "0"),
+            (6.2e-6, "6.2e-6"),
+            (1.23456e-9, "1.23e-9"),
+            (-4e-4, "-4e-4"),
+            (9.999e-4, "1e-3"),
+            (0.001, "0.001"),
+            (0.5, "0.500"),
+            (12.34567, "12.346"),
+        ];
+        for (length, text) in expected {
+            assert_eq!(small(length), text);
+        }
+    }
 }

@@ -5,15 +5,6 @@ use super::{printable, quoted};
 use crate::locks::Locks;
 use std::io::{self, Write};
 
-/// One line of JSON.
-///
-/// # Errors
-/// Those of the writer.
-pub fn locks_json(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
-    serde_json::to_writer(&mut *out, locks)?;
-    out.write_all(b"\n")
-}
-
 /// The header line of [`locks_csv`].
 pub const LOCKS_HEADER: &str = "a,b,a_from,a_to,b_from,b_to\n";
 

@@ -1,6 +1,7 @@
 //! Simulated runs as text.
 
 use super::columns::Columns;
+use super::figures::small;
 use super::{heading, quoted};
 use crate::simulate::{Run, Simulation};
 use std::io::{self, Write};
@@ -11,12 +12,13 @@ use std::io::{self, Write};
 /// Those of the writer.
 pub fn simulation_csv(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
     let name = quoted(&simulation.name);
-    writeln!(out, "name,controller,id,begin,end,unimpeded,waiting")?;
+    writeln!(out, "name,controller,id,begin,end,unimpeded,waiting,label")?;
     for run in &simulation.runs {
         for mission in &run.missions {
             let end = mission.end.map(|end| end.to_string()).unwrap_or_default();
             let (controller, unimpeded, waiting) = (run.controller.name(), mission.unimpeded, mission.waiting);
-            writeln!(out, "{name},{controller},{},{},{end},{unimpeded},{waiting}", mission.id, mission.begin)?;
+            let label = quoted(simulation.labels.get(mission.id));
+            writeln!(out, "{name},{controller},{},{},{end},{unimpeded},{waiting},{label}", mission.id, mission.begin)?;
         }
     }
     Ok(())
@@ -51,7 +53,7 @@ pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Re
     ]);
     for run in &simulation.runs {
         let deepest = run.collisions.iter().map(|collision| collision.depth).reduce(f64::max);
-        let metres = |length: Option<f64>| length.map(|length| format!("{length:.3}")).unwrap_or_default();
+        let metres = |length: Option<f64>| length.map(small).unwrap_or_default();
         columns.row(vec![
             run.controller.name().to_owned(),
             run.done.to_string(),
@@ -74,6 +76,13 @@ fn planning(run: &Run, out: &mut impl Write) -> io::Result<()> {
     let (count, kept) = (planning.count, planning.kept);
     let (mean, longest) = (planning.mean_ms, planning.longest_ms);
     let name = run.controller.name();
+    if count > 0 && kept == count {
+        return writeln!(
+            out,
+            "{name}: no plan was found in {count} tries, and nobody moved: robots or goals are too near one another for their margins, \
+             or no order of passing works"
+        );
+    }
     writeln!(
         out,
         "{name}: planned {count} times ({kept} times the old orders stayed), {mean:.2} ms each, at most {longest:.2} ms"

@@ -1,8 +1,9 @@
 //! Regions and crossings for reading.
 
 use super::columns::Columns;
-use super::{crossings, heading, types};
+use super::{agents, called, crossings, heading, types};
 use crate::regions::{Answer, Descriptor, Region};
+use crate::scenario::Labels;
 use std::collections::HashMap;
 use std::io::{self, Write};
 
@@ -66,13 +67,15 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
         let discs = cover.discs.len();
         let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
         let (id, overhang) = (cover.id, cover.overhang + cover.growth);
+        let id = called(&answer.labels, id);
         writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang:.3} m out of it")?;
     }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
+        let [i, j] = agents(&answer.labels);
         let mut columns = Columns::new(&[
-            "i",
-            "j",
+            i,
+            j,
             "k",
             "<type",
             "T [s]",
@@ -84,7 +87,8 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
             "arc of j",
         ]);
         for Numbered { i, j, k, piece_type, crossing, .. } in &all {
-            let mut row = vec![i.to_string(), j.to_string(), k.to_string(), (*piece_type).to_owned()];
+            let [i, j] = [i, j].map(|id| called(&answer.labels, *id));
+            let mut row = vec![i, j, k.to_string(), (*piece_type).to_owned()];
             let numbers = [crossing.time, crossing.length, crossing.r_hat, crossing.v, crossing.theta];
             row.extend(numbers.map(|number| format!("{number:.3}")));
             row.extend([arc(crossing.sigma_i, crossing.dir_i), arc(crossing.sigma_j, crossing.dir_j)]);
@@ -92,24 +96,31 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
         }
         columns.write(out)?;
     }
-    extents(&answer.regions, &all, "Regions", out)?;
+    extents(&answer.labels, &answer.regions, &all, "Regions", out)?;
     let margin = answer.margin_regions.as_deref().unwrap_or_default();
-    extents(margin, &numbered(margin), "Regions of the discs with their margins", out)
+    extents(&answer.labels, margin, &numbered(margin), "Regions of the discs with their margins", out)
 }
 
 /// The extents of regions, with the numbers of their crossings.
-fn extents(regions: &[Region], all: &[Numbered<'_>], title: &str, out: &mut impl Write) -> io::Result<()> {
+fn extents(
+    labels: &Labels,
+    regions: &[Region],
+    all: &[Numbered<'_>],
+    title: &str,
+    out: &mut impl Write,
+) -> io::Result<()> {
     if regions.is_empty() {
         return Ok(());
     }
     writeln!(out, "\n{title}: their extents; what is covered at a given time: --format json --slices N")?;
-    let mut columns = Columns::new(&["i", "j", "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
+    let [i, j] = agents(labels);
+    let mut columns = Columns::new(&[i, j, "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
     let mut held: HashMap<usize, Vec<String>> = HashMap::new();
     for crossing in all {
         held.entry(crossing.region).or_default().push(crossing.k.to_string());
     }
     for (index, region) in regions.iter().enumerate() {
-        let mut row = vec![region.i.to_string(), region.j.to_string()];
+        let mut row = [region.i, region.j].map(|id| called(labels, id)).to_vec();
         row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(|number| format!("{number:.3}")));
         let open = match (region.open_start, region.open_end) {
             (false, false) => "-",

@@ -1,8 +1,9 @@
 //! Traffic for reading.
 
 use super::columns::Columns;
-use super::{heading, printable};
-use crate::traffic::Traffic;
+use super::{all_called, heading, printable};
+use crate::scenario::Labels;
+use crate::traffic::{PassedOver, Traffic};
 use std::io::{self, Write};
 
 /// The header line of [`traffic_csv`].
@@ -30,7 +31,12 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
-    writeln!(out, "{passed_over} missions passed over that no order of starts lets through with those before them")?;
+    if *passed_over == 0 {
+        writeln!(out, "no mission passed over")?;
+    }
+    for PassedOver { why, missions } in &traffic.passed_over_because {
+        writeln!(out, "{missions} missions passed over: {}", printable(why))?;
+    }
     if placed < asked {
         let without = asked - placed;
         writeln!(
@@ -47,8 +53,8 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     }
     columns.write(out)?;
     for unsolved in &traffic.unsolved {
-        let ids: Vec<String> = unsolved.ids.iter().map(u64::to_string).collect();
-        writeln!(out, "agents {}: {}; the first is left out", ids.join(" and "), unsolved.why)?;
+        let agents = all_called(&Labels::default(), &unsolved.ids);
+        writeln!(out, "agents {agents}: {}; the first is left out", unsolved.why)?;
     }
     let Traffic { regions, conflicts_before, conflicts_after, .. } = traffic;
     writeln!(
@@ -57,5 +63,6 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     )?;
     let Traffic { makespan, sum_of_costs, lower_bound, missions_per_hour, .. } = traffic;
     let costs = format!("sum of costs {sum_of_costs:.3} s (without any wait {lower_bound:.3} s)");
-    writeln!(out, "makespan {makespan:.3} s, {costs}, {missions_per_hour:.1} missions an hour")
+    writeln!(out, "makespan {makespan:.3} s, {costs}, {missions_per_hour:.1} missions an hour")?;
+    writeln!(out, "{}", traffic.certificate.sentence())
 }

@@ -1,6 +1,7 @@
 //! From JSON to a scenario: what each field means, and what holds between fields.
 
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
+use super::labels::{self, called};
 use super::outline::{loads, outline};
 use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario};
@@ -8,6 +9,9 @@ use crate::import::TURN;
 use crate::json::{self, Data, Json};
 use serde_json::Value;
 use std::collections::HashSet;
+
+/// What a scenario file holds.
+const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 
 /// Relative difference between the travelled length and the length of the path that is still scaled away.
 pub const LENGTH_TOLERANCE: f64 = 1e-6;
@@ -18,6 +22,10 @@ const SPEED_TOLERANCE: f64 = 1e-9;
 
 /// Agents, and segments of a path, that the core can number. An arc counts once for each turn begun.
 const MOST: usize = u16::MAX as usize;
+
+/// What a scenario file says that it is, and the version of its fields.
+pub(super) const FORMAT: &str = "pcr-scenario";
+pub(super) const VERSION: u64 = 1;
 
 impl Scenario {
     /// The scenario in a JSON text; a byte order mark at its start is skipped.
@@ -53,8 +61,8 @@ impl Scenario {
             Some((_, Json { data: Data::Text(name), .. })) => name.clone(),
             _ => String::new(),
         };
-        match Self::agents(json) {
-            Ok(agents) => Ok(Self { name, agents }),
+        match Self::agents(json).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
+            Ok((agents, warnings)) => Ok(Self { name, agents, warnings }),
             Err(mut error) => {
                 error.scenario = name;
                 Err(error)
@@ -62,8 +70,32 @@ impl Scenario {
         }
     }
 
+    fn warnings(json: &Json) -> Result<Vec<String>, ScenarioError> {
+        let fields = Place::default().fields(json, &FIELDS)?;
+        if fields.get("warnings").is_none() {
+            return Ok(Vec::new());
+        }
+        let text = |warning: &Json| match &warning.data {
+            Data::Text(text) => Ok(text.clone()),
+            _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
+        };
+        fields.array("warnings")?.iter().map(text).collect()
+    }
+
     fn agents(json: &Json) -> Result<Vec<Agent>, ScenarioError> {
-        let fields = Place::default().fields(json, &["name", "agents"])?;
+        let fields = Place::default().fields(json, &FIELDS)?;
+        match fields.get("format").map(|format| (format, &format.data)) {
+            Some((_, Data::Text(format))) if format == FORMAT => {}
+            None => {}
+            Some((format, _)) => return Err(fields.unexpected("format", format, &format!("\"{FORMAT}\""))),
+        }
+        match fields.get("version").map(|version| (version, &version.data)) {
+            Some((_, Data::Number(version))) if version.parse() == Ok(VERSION) => {}
+            None => {}
+            Some((version, _)) => {
+                return Err(fields.unexpected("version", version, &format!("{VERSION}, all that this pcr knows,")));
+            }
+        }
         if let Some(name) = fields.get("name")
             && !matches!(name.data, Data::Text(_))
         {
@@ -75,11 +107,18 @@ impl Scenario {
             return Err(fields.error(fields.line, "agents", problem));
         }
         let mut agents = Vec::with_capacity(list.len());
-        let mut ids = HashSet::new();
+        let (mut ids, mut texts, mut all_texts) = (HashSet::new(), HashSet::new(), None);
         for (index, json) in list.iter().enumerate() {
-            let agent = Agent::decode(json, index)?;
+            let (agent, text) = Agent::decode(json, index)?;
+            let place = Place { agent: Some(format!("agent {}", agent.called())), part: None };
+            if text && !texts.insert(agent.label.clone()) {
+                return Err(place.error(json.line, "id", format!("{:?} is given to two agents", agent.label)));
+            }
+            if *all_texts.get_or_insert(text) != text {
+                let problem = "some ids are numbers and others texts; give numbers to all, and texts as labels";
+                return Err(place.error(json.line, "id", problem));
+            }
             if !ids.insert(agent.id) {
-                let place = Place { agent: Some(format!("agent {}", agent.id)), part: None };
                 return Err(place.error(json.line, "id", format!("{} is given to two agents", agent.id)));
             }
             agents.push(agent);
@@ -89,9 +128,11 @@ impl Scenario {
 }
 
 impl Agent {
-    fn decode(json: &Json, index: usize) -> Result<Self, ScenarioError> {
-        const KNOWN: [&str; 13] = [
+    /// The agent at a place, and whether its id is a text.
+    fn decode(json: &Json, index: usize) -> Result<(Self, bool), ScenarioError> {
+        const KNOWN: [&str; 14] = [
             "id",
+            "label",
             "radius",
             "footprint",
             "loads",
@@ -105,22 +146,47 @@ impl Agent {
             "path",
             "profile",
         ];
-        let given = match &json.data {
-            Data::Object(members) => members.iter().find(|(key, _)| key == "id").map(|(_, id)| id),
+        let given = |name: &str| match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == name).map(|(_, value)| value),
             _ => None,
         };
-        let id = match given {
-            Some(Json { data: Data::Number(text), .. }) => text.parse::<u64>().ok(),
+        let text = |value: Option<&Json>| match value {
+            Some(Json { data: Data::Text(text), .. }) if labels::fault(text).is_none() => text.clone(),
+            _ => String::new(),
+        };
+        // A text of digits could be meant for a number.
+        let named = Some(text(given("id"))).filter(|id| !id.is_empty() && id.parse::<u64>().is_err());
+        let id = match (given("id"), &named) {
+            (Some(Json { data: Data::Number(text), .. }), _) => text.parse::<u64>().ok(),
+            (_, Some(_)) => Some(index as u64 + 1),
             _ => None,
         };
+        let is_text = named.is_some();
+        let label = named.unwrap_or_else(|| text(given("label")));
         let agent = match id {
-            Some(id) => format!("agent {id}"),
+            Some(id) => format!("agent {}", called(id, &label)),
             None => format!("agent at place {}", index + 1),
         };
         let place = Place { agent: Some(agent), part: None };
         let fields = place.fields(json, &KNOWN)?;
-        let given = fields.required("id")?;
-        let id = id.ok_or_else(|| fields.unexpected("id", given, "a whole number from 0"))?;
+        let id = match (id, fields.required("id")?) {
+            (Some(id), _) => id,
+            (None, given) => {
+                return Err(fields.unexpected("id", given, "a whole number from 0 or a name"));
+            }
+        };
+        match fields.get("label").map(|label| (label, &label.data)) {
+            None => {}
+            Some((label, _)) if is_text => {
+                return Err(fields.error(label.line, "label", "given, and the id is a text"));
+            }
+            Some((given, Data::Text(text))) => {
+                if let Some(fault) = labels::fault(text) {
+                    return Err(fields.error(given.line, "label", fault));
+                }
+            }
+            Some((given, _)) => return Err(fields.unexpected("label", given, "a string")),
+        }
         let (radius, footprint) = outline(&fields, &place)?;
         let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
@@ -160,7 +226,7 @@ impl Agent {
             _ => MotionSpec::decode(&fields, length)?,
         };
         let loads = loads(&fields, path.len())?;
-        let agent = Self { id, radius, footprint, loads, margin, t_start, start, path, motion };
+        let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
         let duration = agent.duration();
         if duration > LIMIT || (t_start + duration).abs() > LIMIT {
             let field = if !moves {
@@ -177,7 +243,7 @@ impl Agent {
             );
             return refused(field, problem);
         }
-        Ok(agent)
+        Ok((agent, is_text))
     }
 }
 

@@ -1,5 +1,6 @@
 //! From a scenario to its file.
 
+use super::decode::{FORMAT, VERSION};
 use super::{Agent, Load, MotionSpec, PathSegment, Scenario};
 use crate::footprint::Footprint;
 use crate::import::TURN;
@@ -12,7 +13,14 @@ impl Scenario {
     pub fn to_json(&self) -> String {
         let agents = self.agents.iter().map(|agent| format!("    {}", Json(agent))).collect::<Vec<_>>().join(",\n");
         let agents = if agents.is_empty() { "[]".to_owned() } else { format!("[\n{agents}\n  ]") };
-        format!("{{ \"name\": {},\n  \"agents\": {agents} }}\n", Value::from(self.name.as_str()))
+        let warnings = match self.warnings.is_empty() {
+            true => String::new(),
+            false => format!("  \"warnings\": {},\n", Value::from(self.warnings.clone())),
+        };
+        let name = Value::from(self.name.as_str());
+        format!(
+            "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{warnings}  \"agents\": {agents} }}\n"
+        )
     }
 }
 
@@ -21,8 +29,12 @@ struct Json<T>(T);
 
 impl Display for Json<&Agent> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Agent { id, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } = self.0;
+        let Agent { id, label, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } =
+            self.0;
         write!(f, "{{ \"id\": {id}, ")?;
+        if !label.is_empty() {
+            write!(f, "\"label\": {}, ", Value::from(label.as_str()))?;
+        }
         write!(f, "{}, ", Json((*radius, footprint.as_ref())))?;
         if !loads.is_empty() {
             let loads = loads.iter().map(|Load { segments: [first, last], radius, footprint }| {
@@ -91,6 +103,7 @@ mod tests {
     fn what_is_written_is_read_again() {
         let agent = Agent {
             id: u64::MAX,
+            label: "AGV \"7\" → é".into(),
             radius: 1.0 / 3.0,
             footprint: None,
             loads: vec![Load { segments: [0, 1], radius: 0.7, footprint: None }],
@@ -101,7 +114,8 @@ mod tests {
             motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
         };
         let length = agent.length();
-        let stands = Agent { id: 0, margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
+        let stands =
+            Agent { id: 0, label: String::new(), margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
         let moves = Agent {
             id: 1,
             motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
@@ -110,9 +124,12 @@ mod tests {
         let outline =
             Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().grown(0.01);
         let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
-        let scenario = Scenario { name: "a \"name\"\n\\".into(), agents: vec![agent, stands, moves, outlined] };
+        let scenario = Scenario {
+            warnings: vec!["edge \"5\": left out".into()],
+            ..Scenario::new("a \"name\"\n\\", vec![agent, stands, moves, outlined])
+        };
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
-        let empty = Scenario { name: String::new(), agents: Vec::new() };
+        let empty = Scenario::default();
         assert_eq!(Scenario::from_json(&empty.to_json()), Ok(empty));
     }
 }

@@ -60,9 +60,12 @@ fn unknown_keys_are_refused_with_those_that_are_known() {
     refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading");
     refused(
         &with("/speed", &json!(1)),
-        "agent 7, speed: unknown key; known are id, radius, footprint, loads, margin, v_max, a_max, turn_v_max, turn_a_max, t_start, start, path, profile",
+        "agent 7, speed: unknown key; known are id, label, radius, footprint, loads, margin, v_max, a_max, turn_v_max, turn_a_max, t_start, start, path, profile",
     );
-    refused(&json!({ "agents": [], "units": "m" }), "units: unknown key; known are name, agents");
+    refused(
+        &json!({ "agents": [], "units": "m" }),
+        "units: unknown key; known are format, version, name, agents, warnings",
+    );
 }
 
 #[test]
@@ -129,7 +132,7 @@ fn ids_are_whole_numbers_and_unique() {
     for id in [json!(-1), json!(1.5), json!(1.0), json!("7"), json!([7])] {
         let message = Scenario::from_value(&with("/id", &id)).unwrap_err().to_string();
         assert!(message.starts_with("agent at place 2, id: "), "{message}");
-        assert!(message.ends_with(" where a whole number from 0 is expected"), "{message}");
+        assert!(message.ends_with(" where a whole number from 0 or a name is expected"), "{message}");
     }
     refused(&with("/id", &json!(3)), "agent 3, id: 3 is given to two agents");
     assert_eq!(Scenario::from_value(&with("/id", &json!(u64::MAX))).unwrap().agents[1].id, u64::MAX);
@@ -207,10 +210,7 @@ fn the_name_is_known_of_a_refused_scenario() {
 
 #[test]
 fn what_is_allowed_is_accepted() {
-    assert_eq!(
-        Scenario::from_json("\u{feff}{\"agents\": []}\r\n").unwrap(),
-        Scenario { name: String::new(), agents: vec![] }
-    );
+    assert_eq!(Scenario::from_json("\u{feff}{\"agents\": []}\r\n").unwrap(), Scenario::default());
     for (pointer, value) in [
         ("/path", json!([])),
         ("/path/0/length", json!(0)),
@@ -230,4 +230,55 @@ fn what_is_allowed_is_accepted() {
     let mut standing = standing;
     standing["agents"][1]["path"] = json!([]);
     assert_eq!(Scenario::from_value(&standing).unwrap().agents[1].duration(), 5.0);
+}
+
+#[test]
+fn labels_are_printable_text() {
+    assert_eq!(Scenario::from_value(&with("/label", &json!("AGV 7 → Ω"))).unwrap().agents[1].called(), "7 AGV 7 → Ω");
+    refused(&with("/label", &json!(5)), "agent 7, label: 5 where a string is expected");
+    let control = "agent 7, label: has the control character \\u{1b}; allowed is printable text";
+    refused(&with("/label", &json!("\u{1b}[2J")), control);
+    let long = with("/label", &json!("x".repeat(LONGEST_LABEL + 1)));
+    refused(&long, "agent 7, label: has 201 characters; allowed are up to 200");
+    // Messages about the agent name it.
+    let mut wrong = with("/label", &json!("AGV-7"));
+    wrong["agents"][1]["radius"] = json!(-1);
+    refused(&wrong, "agent 7 AGV-7, radius: -1 is out of range; allowed is above 0, up to 1e10");
+}
+
+#[test]
+fn ids_may_be_texts_if_all_are() {
+    let named = |ids: [Value; 2]| {
+        let agents = ids.map(|id| {
+            let mut agent = agent(0);
+            agent["id"] = id;
+            agent
+        });
+        json!({ "agents": agents })
+    };
+    let scenario = Scenario::from_value(&named([json!("AGV-7"), json!("AGV-3")])).unwrap();
+    assert_eq!(scenario.agents.iter().map(Agent::called).collect::<Vec<_>>(), ["1 AGV-7", "2 AGV-3"]);
+    assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+    refused(&named([json!("a"), json!("a")]), "agent 2 a, id: \"a\" is given to two agents");
+    for mixed in [[json!("a"), json!(5)], [json!(5), json!("a")]] {
+        let message = Scenario::from_value(&named(mixed)).unwrap_err().to_string();
+        assert!(
+            message.ends_with("id: some ids are numbers and others texts; give numbers to all, and texts as labels")
+        );
+    }
+    let mut both = named([json!("a"), json!("b")]);
+    both["agents"][0]["label"] = json!("c");
+    refused(&both, "agent 1 a, label: given, and the id is a text");
+}
+
+#[test]
+fn files_may_say_what_they_are() {
+    let file = |format: &str, version: u32| {
+        Scenario::from_value(&json!({ "format": format, "version": version, "agents": [] }))
+    };
+    assert!(file("pcr-scenario", 1).is_ok());
+    let message = file("pcr-plan", 1).unwrap_err().to_string();
+    assert_eq!(message, "format: \"pcr-plan\" where \"pcr-scenario\" is expected");
+    let message = file("pcr-scenario", 2).unwrap_err().to_string();
+    assert_eq!(message, "version: 2 where 1, all that this pcr knows, is expected");
 }

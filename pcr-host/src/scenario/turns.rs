@@ -1,8 +1,8 @@
 //! Motions with turns in place: an arc of [`TURN`] radius, before and after which the vehicle is at rest. Its motion over an
 //! angle θ(t) is the length [`TURN`] θ(t).
 
-use super::{MotionSpec, PathSegment};
-use crate::import::TURN;
+use super::{Agent, MotionSpec, PathSegment};
+use crate::import::{KINK, TURN};
 use crate::json::{Data, Json};
 
 /// Whether a segment in a file is one.
@@ -14,6 +14,15 @@ pub(super) fn is_given(segment: &Json) -> bool {
 /// Whether a segment is a turn in place.
 fn is_turn(segment: &PathSegment) -> bool {
     matches!(segment, PathSegment::Arc { radius: TURN, .. })
+}
+
+impl Agent {
+    /// Whether its path has a turn in place, not counting joints that are passed without a stop.
+    pub(crate) fn turns_in_place(&self) -> bool {
+        let turns =
+            |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, sweep } if sweep.abs() > KINK);
+        self.path.iter().any(turns)
+    }
 }
 
 /// From rest to rest in the least time under limits of speed and acceleration, of turns as well.

@@ -26,6 +26,7 @@ impl Course {
                 }
             }
         }
+        course.path()?;
         Ok(course)
     }
 

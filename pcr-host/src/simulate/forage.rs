@@ -19,6 +19,7 @@ use super::noise::{Noise, Purpose};
 use super::tangents::{Disc, taut};
 use super::task::{Mission, Obstacle, Robot, Task};
 use super::vector::Vector;
+use crate::scenario::Labels;
 use pcr_core::Limits;
 
 /// Of a robot \[m\].
@@ -61,7 +62,13 @@ pub fn task(seed: u64, trips: u32) -> Task {
         Robot { id: place as u64 + 1, radius: RADIUS, margin: 0.0, limits: LIMITS, missions }
     });
     let obstacles = OBSTACLES.map(|centre| Obstacle { id: None, centre, radius: OBSTACLE });
-    Task { name: "foraging".into(), robots: robots.collect(), obstacles: obstacles.to_vec() }
+    Task {
+        name: "foraging".into(),
+        labels: Labels::default(),
+        robots: robots.collect(),
+        obstacles: obstacles.to_vec(),
+        warnings: Vec::new(),
+    }
 }
 
 #[cfg(test)]

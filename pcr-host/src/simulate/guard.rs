@@ -42,30 +42,33 @@ impl Guard {
     /// Those of [`build_ecm`].
     pub(super) fn new(courses: &[Course], radii: &[f64]) -> Result<Self, Full> {
         let drives: Vec<Drive> = courses.iter().filter_map(|course| Drive::at_unit_speed(course.clone())).collect();
+        // The supervisor has tried the courses and radii of all robots, and parts of courses are in range as well.
+        debug_assert_eq!((drives.len(), motions(&drives, radii).len()), (courses.len(), courses.len()));
         let ecm = build_ecm(&motions(&drives, radii))?;
         Ok(Self { drives, radii: radii.to_vec(), ecm, orders: Vec::new() })
     }
 
     /// Takes the orders of a plan without collisions: `reached(agent, length)` is when an agent reaches a length of its
-    /// course \[s\], `lengths(time)(agent)` where an agent is at that time. Robots are now in these intervals.
+    /// course \[s\], `lengths(time)(agent)` where an agent is at that time. Robots are now in these intervals. `None` where it cannot
+    /// be told who passes a region first.
     pub(super) fn take_orders(
         &mut self,
         now: &[Interval<f64>],
         reached: impl Fn(usize, f64) -> f64,
         length_at: impl Fn(usize, f64) -> f64,
-    ) {
+    ) -> Option<()> {
         let motions = motions(&self.drives, &self.radii);
         let mut orders = Vec::new();
         for (other, at) in now.iter().enumerate() {
             for ego in 0..other {
-                for region in self.ecm.pair(&motions, ego, other) {
+                for region in self.ecm.pair(&motions, ego, other).expect("the table of the fleet") {
                     let (own, their) = (region.length(), region.other_length());
                     if now.get(ego).is_some_and(|ego| ego.lo > own.hi) || at.lo > their.hi {
                         continue;
                     }
                     // A point of the region that is still ahead of the other one; the whole region is on one side.
                     let ahead = Interval::new(at.lo.clamp(their.lo, their.hi), their.hi).middle();
-                    let Some(point) = region.slice_at(ahead).next().map(Interval::middle) else { continue };
+                    let point = region.slice_at(ahead).next().map(Interval::middle)?;
                     let ego_is_behind = length_at(ego, reached(other, ahead)) < point;
                     let parts = if ego_is_behind { (other, their, ego, own) } else { (ego, own, other, their) };
                     let (first, first_part, second, second_part) = parts;
@@ -74,6 +77,7 @@ impl Guard {
             }
         }
         self.orders = orders;
+        Some(())
     }
 
     /// The length \[m\] at which each agent is held, infinite where it is not, with the agents in these intervals.

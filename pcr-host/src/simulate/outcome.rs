@@ -5,6 +5,7 @@ use super::supervisor::Statistics;
 use super::task::Task;
 use super::vector::{Vector, norm, sub};
 use super::{Controller, Disturbance, FRAME, Settings, Snapshot};
+use crate::scenario::Labels;
 use serde::Serialize;
 
 /// Below this part of its top speed a robot waits.
@@ -52,6 +53,9 @@ pub struct Journey {
 pub struct Simulation {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// Seed of the disturbances.
     pub seed: u64,
     /// Time from one plan to the next \[s\].
@@ -66,6 +70,8 @@ pub struct Simulation {
     pub delay: f64,
     /// One for each controller.
     pub runs: Vec<Run>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 impl Simulation {
@@ -73,7 +79,8 @@ impl Simulation {
     pub fn of(task: &Task, settings: Settings, outcomes: &[Outcome]) -> Self {
         let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
         let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
-        Self { name: task.name.clone(), seed, replan, noise, drift, slip, delay, runs }
+        let (name, labels, warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
+        Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }
 
     /// Whether under [`Controller::Pcr`], if it is there, all missions were done without a collision.

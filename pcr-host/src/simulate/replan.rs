@@ -103,9 +103,10 @@ impl Problem<'_> {
         for &place in order {
             let robot = self.robots.get(place).ok_or(place)?;
             let planned =
-                drives.iter().zip(self.robots).filter_map(|(drive, robot)| drive.as_ref()?.motion(robot.radius));
-            let standing = self.obstacles.iter().filter_map(|(drive, radius)| drive.motion(*radius));
-            let others: Vec<Motion<'_, f64>> = planned.chain(standing).collect();
+                drives.iter().zip(self.robots).filter_map(|(drive, robot)| Some((drive.as_ref()?, robot.radius)));
+            let standing = self.obstacles.iter().map(|(drive, radius)| (drive, *radius));
+            let others = planned.chain(standing).map(|(drive, radius)| drive.motion(radius));
+            let others: Vec<Motion<'_, f64>> = others.collect::<Option<_>>().ok_or(place)?;
             let drive = self.best(robot, &others).ok_or(place)?;
             drives[place] = Some(drive);
         }
@@ -130,7 +131,7 @@ impl Problem<'_> {
         }
         let brakes = speed_that_stops(robot).powi(2) / (2.0 * robot.limits.acceleration);
         let (fleet, ecm) = row(motion, others)?;
-        let entries = ecm.row(&fleet, 0).map(|region| region.length().lo - BEFORE);
+        let entries = ecm.row(&fleet, 0).expect("the table of the fleet").map(|region| region.length().lo - BEFORE);
         let mut stops: Vec<f64> = entries.filter(|&length| length > brakes).chain([brakes]).collect();
         stops.sort_by(f64::total_cmp);
         stops.dedup();
@@ -152,7 +153,7 @@ impl Problem<'_> {
         let further = to_rest(0.0, onward.length(), robot.limits)?;
         let onward = Drive::new(onward, 0.0, &further, stops_at)?;
         let (fleet, ecm) = row(onward.motion(robot.radius)?, others)?;
-        let wait = earliest_start(ecm.row(&fleet, 0), 0.0)?;
+        let wait = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)?;
         pieces.push((wait, 0.0));
         pieces.extend(further);
         pieces.retain(|(duration, _)| *duration > 0.0);

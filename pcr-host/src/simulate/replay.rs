@@ -53,7 +53,8 @@ fn short(value: f64) -> f64 {
 fn data(task: &Task, outcomes: &[Outcome]) -> Value {
     let robots = task.robots.iter().enumerate().map(|(place, robot)| {
         // Beyond 2⁵³ a number would lose its last digits in the browser.
-        json!({ "id": robot.id.to_string(), "radius": robot.radius, "colour": colour(place).to_string() })
+        let (id, name) = (robot.id.to_string(), task.labels.called(robot.id));
+        json!({ "id": id, "name": name, "radius": robot.radius, "colour": colour(place).to_string() })
     });
     let obstacles =
         task.obstacles.iter().map(|obstacle| json!([obstacle.centre[0], obstacle.centre[1], obstacle.radius]));
@@ -112,7 +113,7 @@ fn plan(snapshot: &Snapshot) -> Value {
         let offset = snapshot.offsets.get(ego).copied().unwrap_or(0.0);
         let length = motion.path().length();
         let pixel = [(end - snapshot.time).max(FRAME) / PIXELS, length.max(UNIT) / PIXELS];
-        let regions = ecm.iter().flat_map(|ecm| ecm.row(&motions, ego));
+        let regions = ecm.iter().flat_map(|ecm| ecm.row(&motions, ego).expect("the table of the fleet"));
         let regions = regions.map(|region| self::region(&region, motion, pixel, offset, end));
         let times = (0..=POINTS).map(|k| snapshot.time + (end - snapshot.time) * k as f64 / POINTS as f64);
         let curve = times.map(|time| [short(time), short(offset + motion.length_at(time))]);

@@ -13,10 +13,10 @@ use super::course::{Course, Drive};
 use super::guard::Guard;
 use super::observer::narrowed;
 use super::replan::{Plan, Problem, State};
-use super::task::{Robot, Task};
+use super::task::{Obstacle, Robot, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
 use crate::regions::Failure;
-use pcr_core::{Interval, Limits, Point, Pose, Radians};
+use pcr_core::{Interval, Invalid, Limits, Point, Pose, Radians};
 use std::time::Instant;
 
 /// What is known of the errors of camera and robots.
@@ -48,23 +48,37 @@ struct Agent {
 }
 
 impl Agent {
-    /// `None` for a robot without missions.
-    fn new(robot: &Robot, errors: Errors) -> Option<Self> {
-        let course = robot.missions.first()?.course.beginning();
+    /// A robot that stands where its first mission begins.
+    ///
+    /// # Errors
+    /// [`Failure::Robot`] where its path, or its disc with the margins, is out of range.
+    fn new(robot: &Robot, errors: Errors) -> Result<Self, Failure> {
+        let course = match robot.missions.first() {
+            Some(mission) => Ok(mission.course.beginning()),
+            None => standing(robot.home()),
+        };
         let limits = robot.limits;
-        // A robot goes straight during a frame, not along the arc.
+        // A robot goes straight during a frame, not along the arc: off its middle by the sagitta, and nowhere farther from the path than
+        // half the way from one of its ends, however sharp the path turns.
         let way = limits.speed * FRAME;
         let least = robot.missions.iter().map(|mission| mission.course.least_radius()).fold(f64::INFINITY, f64::min);
-        let off = errors.drift + way * way / (8.0 * least);
-        Some(Self {
+        let off = errors.drift + (way * way / (8.0 * least)).min(way / 2.0);
+        let agent = Self {
             limits,
             radius: robot.radius,
             margins: [robot.margin + off, robot.margin + off + errors.drift + errors.noise],
-            course,
+            course: course.map_err(|_| Failure::Robot(robot.id))?,
             at: Interval::new(0.0, 0.0),
             speed: 0.0,
             next: None,
-        })
+        };
+        let largest = agent.radius + agent.margins[1];
+        let fits =
+            |course: &Course| Drive::at_unit_speed(course.clone()).is_some_and(|it| it.motion(largest).is_some());
+        match fits(&agent.course) && robot.missions.iter().all(|mission| fits(&mission.course)) {
+            true => Ok(agent),
+            false => Err(Failure::Robot(robot.id)),
+        }
     }
 
     /// The path that a plan is for, and where the robot is on it.
@@ -132,14 +146,13 @@ impl Current {
 
 impl Supervisor {
     pub(super) fn new(task: &Task, errors: Errors, period: f64) -> Result<Self, Failure> {
-        let agents = task.robots.iter().filter_map(|robot| Agent::new(robot, errors)).collect::<Vec<_>>();
-        let standing = |centre: [f64; 2]| {
-            let position = Point::new(centre[0], centre[1]);
-            let course = Course::standing(Pose { position, heading: Radians(0.0) }).ok()?;
-            Drive::standing(course, 0.0)
+        let agents = task.robots.iter().map(|robot| Agent::new(robot, errors)).collect::<Result<Vec<_>, _>>()?;
+        let obstacle = |obstacle: &Obstacle| {
+            let drive = standing(obstacle.centre).ok().and_then(|course| Drive::standing(course, 0.0));
+            let drive = drive.filter(|drive| drive.motion(obstacle.radius).is_some());
+            drive.map(|drive| (drive, obstacle.radius)).ok_or(Failure::Obstacle(obstacle.centre))
         };
-        let obstacles = task.obstacles.iter();
-        let obstacles = obstacles.filter_map(|obstacle| Some((standing(obstacle.centre)?, obstacle.radius))).collect();
+        let obstacles = task.obstacles.iter().map(obstacle).collect::<Result<_, _>>()?;
         let guard = guard(&agents)?;
         let (statistics, snapshots) = (Statistics::default(), Vec::new());
         Ok(Self { agents, obstacles, errors, guard, plan: None, period, next_plan: 0.0, statistics, snapshots })
@@ -209,7 +222,7 @@ impl Supervisor {
             &places,
             |agent, length| current.reached(agent, length),
             |agent, time| current.length_at(agent, time),
-        );
+        )?;
         let holds = guard.holds(&places);
         let can_stop = self.agents.iter().zip(holds).all(|(agent, hold)| {
             let (_, at, speed) = agent.to_plan();
@@ -253,6 +266,10 @@ fn guard(agents: &[Agent]) -> Result<Guard, Failure> {
     let courses: Vec<Course> = agents.iter().map(|agent| agent.course.clone()).collect();
     let radii: Vec<f64> = agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
     Guard::new(&courses, &radii).map_err(Failure::Full)
+}
+
+fn standing([x, y]: [f64; 2]) -> Result<Course, Invalid> {
+    Course::standing(Pose { position: Point::new(x, y), heading: Radians(0.0) })
 }
 
 impl Control for Supervisor {

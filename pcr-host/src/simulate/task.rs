@@ -4,7 +4,7 @@ use super::course::Course;
 use super::vector::Vector;
 use crate::fleet::Fleet;
 use crate::regions::Failure;
-use crate::scenario::{MotionSpec, Scenario};
+use crate::scenario::{Labels, MotionSpec, Scenario};
 use pcr_core::Limits;
 
 /// A run: robots, what stands in their way, and their missions.
@@ -12,10 +12,14 @@ use pcr_core::Limits;
 pub struct Task {
     /// Name of the scenario.
     pub name: String,
+    /// What its agents are called.
+    pub labels: Labels,
     /// The robots.
     pub robots: Vec<Robot>,
     /// What does not move.
     pub obstacles: Vec<Obstacle>,
+    /// What was read otherwise than it was written, or is left aside here.
+    pub warnings: Vec<String>,
 }
 
 /// A robot and its missions.
@@ -61,7 +65,8 @@ impl Robot {
 }
 
 impl Task {
-    /// The agents of a scenario: those with a path have one mission, the others are in the way.
+    /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
+    /// around all of them, and turns in place take no time.
     ///
     /// # Errors
     /// [`Failure::Refused`] where a value is out of range.
@@ -73,13 +78,17 @@ impl Task {
             if course.length() > 0.0 {
                 let missions = vec![Mission { release: agent.t_start, course }];
                 let limits = limits(&agent.motion);
-                robots.push(Robot { id: agent.id, radius: agent.radius, margin: agent.margin, limits, missions });
+                robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
             } else {
                 let centre = course.point_at(0.0);
-                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.radius + agent.margin });
+                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
             }
         }
-        Ok(Self { name: scenario.name.clone(), robots, obstacles })
+        let mut warnings = scenario.warnings.clone();
+        for agent in scenario.agents.iter().filter(|agent| agent.turns_in_place()) {
+            warnings.push(format!("agent {}: its turns in place take no time in a simulation", agent.id));
+        }
+        Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles, warnings })
     }
 }
 

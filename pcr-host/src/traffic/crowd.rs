@@ -20,24 +20,25 @@ pub(super) struct Crowd {
 }
 
 impl Crowd {
-    /// Adds an agent if there still is an order for all; returns whether there is.
-    pub(super) fn add(&mut self, agent: &Agent) -> bool {
-        let alone = Scenario { name: String::new(), agents: vec![agent.clone()] };
-        // What cannot be computed with is not in anybody's way, and no mission.
-        let Ok(bodies) = Bodies::<f64>::new(&alone) else { return false };
+    /// Adds an agent if there still is an order for all, or says why it cannot be added.
+    pub(super) fn add(&mut self, agent: &Agent) -> Result<(), String> {
+        const NONE: &str = "no order of starts lets it through with those before it";
+        let alone = Scenario::new("", vec![agent.clone()]);
+        let bodies = Bodies::<f64>::new(&alone).map_err(|refused| refused.to_string())?;
         // Most that fail do so by one disc of each already.
-        if self.order(&bodies, true).is_none() {
-            return false;
-        }
-        let Some([before, after]) = self.order(&bodies, false) else { return false };
+        self.order(&bodies, true)?.ok_or(NONE)?;
+        let [before, after] = self.order(&bodies, false)?.ok_or(NONE)?;
         before.iter().for_each(|&agent| self.after[agent].push(self.agents.len()));
         self.agents.push(bodies);
         self.after.push(after);
-        true
+        Ok(())
     }
 
     /// Those that have to start before an agent and after it, by all discs or by one of each; none where there is no order.
-    fn order(&self, agent: &Bodies<f64>, one: bool) -> Option<[Vec<usize>; 2]> {
+    ///
+    /// # Errors
+    /// What does not fit the table.
+    fn order(&self, agent: &Bodies<f64>, one: bool) -> Result<Option<[Vec<usize>; 2]>, String> {
         let others: Vec<(usize, Motion<'_, f64>)> = self
             .agents
             .iter()
@@ -48,8 +49,8 @@ impl Crowd {
         for own in grown(agent, one) {
             let pair: Vec<Motion<'_, f64>> =
                 std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
-            let ecm = build_ecm_of(&pair, 0).ok()?;
-            for region in ecm.row(&pair, 0) {
+            let ecm = build_ecm_of(&pair, 0).map_err(|full| full.to_string())?;
+            for region in ecm.row(&pair, 0).expect("the table of the fleet") {
                 let Some((other, _)) = others.get(region.other().wrapping_sub(1)) else { continue };
                 let [goes_after, goes_before] = sides(&region);
                 marks[0][*other] |= goes_after;
@@ -67,7 +68,7 @@ impl Crowd {
             }
         }
         let circle = before.iter().any(|&agent| reached[agent]);
-        (!circle).then_some([before, after])
+        Ok((!circle).then_some([before, after]))
     }
 }
 

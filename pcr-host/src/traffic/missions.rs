@@ -4,6 +4,7 @@ use super::crowd::Crowd;
 use crate::import::{Imported, Placed, mission};
 use crate::random::Random;
 use crate::scenario::Agent;
+use std::collections::BTreeMap;
 
 /// How many times the sum of their radii and margins agents keep that wait at their starts or stand at their ends: more than
 /// 1 by what plans and checks may take for a contact.
@@ -45,8 +46,8 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Drawn {
     pub(super) missions: Vec<Mission>,
-    /// How many were passed over because no order of starts would let them through.
-    pub(super) passed_over: usize,
+    /// How many were passed over, by the reason.
+    pub(super) passed_over: BTreeMap<String, usize>,
 }
 
 /// Draws at most, where not all agents have a mission in the first one.
@@ -63,7 +64,8 @@ pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Drawn {
             break;
         }
         let next = attempt(imported, count, Random(seeds.bits()));
-        let passed_over = best.passed_over + next.passed_over;
+        let mut passed_over = std::mem::take(&mut best.passed_over);
+        next.passed_over.iter().for_each(|(why, count)| *passed_over.entry(why.clone()).or_default() += count);
         let more = next.missions.len() > best.missions.len();
         best = Drawn { passed_over, ..if more { next } else { best } };
     }
@@ -89,17 +91,22 @@ fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
             let ends = ends.iter().filter(move |&&to| to != from && free(1, to));
             ends.map(move |&to| [from, to])
         });
-        // A way that is no path is no mission.
-        let possible = pairs.filter_map(|ends| Some(Mission { ends, agent: mission(imported, id, ends).ok()?? }));
         let clear =
             |drawn: &Mission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
-        let mut passed_over = 0;
-        let found = possible.into_iter().filter(clear).find(|mission| {
-            let joins = crowd.add(&mission.agent);
-            passed_over += usize::from(!joins);
-            joins
+        let mut passed_over = Vec::new();
+        let found = pairs.into_iter().find_map(|ends| match mission(imported, id, ends) {
+            // Nodes without a way between them, or too near others, are no mission that could be passed over.
+            Ok(agent) => {
+                let mission = Mission { ends, agent: agent? };
+                let added = if clear(&mission) { crowd.add(&mission.agent) } else { return None };
+                added.map(|()| mission).map_err(|why| passed_over.push(why)).ok()
+            }
+            Err(error) => {
+                passed_over.push(format!("the way is no path: {error}"));
+                None
+            }
         });
-        drawn.passed_over += passed_over;
+        passed_over.into_iter().for_each(|why| *drawn.passed_over.entry(why).or_default() += 1);
         let Some(mission) = found else { break };
         drawn.missions.push(mission);
     }

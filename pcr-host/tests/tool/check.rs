@@ -1,6 +1,6 @@
 //! `pcr check`: verdicts, exit statuses, refusals.
 
-use crate::fixture::{Run, crossing, file, run, run_with, straight};
+use crate::fixture::{PAPER, Run, crossing, file, run, run_with, straight};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -25,7 +25,12 @@ fn a_crossing_at_the_same_time_is_a_conflict() {
     let run = check(&crossing(), &["--format", "json", "--closest"]);
     assert_eq!((run.status, run.err.as_str()), (1, ""));
     let verdict: Value = serde_json::from_str(&run.out).unwrap();
-    assert!(run.out.starts_with(r#"{"name":"crossing","conflicts":[{"i":1,"j":2,"t":["#), "{}", run.out);
+    assert!(
+        run.out
+            .starts_with(r#"{"format":"pcr-conflicts","version":1,"name":"crossing","conflicts":[{"i":1,"j":2,"t":["#),
+        "{}",
+        run.out
+    );
     let [conflict] = &verdict["conflicts"].as_array().unwrap()[..] else { panic!("{verdict}") };
     let near = |value: &Value, exact: f64| (value.as_f64().unwrap() - exact).abs() < 1e-9;
     let half = 0.125_f64.sqrt();
@@ -42,7 +47,10 @@ fn a_crossing_at_the_same_time_is_a_conflict() {
 #[test]
 fn a_plan_without_conflicts_is_free() {
     let run = check(&free(), &["--format", "json"]);
-    assert_eq!(run.json(), json!({ "name": "crossing", "conflicts": [], "error": null }));
+    assert_eq!(
+        run.json(),
+        json!({ "format": "pcr-conflicts", "version": 1, "name": "crossing", "conflicts": [], "error": null, "warnings": [] })
+    );
     assert_eq!(check(&free(), &[]).ok(), "crossing: no conflicts\n");
     assert_eq!(check(&free(), &["--format", "csv"]).ok().lines().count(), 1);
 }
@@ -70,13 +78,13 @@ fn tables_and_csv_say_the_same() {
     let csv = check(&crossing(), &["--format", "csv", "--scalar", "f32"]);
     let lines: Vec<&str> = csv.out.lines().collect();
     assert_eq!((csv.status, lines.len()), (1, 2));
-    assert_eq!(lines[0], "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a,l_j_b,touching");
-    assert!(lines[1].starts_with("crossing,1,2,2.14") && lines[1].ends_with(",0"), "{}", lines[1]);
+    assert_eq!(lines[0], "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a,l_j_b,touching,i_label,j_label");
+    assert!(lines[1].starts_with("crossing,1,2,2.14") && lines[1].ends_with(",0,,"), "{}", lines[1]);
 }
 
 #[test]
 fn the_papers_agents_collide_without_a_plan() {
-    let run = run(&["check", "--format", "json"]);
+    let run = run(&["check", PAPER, "--format", "json"]);
     assert_eq!(run.status, 1);
     let verdict: Value = serde_json::from_str(&run.out).unwrap();
     let conflicts = verdict["conflicts"].as_array().unwrap();
@@ -102,11 +110,17 @@ fn lines_are_answered_in_their_place() {
 
 #[test]
 fn what_is_refused() {
-    let message = run(&["check", "--closest", "--format", "csv"]).failed(2);
+    let message = run(&["check", PAPER, "--closest", "--format", "csv"]).failed(2);
     assert_eq!(message, "pcr: --closest is for --format json and table\n");
     assert!(check(&json!({ "agents": 3 }), &[]).failed(2).contains("agents"));
     let help = run(&["check", "--help"]).ok();
     assert!(help.contains("pcr check - --format json < plans.jsonl") && help.contains("  1  conflicts\n"), "{help}");
     let empty = check(&json!({ "agents": [] }), &["--format", "json", "--closest"]);
-    assert_eq!(empty.json(), json!({ "name": "", "conflicts": [], "closest": [], "error": null }));
+    let empty = empty.json();
+    // A file without a name in it answers by its own.
+    assert!(empty["name"].as_str().is_some_and(|name| !name.is_empty()));
+    assert_eq!(
+        empty,
+        json!({ "format": "pcr-conflicts", "version": 1, "name": empty["name"], "conflicts": [], "closest": [], "error": null, "warnings": [] })
+    );
 }

@@ -6,6 +6,9 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+/// The paper's 12 agents.
+pub(crate) const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios/paper12.json");
+
 /// What a run left behind.
 pub(crate) struct Run {
     pub(crate) status: i32,
@@ -47,6 +50,13 @@ impl Run {
     #[track_caller]
     pub(crate) fn json(self) -> Value {
         serde_json::from_str(&self.ok()).unwrap()
+    }
+
+    /// The JSON output of a run with this status and no message.
+    #[track_caller]
+    pub(crate) fn json_of(self, status: i32) -> Value {
+        assert_eq!((self.status, self.err.as_str()), (status, ""));
+        serde_json::from_str(&self.out).unwrap()
     }
 
     /// The message of a run that failed with this status and printed nothing else.

@@ -40,7 +40,7 @@ fn a_format_may_be_named_and_come_through_a_pipe() {
     let arguments = ["import", "nav2", &name, "--route", "3:4", "-o", written.to_str().unwrap()];
     let run = run(&[&arguments, &VEHICLE[..]].concat());
     assert_eq!((run.status, run.out.as_str()), (0, ""));
-    assert!(std::fs::read_to_string(written).unwrap().starts_with("{ \"name\": \"warehouse_graph\""));
+    assert!(std::fs::read_to_string(written).unwrap().contains("\"name\": \"warehouse_graph\""));
 }
 
 #[test]
@@ -49,10 +49,7 @@ fn what_is_wrong_is_named() {
     assert!(failed.ends_with("route 0:1000: there is no node 1000 (read as nav2)\n"), "{failed}");
     let scenario = file("import", "plain.json", crate::fixture::crossing().to_string());
     let failed = run(&["regions", &scenario, "--radius", "1"]).failed(2);
-    assert!(
-        failed.ends_with("a scenario has its own vehicles and paths; options for layouts are of no use\n"),
-        "{failed}"
-    );
+    assert!(failed.ends_with(": --radius is of no use: a scenario has its own vehicles and paths\n"), "{failed}");
     let failed = run(&["regions", &scenario, "--from", "nav2"]).failed(2);
     assert!(failed.ends_with("graph, features: missing (read as nav2)\n"), "{failed}");
     let refused = run(&["regions", WAREHOUSE, "--radius=-1"]);
@@ -86,4 +83,70 @@ fn several_orders_or_paths_are_agents_of_one_scenario() {
     assert!(failed.contains("c.json: order c: 0 nodes"), "{failed}");
     let layouts = run(&["import", "nav2", &a, &b, "--radius", "0.3"]).failed(2);
     assert!(layouts.contains("a.json: only orders and states"), "{layouts}");
+}
+
+const ONE_ID: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/cases/one-id-two-edges.geojson");
+
+#[test]
+fn warnings_are_in_every_answer() {
+    let routes = ["--route", "0:1", "--route", "4:5"];
+    let of = |command: &[&str], routes: &[&str]| {
+        let run = run(&[command, &[ONE_ID, "--format", "json"], routes, &VEHICLE].concat());
+        assert!(run.err.lines().any(|line| line.contains("edge 101: the name of several")), "{}", run.err);
+        serde_json::from_str::<Value>(&run.out).unwrap()
+    };
+    let warned = |answer: &Value| {
+        let warnings = answer["warnings"].as_array().unwrap();
+        warnings
+            .iter()
+            .any(|line| line.as_str().unwrap() == "edge 101: the name of several; one of them is called 101#2 here")
+    };
+    for command in
+        [&["regions"][..], &["check"], &["plan"], &["simulate", "--controller", "pcr"], &["compare", "--rounds", "1"]]
+    {
+        assert!(warned(&of(command, &routes)), "{command:?}");
+    }
+    let locks = of(&["locks"], &[]);
+    assert_eq!((warned(&locks), locks["locks"].as_array().unwrap().len()), (true, 1));
+    assert!(warned(&of(&["traffic", "--agents", "2"], &[])));
+    // Also those of a file that was imported before, which says so itself.
+    let imported = run(&[&["import", "nav2", ONE_ID], &routes[..], &VEHICLE].concat());
+    let scenario = file("import", "one-id.json", &imported.out);
+    assert!(warned(&run(&["check", &scenario, "--format", "json"]).json_of(1)));
+    // And nothing where there is nothing to warn about.
+    let plain = run(&["regions", "--format", "json"]).json();
+    assert_eq!(plain["warnings"], json!([]));
+}
+
+#[test]
+fn what_would_be_left_out_is_refused_unless_it_is_asked_for() {
+    let mut graph: Value = serde_json::from_str(&std::fs::read_to_string(ONE_ID).unwrap()).unwrap();
+    graph["features"][7]["properties"]["endid"] = json!(44);
+    let name = file("import", "lost.geojson", graph.to_string());
+    let expected =
+        format!("pcr: {name}: edge 100, endid: there is no node 44; --partial leaves that out (read as nav2)\n");
+    assert_eq!(run(&["locks", &name, "--radius", "0.4"]).failed(2), expected);
+    let partly = run(&["locks", &name, "--radius", "0.4", "--partial", "--format", "json"]);
+    assert_eq!(partly.status, 0, "{}", partly.err);
+    let answer: Value = serde_json::from_str(&partly.out).unwrap();
+    assert!(answer["warnings"].to_string().contains("edge 100, endid: there is no node 44: left out"), "{answer}");
+    // A scenario has nothing to leave out.
+    let scenario = file("import", "plain.json", crate::fixture::crossing().to_string());
+    assert!(run(&["check", &scenario, "--partial"]).failed(2).contains("options for layouts are of no use"));
+}
+
+#[test]
+fn agents_on_different_maps_are_told_also_if_they_are_from_different_files() {
+    let state = |robot: &str, map: &str| {
+        let pose = json!({ "x": 0.0, "y": 0.0, "theta": 0.0, "mapId": map });
+        json!({ "serialNumber": robot, "nodeStates": [], "mobileRobotPosition": pose }).to_string()
+    };
+    let files = [("a", "ground"), ("b", "first")]
+        .map(|(robot, map)| file("import", &format!("{robot}.json"), state(robot, map)));
+    let two = run(&[&["import", "vda5050", &files[0], &files[1]], &VEHICLE[..]].concat());
+    let told = "maps first, ground: the agents are on several, which a scenario does not tell apart";
+    assert!(two.status == 0 && two.err.contains(told), "{}", two.err);
+    assert!(two.out.contains(told), "{}", two.out);
+    let one = run(&[&["import", "vda5050", &files[0]], &VEHICLE[..]].concat());
+    assert!(!one.err.contains("maps"), "{}", one.err);
 }

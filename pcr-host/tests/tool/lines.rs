@@ -31,7 +31,10 @@ fn a_bad_line_is_answered_in_its_place_and_the_run_goes_on() {
         assert_eq!((good["regions"].as_array().unwrap().len(), &good["error"]), (2, &Value::Null));
     }
     let message = "line 3: agent 2, segment 1, length: -4 is out of range; allowed is 0 to 1e10";
-    assert_eq!(answers[1], json!({ "name": "bad", "scalar": "f64", "regions": [], "error": message }));
+    assert_eq!(
+        answers[1],
+        json!({ "format": "pcr-regions", "version": 1, "name": "bad", "scalar": "f64", "regions": [], "error": message, "warnings": [] })
+    );
     assert_eq!(answers[2]["error"], json!("line 5: column 2: ] where a key in quotes is expected"));
 }
 
@@ -42,7 +45,9 @@ fn good_lines_leave_no_error() {
     let answers = answers(&run.ok());
     assert_eq!(answers.len(), 2);
     assert_eq!(answers[1]["regions"][0]["slices"].as_array().unwrap().len(), 3);
-    assert_eq!(run_with(&["regions", "-", "--format", "json"], b"").ok(), "");
+    // Nothing at all is an answer to nothing, but no sign that nobody collides: whoever should have written has failed.
+    let empty = run_with(&["check", "-"], b"\n").failed(2);
+    assert_eq!(empty, "pcr: standard input: empty; no scenario came in\n");
 }
 
 #[test]
@@ -56,7 +61,10 @@ fn every_answer_is_there_before_the_next_line_is_read() {
         input.flush().unwrap();
         let mut line = String::new();
         output.read_line(&mut line).unwrap();
-        assert!(line.starts_with(&format!("{{\"name\":\"{name}\",")), "{line}");
+        assert!(
+            line.starts_with(&format!("{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",")),
+            "{line}"
+        );
     }
     drop(input);
     assert!(child.wait().unwrap().success());
@@ -83,7 +91,10 @@ fn what_a_number_format_or_a_request_refuses_is_an_error_of_its_line() {
     let run = run_with(&["regions", "-", "--format", "json", "--scalar", "f32", "--agent", "1"], input.as_bytes());
     let answers = answers(&run.out);
     let message = "line 1: agent 1, start.x: 5e6 is out of range; allowed is up to 1e6 in magnitude (f32)";
-    assert_eq!(answers[0], json!({ "name": "far", "scalar": "f32", "regions": [], "error": message }));
+    assert_eq!(
+        answers[0],
+        json!({ "format": "pcr-regions", "version": 1, "name": "far", "scalar": "f32", "regions": [], "error": message, "warnings": [] })
+    );
     assert_eq!((run.status, answers[1]["regions"].as_array().unwrap().len()), (2, 1));
     let run = run_with(&["regions", "-", "--format", "json", "--agent", "3"], named("near").as_bytes());
     assert!(run.out.contains("\"error\":\"line 1: no agent 3; there are 1, 2\""), "{}", run.out);

@@ -20,9 +20,12 @@ fn cross() -> String {
 #[test]
 fn json_is_as_documented() {
     let name = file("locks", "cross.geojson", cross());
-    let output = run(&["locks", &name, "--radius", "0.25", "--speed", "1", "--format", "json"]);
+    let output = run(&["locks", &name, "--radius", "0.25", "--format", "json"]);
     let table: serde_json::Value = serde_json::from_str(&output.out).unwrap();
-    assert_eq!(table.as_object().unwrap().keys().collect::<Vec<_>>(), ["layout", "locks", "vehicle"]);
+    assert_eq!(
+        table.as_object().unwrap().keys().collect::<Vec<_>>(),
+        ["format", "layout", "locks", "vehicle", "version", "warnings"]
+    );
     assert_eq!((&table["layout"], &table["vehicle"]), (&json!("cross"), &json!({ "name": null, "radius": 0.25 })));
     let lock = &table["locks"][0];
     assert_eq!((&lock["a"], &lock["b"], table["locks"].as_array().unwrap().len()), (&json!(7), &json!(20), 1));
@@ -72,7 +75,7 @@ fn what_is_no_layout_is_refused() {
     let scenario = file("locks", "scenario.json", crate::fixture::crossing().to_string());
     let failed = run(&["locks", &scenario]).failed(2);
     assert!(
-        failed.ends_with("scenario.json: not known as a layout by its name or content; say what it is with --from\n"),
+        failed.ends_with("scenario.json: this is a scenario, with paths of its own; a layout is expected\n"),
         "{failed}"
     );
 }

@@ -1,6 +1,6 @@
 //! What is printed: every format against the documented form and against the core's own numbers.
 
-use crate::fixture::{crossing, directory, file, run, straight};
+use crate::fixture::{PAPER, crossing, directory, file, run, straight};
 use pcr_core::{Motion, RegionRef};
 use pcr_host::fleet::{Fleet, Format, build_ecm};
 use pcr_host::paper;
@@ -30,11 +30,15 @@ fn json_has_the_documented_keys_in_the_documented_order() {
         r#""crossings":[{"T":N,"L":N,"r_hat":N,"v":N,"theta":N}]}]"#
     );
     let plain = run(&["regions", &scenario, "--format", "json"]).ok();
-    let form = format!(r#"{{"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null}}"#);
+    let form = format!(
+        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f64","regions":[{region}}},{region}}}],"error":null,"warnings":[]}}"#
+    );
     assert_eq!(skeleton(&plain), form + "\n");
     let sliced = run(&["regions", &scenario, "--format", "json", "--slices", "1", "--scalar", "f32"]).ok();
     let region = format!(r#"{region},"slices":[{{"t":N,"l":[[N,N]]}}]}}"#);
-    let form = format!(r#"{{"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null}}"#);
+    let form = format!(
+        r#"{{"format":"pcr-regions","version":N,"name":"crossing","scalar":"f32","regions":[{region},{region}],"error":null,"warnings":[]}}"#
+    );
     assert_eq!(skeleton(&sliced), form + "\n");
 }
 
@@ -61,9 +65,9 @@ fn output_is_the_cores<S: Format>() {
     let fleet = Fleet::<S>::new(&scenario).unwrap();
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).unwrap();
-    let answer = run(&["regions", "--format", "json", "--slices", "2", "--scalar", S::NAME]).json();
+    let answer = run(&["regions", PAPER, "--format", "json", "--slices", "2", "--scalar", S::NAME]).json();
     let printed = answer["regions"].as_array().unwrap();
-    let regions: Vec<RegionRef<'_, S>> = ecm.regions(&motions).collect();
+    let regions: Vec<RegionRef<'_, S>> = ecm.regions(&motions).expect("the table of the fleet").collect();
     assert_eq!((answer["scalar"].as_str(), printed.len()), (Some(S::NAME), regions.len()));
     let mut found = 0;
     for region in &regions {
@@ -114,7 +118,7 @@ fn regions_are_sorted_by_number_and_not_by_place() {
     let pairs: Vec<[u64; 2]> =
         regions.iter().map(|region| ["i", "j"].map(|key| region[key].as_u64().unwrap())).collect();
     assert_eq!(pairs, [[9, 10], [9, u64::MAX], [10, 9], [10, u64::MAX], [u64::MAX, 9], [u64::MAX, 10]]);
-    let paper = run(&["regions", "--format", "json"]).json();
+    let paper = run(&["regions", PAPER, "--format", "json"]).json();
     let keys: Vec<(u64, u64, f64, f64)> = paper["regions"].as_array().unwrap().iter().map(key).collect();
     assert!(keys.is_sorted(), "{keys:?}");
 }
@@ -137,7 +141,7 @@ fn slices_are_at_the_documented_times_and_end_where_discs_touch() {
         &motions[scenario.agents.iter().position(|agent| Some(agent.id) == id.as_u64()).unwrap()]
     };
     const SLICES: usize = 9;
-    let answer = run(&["regions", "--format", "json", "--slices", "9"]).json();
+    let answer = run(&["regions", PAPER, "--format", "json", "--slices", "9"]).json();
     let mut ends = 0;
     for region in answer["regions"].as_array().unwrap() {
         let (ego, other) = (motion(&region["i"]), motion(&region["j"]));
@@ -178,10 +182,13 @@ fn every_crossing_is_in_one_piece() {
 
 #[test]
 fn csv_reads_back_as_the_same_numbers() {
-    let csv = run(&["regions", "--format", "csv"]).ok();
+    let csv = run(&["regions", PAPER, "--format", "csv"]).ok();
     let mut lines = csv.lines();
-    assert_eq!(lines.next(), Some("name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin"));
-    let answer = run(&["regions", "--format", "json"]).json();
+    assert_eq!(
+        lines.next(),
+        Some("name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin,i_label,j_label")
+    );
+    let answer = run(&["regions", PAPER, "--format", "json"]).json();
     let regions = answer["regions"].as_array().unwrap();
     let lines: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert_eq!(lines.len(), regions.len());
@@ -217,7 +224,7 @@ fn row<'t>(table: &'t str, first: &[&str]) -> Vec<&'t str> {
 
 #[test]
 fn the_table_of_an_agent_is_that_of_the_paper() {
-    let table = run(&["regions", "--agent", "3"]).ok();
+    let table = run(&["regions", PAPER, "--agent", "3"]).ok();
     assert!(table.starts_with("paper12: 18 collision regions, 18 crossings (f64)\n"), "{table}");
     let row_8 = ["3", "8", "1", "AA", "10.376", "4.668", "0.310", "0.440", "-1.668", "1.150", "ccw", "2.248", "ccw"];
     assert_eq!(row(&table, &["3", "8", "1", "AA"]), row_8);
@@ -230,7 +237,7 @@ fn the_table_of_an_agent_is_that_of_the_paper() {
 
 #[test]
 fn columns_of_tables_are_aligned() {
-    let table = run(&["regions"]).ok();
+    let table = run(&["regions", PAPER]).ok();
     let mut blocks = 0;
     for block in table.split("\n\n").skip(1) {
         // Under the last letter of a title that is set to the right ends every number of its column.
@@ -248,12 +255,12 @@ fn columns_of_tables_are_aligned() {
 
 #[test]
 fn an_agent_restricts_every_format() {
-    let answer = run(&["regions", "--agent", "5", "--format", "json"]).json();
-    let all = run(&["regions", "--format", "json"]).json();
+    let answer = run(&["regions", PAPER, "--agent", "5", "--format", "json"]).json();
+    let all = run(&["regions", PAPER, "--format", "json"]).json();
     let of_5: Vec<&Value> =
         all["regions"].as_array().unwrap().iter().filter(|region| region["i"] == json!(5)).collect();
     assert_eq!(answer["regions"].as_array().unwrap().iter().collect::<Vec<_>>(), of_5);
-    let csv = run(&["regions", "--agent", "5", "--format", "csv"]).ok();
+    let csv = run(&["regions", PAPER, "--agent", "5", "--format", "csv"]).ok();
     assert_eq!(csv.lines().count(), 1 + of_5.len());
 }
 
@@ -274,11 +281,16 @@ fn agents_that_stand_have_open_regions_and_no_segment() {
 #[test]
 fn fleets_of_none_and_of_one_have_no_regions() {
     for agents in [json!([]), json!([straight(1, [0.0, 0.0, 0.0], 1.0)])] {
-        let scenario =
-            file("few", &format!("{}.json", agents.as_array().unwrap().len()), json!({ "agents": agents }).to_string());
+        let name = format!("of-{}", agents.as_array().unwrap().len());
+        let scenario = file("few", &format!("{name}.json"), json!({ "agents": agents }).to_string());
         let json = run(&["regions", &scenario, "--format", "json"]).ok();
-        assert_eq!(json, "{\"name\":\"\",\"scalar\":\"f64\",\"regions\":[],\"error\":null}\n");
-        assert_eq!(run(&["regions", &scenario]).ok(), "scenario: 0 collision regions, 0 crossings (f64)\n");
+        assert_eq!(
+            json,
+            format!(
+                "{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null,\"warnings\":[]}}\n"
+            )
+        );
+        assert_eq!(run(&["regions", &scenario]).ok(), format!("{name}: 0 collision regions, 0 crossings (f64)\n"));
         assert_eq!(run(&["regions", &scenario, "--format", "csv"]).ok().lines().count(), 1);
     }
 }

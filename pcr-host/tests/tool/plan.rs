@@ -1,6 +1,6 @@
 //! `pcr plan`: a plan is a scenario that the check finds free.
 
-use crate::fixture::{crossing, directory, file, run, straight};
+use crate::fixture::{PAPER, crossing, directory, file, run, straight};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -34,13 +34,13 @@ fn a_crossing_is_resolved_by_the_delay_of_the_second() {
 #[test]
 fn the_papers_agents_are_resolved_and_the_plan_is_free() {
     let output = directory("plan").join("paper12-plan.json").to_str().unwrap().to_owned();
-    let table = run(&["plan", "-o", &output]).ok();
+    let table = run(&["plan", PAPER, "-o", &output]).ok();
     assert!(table.starts_with("paper12: a plan without conflicts, by start delays"), "{table}");
     assert!(table.lines().count() == 15 && table.contains("makespan"), "{table}");
     let check = run(&["check", &output]).ok();
     assert_eq!(check, "paper12: no conflicts\n");
-    let csv = run(&["plan", "--format", "csv"]).ok();
-    assert!(csv.starts_with("name,id,delay,t_end\npaper12,1,") && csv.lines().count() == 13, "{csv}");
+    let csv = run(&["plan", PAPER, "--format", "csv"]).ok();
+    assert!(csv.starts_with("name,id,delay,t_end,label\npaper12,1,") && csv.lines().count() == 13, "{csv}");
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn one_controller_as_table_and_as_csv() {
     let table = run(&["simulate", &name, "--controller", "pcr"]).ok();
     assert!(table.starts_with("crossing: seed 1,") && table.contains("\n  pcr ") && !table.contains("orca"), "{table}");
     let csv = run(&["simulate", &name, "--controller", "orca", "--format", "csv"]).ok();
-    assert!(csv.starts_with("name,controller,id,begin,end,unimpeded,waiting\ncrossing,orca,1,0,"), "{csv}");
+    assert!(csv.starts_with("name,controller,id,begin,end,unimpeded,waiting,label\ncrossing,orca,1,0,"), "{csv}");
     assert_eq!(csv.lines().count(), 3);
 }
 

@@ -104,7 +104,31 @@ impl Route {
         self.locate(length).map_or(self.start, |(piece, u)| piece.at(u))
     }
 
-    /// The same in `f64`: off by some 2^-53 of the coordinates and of the length of one leg.
+    /// Distance of a point from the leg of this index, legs of length 0 not counted \[m\].
+    pub fn distance(&self, leg: usize, from: Place) -> Twofold {
+        let norm = |[x, y]: Place| (x * x + y * y).sqrt();
+        let apart = |p: Place| norm([from[0] - p[0], from[1] - p[1]]);
+        let Some(piece) = self.pieces.get(leg) else {
+            return apart(self.start);
+        };
+        let [cos, sin] = piece.heading;
+        let [x, y] = turned([from[0] - piece.start[0], from[1] - piece.start[1]], [cos, -sin]);
+        let ends = [piece.at(Twofold::ZERO), piece.at(piece.length)].map(apart);
+        let nearer = if ends[0] < ends[1] { ends[0] } else { ends[1] };
+        // A foot misplaced by rounding beside an end is off by the square of that.
+        match piece.bend {
+            None if x > Twofold::ZERO && x < piece.length => y.abs(),
+            Some(bend) => {
+                let (side, radius) = (bend.signum(), Twofold::from(bend.abs()));
+                let below = radius - y * side;
+                let foot = x.to_f64().atan2(below.to_f64()).rem_euclid(std::f64::consts::TAU) * bend.abs();
+                if foot <= piece.length.to_f64() { (norm([x, below]) - radius).abs() } else { nearer }
+            }
+            None => nearer,
+        }
+    }
+
+    /// A position in `f64`: off by some 2^-53 of the coordinates and of the length of one leg.
     pub fn near(&self, length: Twofold) -> [f64; 2] {
         self.locate(length).map_or(self.start.map(Twofold::to_f64), |(piece, u)| piece.near(u.to_f64()))
     }

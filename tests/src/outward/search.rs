@@ -3,7 +3,7 @@
 use pcr_host::fleet::Format;
 
 /// Next number of the format above `x`, or below it.
-pub(super) fn neighbour<S: Format>(x: S, above: bool) -> S {
+pub fn neighbour<S: Format>(x: S, above: bool) -> S {
     let value = x.to_f64();
     let mut step = (value.abs() * f64::EPSILON).max(f64::MIN_POSITIVE.sqrt());
     loop {

@@ -87,7 +87,10 @@ pub fn find(pcr: &Pcr, ego_first: bool, times: &[f64]) -> Found {
     let ecm = Ecm::build(vec![Region::EMPTY; 256], vec![Piece::EMPTY; 1024], &fleet).expect("enough room");
     let origin = [other.before / pcr.v, own.before];
     let [big_t, big_l] = origin;
-    let mut holding = ecm.pair(&fleet, ego_index, 1 - ego_index).filter(|region| region.contains(big_t, big_l));
+    let mut holding = ecm
+        .pair(&fleet, ego_index, 1 - ego_index)
+        .expect("the table of the fleet")
+        .filter(|region| region.contains(big_t, big_l));
     let region = holding.next().expect("a region at the crossing");
     assert!(holding.next().is_none(), "one region at the crossing");
 

@@ -26,12 +26,10 @@ fn run() -> Option<()> {
     for agent in &AGENTS {
         store.add(agent).ok()?;
     }
-    let fleet = store.motions();
-    for agent in 0..fleet.len() {
-        table.insert(fleet.get(..=agent)?, agent).ok()?;
-    }
+    let fleet = store.motions().ok()?;
+    table.fill(&fleet).ok()?;
     out::print(dump::HEADING);
-    table.regions(&fleet).for_each(|region| out::print(dump::region(&region).as_bytes()));
+    table.regions(&fleet).ok()?.for_each(|region| out::print(dump::region(&region).as_bytes()));
     let line = Line::default().integer(table.len() as u32, 0).text(b" regions, ").integer(table.pieces() as u32, 0);
     out::print(line.text(b" pieces\n").as_bytes());
     Some(())

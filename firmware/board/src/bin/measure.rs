@@ -41,7 +41,7 @@ fn run() -> Option<()> {
         added.ok()?;
         constructors = constructors.saturating_add(count);
     }
-    let fleet = store.motions();
+    let fleet = store.motions().ok()?;
     let (mut build, mut worst) = (0_u32, 0_u32);
     for agent in 0..fleet.len() {
         let motions = fleet.get(..=agent)?;
@@ -51,16 +51,17 @@ fn run() -> Option<()> {
         worst = worst.max(count);
     }
     let (motion, zero) = (fleet.get(AGENT)?, <Number as Scalar>::ZERO);
-    let (conflict, _) = meter.count(|| black_box(first_conflict(motion, table.row(&fleet, AGENT), motion.time())));
-    let (replan, _) = meter.count(|| black_box(earliest_start(table.row(&fleet, AGENT), zero)));
+    let (conflict, _) = meter
+        .count(|| black_box(table.row(&fleet, AGENT).map(|row| first_conflict(motion, row, motion.time())).is_ok()));
+    let (replan, _) = meter.count(|| black_box(table.row(&fleet, AGENT).map(|row| earliest_start(row, zero)).is_ok()));
     let (regions, pairs) = (table.len() as u32, PAIRS);
     let mut ranges = 0_u32;
-    for region in table.regions(&fleet) {
+    for region in table.regions(&fleet).ok()? {
         let (count, _) = meter.count(|| black_box((region.time(), region.length())));
         ranges = ranges.saturating_add(count);
     }
     let mut slices = 0_u32;
-    for region in table.regions(&fleet) {
+    for region in table.regions(&fleet).ok()? {
         let middle = region.time().middle();
         let (count, _) = meter.count(|| black_box(region.slice_at(black_box(middle)).next()));
         slices = slices.saturating_add(count);

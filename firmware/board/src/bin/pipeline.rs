@@ -36,7 +36,7 @@ fn main() -> ! {
 #[inline(never)]
 fn job<'a>(store: &'a mut Parts, fleet: &mut Fleet<'a>, table: &mut Table, agents: &BuiltIn) -> Option<usize> {
     construct(store, agents).ok()?;
-    store.put_motions(fleet);
+    store.put_motions(fleet).ok()?;
     build(table, fleet).ok()?;
     Some(ask(table, fleet))
 }
@@ -48,13 +48,13 @@ fn construct(store: &mut Parts, agents: &BuiltIn) -> Result<(), Invalid> {
 
 #[inline(never)]
 fn build(table: &mut Table, fleet: &[Motion<'_, Number>]) -> Result<(), Full> {
-    (0..fleet.len()).try_for_each(|agent| table.insert(fleet.get(..=agent).unwrap_or_default(), agent))
+    table.fill(fleet)
 }
 
 #[inline(never)]
 fn ask(table: &Table, fleet: &[Motion<'_, Number>]) -> usize {
     let mut regions = 0_usize;
-    for region in table.regions(fleet) {
+    for region in table.regions(fleet).into_iter().flatten() {
         let (time, length): (Interval<Number>, Interval<Number>) = (region.time(), region.length());
         black_box((region.contains(time.lo, length.lo), region.slice_at(time.middle()).last()));
         regions = regions.saturating_add(1);

@@ -6,21 +6,24 @@
 #![no_std]
 #![no_main]
 
-use core::fmt::Write;
+use core::fmt::{Display, Write};
 use core::hint::black_box as any;
+use core::ops::{Add, Neg, Sub};
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, Brakes, BroadPhase, Conflict, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Hold,
-    Interval, Invalid, Limits, Mission, Motion, Order, Orders, Pass, Path, PathRef, Phase, Piece, PieceRef, PieceType,
-    Point, Pose, Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, SpeedPlan, Station,
-    Tolerances, Turn, Vector, crossings, earliest_departure, earliest_start, excess, first_conflict, gaps,
-    least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
+    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full,
+    Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders, Pass, Path, PathRef,
+    Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef,
+    Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector, crossings,
+    earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration, plan_delays,
+    plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
 fn main() -> ! {
     arithmetic::<Number>();
+    operators::<Number>();
     plane::<Number>();
     let _ = constructors::<Number>();
     motions::<Number>(any(&[]));
@@ -28,7 +31,7 @@ fn main() -> ! {
     table::<Number>(any(&mut []), any(&[]));
     orders::<Number>(any(&mut []), any(&mut []), any(&mut []));
     let _ = brakes::<Number>();
-    messages();
+    messages::<Number>();
     #[cfg(any(feature = "q12", feature = "q16", feature = "q20"))]
     fixed();
     #[cfg(feature = "control")]
@@ -116,6 +119,21 @@ fn arithmetic<S: Scalar>() {
 }
 
 #[inline(never)]
+fn operators<S: Scalar>() {
+    let (a, b) = (number::<S>(), number::<S>());
+    any((<S as Add>::add(a, b), <S as Sub>::sub(a, b), <S as Neg>::neg(a), Scalar::digest(a)));
+    let (a, b) = (angle::<S>(), angle::<S>());
+    any((<S::Angle as Add>::add(a, b), <S::Angle as Sub>::sub(a, b), <S::Angle as Neg>::neg(a)));
+    let (a, b) = (wide::<S>(), wide::<S>());
+    any((<S::Wide as Add>::add(a, b), <S::Wide as Sub>::sub(a, b), <S::Wide as Neg>::neg(a)));
+    let (a, b) = (unit::<S>(), unit::<S>());
+    any((<S::Unit as Add>::add(a, b), <S::Unit as Sub>::sub(a, b), <S::Unit as Neg>::neg(a)));
+    let vector = <Point<S> as Sub>::sub(point(), point());
+    any(<Point<S> as Add<Vector<S>>>::add(point(), vector));
+    any((<Piece<S> as Default>::default(), <Region as Default>::default(), <Station<S> as Default>::default()));
+}
+
+#[inline(never)]
 fn plane<S: Scalar>() {
     let vector: Vector<S> = point::<S>() - point();
     let direction = Direction::<S>::at(angle::<S>());
@@ -192,13 +210,20 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
 #[inline(never)]
 fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
     let intervals: &[Interval<S>] = any(&[]);
-    any(gaps(union(intervals.iter().copied()), interval()).last());
+    let mut union = union(intervals.iter().copied());
+    any(<Union<S, _> as Iterator>::next(&mut union));
+    any(<Gaps<S, _> as Iterator>::next(&mut gaps(union, interval())));
     if let [ego, other, ..] = fleet {
         let pair: Encounter<'_, S> = Encounter::new(ego, other);
         any((Encounter::time(&pair), Encounter::radius(&pair), Encounter::tolerance(&pair)));
         let mut contacts = Encounter::contacts(&pair, interval());
-        any((contacts.next(), Contacts::steps(&contacts), Encounter::closest(&pair, interval())));
-        let conflict: Option<Conflict<S>> = Encounter::conflicts(&pair, interval()).last();
+        any((
+            <Contacts<'_, S> as Iterator>::next(&mut contacts),
+            Contacts::steps(&contacts),
+            Encounter::closest(&pair, interval()),
+        ));
+        let conflict: Option<Conflict<S>> =
+            <Conflicts<'_, S> as Iterator>::next(&mut Encounter::conflicts(&pair, interval()));
         any(conflict);
         any(Encounter::blocked(&pair, interval(), interval()).last());
         any(Encounter::blocked_lengths(&pair, interval()).last());
@@ -206,10 +231,10 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
     if let Ok(broad_phase) = BroadPhase::new(any(&mut [][..]), fleet, interval()) {
         any((BroadPhase::parts(&broad_phase), BroadPhase::candidates(&broad_phase).last()));
         any(BroadPhase::contacts(&broad_phase).last());
-        any(BroadPhase::contacts_of(&broad_phase, any([0; 2]), interval()).last());
+        any(BroadPhase::contacts_of(&broad_phase, any([0; 2]), interval())).into_iter().flatten().for_each(drop);
     }
-    any(safe_intervals(fleet, any(0), interval(), interval()).last());
-    any(safe_lengths(fleet, any(0), interval()).last());
+    any(safe_intervals(fleet, any(0), interval(), interval())).into_iter().flatten().for_each(drop);
+    any(safe_lengths(fleet, any(0), interval())).into_iter().flatten().for_each(drop);
 }
 
 #[inline(never)]
@@ -218,23 +243,27 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
     let mut ecm = any(Ecm::<S, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8]));
     for &agent in agents {
         any(Ecm::insert(&mut ecm, fleet, agent).is_ok());
-        any(Ecm::remove(&mut ecm, agent));
+        any(Ecm::remove(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::fill_row(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::fill(&mut ecm, fleet).is_ok());
+        Ecm::clear(any(&mut ecm));
         if let Some(&motion) = any(fleet.first()) {
             any(Ecm::replace(&mut ecm, fleet, agent, motion).is_ok());
         }
         plans(&ecm, fleet, agent);
         any((Ecm::len(&ecm), Ecm::is_empty(&ecm), Ecm::pieces(&ecm)));
-        Ecm::regions(&ecm, fleet).for_each(|region| regions(&region));
-        Ecm::row(&ecm, fleet, agent).for_each(|region| regions(&region));
-        Ecm::pair(&ecm, fleet, agent, any(agent)).for_each(|region| regions(&region));
+        any(Ecm::regions(&ecm, fleet)).into_iter().flatten().for_each(|region| regions(&region));
+        any(Ecm::row(&ecm, fleet, agent)).into_iter().flatten().for_each(|region| regions(&region));
+        any(Ecm::pair(&ecm, fleet, agent, any(agent))).into_iter().flatten().for_each(|region| regions(&region));
     }
 }
 
 #[inline(never)]
 fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_, S>], agent: usize) {
-    let row = Ecm::row(ecm, fleet, agent);
+    let Ok(row) = Ecm::row(ecm, fleet, agent) else { return };
     let Some(motion) = any(fleet.first()) else { return };
     any(first_conflict(motion, row.clone(), interval()));
+    any(first_overlap(motion, row.clone(), interval()));
     let limits = Limits { speed: number(), acceleration: number() };
     let drive = Drive { start: number(), goal: number(), ..Drive::rest_to_rest(limits) };
     any((drive, Drive::of(motion)));
@@ -271,9 +300,10 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     any(Orders::build(any(&mut [][..]), any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
     let mut orders = any(Orders::<S, _, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8], [Order::EMPTY; 8]));
     let (agent, other, place) = any((0, 0, 0));
+    any(Orders::fill_row(&mut orders, fleet, agent).is_ok());
     any(Orders::insert(&mut orders, fleet, agent).is_ok());
-    any(Orders::decide(&mut orders, fleet, agent, other, any(Pass::First), number()));
-    any(Orders::decide_at(&mut orders, fleet, place, agent, any(Pass::swapped(Pass::Second)), number()));
+    any(Orders::decide(&mut orders, fleet, agent, other, any(Pass::First), number()).is_ok());
+    any(Orders::decide_at(&mut orders, fleet, place, agent, any(Pass::swapped(Pass::Second)), number()).is_ok());
     any(Orders::as_planned(&mut orders, fleet).is_ok());
     let tolerances = Tolerances { width: number(), gain: number() };
     any(Orders::check(&mut orders, fleet, progress, any(tolerances), reaches).is_ok());
@@ -282,12 +312,16 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
         any(Orders::admit(&mut orders, fleet, progress, any(mission), tolerances, reaches, |_| any(Pass::First))
             .is_ok());
     }
-    let hold: Hold<S> = Orders::hold(&orders, fleet, agent, progress);
-    any(Orders::hold_before(&orders, fleet, agent, progress, any(hold)));
+    let Ok::<Hold<S>, Mismatch>(hold) = Orders::hold(&orders, fleet, agent, progress) else { return };
+    any(Orders::hold_before(&orders, fleet, agent, progress, any(hold)).is_ok());
     any((Hold::allows(hold, number()), Hold::min(hold, any(hold)), Hold::length(hold, number())));
-    any((Orders::row(&orders, fleet, agent).last().is_some(), Orders::ecm(&orders).len()));
+    any(Orders::row(&orders, fleet, agent)).into_iter().flatten().for_each(|(place, region, pass)| {
+        any((place, pass));
+        regions(&region);
+    });
+    any(Orders::ecm(&orders).len());
     any(Orders::passed(&mut orders, progress));
-    any(Orders::remove(&mut orders, agent));
+    any(Orders::remove(&mut orders, fleet, agent).is_ok());
 }
 
 #[inline(never)]
@@ -306,7 +340,8 @@ fn fixed() {
     type Turns = <Number as Scalar>::Angle;
     any((Number::to_bits(Number::from_bits(any(0))), Product::to_bits(Product::from_bits(any(0)))));
     any((Sine::to_bits(Sine::from_bits(any(0))), Turns::to_bits(Turns::from_bits(any(0)))));
-    any(write!(Nowhere, "{}", number::<Number>()).is_ok());
+    shown::<Number>(number());
+    shown::<pcr_fixed::OutOfRange>(any(pcr_fixed::OutOfRange));
 }
 
 /// Takes text and forgets it.
@@ -320,8 +355,18 @@ impl Write for Nowhere {
 }
 
 #[inline(never)]
-fn messages() {
-    let (invalid, full, kind) = (any(Invalid::Full("")), any(Full::Pair([0, 0])), any(PieceType::SS));
-    let refused = any(Refused::Meeting([0, 0]));
-    any(write!(Nowhere, "{invalid} {full} {kind} {refused}").is_ok());
+fn messages<S: Scalar>() {
+    shown::<Invalid>(any(Invalid::Full("")));
+    shown::<Full>(any(Full::Pair([0, 0])));
+    shown::<Mismatch>(any(Mismatch::OtherFleet));
+    shown::<Unchanged>(any(<Unchanged as From<Full>>::from(any(Full::Agents))));
+    shown::<Unsolved>(any(<Unsolved as From<Mismatch>>::from(any(Mismatch::NoSuchAgent(0)))));
+    shown::<NoSpeedPlan<S>>(any(<NoSpeedPlan<S> as From<Invalid>>::from(any(Invalid::SweepOverOneTurn))));
+    shown::<Refused>(any(<Refused as From<Unchanged>>::from(any(Unchanged::Full(Full::Orders)))));
+    shown::<PieceType>(any(PieceType::SS));
+}
+
+#[inline(never)]
+fn shown<T: Display>(value: T) {
+    any(write!(Nowhere, "{value}").is_ok());
 }

@@ -59,7 +59,7 @@ impl Copies {
             routes.take(AGENTS).map(|route| moved(route, offset)).collect::<Vec<_>>()
         });
         let named = copies.take(agents).zip(1..).map(|(agent, id)| Agent { id, ..agent });
-        Scenario { name: format!("{agents} agents in copies of a warehouse"), agents: named.collect() }
+        Scenario::new(format!("{agents} agents in copies of a warehouse"), named.collect())
     }
 }
 
@@ -85,7 +85,7 @@ mod tests {
         let motions = fleet.motions();
         let table = build_ecm(&motions).expect("it fits");
         let regions = |ego: usize, others: std::ops::Range<usize>| -> usize {
-            others.map(|other| table.pair(&motions, ego, other).count()).sum()
+            others.map(|other| table.pair(&motions, ego, other).expect("the table of the fleet").count()).sum()
         };
         let (mut within, mut between) = (0, 0);
         for ego in 0..motions.len() {

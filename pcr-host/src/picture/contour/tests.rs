@@ -24,7 +24,7 @@ fn for_all(scenario: &Scenario, mut check: impl FnMut(&RegionRef<'_, f64>, &Moti
     let fleet = Fleet::<f64>::new(scenario).unwrap();
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).unwrap();
-    for region in ecm.regions(&motions) {
+    for region in ecm.regions(&motions).expect("the table of the fleet") {
         let ego = &motions[region.ego()];
         let pixel = [region.time(), region.length()].map(|side| side.length().max(1e-6) / PIXELS);
         check(&region, ego, &trace(&region, ego, pixel));

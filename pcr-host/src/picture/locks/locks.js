@@ -35,7 +35,6 @@ const line_of = data.edges.map((edge, k) => {
   return lines_of.get(key);
 });
 
-svg.setAttribute("viewBox", data.bounds.join(" "));
 // Metres to steps of a millimetre; y points up.
 const STEPS = 1000;
 const world = make(svg, "g", { transform: "scale(1 -1)" });
@@ -43,7 +42,21 @@ const corridors = make(world, "g", { class: "corridors" });
 const lines = make(world, "g", {});
 const overlay = make(world, "g", { "pointer-events": "none" });
 const targets = make(world, "g", {});
+const targets_of = new Map(), nodes = new Map();
 let pinned = null;
+
+/** A button that shows another edge. */
+function link(parent, other) {
+  const button = text(parent, "button", data.edges[other].id);
+  button.type = "button";
+  button.addEventListener("click", () => pin(other));
+}
+
+/** Shows an edge until another one is chosen. */
+function pin(k) {
+  pinned = k;
+  show(k);
+}
 
 function range([from, to]) {
   return from.toFixed(3) + " – " + to.toFixed(3);
@@ -93,10 +106,7 @@ function show(k) {
   const same = line_of[k].filter((other) => other !== k);
   if (same.length > 0) {
     const list = text(about, "p", "On the same line: ");
-    same.forEach((other) => {
-      const button = text(list, "button", data.edges[other].id);
-      button.addEventListener("click", () => { pinned = other; show(other); });
-    });
+    same.forEach((other) => link(list, other));
   }
   text(about, "p", "From node " + edge.ends[0] + " to node " + edge.ends[1] + ", " + edge.length.toFixed(3) + " m. Blocks " +
     new Set(blocks[k].map(([other]) => other)).size + " edges:");
@@ -106,10 +116,9 @@ function show(k) {
   const body = text(table, "tbody", "");
   for (const [other, own, lengths] of blocks[k]) {
     const row = text(body, "tr", "");
-    text(row, "td", data.edges[other].id);
+    link(text(row, "td", ""), other);
     text(row, "td", range(lengths));
     text(row, "td", range(own));
-    row.addEventListener("click", () => { pinned = other; show(other); });
   }
 }
 
@@ -118,6 +127,8 @@ function draw() {
   corridors.replaceChildren();
   lines.replaceChildren();
   targets.replaceChildren();
+  targets_of.clear();
+  nodes.clear();
   choice.replaceChildren();
   text(choice, "option", "none").value = "";
   data.edges.forEach((edge, k) => {
@@ -126,22 +137,125 @@ function draw() {
     if (edge.path === "") return;
     for (const [d, width] of edge.corridor) make(corridors, "path", { d, "stroke-width": width });
     make(lines, "path", { d: edge.path, class: "edge" });
-    const target = make(targets, "path", { d: edge.path, class: "target" });
-    target.addEventListener("pointerenter", () => { if (pinned === null) show(k); });
-    target.addEventListener("pointerleave", () => { if (pinned === null) show(null); });
-    target.addEventListener("click", (event) => {
-      event.stopPropagation();
-      const same = line_of[k];
-      pinned = same.includes(pinned) ? same[(same.indexOf(pinned) + 1) % same.length] : k;
-      show(pinned);
-    });
+    targets_of.set(make(targets, "path", { d: edge.path, class: "target" }), k);
   });
   for (const node of data.nodes) {
-    if (node.level === at) make(lines, "circle", { cx: node.x, cy: node.y, r: 0.2 * STEPS * data.radius, class: "node" });
+    if (node.level !== at) continue;
+    nodes.set(node.id, make(lines, "circle", { cx: node.x, cy: node.y, r: 0.2 * STEPS * data.radius, class: "node" }));
   }
-  pinned = null;
-  show(null);
+  pin(null);
 }
+
+targets.addEventListener("pointerover", (event) => { if (pinned === null) show(targets_of.get(event.target) ?? null); });
+targets.addEventListener("pointerout", () => { if (pinned === null) show(null); });
+
+// A click chooses an edge, another one the next edge on the same line; beside all edges it chooses none.
+svg.addEventListener("click", (event) => {
+  if (moved) return;
+  const k = targets_of.get(event.target);
+  if (k === undefined) return pin(null);
+  const same = line_of[k];
+  pin(same.includes(pinned) ? same[(same.indexOf(pinned) + 1) % same.length] : k);
+});
+
+// ---- What part of the layout is seen: [x, y, width, height] in steps, y down ----
+
+const whole = data.bounds;
+let seen = whole;
+
+function look(part) {
+  seen = part;
+  svg.setAttribute("viewBox", seen.join(" "));
+  // The largest round length that is no longer than a sixth of the picture.
+  const pixel = 1 / Math.min(svg.clientWidth / seen[2], svg.clientHeight / seen[3]) / STEPS;
+  const most = pixel * svg.clientWidth / 6, power = 10 ** Math.floor(Math.log10(most));
+  const length = [5, 2, 1].map((m) => m * power).find((length) => length <= most) ?? power;
+  const bar = document.getElementById("scale");
+  bar.textContent = length >= 1000 ? length / 1000 + " km" : length >= 1 ? length + " m" : Number((length * 1000).toPrecision(3)) + " mm";
+  bar.style.width = length / pixel + "px";
+}
+
+/** A point of the window in steps. */
+function point(event) {
+  return new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+}
+
+function zoom(factor, about = { x: seen[0] + seen[2] / 2, y: seen[1] + seen[3] / 2 }) {
+  // Between four times the layout and a thousandth of it.
+  const by = Math.min(4 * whole[2] / seen[2], Math.max(whole[2] / 1000 / seen[2], factor));
+  const [x, y, width, height] = seen;
+  look([about.x - (about.x - x) * by, about.y - (about.y - y) * by, width * by, height * by]);
+}
+
+const move = (x, y) => look([seen[0] + x, seen[1] + y, seen[2], seen[3]]);
+
+svg.addEventListener("wheel", (event) => { event.preventDefault(); zoom(1.0015 ** event.deltaY, point(event)); }, { passive: false });
+
+// One finger or the mouse moves, two fingers zoom, too.
+const fingers = new Map();
+let moved = false;
+svg.addEventListener("pointerdown", (event) => {
+  if (fingers.size === 0) moved = false;
+  fingers.set(event.pointerId, event);
+});
+svg.addEventListener("pointermove", (event) => {
+  const before = fingers.get(event.pointerId);
+  if (!before) return;
+  if (!moved && Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < 4) return;
+  moved = true;
+  svg.setPointerCapture(event.pointerId);
+  svg.classList.add("dragged");
+  const [from, to] = [point(before), point(event)];
+  const other = [...fingers.values()].find((finger) => finger.pointerId !== event.pointerId);
+  if (other) {
+    const fixed = point(other);
+    const apart = (finger) => Math.hypot(finger.x - fixed.x, finger.y - fixed.y);
+    if (apart(to) > 0) zoom(apart(from) / apart(to), fixed);
+  } else {
+    move(from.x - to.x, from.y - to.y);
+  }
+  fingers.set(event.pointerId, event);
+});
+for (const end of ["pointerup", "pointercancel"]) {
+  svg.addEventListener(end, (event) => { fingers.delete(event.pointerId); svg.classList.remove("dragged"); });
+}
+svg.addEventListener("keydown", (event) => {
+  const step = seen[2] / 8;
+  const does = {
+    "+": () => zoom(0.8), "-": () => zoom(1.25), 0: () => look(whole), Escape: () => pin(null),
+    ArrowLeft: () => move(-step, 0), ArrowRight: () => move(step, 0), ArrowUp: () => move(0, -step), ArrowDown: () => move(0, step),
+  }[event.key];
+  if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+  event.preventDefault();
+  does();
+});
+document.getElementById("in").addEventListener("click", () => zoom(0.6));
+document.getElementById("out").addEventListener("click", () => zoom(1 / 0.6));
+document.getElementById("fit").addEventListener("click", () => look(whole));
+window.addEventListener("resize", () => look(seen));
+
+// ---- Search: the id of an edge, else of a node, on any level ----
+
+document.getElementById("search").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const id = document.getElementById("find").value.trim(), answer = document.getElementById("answer");
+  const edge = data.edges.findIndex((edge) => edge.id === id), node = data.nodes.find((node) => node.id === id);
+  const found = data.edges[edge] ?? node;
+  answer.textContent = found ? "" : `no edge or node "${id}"`;
+  if (!found) return;
+  if (Number(level.value) !== found.level) { level.value = found.level; draw(); }
+  document.querySelectorAll(".found").forEach((found) => found.classList.remove("found"));
+  let box;
+  if (edge >= 0) {
+    pin(edge);
+    box = overlay.querySelector(".chosen").getBBox();
+  } else {
+    nodes.get(id).classList.add("found");
+    box = { x: node.x, y: node.y, width: 0, height: 0 };
+  }
+  const size = Math.max(box.width, box.height, 10 * STEPS * data.radius) * 2;
+  look([box.x + box.width / 2 - size / 2, -(box.y + box.height / 2) - size / 2, size, size]);
+});
 
 data.levels.forEach((name, k) => { text(level, "option", name === "" ? "1" : name).value = String(k); });
 document.getElementById("level-label").hidden = data.levels.length < 2;
@@ -149,6 +263,6 @@ document.getElementById("summary").textContent =
   data.edges.length + " edges, " + data.nodes.length + " nodes, " + data.locks.length + " locks for " +
   (data.footprint.length > 0 ? "a footprint of " + data.footprint.length + " corners" : "a disc of " + data.radius + " m");
 level.addEventListener("change", draw);
-choice.addEventListener("change", () => { pinned = choice.value === "" ? null : Number(choice.value); show(pinned); });
-svg.addEventListener("click", () => { pinned = null; show(null); });
+choice.addEventListener("change", () => pin(choice.value === "" ? null : Number(choice.value)));
 draw();
+look(whole);

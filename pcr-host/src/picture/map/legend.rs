@@ -1,7 +1,7 @@
 //! What the lines and colours of a map mean.
 
 use super::super::axis::TICK_SIZE;
-use super::super::palette::Colour;
+use super::super::palette::{Colour, DISTINCT};
 use super::super::scene::{Scene, Shape};
 use super::super::svg::{Pixels, Svg, text_width};
 
@@ -41,18 +41,20 @@ enum Sample {
 impl Legend {
     /// The legend of a map between two abscissas \[px\].
     pub(in super::super) fn new(scene: &Scene<'_>, ego: usize, shapes: &[Shape], [from, to]: [f64; 2]) -> Self {
-        let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.id(ego)))];
+        let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.called(ego)))];
         if !shapes.is_empty() {
             all.push((Sample::Region, "collision region, labelled by the other agent".into()));
         }
         if shapes.iter().any(|shape| !shape.before.is_empty() || !shape.after.is_empty()) {
             all.push((Sample::Strip, "the other agent stands at its start or end".into()));
         }
-        let mut others: Vec<usize> = shapes.iter().map(|shape| shape.other).collect();
+        // More colours than a dozen cannot be told apart: there the labels of the regions alone say whose they are.
+        let told_apart = scene.motions.len() <= DISTINCT;
+        let mut others: Vec<usize> = shapes.iter().map(|shape| shape.other).filter(|_| told_apart).collect();
         others.sort_unstable();
         others.dedup();
         let explained = all.len();
-        all.extend(others.iter().map(|other| (Sample::Agent(scene.colour(*other)), scene.id(*other).to_string())));
+        all.extend(others.iter().map(|other| (Sample::Agent(scene.colour(*other)), scene.called(*other))));
         let (mut row, mut x) = (0, from);
         let mut entries = Vec::new();
         for (k, (sample, text)) in all.into_iter().enumerate() {

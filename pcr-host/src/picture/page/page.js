@@ -116,7 +116,8 @@ function drawWorkspace() {
   const [x0, x1, y0, y1] = data.bounds;
   // Below this extent ticks could not be told apart.
   const extent = Math.max(x1 - x0, y1 - y0, 1e-6, 1e-9 * Math.max(...data.bounds.map(Math.abs)));
-  const least = 220, margin = 0.03 * extent;
+  // As high as the map beside it, or nearly: letters are then as large in both.
+  const least = 480, margin = 0.03 * extent;
   const metre = side / (extent + 2 * margin);
   const fit = (lo, hi) => {
     const pixels = Math.max((hi - lo + 2 * margin) * metre, least);
@@ -125,7 +126,16 @@ function drawWorkspace() {
   const [width, xs] = fit(x0, x1), [height, ys] = fit(y0, y1);
   const view = frame($("workspace"), xs, ys, width, height, ["x [m]", "y [m]"]);
   const screen = ([x, y]) => [view.x.at(x), view.y.at(y)];
-  const radius = (agent) => Math.max(agent.radius * metre, 2);
+  const radius = (agent) => Math.max(agent.radius * metre, 3);
+  if (data.ground) {
+    // In steps of a metre, y up; edges keep their width on the screen.
+    const step = metre / data.ground.steps;
+    const at = `translate(${view.x.at(0)} ${view.y.at(0)}) scale(${step} ${-step})`;
+    const ground = element(view.content, "g", { class: "ground", transform: at });
+    const corridors = element(ground, "g", { class: "corridors" });
+    for (const [d, width] of data.ground.corridors) element(corridors, "path", { d, "stroke-width": width });
+    for (const d of data.ground.edges) element(ground, "path", { class: "edge", d });
+  }
   // The outline around the point that travels; y points down.
   const outline = (parent, agent, attributes) => agent.outline.length > 0
     ? element(parent, "polygon", { ...attributes, points: agent.outline.map(([ahead, left]) => [ahead * metre, -left * metre]).join(" ") })
@@ -149,10 +159,14 @@ function drawWorkspace() {
   });
   agents.forEach((agent, k) => {
     const disc = element(view.content, "g", {
-      class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.id}`,
+      class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.name}`,
     });
     outline(disc, agent, { class: "outline" });
-    element(disc, "text", {}, agent.id);
+    // A number that would hide its disc stands beside it.
+    const size = radius(agent), beside = size < 5 + 4 * agent.id.length;
+    disc.classList.toggle("small", beside);
+    element(disc, "text", beside ? { x: 0.7 * size + 2, y: -0.7 * size - 2 } : {}, agent.id);
+    element(disc, "title", {}, `Agent ${agent.id}`);
     disc.addEventListener("click", () => selectEgo(k));
     disc.addEventListener("keydown", (event) => { if (onKey(event)) selectEgo(k); });
     discs.push(disc);
@@ -219,14 +233,14 @@ function drawMap() {
     span: `${view.top}V${view.bottom}`,
   };
   const count = map.regions.length;
-  $("caption").textContent = `Extended collision map of agent ${ego.id}: ${count} region${count === 1 ? "" : "s"}${data.outlines ? " of the discs around all outlines" : ""}, labelled by the`
+  $("caption").textContent = `Extended collision map of agent ${ego.name}: ${count} region${count === 1 ? "" : "s"}${data.outlines ? " of the discs around all outlines" : ""}, labelled by the`
     + " other agent; dashed strips are agents that stand at their start or end. Point at a region, or press Tab, to read about it.";
 }
 
 const size = (region) => (region.time[1] - region.time[0]) * (region.length[1] - region.length[0]);
 
 function summary(region) {
-  return `Region of agents ${agents[state.ego].id} and ${agents[region.other].id}, ${number(region.time[0])} to `
+  return `Region of agents ${agents[state.ego].name} and ${agents[region.other].name}, ${number(region.time[0])} to `
     + `${number(region.time[1])} seconds, ${number(region.length[0])} to ${number(region.length[1])} metres`;
 }
 
@@ -247,7 +261,7 @@ function describe(region) {
   }
   const open = [region.before.length > 0 && "from before the other's start", region.after.length > 0 && "on after its arrival"];
   const line = add(about, "p");
-  add(line, "strong", `Agent ${agents[state.ego].id} against agent ${agents[region.other].id}`);
+  add(line, "strong", `Agent ${agents[state.ego].name} against agent ${agents[region.other].name}`);
   line.append(`, type ${region.types.join(", ")} (${region.pieces} piece${region.pieces === 1 ? "" : "s"})`);
   const extent = add(about, "p", `time ${number(region.time[0])} to ${number(region.time[1])} s, length `
     + `${number(region.length[0])} to ${number(region.length[1])} m`);
@@ -296,9 +310,27 @@ function showTime() {
     cursor.dot.setAttribute("cy", cursor.y.at(lengthAt(agents[state.ego], state.time)));
     cursor.dot.classList.toggle("hit", hit[state.ego]);
   }
+  showNumbers(poses, hit);
   const count = hit.filter(Boolean).length;
   $("clock").textContent = `${state.time.toFixed(2)} s` + (count ? `, ${count} in contact` : "");
   $("time").value = state.time;
+}
+
+// Numbers that would lie on one another are left out: first come the chosen agent's and those in contact.
+function showNumbers(poses, hit) {
+  const high = 14, rows = new Map();
+  const rank = (k) => (k === state.ego ? 0 : hit[k] ? 1 : 2);
+  const order = agents.map((_, k) => k).filter((k) => state.shown[k]).sort((a, b) => rank(a) - rank(b));
+  for (const k of order) {
+    const text = discs[k].querySelector("text"), width = 9 * agents[k].id.length;
+    const [x, y] = drawWorkspace.screen(poses[k]);
+    const left = x + (discs[k].classList.contains("small") ? Number(text.getAttribute("x")) : -width / 2);
+    const top = y + Number(text.getAttribute("y")), row = Math.floor(top / high);
+    const near = [row - 1, row, row + 1].flatMap((row) => rows.get(row) ?? []);
+    const free = near.every(([from, to, other]) => to < left || left + width < from || Math.abs(other - top) >= high);
+    text.classList.toggle("hidden", !free);
+    if (free) rows.set(row, [...(rows.get(row) ?? []), [left, left + width, top]]);
+  }
 }
 
 let frameBefore = null;
@@ -351,17 +383,18 @@ function start() {
   agents.forEach((agent, k) => {
     const option = document.createElement("option");
     option.value = k;
-    option.textContent = `${agent.id} (${data.maps[k].regions.length})`;
+    option.textContent = `${agent.name} (${data.maps[k].regions.length})`;
     $("ego").append(option);
     const chip = document.createElement("button");
     chip.type = "button";
     chip.className = "agent chip";
     chip.style.setProperty("--colour", agent.colour);
     chip.textContent = agent.id;
-    chip.title = `Show or hide agent ${agent.id}`;
+    chip.title = `Show or hide agent ${agent.name}`;
     chip.addEventListener("click", () => { state.shown[k] = !state.shown[k]; show(); });
     $("chips").append(chip);
   });
+  $("agents").classList.toggle("many", !data.distinct);
   const slider = $("time");
   slider.min = first;
   slider.max = last;

@@ -2,7 +2,15 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 const $ = (id) => document.getElementById(id);
 const { robots, obstacles, frame, unit } = data;
-let run, frames, now = 0, playing = true, before = 0;
+let run, frames, now = 0, playing = false, before = 0;
+
+// The colours of the page, light or dark.
+const theme = {}, dark = matchMedia("(prefers-color-scheme: dark)");
+function readTheme() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of ["paper", "ink", "grid", "own", "hit", "accent", "stone"]) theme[name] = style.getPropertyValue("--" + name).trim();
+  theme.robots = robots.map(({ colour }) => (dark.matches ? `color-mix(in oklab, ${colour} 68%, white)` : colour));
+}
 
 function option(select, text, value) {
   const option = document.createElement("option");
@@ -11,7 +19,7 @@ function option(select, text, value) {
   select.append(option);
 }
 data.runs.forEach((run, k) => option($("run"), run.controller, k));
-robots.forEach((robot, k) => option($("ego"), robot.id, k));
+robots.forEach((robot, k) => option($("ego"), robot.name, k));
 
 const bounds = (() => {
   const box = [Infinity, -Infinity, Infinity, -Infinity];
@@ -63,11 +71,11 @@ function drawWorld() {
   const x = (value) => width / 2 + (value - (bounds[0] + bounds[1]) / 2) * scale;
   const y = (value) => height / 2 - (value - (bounds[2] + bounds[3]) / 2) * scale;
   const disc = (px, py, r) => { c.beginPath(); c.arc(x(px), y(py), r * scale, 0, 7); };
-  c.fillStyle = "#b9bec5";
+  c.fillStyle = theme.stone;
   obstacles.forEach(([px, py, r]) => { disc(px, py, r); c.fill(); });
   for (const journey of run.journeys) {
     if (journey.begin > now || (journey.end ?? Infinity) < now) continue;
-    c.strokeStyle = robots[journey.robot].colour;
+    c.strokeStyle = theme.robots[journey.robot];
     c.lineWidth = 1.3;
     c.beginPath();
     for (let i = 0; i < journey.path.length; i += 2) c.lineTo(x(journey.path[i] * unit), y(journey.path[i + 1] * unit));
@@ -83,14 +91,17 @@ function drawWorld() {
   robots.forEach((robot, k) => {
     const [px, py] = position(k, now), hit = colliding(robot.id, now * frame);
     disc(px, py, robot.radius);
-    c.fillStyle = hit ? "#d40000" : robot.colour;
+    c.fillStyle = hit ? theme.hit : theme.robots[k];
     c.globalAlpha = hit ? 0.8 : 0.5;
     c.fill();
     c.globalAlpha = 1;
     c.lineWidth = k === Number($("ego").value) ? 3 : 1.5;
-    c.strokeStyle = hit ? "#d40000" : robot.colour;
+    c.strokeStyle = hit ? theme.hit : theme.robots[k];
     c.stroke();
-    c.fillStyle = "#000";
+    c.strokeStyle = theme.paper;
+    c.lineWidth = 3;
+    c.strokeText(robot.id, x(px), y(py));
+    c.fillStyle = theme.ink;
     c.fillText(robot.id, x(px), y(py));
   });
 }
@@ -116,8 +127,8 @@ function drawMap() {
   const pad = 0.03 * (map.to - map.from), [l0, l1] = [map.from - pad, map.to + pad];
   const x = (t) => left + (t - t0) / (t1 - t0) * (right - left), y = (l) => bottom - (l - l0) / (l1 - l0) * (bottom - top);
   c.font = "13px sans-serif";
-  c.fillStyle = "#1d2125";
-  c.strokeStyle = "#e1e4e8";
+  c.fillStyle = theme.ink;
+  c.strokeStyle = theme.grid;
   c.lineWidth = 1;
   c.textAlign = "center";
   for (const t of ticks(t0, t1)) { c.beginPath(); c.moveTo(x(t), top); c.lineTo(x(t), bottom); c.stroke(); c.fillText(+t.toFixed(3), x(t), bottom + 16); }
@@ -135,7 +146,7 @@ function drawMap() {
   c.rect(left, top, right - left, bottom - top);
   c.clip();
   for (const region of map.regions) {
-    c.fillStyle = c.strokeStyle = robots[region.other].colour;
+    c.fillStyle = c.strokeStyle = theme.robots[region.other];
     c.beginPath();
     for (const contour of region.outline) { contour.forEach(([t, l], k) => (k ? c.lineTo(x(t), y(l)) : c.moveTo(x(t), y(l)))); c.closePath(); }
     c.globalAlpha = 0.3;
@@ -144,7 +155,7 @@ function drawMap() {
     c.globalAlpha = 1;
     c.stroke();
   }
-  c.strokeStyle = "#111";
+  c.strokeStyle = theme.own;
   c.lineWidth = 1.5;
   c.setLineDash([6, 4]);
   c.beginPath();
@@ -156,14 +167,14 @@ function drawMap() {
   const travelled = run.travelled[ego];
   for (let k = Math.round(plan.time / frame); k <= now && k < travelled.length; k++) c.lineTo(x(k * frame), y(travelled[k] * unit));
   c.stroke();
-  c.strokeStyle = "#0b57d0";
+  c.strokeStyle = theme.accent;
   c.lineWidth = 1.3;
   c.beginPath();
   c.moveTo(x(time), top);
   c.lineTo(x(time), bottom);
   c.stroke();
   c.restore();
-  $("caption").textContent = `What robot ${robots[ego].id} keeps out of, with margins, in the plan of ${plan.time.toFixed(2)} s. Dashed: the plan; solid: what it did.`;
+  $("caption").textContent = `What robot ${robots[ego].name} keeps out of, with margins, in the plan of ${plan.time.toFixed(2)} s. Dashed: the plan; solid: what it did.`;
 }
 
 function draw() {
@@ -172,7 +183,7 @@ function draw() {
   $("clock").textContent = `${(now * frame).toFixed(2)} s`;
   const done = run.journeys.filter((journey) => (journey.end ?? Infinity) <= now).length;
   const hits = run.collisions.filter(([, , t]) => t[0] <= now * frame).length;
-  $("summary").textContent = `${done} of ${run.journeys.length} missions done; collisions so far: ${hits}. Mean time of a mission in this run: ${run.travel.toFixed(1)} s.`;
+  $("score").textContent = `${done} of ${run.journeys.length} missions done; collisions so far: ${hits}. Mean time of a mission in this run: ${run.travel.toFixed(1)} s.`;
   drawWorld();
   drawMap();
 }
@@ -180,24 +191,30 @@ function draw() {
 function tick(stamp) {
   if (playing && before) {
     now += (stamp - before) / 1000 / frame * Number($("pace").value);
-    if (now >= frames) { now = frames; playing = false; $("play").textContent = "Play"; }
+    if (now >= frames) { now = frames; play(false); }
     draw();
   }
   before = stamp;
   requestAnimationFrame(tick);
 }
 
-$("play").onclick = () => {
-  playing = !playing;
-  if (playing && now >= frames) now = 0;
-  $("play").textContent = playing ? "Pause" : "Play";
-};
+function play(on) {
+  playing = on;
+  if (on && now >= frames) now = 0;
+  $("play").textContent = on ? "Pause" : "Play";
+}
+
+$("play").onclick = () => play(!playing);
 $("time").oninput = () => { now = Number($("time").value); draw(); };
 $("run").onchange = () => { choose(); draw(); };
 $("ego").onchange = draw;
 window.onresize = draw;
-// A link may say where to begin: #40 is 40 s.
+dark.addEventListener("change", () => { readTheme(); draw(); });
+readTheme();
 choose();
-if (location.hash) { now = Math.min(frames, Number(location.hash.slice(1)) / frame || 0); playing = false; $("play").textContent = "Play"; }
+$("summary").textContent = `${robots.length} robots, ${(frames * frame).toFixed(0)} s`;
+// A link may say where to begin, #40 is 40 s; nothing moves by itself for those who asked their system for that.
+if (location.hash) now = Math.min(frames, Number(location.hash.slice(1)) / frame || 0);
+play(!location.hash && !matchMedia("(prefers-reduced-motion: reduce)").matches);
 draw();
 requestAnimationFrame(tick);

@@ -1,0 +1,96 @@
+//! The supervisor on a line that loses, repeats, cuts and reorders frames: each request is done once, and what comes too
+//! late is refused.
+//!
+//! Requests are numbered: 1 is the first after power-up, and after 65535 comes 2, so that a supervisor that has started
+//! anew is noticed. The next number is done, the last one again is answered again, every other is refused
+//! ([`Refusal::Sequence`]). A greeting is answered whatever its number is, and uses none up. 0 is that of a damaged frame.
+
+use crate::agent::{Agent, Step};
+use crate::frame::{self, Reads, Receiver, Tag};
+use crate::message::{Answer, Refusal, Request};
+use crate::number::Number;
+use crate::service::Service;
+
+/// The sequence number after this one.
+pub const fn after(sequence: u16) -> u16 {
+    match sequence.checked_add(1) {
+        Some(next) => next,
+        None => 2,
+    }
+}
+
+/// A [`Service`] behind a line, made to be a `static`.
+#[derive(Debug)]
+pub struct Session<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> {
+    service: Service<S, A, N, R, P>,
+    receiver: Receiver,
+    last: Option<Last<S>>,
+}
+
+/// The request that was done last.
+#[derive(Debug)]
+struct Last<S: Number> {
+    sequence: u16,
+    /// Check of its frame: another request of the same number is none again.
+    check: u32,
+    /// What was answered; `None` where it changes nothing and is answered anew.
+    answer: Option<Answer<S>>,
+}
+
+impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P> {
+    /// No agents yet, and a fleet to load.
+    pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
+        Self { service: Service::new(built_in), receiver: Receiver::new(Reads::Requests), last: None }
+    }
+
+    /// Takes a byte from the line: one call of `send` for each frame to be sent.
+    pub fn take(&mut self, byte: u8, send: impl FnMut(&[u8])) {
+        let Some(received) = self.receiver.take::<Request<S>>(byte) else { return };
+        let mut replies = Replies { tag: Tag { sequence: 0, place: 0 }, send };
+        match received {
+            Err(damage) => replies.send(&Answer::<S>::Refused(Refusal::Frame(damage))),
+            Ok(frame) => {
+                replies.tag.sequence = frame.tag.sequence;
+                self.done(frame.tag.sequence, frame.check, frame.message, &mut replies);
+            }
+        }
+    }
+
+    fn done(&mut self, sequence: u16, check: u32, request: Request<S>, replies: &mut Replies<impl FnMut(&[u8])>) {
+        let next = self.last.as_ref().map_or(1, |last| after(last.sequence));
+        let answer = match &self.last {
+            _ if request == Request::Hello => None,
+            Some(last) if (last.sequence, last.check) == (sequence, check) => last.answer.clone(),
+            _ if sequence == next => None,
+            _ => Some(Answer::Refused(Refusal::Sequence { next })),
+        };
+        if let Some(answer) = answer {
+            return replies.send(&answer);
+        }
+        let mut answer = None;
+        let (greeting, changes) = (request == Request::Hello, request.changes());
+        self.service.answer(request, next, |each| {
+            replies.send(&each);
+            answer = changes.then_some(each);
+        });
+        if !greeting {
+            self.last = Some(Last { sequence, check, answer });
+        }
+    }
+}
+
+/// Sends the answers to a request, each with its place.
+struct Replies<F> {
+    tag: Tag,
+    send: F,
+}
+
+impl<F: FnMut(&[u8])> Replies<F> {
+    fn send<S: Number>(&mut self, answer: &Answer<S>) {
+        // Every answer is shorter than a frame may be (`tests/wire.rs`); one that is not would leave its place empty.
+        if let Some(bytes) = frame::encode(self.tag, answer) {
+            (self.send)(&bytes);
+        }
+        self.tag.place = self.tag.place.saturating_add(1);
+    }
+}

@@ -1,0 +1,190 @@
+//! What is not known is refused, and it is said why: before the table is computed, after the fleet has changed, of agents
+//! that there are not.
+
+use pcr_core::{Curve, Invalid, Limits, Point, Pose, Radians, Turn};
+use pcr_supervisor::fleet::Rejected;
+use pcr_supervisor::message::{Reason, Refusal, Room, text};
+use pcr_supervisor::{Agent, Answer, Request, Service, Step, Store};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+type Small = Service<f32, 3, 6, 4, 8>;
+
+const LIMITS: Limits<f32> = Limits { speed: 1.0, acceleration: 1.0 };
+const STEPS: [Step<f32>; 1] = [Step { curve: Curve::Line, length: 4.0 }];
+
+const fn built_in(y: f32, radius: f32) -> Agent<f32, &'static [Step<f32>]> {
+    let start = Pose { position: Point::new(-2.0, y), heading: Radians(0.0) };
+    Agent { radius, start_time: 0.0, limits: LIMITS, start, path: &STEPS }
+}
+
+static PARALLEL: [Agent<f32, &[Step<f32>]>; 2] = [built_in(0.0, 0.25), built_in(0.4, 0.25)];
+static ONE_IS_FLAT: [Agent<f32, &[Step<f32>]>; 2] = [built_in(0.0, 0.25), built_in(0.4, 0.0)];
+
+/// On a line of 4 m through the origin in its middle.
+fn agent(heading: f32) -> Agent<f32> {
+    let position = Point::new(-2.0 * heading.cos(), -2.0 * heading.sin());
+    let start = Pose { position, heading: Radians(heading) };
+    Agent { radius: 0.25, start_time: 0.0, limits: LIMITS, start, path: STEPS.into_iter().collect() }
+}
+
+fn answers(service: &mut Small, request: Request<f32>) -> Vec<Answer<f32>> {
+    let mut answers = Vec::new();
+    service.answer(request, 1, |answer| answers.push(answer));
+    answers
+}
+
+fn answer(service: &mut Small, request: Request<f32>) -> Answer<f32> {
+    let [answer] = &answers(service, request)[..] else { panic!("one answer") };
+    answer.clone()
+}
+
+fn refused(refusal: Refusal) -> Answer<f32> {
+    Answer::Refused(refusal)
+}
+
+/// With two agents that cross and their table.
+fn crossing() -> Small {
+    let mut service = Small::new(&PARALLEL);
+    for (agent, agents) in [agent(0.0), agent(FRAC_PI_2)].into_iter().zip(1..) {
+        assert_eq!(answer(&mut service, Request::Add(agent)), Answer::Fleet { agents });
+    }
+    assert_eq!(answer(&mut service, Request::Compute), Answer::Computed { regions: 1, pieces: 1 });
+    service
+}
+
+fn row(service: &mut Small, ego: u16) -> Vec<Answer<f32>> {
+    answers(service, Request::Row { ego })
+}
+
+#[test]
+fn without_a_table_of_the_fleet_there_are_no_regions_and_no_plan() {
+    let asks = [Request::Row { ego: 0 }, Request::Replan { agent: 0 }];
+    let mut service = Small::new(&PARALLEL);
+    assert_eq!(answer(&mut service, Request::Add(agent(0.0))), Answer::Fleet { agents: 1 });
+    for ask in &asks {
+        assert_eq!(answer(&mut service, ask.clone()), refused(Refusal::NotComputed), "never computed");
+    }
+    let changes = [
+        (Request::Add(agent(1.0)), Answer::Fleet { agents: 3 }),
+        (Request::Replace { agent: 1, with: agent(1.0) }, Answer::Fleet { agents: 2 }),
+        (Request::Remove { agent: 1 }, Answer::Fleet { agents: 1 }),
+        (Request::Load, Answer::Fleet { agents: 2 }),
+    ];
+    for (change, expected) in changes {
+        let mut service = crossing();
+        assert_eq!(row(&mut service, 0).len(), 3, "a region, its piece, the end");
+        assert_eq!(answer(&mut service, change.clone()), expected);
+        for ask in &asks {
+            assert_eq!(answer(&mut service, ask.clone()), refused(Refusal::NotComputed), "after {change:?}");
+        }
+        assert!(matches!(answer(&mut service, Request::Compute), Answer::Computed { .. }));
+        assert!(matches!(row(&mut service, 0)[..], [.., Answer::End { .. }]), "after {change:?} and Compute");
+    }
+}
+
+#[test]
+fn what_is_refused_leaves_the_fleet_and_its_table() {
+    let mut service = crossing();
+    let before = row(&mut service, 0);
+    let flat = Agent { radius: 0.0, ..agent(0.0) };
+    let long = Agent { path: [STEPS[0]; 7].into_iter().collect(), ..agent(0.0) };
+    let invalid = |agent, what, why| refused(Refusal::Agent { agent, what: text(what), why });
+    let cases = [
+        (Request::Add(flat.clone()), invalid(2, "radius", Reason::NonPositive)),
+        (Request::Replace { agent: 1, with: flat }, invalid(1, "radius", Reason::NonPositive)),
+        (Request::Add(long.clone()), invalid(2, "segment", Reason::Full)),
+        (Request::Replace { agent: 0, with: long }, invalid(0, "segment", Reason::Full)),
+        (Request::Replace { agent: 2, with: agent(0.0) }, refused(Refusal::NoSuchAgent { agent: 2 })),
+        (Request::Remove { agent: 2 }, refused(Refusal::NoSuchAgent { agent: 2 })),
+        (Request::Row { ego: 2 }, refused(Refusal::NoSuchAgent { agent: 2 })),
+        (Request::Row { ego: 65535 }, refused(Refusal::NoSuchAgent { agent: 65535 })),
+        (Request::Replan { agent: 2 }, refused(Refusal::NoSuchAgent { agent: 2 })),
+    ];
+    for (request, expected) in cases {
+        assert_eq!(answer(&mut service, request.clone()), expected, "{request:?}");
+        assert_eq!(row(&mut service, 0), before, "{request:?}");
+    }
+}
+
+#[test]
+fn a_replaced_and_a_removed_agent_leave_the_table_of_those_that_are_there() {
+    let table = |service: &mut Small, agents: u16| {
+        assert!(matches!(answer(service, Request::Compute), Answer::Computed { .. }));
+        (0..agents).flat_map(|ego| row(service, ego)).collect::<Vec<_>>()
+    };
+    let fleet = |agents: &[Agent<f32>]| {
+        let mut service = Small::new(&[]);
+        agents.iter().for_each(|agent| drop(answers(&mut service, Request::Add(agent.clone()))));
+        service
+    };
+    let [a, b, c] = [0.0, 0.6, FRAC_PI_2].map(agent);
+    let two = Agent { path: [STEPS[0]; 2].into_iter().collect(), ..agent(0.2) };
+    let mut service = fleet(&[a.clone(), b.clone(), c.clone()]);
+    assert_eq!(answer(&mut service, Request::Replace { agent: 1, with: two.clone() }), Answer::Fleet { agents: 3 });
+    assert_eq!(table(&mut service, 3), table(&mut fleet(&[a.clone(), two, c.clone()]), 3), "longer");
+    assert_eq!(answer(&mut service, Request::Replace { agent: 1, with: b }), Answer::Fleet { agents: 3 });
+    assert_eq!(answer(&mut service, Request::Remove { agent: 1 }), Answer::Fleet { agents: 2 });
+    assert_eq!(table(&mut service, 2), table(&mut fleet(&[a, c]), 2), "fewer");
+}
+
+#[test]
+fn a_built_in_fleet_is_there_as_a_whole_or_not_at_all() {
+    let mut service = Small::new(&ONE_IS_FLAT);
+    let flat = Refusal::Agent { agent: 1, what: text("radius"), why: Reason::NonPositive };
+    assert_eq!(answer(&mut service, Request::Load), refused(flat));
+    assert_eq!(answer(&mut service, Request::Row { ego: 0 }), refused(Refusal::NoSuchAgent { agent: 0 }));
+    assert_eq!(answer(&mut Small::new(&[]), Request::Load), Answer::Fleet { agents: 0 });
+}
+
+#[test]
+fn a_full_table_is_told_and_is_none() {
+    let mut service = Service::<f32, 3, 6, 2, 8>::new(&[]);
+    let mut said = Vec::new();
+    for request in [Request::Add(agent(0.0)), Request::Add(agent(0.6)), Request::Add(agent(FRAC_PI_2))] {
+        service.answer(request, 1, drop);
+    }
+    service.answer(Request::Compute, 1, |answer| said.push(answer));
+    service.answer(Request::Row { ego: 0 }, 1, |answer| said.push(answer));
+    assert_eq!(said, [refused(Refusal::TableFull(Room::Regions)), refused(Refusal::NotComputed)]);
+}
+
+/// It passes the standing disc at the sum of the radii, turns round, and drives through it.
+#[test]
+fn a_touch_does_not_hide_the_overlap_behind_it() {
+    let standing = Agent { radius: 0.5, path: [].into_iter().collect(), ..agent(0.0) };
+    let standing = Agent { start: Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) }, ..standing };
+    let line = Step { curve: Curve::Line, length: 6.0 };
+    let back = Step { curve: Curve::Arc { radius: 0.5, turn: Turn::Right }, length: 0.5 * PI };
+    let start = Pose { position: Point::new(-3.0, 1.0), heading: Radians(0.0) };
+    let passing = Agent { radius: 0.5, start, path: [line, back, line].into_iter().collect(), ..agent(0.0) };
+    let once = Agent { path: [line].into_iter().collect(), ..passing.clone() };
+    for (passing, touching) in [(once, true), (passing, false)] {
+        let mut service = Small::new(&[]);
+        for agent in [standing.clone(), passing] {
+            assert!(matches!(answer(&mut service, Request::Add(agent)), Answer::Fleet { .. }));
+        }
+        let [Answer::Conflict(conflict), Answer::End { count: 1 }] = &answers(&mut service, Request::Conflicts)[..]
+        else {
+            panic!("one conflict")
+        };
+        assert!(conflict.touching == touching && (conflict.depth > 0.99) != touching, "{conflict:?}");
+    }
+}
+
+#[test]
+fn a_delay_that_the_motion_does_not_allow_changes_nothing() {
+    let mut store = Store::<f32, 2, 4>::new();
+    store.add(&agent(0.0)).expect("an agent");
+    let time = |store: &Store<f32, 2, 4>| store.motions().expect("motions")[0].time();
+    let before = time(&store);
+    assert_eq!(store.delay(1, 1.0), Err(Rejected::NoSuchAgent(1)));
+    assert_eq!(store.delay(0, f32::NAN), Err(Rejected::Invalid(Invalid::NonFinite("delay"))));
+    assert_eq!(store.delay(0, 1e9), Err(Rejected::Invalid(Invalid::OutOfRange("delay"))));
+    assert_eq!(time(&store), before);
+    assert_eq!(store.delay(0, 1.0).expect("a delay"), time(&store));
+    assert_eq!(time(&store).lo, before.lo + 1.0);
+    // A list with too little room is not a shorter fleet.
+    let mut motions = store.motions().expect("motions");
+    motions.extend_from_slice(&store.motions().expect("motions")).expect("room for two");
+    assert_eq!(store.put_motions(&mut motions), Err(Invalid::Full("agent")));
+}

@@ -1,0 +1,43 @@
+//! Kernels that tests hold to their bounds, number by number: no part of the interface, and subject to change.
+
+use crate::geometry::Point;
+use crate::pair::events::{add_events, add_turning_lengths};
+use crate::pair::footprint::{Footprint, Reach};
+use crate::pair::lengths::Lengths;
+use crate::pair::offset::{Carrier, Relative};
+use crate::scalar::Scalar;
+use crate::segment::Segment;
+
+/// Tells `event` the events along the second segment, and `turn` the turning lengths of the first one \[m\].
+pub fn events<S: Scalar>(
+    first: &Segment<S>,
+    second: &Segment<S>,
+    [radius, slack]: [S; 2],
+    event: impl FnMut(S),
+    turn: impl FnMut(S),
+) {
+    let (mut events, mut turning) = (Lengths::new(S::ZERO), Lengths::new(S::ZERO));
+    let ends = add_events(first, second, radius, slack, &mut events);
+    add_turning_lengths(first, second, ends, radius, slack, &mut turning);
+    events.as_slice().iter().copied().for_each(event);
+    turning.as_slice().iter().copied().for_each(turn);
+}
+
+/// Tells `found` the lengths of a segment at which P3 finds a contact from inside an arc \[m\].
+pub fn inward<S: Scalar>(other: &Segment<S>, segment: &Segment<S>, radius: S, found: impl FnMut(S)) {
+    let mut lengths = Lengths::new(S::ZERO);
+    let start = Footprint::of(other.start, segment);
+    let relative = Relative::new(segment, Carrier::from(other), &start);
+    relative.lengths_at(&[-relative.outward(radius)], S::ZERO, S::ZERO, &mut lengths);
+    lengths.as_slice().iter().copied().for_each(found);
+}
+
+/// P1: the lateral distance of a point from a segment, and the ends of what is within the radius of it \[m\].
+pub fn covered<S: Scalar>(point: Point<S>, segment: &Segment<S>, radius: S) -> (S, Option<[S; 2]>) {
+    let footprint = Footprint::of(point, segment);
+    let ends = match footprint.reach(segment, radius) {
+        Reach::Around { foot, half } => Some([foot - half, foot + half]),
+        Reach::Nothing | Reach::Whole => None,
+    };
+    (footprint.offset, ends)
+}

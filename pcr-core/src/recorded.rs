@@ -1,0 +1,315 @@
+//! The kernels, recorded as scripts for Gappa: a number that writes down what is done with it. `proofs/` proves bounds about
+//! the very lines that are written here; a kernel that has changed is not the one that was proved, and fails the test.
+//!
+//! A line is an operation and its exact twin, in capitals: `t3 rnd= t1 * c; T3 = T1 * C;`. Named are the inputs; those with a
+//! twin of their own are not exact.
+
+extern crate std;
+
+use crate::pair::footprint::Footprint;
+use crate::scalar::{Angle, Ramp, Scalar, Sector, Unit, Wide};
+use crate::segment::{Curve, Segment, Turn};
+use crate::{Point, Pose};
+use core::ops::{Add, Neg, Sub};
+use std::cell::RefCell;
+use std::string::{String, ToString};
+use std::vec::Vec;
+use std::{eprintln, format, fs, path::Path};
+
+/// A value, which decides branches, and the place of its name.
+#[derive(Clone, Copy, Debug, Default)]
+struct N(f64, usize);
+
+/// Names of numbers and of their exact twins, and the lines so far. The first name is that of 0.
+#[derive(Default)]
+struct Tape {
+    names: Vec<[String; 2]>,
+    lines: Vec<String>,
+}
+
+std::thread_local! { static TAPE: RefCell<Tape> = RefCell::default(); }
+
+fn on_tape<T>(act: impl FnOnce(&mut Tape) -> T) -> T {
+    TAPE.with(|tape| act(&mut tape.borrow_mut()))
+}
+
+impl Tape {
+    fn name(&mut self, rounded: &str, exact: &str) -> usize {
+        self.names.push([rounded.to_string(), exact.to_string()]);
+        self.names.len() - 1
+    }
+    /// Forgets all lines, so that what is given to a kernel counts as its input.
+    fn clear(&mut self) {
+        self.names.clear();
+        self.lines.clear();
+        self.name("0", "0");
+    }
+}
+
+/// An exact input of this value.
+fn input(name: &str, value: f64) -> N {
+    N(value, on_tape(|tape| tape.name(name, name)))
+}
+
+/// An input that is rounded.
+fn rounded(name: &str, value: f64) -> N {
+    N(value, on_tape(|tape| tape.name(name, &name.to_uppercase())))
+}
+
+/// An operation: its result, and how it is written with `{0}` and `{1}` for what it is made of.
+fn operation(value: f64, text: &str, of: &[N], rounds: bool) -> N {
+    on_tape(|tape| {
+        let written = |twin: usize| {
+            let numbered = of.iter().enumerate();
+            numbered.fold(text.to_string(), |text, (k, n)| text.replace(&format!("{{{k}}}"), &tape.names[n.1][twin]))
+        };
+        let (lower, upper) = (written(0), written(1));
+        let place = tape.lines.len() + 1;
+        let equals = if rounds { "rnd=" } else { "=" };
+        tape.lines.push(format!("t{place} {equals} {lower}; T{place} = {upper};"));
+        N(value, tape.name(&format!("t{place}"), &format!("T{place}")))
+    })
+}
+
+/// What is not part of a kernel that is recorded.
+fn left_out() -> ! {
+    panic!("not recorded")
+}
+
+impl PartialEq for N {
+    fn eq(&self, other: &Self) -> bool {
+        self.0 == other.0
+    }
+}
+impl PartialOrd for N {
+    /// Branches are part of what was proved.
+    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
+        let order = self.0.partial_cmp(&other.0);
+        on_tape(|tape| {
+            let line = format!("# {} is {order:?} to {}", tape.names[self.1][0], tape.names[other.1][0]);
+            tape.lines.push(line);
+        });
+        order
+    }
+}
+impl Add for N {
+    type Output = Self;
+    fn add(self, rhs: Self) -> Self {
+        operation(self.0 + rhs.0, "{0} + {1}", &[self, rhs], true)
+    }
+}
+impl Sub for N {
+    type Output = Self;
+    fn sub(self, rhs: Self) -> Self {
+        operation(self.0 - rhs.0, "{0} - {1}", &[self, rhs], true)
+    }
+}
+impl Neg for N {
+    type Output = Self;
+    fn neg(self) -> Self {
+        operation(-self.0, "- {0}", &[self], false)
+    }
+}
+
+/// The bodies of `float.rs`.
+impl Scalar for N {
+    type Wide = N;
+    type Unit = N;
+    type Angle = N;
+    const ZERO: Self = N(0.0, 0);
+    const LIMIT: Self = N(1e12, 0);
+    const LEAST: Self = N(1e-75, 0);
+    fn is_finite(self) -> bool {
+        true
+    }
+    fn digest(self) -> u32 {
+        0
+    }
+    fn portion(self, _: Self, _: Self) -> Self {
+        left_out()
+    }
+    fn times(self, rhs: Self) -> N {
+        operation(self.0 * rhs.0, "{0} * {1}", &[self, rhs], true)
+    }
+    fn scale(self, by: N) -> Self {
+        Scalar::times(self, by)
+    }
+    fn half(self) -> Self {
+        operation(0.5 * self.0, "0.5 * {0}", &[self], false)
+    }
+    fn double(self) -> Self {
+        operation(2.0 * self.0, "2 * {0}", &[self], false)
+    }
+    fn abs(self) -> Self {
+        operation(self.0.abs(), "|{0}|", &[self], false)
+    }
+    fn quotient(self, _: Self) -> Self {
+        left_out()
+    }
+    fn quotient_unit(self, _: N) -> Option<Self> {
+        left_out()
+    }
+    fn unit_vector(_: Self, _: Self, _: Self) -> [N; 2] {
+        left_out()
+    }
+    fn difference(a: Self, b: Self, squares: N) -> Self {
+        let sum = a + b;
+        operation(squares.0 / sum.0, "{0} / {1}", &[squares, sum], true)
+    }
+    fn quadratic_roots(_: Self, _: N, _: N) -> Option<[Self; 2]> {
+        left_out()
+    }
+    fn half_tangent_roots(_: impl Iterator<Item = [N; 4]>, _: Sector<N>, _: impl FnMut(N)) {
+        left_out()
+    }
+    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+        Scalar::times(ramp.slow + Scalar::times(Scalar::half(ramp.acceleration), elapsed), elapsed)
+    }
+    fn ramp_time(_: Ramp<Self>, _: Self) -> Self {
+        left_out()
+    }
+    fn slack(_: Self) -> Self {
+        left_out()
+    }
+    fn rounding(_: Self) -> Self {
+        <Self as Scalar>::ZERO
+    }
+}
+impl Wide<N> for N {
+    const ZERO: Self = N(0.0, 0);
+    fn sqrt(self) -> N {
+        operation(libm::sqrt(self.0), "sqrt({0})", &[self], true)
+    }
+    fn narrow(self) -> N {
+        self
+    }
+    fn half(self) -> Self {
+        Scalar::half(self)
+    }
+}
+impl Unit for N {
+    const ZERO: Self = N(0.0, 0);
+    const ONE: Self = N(1.0, 0);
+    const COARSE: Self = N(0.0, 0);
+    fn times(self, rhs: Self) -> Self {
+        Scalar::times(self, rhs)
+    }
+}
+impl Angle<N> for N {
+    const ZERO: Self = N(0.0, 0);
+    fn is_finite(self) -> bool {
+        true
+    }
+    fn subtended(length: N, radius: N) -> Self {
+        operation(length.0 / radius.0, "{0} / {1}", &[length, radius], true)
+    }
+    fn half_subtended(length: N, radius: N) -> Self {
+        Scalar::half(Self::subtended(length, radius))
+    }
+    fn sin_cos(self) -> (N, N) {
+        (rounded("s", libm::sin(self.0)), rounded("c", libm::cos(self.0)))
+    }
+    fn atan2(y: N, x: N) -> Self {
+        rounded("angle", libm::atan2(y.0, x.0))
+    }
+    fn arc_length(self, radius: N) -> N {
+        Scalar::times(self, radius)
+    }
+    fn circumference(radius: N) -> N {
+        rounded("circumference", core::f64::consts::TAU * radius.0)
+    }
+}
+
+/// An arc of a few metres whose start, direction and radius are inputs.
+fn arc() -> Segment<N> {
+    on_tape(Tape::clear);
+    let zero = <N as Scalar>::ZERO;
+    let start = Segment::standing(Pose { position: Point::new(zero, zero), heading: zero }).expect("a pose");
+    let mut arc = start.then_arc(input("radius", 3.0), Turn::Left, input("length", 2.0)).expect("an arc");
+    on_tape(Tape::clear);
+    arc.start = Point::new(input("sx", 0.25), input("sy", 0.5));
+    (arc.direction.cos, arc.direction.sin) = (rounded("c", 0.8), rounded("s", 0.6));
+    arc.curve = Curve::Arc { radius: input("radius", 3.0), turn: Turn::Left };
+    arc
+}
+
+/// The lines of the tape from one place to another, where the numbers at some places are called otherwise.
+fn lines(from: usize, to: usize, inputs: &[(usize, &str)]) -> String {
+    let mut text = on_tape(|tape| tape.lines[from..to].join("\n")) + "\n";
+    for (place, name) in inputs {
+        for old in [format!("t{place}"), format!("T{place}")] {
+            // Whole words.
+            let words = text.split_inclusive(|c: char| !c.is_alphanumeric()).map(|word| {
+                let end = word.trim_end_matches(|c: char| !c.is_alphanumeric());
+                if end == old { word.replace(&old, name) } else { word.to_string() }
+            });
+            text = words.collect();
+        }
+    }
+    text
+}
+
+fn length() -> usize {
+    on_tape(|tape| tape.lines.len())
+}
+
+/// What is in `proofs/recorded` is what the kernels do. `PCR_RECORD=1` writes it.
+fn assert_recorded(name: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../proofs/recorded").join(format!("{name}.g"));
+    if std::env::var_os("PCR_RECORD").is_some() {
+        eprintln!("written: {}", path.display());
+        fs::write(&path, text).expect("a writable file");
+    }
+    let proved = fs::read_to_string(&path).expect("a recorded kernel");
+    assert!(proved == text, "{name} is not the kernel that proofs/ is about; it is now\n{text}");
+}
+
+/// Where a line of the tape is that makes this number.
+fn place(of: N) -> usize {
+    on_tape(|tape| tape.names[of.1][0].trim_start_matches('t').parse().expect("a number that was computed"))
+}
+
+#[test]
+fn the_kernels_are_those_that_were_proved() {
+    let arc = arc();
+    let point = Point::new(input("px", 1.0), input("py", 1.5));
+    let footprint = Footprint::of(point, &arc);
+    let all = length();
+    // The local coordinates end where `y` is computed.
+    let from_start = point - arc.start;
+    let [_, y] = [from_start.along(arc.direction), from_start.across(arc.direction)];
+    let local = place(y) - all;
+    let x = 5;
+    assert_recorded("local", &lines(0, local, &[]));
+    assert_recorded("offset", &lines(local, all, &[(x, "x"), (local, "y")]));
+    let offset = place(footprint.offset);
+    assert_eq!(offset, all);
+
+    let (before, footprint_y) = (length(), y.0);
+    let radius = input("r", 1.75);
+    footprint.reach(&arc, radius);
+    // What follows the last root are angles.
+    let roots = on_tape(|tape| tape.lines.iter().rposition(|line| line.contains("sqrt")).expect("a root")) + 1;
+    let distance = on_tape(|tape| tape.lines.iter().position(|line| line.contains("sqrt")).expect("a root")) + 1;
+    assert_recorded("reach", &lines(before, roots, &[(offset, "n"), (distance, "d")]));
+
+    on_tape(Tape::clear);
+    let ramp = Ramp {
+        slow: input("v", 1.1),
+        fast: input("w", 2.0),
+        acceleration: input("a", 0.3),
+        duration: input("t", 2.0),
+        length: input("l", 3.0),
+    };
+    let way = N::ramp_length(ramp, input("e", 1.25));
+    assert_recorded("ramp", &lines(0, length(), &[]));
+
+    // The bodies of `float.rs` above are still those: the same operations have the same bits.
+    let floats = Ramp { slow: 1.1, fast: 2.0, acceleration: 0.3, duration: 2.0, length: 3.0 };
+    assert_eq!(way.0.to_bits(), f64::ramp_length(floats, 1.25).to_bits());
+    let below: f64 = 3.1 - footprint_y;
+    assert_eq!(
+        f64::difference(3.1, below, 0.7).to_bits(),
+        N::difference(N(3.1, 0), N(below, 0), N(0.7, 0)).0.to_bits()
+    );
+}

@@ -1,0 +1,86 @@
+//! Tables as plain numbers for [`pcr_certify`], which shares nothing with what has computed them.
+//!
+//! All numbers are those that the library holds: nothing is rounded or computed again here.
+
+use crate::fleet::{Fleet, Format, HostEcm};
+use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Segment, Share, Table, Travel};
+use pcr_core::{Curve, Interval, Motion, Turn, excess};
+
+/// A motion: `heading` is that at the start of its path, `turns` its turns in place, each before the segment of this place.
+pub fn agent<S: Format>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turns: &[(usize, S::Angle)]) -> Agent {
+    let path = motion.path();
+    let parts = path.segments();
+    let ends = parts.iter().skip(1).map(|next| next.from()).chain([path.length()]);
+    let segments = parts.iter().zip(ends).enumerate().map(|(place, (segment, to))| Segment {
+        length: segment.length().to_f64(),
+        radius: match segment.curve() {
+            Curve::Line => None,
+            Curve::Arc { radius, turn: Turn::Left } => Some(radius.to_f64()),
+            Curve::Arc { radius, turn: Turn::Right } => Some(-radius.to_f64()),
+        },
+        turns: turns.iter().filter(|(before, _)| *before == place).map(|&(_, by)| S::held_angle(by)).collect(),
+        from: segment.from().to_f64(),
+        to: to.to_f64(),
+    });
+    let start = path.point_at(S::ZERO);
+    let phases = motion.profile().phases().iter().map(|phase| Phase {
+        time: ends_of(phase.time()),
+        length: ends_of(phase.length()),
+        speed: phase.speed().map(S::to_f64),
+    });
+    Agent {
+        id,
+        radius: motion.radius().to_f64(),
+        path: Path {
+            start: [start.x.to_f64(), start.y.to_f64()],
+            heading: S::held_angle(heading),
+            segments: segments.collect(),
+            rounding: S::EPSILON * path.length().to_f64(),
+        },
+        travel: Some(Travel { start: motion.time().lo.to_f64(), phases: phases.collect(), lag: motion.lag().to_f64() }),
+    }
+}
+
+fn ends_of<S: Format>(interval: Interval<S>) -> [f64; 2] {
+    [interval.lo.to_f64(), interval.hi.to_f64()]
+}
+
+/// The discs of a fleet; the numbers tell which ones are of one body.
+pub fn agents<S: Format>(fleet: &Fleet<S>, motions: &[Motion<'_, S>], ids: &[u64]) -> Vec<Agent> {
+    let all = motions.iter().zip(ids).enumerate();
+    all.filter_map(|(place, (motion, &id))| {
+        let (heading, turns) = fleet.headings(place)?;
+        Some(agent(id, motion, heading, turns))
+    })
+    .collect()
+}
+
+/// The table of these discs.
+pub fn table<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>], ecm: &HostEcm<S>) -> Table {
+    let mut pairs = Vec::new();
+    for (i, own) in agents.iter().enumerate() {
+        for (j, other) in agents.iter().enumerate().skip(i + 1) {
+            if own.id != other.id {
+                pairs.push(pair(motions, ecm, [i, j]));
+            }
+        }
+    }
+    Table { agents, pairs }
+}
+
+fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 2]) -> Pair {
+    let mut pieces = Vec::new();
+    for (number, region) in ecm.pair(motions, i, j).expect("the table of the fleet").enumerate() {
+        pieces.extend(region.pieces().map(|piece| Piece {
+            segments: piece.segments,
+            lengths: [ends_of(piece.length), ends_of(piece.other_length)],
+            share: match piece.share {
+                pcr_core::Share::Only => Share::Only,
+                pcr_core::Share::Start => Share::Start,
+                pcr_core::Share::End => Share::End,
+            },
+            region: number,
+        }));
+    }
+    Pair { agents: [i, j], excess: excess(&motions[i], &motions[j]).to_f64(), pieces }
+}

@@ -1,0 +1,107 @@
+//! `pcr certify`.
+
+use super::number::{Number, with_scalar};
+use super::sources::{layout, scenario, source};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT};
+use clap::Args;
+use pcr_host::certify::{Certified, Dump, table_of};
+use pcr_host::import::{Kind, Options};
+use pcr_host::{input, locks, report};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit status: the checker's own rounding does not tell.
+const UNDECIDED: u8 = 4;
+
+const STATUSES: &str = "\
+Exit status:
+  0  proved
+  1  refuted, with a place where the table is wrong
+  2  wrong arguments, or a file that cannot be read or was refused
+  3  the output could not be written
+  4  not proved: within the checker's own rounding of what is promised, as contacts are that just touch";
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr certify fleet.json                       the table of collision regions of a fleet
+  pcr certify fleet.json --scalar q16          the same in a format of a small machine
+  pcr certify fleet.json --limit               and how much farther than needed contacts are covered
+  pcr certify site.lif.json --radius 0.6       the table of locks of a layout
+  pcr regions fleet.json --json --certificate > table.json
+  pcr certify --table table.json               a table as it is held, by whatever has made it, from its numbers alone";
+
+/// Prove that no contact is missing from a table of regions or locks, or show one that is
+///
+/// The checker shares no geometry with what has computed the table, and covers, where others sample. What is proved: every contact of the
+/// discs lies in a piece of a region, a piece shows it, and nothing is told that is farther than the stated bound from a contact.
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+pub(super) struct Arguments {
+    /// Scenario, or a layout, whose locks are certified, edges and nodes; standard input if left out or `-`
+    #[arg(conflicts_with = "table")]
+    file: Option<PathBuf>,
+    /// A table as `pcr regions --certificate` prints it
+    #[arg(long, value_name = "FILE", conflicts_with = "scalar")]
+    table: Option<PathBuf>,
+    #[command(flatten)]
+    printed: Printed,
+    /// Add how far beyond contact everything is covered, in parts of the bound (takes a dozen times as long)
+    #[arg(long)]
+    limit: bool,
+    /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    #[arg(long, value_enum, default_value_t = Number::F64)]
+    scalar: Number,
+    #[command(flatten)]
+    import: Options,
+}
+
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        let certified = self.certified()?;
+        let mut out = self.printed.out(false);
+        if self.printed.form() == Form::Csv {
+            out.write_all(report::CERTIFIED_CSV_HEADER.as_bytes())?;
+        }
+        for one in &certified {
+            match self.printed.form() {
+                Form::Table => report::certified_table(one, &mut out)?,
+                Form::Json => report::json(one, &mut out)?,
+                Form::Csv => report::certified_csv(one, &mut out)?,
+            }
+        }
+        out.flush()?;
+        let any = |verdict: &str| certified.iter().any(|one| one.verdict == Some(verdict));
+        Ok(match () {
+            () if certified.iter().any(|one| one.error.is_some()) => ExitCode::from(WRONG_INPUT),
+            () if any("refuted") => ExitCode::from(CONFLICTS),
+            () if any("undecided") => ExitCode::from(UNDECIDED),
+            () => ExitCode::SUCCESS,
+        })
+    }
+
+    fn certified(&self) -> Result<Vec<Certified>, Stop> {
+        if let Some(file) = &self.table {
+            if let Some(option) = self.import.given().first() {
+                return Err(Stop::arguments(format!("{option} is of no use: a table has all numbers in it")));
+            }
+            let dump = Dump::read(file).map_err(|problem| Stop::wrong(file, problem))?;
+            let tables = dump.certificate.iter();
+            return Ok(tables.map(|table| Certified::of(&dump.name, table, self.limit)).collect());
+        }
+        let file = &source(self.file.clone())?;
+        let scenarios = match input::kind(file, &self.import)? {
+            Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
+                let imported = layout(file, &self.import, "locks", false)?;
+                locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
+            }
+            _ => vec![scenario(file, &self.import)?],
+        };
+        let certified = scenarios.iter().map(|scenario| {
+            let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
+            let tables = tables.map_err(|failure| Stop::wrong(file, failure))?;
+            Ok(tables.iter().map(|table| Certified::of(&scenario.name, table, self.limit)).collect::<Vec<_>>())
+        });
+        Ok(certified.collect::<Result<Vec<_>, Stop>>()?.into_iter().flatten().collect())
+    }
+}

@@ -1,0 +1,94 @@
+//! The command line: what its words mean, and the help.
+//!
+//! `-h` shows the options of a command that are always of use, in a line each; `--help` adds those about layouts and other formats,
+//! examples and exit statuses. Options that do nothing in a command are in neither.
+
+use super::{Arguments, Stop};
+use clap::{Command, CommandFactory, FromArgMatches};
+use std::ffi::OsString;
+use std::io::{self, IsTerminal, Write};
+
+/// Heading of the options for files that are not scenarios.
+pub(super) const LAYOUTS: &str = pcr_host::import::HEADING;
+
+/// What is asked for; nothing where it was help or the version, which are printed.
+pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop> {
+    if words.get(1).is_some_and(|word| word == "help") {
+        words.remove(1);
+        words.push("--help".into());
+    }
+    let end = words.iter().position(|word| word == "--").unwrap_or(words.len());
+    let mut long = false;
+    for word in words.iter_mut().take(end).filter(|word| *word == "--help") {
+        // Both in the form of a line an option.
+        (*word, long) = ("-h".into(), true);
+    }
+    match command(long).try_get_matches_from(words) {
+        Ok(matches) => Arguments::from_arg_matches(&matches).map(Some).map_err(|error| Stop::Usage(Box::new(error))),
+        Err(error) if error.use_stderr() => Err(Stop::Usage(Box::new(error))),
+        Err(asked) => {
+            let (text, mut out) = (asked.render(), io::stdout().lock());
+            if out.is_terminal() {
+                write!(out, "{}", text.ansi())?;
+            } else {
+                write!(out, "{text}")?;
+            }
+            out.flush()?;
+            Ok(None)
+        }
+    }
+}
+
+/// All commands, with what their help shows.
+pub(super) fn command(long: bool) -> Command {
+    let command = Arguments::command();
+    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let tailored = names.iter().fold(command, |command, name| command.mut_subcommand(name, |own| tailored(own, long)));
+    match tailored.get_long_about().cloned() {
+        Some(about) if long => tailored.about(about),
+        _ => tailored.after_help("Examples and exit statuses: pcr --help"),
+    }
+}
+
+fn tailored(command: Command, long: bool) -> Command {
+    let name = command.get_name().to_owned();
+    let useless = useless(&name);
+    let layouts = command.get_arguments().any(|argument| argument.get_help_heading() == Some(LAYOUTS));
+    let command = command.mut_args(|argument| {
+        // Of use with every file.
+        let argument = if argument.get_id() == "margin" { argument.help_heading(None) } else { argument };
+        let hidden = argument.get_help_heading() == Some(LAYOUTS) && !long;
+        let hidden = hidden || useless.contains(&argument.get_id().as_str());
+        argument.hide(hidden)
+    });
+    match (long, layouts) {
+        (true, _) => command,
+        (false, true) => command
+            .after_help(format!("Options for layouts and other formats, examples, exit statuses: pcr {name} --help")),
+        (false, false) => command.after_help(format!("Examples and exit statuses: pcr {name} --help")),
+    }
+}
+
+/// Options for layouts and other formats that do nothing in a command, by the names of their fields.
+pub(super) fn useless(command: &str) -> &'static [&'static str] {
+    match command {
+        "import" => &["from"],
+        "locks" => {
+            &["routes", "speed", "acceleration", "rotation", "rotation_acceleration", "corner_radius", "horizon"]
+        }
+        "traffic" => &["routes", "horizon"],
+        "nodes" => &[
+            "routes",
+            "radius",
+            "margin",
+            "speed",
+            "acceleration",
+            "rotation",
+            "rotation_acceleration",
+            "fleet",
+            "corner_radius",
+            "horizon",
+        ],
+        _ => &[],
+    }
+}

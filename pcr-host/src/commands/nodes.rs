@@ -1,0 +1,44 @@
+//! `pcr nodes`.
+
+use super::sources::{layout, source};
+use super::{Form, Printed, STATUSES, Stop};
+use clap::Args;
+use pcr_host::import::Options;
+use pcr_host::nodes::Listing;
+use pcr_host::report;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr nodes warehouse.geojson                what --route can be given: nodes, and the edges between them
+  pcr nodes site.lif.json --vehicle AMR      the edges of one type of vehicle
+  pcr nodes town.xodr --json                 for programs";
+
+/// List the nodes, edges, levels and vehicle types of a layout
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+pub(super) struct Arguments {
+    /// The layout; standard input if left out or `-`
+    layout: Option<PathBuf>,
+    #[command(flatten)]
+    printed: Printed,
+    #[command(flatten)]
+    import: Options,
+}
+
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        let imported = layout(&source(self.layout)?, &self.import, "nodes", false)?;
+        let listing = Listing::of(&imported.layout);
+        let mut out = self.printed.out(false);
+        match self.printed.form() {
+            Form::Table => report::nodes_table(&listing, &mut out)?,
+            Form::Json => report::json(&listing, &mut out)?,
+            Form::Csv => report::nodes_csv(&listing, &mut out)?,
+        }
+        out.flush()?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,108 @@
+//! Where scenarios come from: the files that are named, else standard input, never anything else.
+
+use super::help::useless;
+use super::{Stop, warn};
+use pcr_host::import::{Imported, Options};
+use pcr_host::input;
+use pcr_host::scenario::Scenario;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+
+/// The files to be read; `-` for standard input where none is named and somebody writes to it.
+pub(super) fn sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
+    if files.iter().filter(|file| *file == Path::new("-")).count() > 1 {
+        return Err(Stop::arguments("FILE: - is given twice; standard input can be read once"));
+    }
+    if !files.is_empty() {
+        return Ok(files);
+    }
+    if io::stdin().is_terminal() {
+        return Err(Stop::arguments("no FILE, and nothing comes in by a pipe; name a scenario, or see pcr demo"));
+    }
+    Ok(vec![PathBuf::from("-")])
+}
+
+/// The one file to be read.
+pub(super) fn source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
+    let mut files = sources(file.into_iter().collect())?;
+    // There is one.
+    Ok(files.pop().unwrap_or_default())
+}
+
+/// The scenario in a file, in whatever format; warnings about it are told.
+pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> {
+    let (mut scenario, warnings) = input::read(file, import)?;
+    warn(file, &warnings);
+    scenario.give_margin(import.margin.unwrap_or(0.0));
+    Ok(scenario)
+}
+
+/// What one answer is about.
+pub(super) enum Source {
+    File(PathBuf),
+    /// Orders and states, or paths, of one fleet.
+    Together(Vec<PathBuf>),
+}
+
+/// The scenarios that some files hold. Files of orders, states or paths, which have an agent each, are of one fleet.
+pub(super) fn gathered(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Source>, Stop> {
+    let files = sources(files)?;
+    if files.len() > 1 && input::are_of_one_fleet(&files, import) {
+        return Ok(vec![Source::Together(files)]);
+    }
+    Ok(files.into_iter().map(Source::File).collect())
+}
+
+impl Source {
+    /// The file, or the first of them, for messages.
+    pub(super) fn file(&self) -> &Path {
+        match self {
+            Self::File(file) => file,
+            Self::Together(files) => files.first().map_or(Path::new("-"), |first| first),
+        }
+    }
+
+    pub(super) fn stem(&self) -> String {
+        input::stem(self.file())
+    }
+
+    /// Whether it is scenarios one after the other on standard input.
+    pub(super) fn is_lines(&self, import: &Options) -> bool {
+        matches!(self, Self::File(file) if file == Path::new("-")) && import.from.is_none()
+    }
+
+    pub(super) fn scenario(&self, import: &Options) -> Result<Scenario, Stop> {
+        match self {
+            Self::File(file) => scenario(file, import),
+            Self::Together(files) => together(files, import),
+        }
+    }
+}
+
+/// The scenario in several files of orders, states or paths.
+pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, Stop> {
+    let (mut scenario, warnings) = input::read_all(files, import)?;
+    warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
+    scenario.give_margin(import.margin.unwrap_or(0.0));
+    Ok(scenario)
+}
+
+/// The layout in a file for a command, whose vehicles move or do not.
+pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) -> Result<Imported, Stop> {
+    let why = match command {
+        "traffic" => "traffic has random routes; pcr plan takes given ones",
+        "locks" => "locks are of all ways of a vehicle, at any speed",
+        _ => "this command lists what is in the file",
+    };
+    if let Some(option) = import.one_of(useless(command)) {
+        return Err(Stop::arguments(format!("{option} is of no use: {why}")));
+    }
+    // Where nothing depends on the size of the vehicle, none is assumed and warned about.
+    let import = &match command {
+        "nodes" => Options { radius: Some(1.0), ..import.clone() },
+        _ => import.clone(),
+    };
+    let (imported, warnings) = input::read_layout(file, import, moves)?;
+    warn(file, &warnings);
+    Ok(imported)
+}

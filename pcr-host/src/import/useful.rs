@@ -1,0 +1,96 @@
+//! Which options do something with which files: one that does nothing is refused, since whoever gave it expects something of it.
+
+use super::{Format, Options, xml};
+
+/// What a file is, as far as options go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A scenario file: agents with everything they need.
+    Scenario,
+    /// Nodes and edges, on which routes are asked for.
+    Layout(Format),
+    /// Orders and states of VDA 5050.
+    Orders,
+    /// Points of paths.
+    Paths,
+    /// Points with times, of Continuous-CBS.
+    Plan,
+}
+
+impl Kind {
+    /// What a text in this format is; a scenario without one.
+    pub fn of(format: Option<Format>, text: &str) -> Self {
+        match format {
+            None => Self::Scenario,
+            Some(Format::Vda5050) => Self::Orders,
+            Some(Format::Path) => Self::Paths,
+            Some(Format::Ccbs) if xml::root_of(text) != Some("graphml") => Self::Plan,
+            Some(format) => Self::Layout(format),
+        }
+    }
+}
+
+impl Options {
+    /// The fields that are given, with the names that they have on the command line. The margin is not among them: it is of use everywhere.
+    fn all(&self) -> [(&'static str, &'static str, bool); 14] {
+        [
+            ("from", "--from", self.from.is_some()),
+            ("routes", "--route", !self.routes.is_empty()),
+            ("radius", "--radius", self.radius.is_some()),
+            ("speed", "--speed", self.speed.is_some()),
+            ("acceleration", "--acceleration", self.acceleration.is_some()),
+            ("rotation", "--rotation", self.rotation.is_some()),
+            ("rotation_acceleration", "--rotation-acceleration", self.rotation_acceleration.is_some()),
+            ("vehicle", "--vehicle", self.vehicle.is_some()),
+            ("fleet", "--fleet", self.fleet.is_some()),
+            ("corner_radius", "--corner-radius", self.corner_radius.is_some()),
+            ("tolerance", "--tolerance", self.tolerance.is_some()),
+            ("graph", "--graph", self.graph.is_some()),
+            ("horizon", "--horizon", self.horizon),
+            ("partial", "--partial", self.partial),
+        ]
+    }
+
+    /// The options that are given, as on the command line.
+    pub fn given(&self) -> Vec<&'static str> {
+        let margin = self.margin.map(|_| "--margin");
+        self.all().into_iter().filter(|(.., given)| *given).map(|(_, option, _)| option).chain(margin).collect()
+    }
+
+    /// One of these fields that is given, as on the command line.
+    pub fn one_of(&self, fields: &[&str]) -> Option<&'static str> {
+        let all = self.all().into_iter().chain([("margin", "--margin", self.margin.is_some())]);
+        all.into_iter().find(|(field, _, given)| *given && fields.contains(field)).map(|(_, option, _)| option)
+    }
+
+    /// An option that is given and does nothing with such a file, and why.
+    pub fn useless(&self, kind: Kind) -> Option<(&'static str, &'static str)> {
+        let given = self.all().into_iter().filter(|(.., given)| *given);
+        given.into_iter().find_map(|(field, option, _)| Some((option, useless(field, kind)?)))
+    }
+}
+
+/// Why an option does nothing with such a file; nothing where it does something.
+fn useless(field: &str, kind: Kind) -> Option<&'static str> {
+    match (field, kind) {
+        ("from", _) => None,
+        ("horizon", Kind::Orders) => None,
+        ("horizon", _) => Some("only orders of VDA 5050 have a horizon"),
+        ("graph", Kind::Layout(Format::Rmf)) => None,
+        ("graph", _) => Some("only buildings of Open-RMF have several graphs"),
+        (_, Kind::Scenario) => Some("a scenario has its own vehicles and paths"),
+        ("routes", Kind::Orders | Kind::Paths | Kind::Plan) => Some("the file has paths of its own, and is no layout"),
+        ("vehicle", Kind::Layout(Format::Lif)) => None,
+        ("vehicle", _) => Some("only layouts in LIF tell types of vehicles apart"),
+        ("speed" | "acceleration" | "rotation" | "rotation_acceleration", Kind::Plan) => {
+            Some("a plan has its own times")
+        }
+        ("corner_radius", Kind::Orders | Kind::Paths | Kind::Plan) => {
+            Some("only routes on layouts have corners to round")
+        }
+        ("tolerance", Kind::Plan | Kind::Layout(Format::Rmf | Format::OpenDrive | Format::Ccbs | Format::Nav2)) => {
+            Some("there is no curve in the file but lines and arcs")
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,167 @@
+//! Files that are there whole or as they were before: never a part of one.
+//!
+//! What is written goes to a temporary file in the same folder, onto the disk, and only then takes the name of the file that it
+//! replaces. Whatever stops the program, a full disk, a limit or a signal, the old file is untouched until the new one is complete.
+
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Writes a file. One that is there is replaced and keeps its mode; a link is followed. What is no regular file (a terminal, a
+/// pipe, a device) is written to as it is.
+///
+/// # Errors
+/// Those of the file system; then the file is as it was before. One that is there and must not be written to stays, too.
+pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    let target = followed(file)?;
+    match fs::metadata(&target) {
+        Ok(old) if old.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "a folder")),
+        Ok(old) if !old.is_file() => OpenOptions::new().write(true).open(&target)?.write_all(content.as_ref()),
+        Ok(old) => {
+            // Its folder would let it be replaced even where it is read-only.
+            OpenOptions::new().write(true).open(&target)?;
+            replace(&target, Some(&old), content.as_ref())
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => replace(&target, None, content.as_ref()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Makes a folder, and those that it is in, where they are not there yet.
+///
+/// # Errors
+/// Those of the file system; [`io::ErrorKind::NotADirectory`] where there is a file of this name.
+pub fn folder(directory: &Path) -> io::Result<()> {
+    match fs::create_dir_all(directory) {
+        Err(_) if fs::metadata(directory).is_ok_and(|there| !there.is_dir()) => {
+            Err(io::Error::new(io::ErrorKind::NotADirectory, "it is there and not a folder"))
+        }
+        made => made,
+    }
+}
+
+/// Where a file is behind all links, be it there or not.
+fn followed(file: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const LINKS: usize = 40;
+    let mut target = file.to_owned();
+    for _ in 0..LINKS {
+        match fs::read_link(&target) {
+            Ok(link) => target = target.parent().unwrap_or(Path::new("")).join(link),
+            Err(_) => return Ok(target),
+        }
+    }
+    Err(io::Error::other("too many links"))
+}
+
+fn replace(target: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
+    if target.file_name().is_none() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"));
+    }
+    let folder = match target.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let (temporary, file) = temporary(folder)?;
+    let done = fill(file, old, content).and_then(|()| fs::rename(&temporary, target));
+    match done {
+        Ok(()) => {
+            // That the new name is on the disk, too. Where folders cannot be opened or synced, it gets there in time.
+            let _ = File::open(folder).and_then(|folder| folder.sync_all());
+            Ok(())
+        }
+        Err(error) => {
+            let _ = fs::remove_file(&temporary);
+            Err(error)
+        }
+    }
+}
+
+fn fill(mut file: File, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
+    if let Some(old) = old {
+        file.set_permissions(old.permissions())?;
+    }
+    file.write_all(content)?;
+    file.sync_all()
+}
+
+/// A new file in a folder, which stays there only if the program is killed.
+fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    loop {
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = folder.join(format!(".pcr-{}-{number}.tmp", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&path) {
+            // Left by a program of the same number that was killed.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            file => return file.map(|file| (path, file)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An empty folder for a test.
+    fn scratch(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("pcr-output-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_is_made_and_replaced_and_nothing_is_left_beside_it() {
+        let folder = scratch("made");
+        let file = folder.join("a.json");
+        write(&file, "one").unwrap();
+        write(&file, "two").unwrap();
+        assert_eq!((fs::read_to_string(&file).unwrap().as_str(), names(&folder)), ("two", vec!["a.json".to_owned()]));
+        write(&folder.join("x".repeat(255)), "the longest name").unwrap();
+        assert_eq!(names(&folder).len(), 2);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn folders_are_not_files_and_files_no_folders() {
+        let folder = scratch("kinds");
+        assert_eq!(write(&folder, "x").unwrap_err().kind(), io::ErrorKind::IsADirectory);
+        let file = folder.join("file");
+        write(&file, "x").unwrap();
+        assert_eq!(super::folder(&file).unwrap_err().kind(), io::ErrorKind::NotADirectory);
+        super::folder(&folder.join("a/b")).unwrap();
+        super::folder(&folder.join("a/b")).unwrap();
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn mode_and_links_are_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = scratch("links");
+        let [file, link, dangling] = ["file", "link", "dangling"].map(|name| folder.join(name));
+        fs::write(&file, "old").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        symlink("file", &link).unwrap();
+        symlink("new", &dangling).unwrap();
+        write(&link, "new").unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+        write(&dangling, "there").unwrap();
+        assert_eq!(fs::read_to_string(folder.join("new")).unwrap(), "there");
+        assert!([&link, &dangling].iter().all(|link| fs::symlink_metadata(link).unwrap().is_symlink()));
+        symlink("b", folder.join("a")).unwrap();
+        symlink("a", folder.join("b")).unwrap();
+        assert!(write(&folder.join("a"), "x").is_err());
+        fs::remove_dir_all(folder).unwrap();
+    }
+}

@@ -1,0 +1,63 @@
+//! Verdicts about tables as text.
+
+use super::columns::Columns;
+use super::{heading, quoted};
+use crate::certify::Certified;
+use std::io::{self, Write};
+
+/// The header line of [`certified_csv`].
+pub const CERTIFIED_CSV_HEADER: &str = "name,verdict,promise,i,j,l_i,l_j,clearance,in_excess\n";
+
+/// A line a place that is not proved, or one that says that all is.
+///
+/// # Errors
+/// Those of the writer.
+pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<()> {
+    let name = quoted(&certified.name);
+    for (verdict, points) in [("refuted", &certified.refuted), ("undecided", &certified.undecided)] {
+        for point in points {
+            let (promise, numbers) = (point.promise, [point.l_i, point.l_j, point.clearance, point.in_excess]);
+            let numbers = numbers.map(|number| number.to_string()).join(",");
+            writeln!(out, "{name},{verdict},{promise},{},{},{numbers}", point.i, point.j)?;
+        }
+    }
+    if certified.verdict == Some("proved") {
+        writeln!(out, "{name},proved,,,,,,,")?;
+    }
+    Ok(())
+}
+
+/// A verdict for reading.
+///
+/// # Errors
+/// Those of the writer.
+pub fn certified_table(certified: &Certified, out: &mut impl Write) -> io::Result<()> {
+    let name = heading(&certified.name);
+    if let Some(error) = &certified.error {
+        return writeln!(out, "{name}: {error}");
+    }
+    let Certified { discs, segment_pairs, pieces, steps, .. } = certified;
+    let verdict = certified.verdict.unwrap_or("refused");
+    writeln!(
+        out,
+        "{name}: {verdict}; {discs} discs, {segment_pairs} pairs of segments, {pieces} pieces, {steps} steps"
+    )?;
+    if let Some(margin) = certified.margin {
+        writeln!(out, "Contacts are covered up to the combined radius and {margin:.3} of the bound ε.")?;
+    }
+    for (title, points) in [("Wrong", &certified.refuted), ("Not decided", &certified.undecided)] {
+        if points.is_empty() {
+            continue;
+        }
+        writeln!(out, "{title}:")?;
+        let mut columns = Columns::new(&["i", "j", "l_i [m]", "l_j [m]", "clearance [m]", "in ε", "<"]);
+        for point in points {
+            let mut row = vec![point.i.to_string(), point.j.to_string()];
+            row.extend([point.l_i, point.l_j].map(|length| format!("{length:.6}")));
+            row.extend([format!("{:.3e}", point.clearance), format!("{:.3}", point.in_excess), point.promise.into()]);
+            columns.row(row);
+        }
+        columns.write(out)?;
+    }
+    Ok(())
+}

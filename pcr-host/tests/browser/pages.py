@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""pages.py PCR FOLDER: writes the pages of the tool PCR into FOLDER, opens each in headless Chromium, and fails unless
+
+- nothing is written to the console, and nothing is asked of the network;
+- nothing reaches beyond the right edge of a window of 390, 900 and 1400 px, light and dark;
+- the Tab key reaches every control;
+- on the page of locks every edge can be chosen with the keyboard, by its list and by the search;
+- at 1400 by 900 px both pictures of a page are inside the window while it plays, and time goes on;
+- nothing moves by itself for who asked for less motion.
+
+Screenshots of all of it stay in FOLDER. Chromium is spoken to through a pipe in its DevTools protocol: no driver is needed.
+"""
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+DATA = Path(__file__).resolve().parents[3] / "tests/data"
+GRAPH = DATA / "real/nav2/warehouse_graph.geojson"
+WIDTHS = (390, 900, 1400)
+FLAGS = ("--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+         "--disable-component-update --disable-sync --hide-scrollbars --remote-debugging-pipe").split()
+
+
+class Browser:
+    """A Chromium and one page in it."""
+
+    def __init__(self, program):
+        self.profile = tempfile.mkdtemp(prefix="pcr-pages-")
+        (to_read, self.write), (self.read, to_write) = os.pipe(), os.pipe()
+
+        def ends():
+            # DevTools reads from 3 and writes to 4; neither end may be overwritten before it is in its place.
+            ends = [os.dup(to_read), os.dup(to_write)]
+            os.dup2(ends[0], 3)
+            os.dup2(ends[1], 4)
+
+        self.process = subprocess.Popen(
+            [program, *FLAGS, f"--user-data-dir={self.profile}", "about:blank"],
+            preexec_fn=ends, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_read)
+        os.close(to_write)
+        self.buffer, self.last, self.events, self.session = b"", 0, [], None
+        target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
+        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+
+    def message(self):
+        while b"\0" not in self.buffer:
+            part = os.read(self.read, 1 << 16)
+            if not part:
+                raise SystemExit("pages: Chromium ended")
+            self.buffer += part
+        text, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(text)
+
+    def call(self, method, **params):
+        self.last += 1
+        request = {"id": self.last, "method": method, "params": params}
+        if self.session:
+            request["sessionId"] = self.session
+        os.write(self.write, json.dumps(request).encode() + b"\0")
+        while True:
+            answer = self.message()
+            if answer.get("id") == self.last:
+                if "error" in answer:
+                    raise SystemExit(f"pages: {method}: {answer['error']}")
+                return answer["result"]
+            self.events.append(answer)
+
+    def open(self, path, width, scheme, motion="no-preference"):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+        features = [{"name": "prefers-color-scheme", "value": scheme}, {"name": "prefers-reduced-motion", "value": motion}]
+        self.call("Emulation.setEmulatedMedia", features=features)
+        # By way of an empty page: the same address again would not be loaded anew.
+        for url in ("about:blank", path.as_uri()):
+            self.events.clear()
+            self.call("Page.navigate", url=url)
+            while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
+                self.events.append(self.message())
+
+    def value(self, expression):
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise SystemExit(f"pages: {expression}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def key(self, key, code=None):
+        text = {"Enter": "\r"}.get(key, key if len(key) == 1 else "")
+        codes = {"Tab": 9, "Enter": 13, "ArrowDown": 40, "Escape": 27}
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, text=text if kind == "keyDown" else "",
+                      windowsVirtualKeyCode=codes.get(key, ord(key[0]) if len(key) == 1 else 0))
+
+    def screenshot(self, path):
+        path.write_bytes(base64.b64decode(self.call("Page.captureScreenshot")["data"]))
+
+    def noise(self):
+        """What the page said to the console, and what it asked for beside itself."""
+        said = []
+        for event in self.events:
+            method, params = event.get("method"), event.get("params", {})
+            if method in ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"):
+                said.append(json.dumps(params)[:300])
+            if method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file:", "about:")):
+                said.append(f"request of {params['request']['url']}")
+        return said
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+
+CONTROLS = """[...document.querySelectorAll('button, select, input, [tabindex="0"]')]
+  .filter((e) => e.checkVisibility({ visibilityProperty: true }) && !e.disabled)"""
+SLEEP = "new Promise((done) => setTimeout(done, {}))"
+
+
+def reached_by_tab(browser):
+    """How many controls there are, and which the Tab key does not come to."""
+    browser.value(f"{CONTROLS}.forEach((e, k) => {{ e.dataset.control = k; }})")
+    count = browser.value(f"{CONTROLS}.length")
+    reached = set()
+    for _ in range(count + 2):
+        browser.key("Tab")
+        control = browser.value("document.activeElement?.dataset.control ?? null")
+        if control is not None:
+            reached.add(int(control))
+    return count, [browser.value(f"{CONTROLS}[{k}].outerHTML.slice(0, 120)") for k in range(count) if k not in reached]
+
+
+def check_locks(browser):
+    edges = browser.value("data.edges.map((edge) => edge.id)")
+    browser.value("document.getElementById('edge').focus()")
+    seen = set()
+    for _ in range(len(edges)):
+        browser.key("ArrowDown")
+        seen.add(browser.value("document.querySelector('#about h2')?.textContent"))
+    missing = [edge for edge in edges if f"Edge {edge}" not in seen]
+    if missing:
+        return [f"edges that the list does not reach by keys: {missing[:5]}"]
+    browser.value("document.getElementById('find').focus()")
+    for letter in edges[7]:
+        browser.key(letter)
+    browser.key("Enter")
+    found = browser.value("document.querySelector('#about h2').textContent")
+    whole = browser.value("data.bounds[2]")
+    width = browser.value("Number(document.getElementById('layout').getAttribute('viewBox').split(' ')[2])")
+    return [] if found == f"Edge {edges[7]}" and width < whole else [f"the search shows {found}, {width} of {whole}"]
+
+
+def check_time(browser, name):
+    """Both pictures are seen whole while time goes on."""
+    wrong = []
+    if name != "replay":
+        browser.value("document.getElementById('play').click()")
+    before = browser.value("document.getElementById('clock').textContent")
+    browser.value(SLEEP.format(400))
+    if browser.value("document.getElementById('clock').textContent") == before:
+        wrong.append("time does not go on")
+    for box in browser.value("[...document.querySelectorAll('figure > svg, figure > canvas')].map((e) => e.getBoundingClientRect().toJSON())"):
+        if box["bottom"] > 900 or box["height"] < 300:
+            wrong.append(f"a picture reaches from {box['top']:.0f} to {box['bottom']:.0f} px")
+    return wrong
+
+
+def check(browser, name, page, folder):
+    wrong = []
+    for scheme in ("light", "dark"):
+        for width in WIDTHS:
+            browser.open(page, width, scheme)
+            browser.value(SLEEP.format(100))
+            wide = browser.value("document.documentElement.scrollWidth")
+            if wide > width:
+                wrong.append(f"{width} px, {scheme}: {wide} px wide")
+            browser.screenshot(folder / f"{name}-{width}-{scheme}.png")
+            wrong += [f"{width} px, {scheme}: {said}" for said in browser.noise()]
+    browser.open(page, 1400, "light", "reduce")
+    before = browser.value("document.getElementById('clock')?.textContent")
+    browser.value(SLEEP.format(300))
+    if browser.value("document.getElementById('clock')?.textContent") != before:
+        wrong.append("it moves by itself under reduced motion")
+    count, missed = reached_by_tab(browser)
+    wrong += [f"Tab does not reach {control}" for control in missed]
+    if count < 4:
+        wrong.append(f"{count} controls only")
+    browser.open(page, 1400, "light")
+    wrong += check_locks(browser) if name == "locks" else check_time(browser, name)
+    wrong += browser.noise()
+    return wrong, count
+
+
+def main(tool, folder):
+    folder = Path(folder).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    run = lambda *arguments: subprocess.run([tool, *map(str, arguments)], check=True, capture_output=True, cwd=folder)
+    run("map", DATA / "paper12.json", "-o", "map")
+    run("traffic", GRAPH, "--agents", 30, "--seed", 1, "--radius", 0.4, "-o", "traffic")
+    run("locks", GRAPH, "--radius", 0.4, "-o", "locks")
+    run("simulate", "-o", "replay.html")
+    pages = {"map": "map/index.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "replay": "replay.html"}
+    program = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
+    if not program:
+        raise SystemExit("pages: no Chromium (Debian's package chromium)")
+    browser = Browser(program)
+    failed = 0
+    try:
+        for name, page in pages.items():
+            wrong, count = check(browser, name, folder / page, folder)
+            failed += len(wrong)
+            print(f"{name}: {len(WIDTHS) * 2} windows, {count} controls: {'ok' if not wrong else ''}")
+            for line in wrong:
+                print(f"  {line}")
+    finally:
+        browser.close()
+    if failed:
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        raise SystemExit(__doc__)
+    main(os.path.abspath(sys.argv[1]), sys.argv[2])

@@ -1,0 +1,150 @@
+//! Files are written whole or stay as they are, whatever goes wrong.
+#![cfg(unix)]
+
+use crate::fixture::{PAPER, crossing, directory, pcr, run};
+use std::fs;
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// An empty folder of a test.
+fn folder(test: &str) -> PathBuf {
+    let folder = directory("files").join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// Runs with files of at most some blocks of 512 or 1024 bytes.
+fn limited(blocks: u32, arguments: &[&str]) -> (i32, String) {
+    let script = format!("ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let output =
+        Command::new("bash").args(["-c", &script, env!("CARGO_BIN_EXE_pcr")]).args(arguments).output().unwrap();
+    (output.status.code().unwrap_or(-1), String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn a_scenario_that_is_planned_onto_itself_is_never_lost() {
+    let folder = folder("itself");
+    let same = folder.join("same.json");
+    let before = fs::read(PAPER).unwrap();
+    fs::write(&same, &before).unwrap();
+    let name = same.to_str().unwrap();
+    let (status, message) = limited(1, &["plan", name, "-o", name, "-q"]);
+    assert_eq!(status, 3, "{message}");
+    assert!(message.starts_with(&format!("pcr: {name}: cannot be written: ")), "{message}");
+    assert_eq!((fs::read(&same).unwrap(), names(&folder)), (before, vec!["same.json".to_owned()]));
+    run(&["plan", name, "-o", name, "-q"]).ok();
+    assert_eq!((run(&["check", name]).ok().as_str(), names(&folder).len()), ("paper12: no conflicts\n", 1));
+}
+
+#[test]
+fn every_output_is_whole_or_not_there() {
+    let folder = folder("limited");
+    let scenario = folder.join("scenario.json");
+    fs::write(&scenario, crossing().to_string()).unwrap();
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+    let name = scenario.to_str().unwrap();
+    let out = folder.join("out");
+    let target = out.to_str().unwrap();
+    for arguments in [
+        &["map", name, "-o", target][..],
+        &["simulate", name, "-o", target],
+        &["import", "nav2", layout, "--route", "0:50", "--route", "50:0", "--route", "3:4", "-o", target],
+        &["locks", layout, "--radius", "0.4", "-o", target],
+        &["traffic", layout, "--agents", "3", "--radius", "0.4", "-o", target],
+        &["compare", name, "--method", "polyline", "--rounds", "1", "-o", target],
+        &["demo", "-o", target],
+    ] {
+        let (status, message) = limited(1, &[arguments, &["-q"]].concat());
+        assert_eq!(status, 3, "{arguments:?}: {message}");
+        assert!(message.contains("cannot be written: "), "{arguments:?}: {message}");
+        // What fits is there and whole; nothing is left of what does not.
+        let left = if out.is_dir() { names(&out) } else { Vec::new() };
+        assert!(left.iter().all(|name| !name.starts_with('.')), "{arguments:?}: {left:?}");
+        assert!(left.iter().all(|name| !name.ends_with(".html")), "{arguments:?}: {left:?}");
+        assert!(!out.is_file(), "{arguments:?}");
+        let _ = fs::remove_dir_all(&out);
+    }
+    let (status, message) = limited(1, &["evaluate", "--quick", "--data", data, "-o", target, "-q"]);
+    assert_eq!((status, names(&out).contains(&"evaluation.md".to_owned())), (3, false), "{message}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_devices_and_folders_that_take_no_file_are_errors() {
+    for output in ["/dev/full", "/proc/plan.json"] {
+        let message = run(&["plan", PAPER, "-q", "-o", output]).failed(3);
+        assert!(message.starts_with(&format!("pcr: {output}: cannot be written: ")), "{message}");
+    }
+    run(&["plan", PAPER, "-q", "-o", "/dev/null"]).ok();
+    assert!(fs::metadata("/dev/null").is_ok_and(|null| !null.is_file()), "a device is no file to be replaced");
+    let folder = folder("read-only");
+    let file = folder.join("plan.json");
+    fs::write(&file, "before").unwrap();
+    fs::set_permissions(&folder, fs::Permissions::from_mode(0o555)).unwrap();
+    // The superuser may do all the same.
+    let may = fs::write(folder.join("probe"), "").is_ok();
+    let output = run(&["plan", PAPER, "-q", "-o", file.to_str().unwrap()]);
+    fs::set_permissions(&folder, fs::Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(output.status, if may { 0 } else { 3 }, "{}", output.err);
+    assert_eq!(fs::read_to_string(&file).unwrap() == "before", !may);
+}
+
+#[test]
+fn modes_and_links_stay_as_they_are() {
+    let folder = folder("modes");
+    let [file, link] = ["plan.json", "link.json"].map(|name| folder.join(name));
+    fs::write(&file, "").unwrap();
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o604)).unwrap();
+    symlink("plan.json", &link).unwrap();
+    run(&["plan", PAPER, "-q", "-o", link.to_str().unwrap()]).ok();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o604);
+    assert!(run(&["check", file.to_str().unwrap()]).ok().starts_with("paper12: no conflicts"));
+}
+
+#[test]
+fn whatever_is_killed_in_the_middle_leaves_the_old_files_or_the_new_ones() {
+    let folder = folder("killed");
+    let out = folder.join("maps");
+    run(&["map", PAPER, "-q", "-o", out.to_str().unwrap()]).ok();
+    let whole: Vec<(PathBuf, Vec<u8>)> = names(&out)
+        .into_iter()
+        .map(|name| out.join(name))
+        .map(|file| (file.clone(), fs::read(file).unwrap()))
+        .collect();
+    for milliseconds in [60, 150, 300, 600, 1200] {
+        let mut child = pcr().args(["map", PAPER, "-q", "-o"]).arg(&out).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(milliseconds));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // The same scenario gives the same bytes: what is there is what was there.
+        for (file, content) in &whole {
+            assert!(fs::read(file).unwrap() == *content, "{}", file.display());
+        }
+    }
+}
+
+#[test]
+fn files_where_folders_have_to_be_are_named() {
+    let folder = folder("kinds");
+    let file = folder.join("file");
+    fs::write(&file, "keep").unwrap();
+    let name = file.to_str().unwrap();
+    for arguments in [&["map", PAPER, "-o", name][..], &["demo", "-o", name, "-q"]] {
+        let message = run(arguments).failed(3);
+        assert_eq!(message, format!("pcr: {name}: cannot be written: it is there and not a folder\n"));
+    }
+    let message = run(&["plan", PAPER, "-q", "-o", folder.to_str().unwrap()]).failed(3);
+    assert!(message.ends_with(": cannot be written: a folder\n"), "{message}");
+    assert_eq!(fs::read_to_string(&file).unwrap(), "keep");
+}

@@ -1,0 +1,150 @@
+//! What users of other command line tools expect: help, completions, manual pages, quiet, and no option in vain.
+
+use crate::fixture::{PAPER, crossing, directory, file, run};
+use serde_json::Value;
+
+const COMMANDS: [&str; 15] = [
+    "regions",
+    "certify",
+    "check",
+    "plan",
+    "map",
+    "simulate",
+    "locks",
+    "traffic",
+    "nodes",
+    "import",
+    "compare",
+    "evaluate",
+    "demo",
+    "completions",
+    "man",
+];
+
+fn real(name: &str) -> String {
+    format!("{}/../tests/data/real/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn help_is_short() {
+    for command in [&[][..]].into_iter().chain(COMMANDS.iter().map(std::slice::from_ref)) {
+        let [short, long] = ["-h", "--help"].map(|option| run(&[command, &[option]].concat()).ok());
+        assert!(short.lines().count() < 30, "{command:?}\n{short}");
+        assert!(long.lines().count() < 60, "{command:?}\n{long}");
+        assert!(long.lines().all(|line| line.chars().count() <= 120), "{command:?}\n{long}");
+        assert!(short.contains("--help") && long.contains("Usage: pcr"), "{command:?}");
+        assert_eq!(run(&[&["help"], command].concat()).ok(), long, "{command:?}");
+    }
+}
+
+#[test]
+fn options_are_listed_where_they_do_something() {
+    let help = |command: &str| run(&[command, "--help"]).ok();
+    assert!(help("regions").contains("Layouts and other formats:\n") && help("plan").contains("--route <"));
+    assert!(!run(&["regions", "-h"]).ok().contains("--route"));
+    assert!(
+        !help("locks").contains("--route") && !help("locks").contains("--speed") && help("locks").contains("--radius")
+    );
+    assert!(!help("traffic").contains("--horizon") && !help("import").contains("--from"));
+    assert!(!help("demo").contains("--radius") && !help("evaluate").contains("--radius"));
+}
+
+#[test]
+fn options_that_do_nothing_are_refused() {
+    let scenario = file("habits", "scenario.json", crossing().to_string());
+    let (nav2, plan) = (real("nav2/aws_graph.geojson"), real("ccbs/example_grid_task_log.xml"));
+    for (arguments, reason) in [
+        (&["check", &scenario, "--horizon"][..], "--horizon is of no use: only orders of VDA 5050 have a horizon"),
+        (&["check", &scenario, "--route", "1:2"], "--route is of no use: a scenario has its own vehicles and paths"),
+        (&["import", "nav2", &nav2, "--from", "lif"], "--from: the format is named already, as the first argument"),
+        (&["check", &plan, "--speed", "1"], "--speed is of no use: a plan has its own times"),
+        (&["regions", &nav2, "--route", "0:1", "--graph", "1"], "--graph is of no use: only buildings of Open-RMF"),
+        (&["locks", &nav2, "--route", "0:1"], "--route is of no use: locks are of all ways of a vehicle"),
+        (&["traffic", &nav2, "--route", "0:1"], "--route is of no use: traffic has random routes"),
+        (&["nodes", &nav2, "--radius", "1"], "--radius is of no use: this command lists what is in the file"),
+        (&["simulate", &scenario, "--trips", "2"], "--trips is of no use: only foraging robots go to and fro"),
+        (&["simulate", "--foraging", "--radius", "1"], "--radius is of no use: the foraging robots are as they are"),
+    ] {
+        let message = run(arguments).failed(2);
+        assert!(message.contains(reason), "{arguments:?}: {message}");
+    }
+    let run = run(&["check", PAPER, "--json", "--format", "csv"]);
+    assert!(run.status == 2 && run.err.starts_with("error: "), "{}", run.err);
+}
+
+#[test]
+fn wrong_kinds_of_files_are_named() {
+    let scenario = file("habits", "kind.json", crossing().to_string());
+    let message = run(&["locks", &scenario]).failed(2);
+    assert!(
+        message.ends_with("kind.json: this is a scenario, with paths of its own; a layout is expected\n"),
+        "{message}"
+    );
+    let task = "<?xml version=\"1.0\" ?><root><agent start_id=\"1\" goal_id=\"2\"/></root>";
+    let task = file("habits", "task.xml", task);
+    for command in ["check", "plan", "locks"] {
+        let message = run(&[command, &task]).failed(2);
+        assert!(message.contains("a task of Continuous-CBS without its plan"), "{command}: {message}");
+    }
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let scenario = file("habits", "quiet.json", crossing().to_string());
+    let layout = real("nav2/warehouse_graph.geojson");
+    let silent = |arguments: &[&str], status: i32| {
+        let run = run(arguments);
+        assert_eq!((run.status, run.out.as_str(), run.err.as_str()), (status, "", ""), "{arguments:?}");
+    };
+    silent(&["check", "-q", &scenario], 1);
+    silent(&["regions", "--quiet", &layout, "--route", "0:50"], 0);
+    let pictures = directory("habits").join("quiet");
+    silent(&["-q", "plan", &scenario, "--pictures", pictures.to_str().unwrap()], 0);
+    silent(&["-q", "map", &scenario, "-o", pictures.to_str().unwrap()], 0);
+    // What a program asked for is there all the same, and so are errors.
+    assert_eq!(run(&["check", "-q", "--json", &scenario]).out.lines().count(), 1);
+    assert!(run(&["check", "-q", "missing.json"]).failed(2).contains("missing.json"));
+}
+
+#[test]
+fn json_is_short_for_its_format() {
+    let scenario = file("habits", "short.json", crossing().to_string());
+    for command in ["regions", "check", "plan"] {
+        let [short, long] =
+            [&["--json"][..], &["--format", "json"]].map(|form| run(&[&[command, &*scenario], form].concat()).out);
+        assert_eq!(short, long, "{command}");
+        assert!(serde_json::from_str::<Value>(&short).is_ok());
+    }
+}
+
+#[test]
+fn completions_and_manual_pages_name_every_command() {
+    for (shell, mark) in [
+        ("bash", "complete -F _pcr"),
+        ("zsh", "#compdef pcr"),
+        ("fish", "complete -c pcr"),
+        ("powershell", "Register-ArgumentCompleter"),
+    ] {
+        let text = run(&["completions", shell]).ok();
+        assert!(text.contains(mark) && COMMANDS.iter().all(|command| text.contains(command)), "{shell}");
+        assert!(text.contains("closest") && text.contains("corner-radius"), "{shell}");
+    }
+    let page = run(&["man"]).ok();
+    assert!(page.contains(".TH pcr 1") && COMMANDS.iter().all(|command| page.contains(command)), "{page}");
+    let page = run(&["man", "plan"]).ok();
+    assert!(page.contains("\\-\\-priority") && page.contains("Exit status"), "{page}");
+    assert_eq!(run(&["man", "areas"]).failed(2), "pcr: there is no command areas; pcr --help lists them\n");
+}
+
+#[test]
+fn layouts_are_listed() {
+    let table = run(&["nodes", &real("lif/example_07.lif.json")]).ok();
+    assert!(table.contains("vehicle types: "), "{table}");
+    let listing = run(&["nodes", &real("nav2/aws_graph.geojson"), "--json", "-q"]).json();
+    let (nodes, edges) = (listing["nodes"].as_array().unwrap(), listing["edges"].as_array().unwrap());
+    assert!(!nodes.is_empty() && edges.iter().all(|edge| edge["length"].as_f64().unwrap() >= 0.0));
+    assert!(nodes.iter().any(|node| node["id"] == edges[0]["from"]), "{listing}");
+    let csv = run(&["nodes", &real("nav2/aws_graph.geojson"), "--format", "csv", "-q"]).ok();
+    assert_eq!(csv.lines().count(), 1 + nodes.len() + edges.len());
+    assert!(csv.lines().all(|line| line.split(',').count() == 11), "{csv}");
+}

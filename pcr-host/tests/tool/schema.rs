@@ -1,0 +1,207 @@
+//! The schemas in `docs/schema` against what the tool reads and writes.
+
+use crate::fixture::{PAPER, crossing, file, run, run_with, straight};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+fn schema(format: &str) -> Value {
+    let path = format!("{ROOT}/docs/schema/{format}.schema.json");
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The same schema for this version of the tool alone: a field that is not in it is a fault.
+fn closed(mut schema: Value) -> Value {
+    fn close(value: &mut Value) {
+        match value {
+            Value::Object(members) => {
+                if members.contains_key("properties") {
+                    members.entry("additionalProperties").or_insert(json!(false));
+                }
+                members.values_mut().for_each(close);
+            }
+            Value::Array(elements) => elements.iter_mut().for_each(close),
+            _ => {}
+        }
+    }
+    close(&mut schema);
+    schema
+}
+
+fn faults(schema: &Value, document: &Value) -> Vec<String> {
+    let validator = jsonschema::draft202012::new(schema).unwrap();
+    validator.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect()
+}
+
+#[track_caller]
+fn fits(document: &str) -> String {
+    let document: Value = serde_json::from_str(document).unwrap_or_else(|error| panic!("{error}: {document}"));
+    let format = document["format"].as_str().unwrap();
+    assert_eq!(faults(&closed(schema(format)), &document), Vec::<String>::new(), "{format}");
+    format.to_owned()
+}
+
+fn real(name: &str) -> String {
+    format!("{ROOT}/tests/data/real/{name}")
+}
+
+#[test]
+fn every_output_fits_its_schema() {
+    let (layout, lif) = (real("nav2/aws_graph.geojson"), real("lif/example_07.lif.json"));
+    let mut labelled = crossing();
+    labelled["agents"][0]["label"] = json!("AGV-7");
+    let labelled = file("schema", "labelled.json", labelled.to_string());
+    let outlines = format!("{ROOT}/tests/data/small/outlines.json");
+    let stuck = json!({ "agents": [straight(1, [0.0, 0.0, 0.0], 4.0), straight(2, [4.0, 0.0, 3.2], 4.0)] });
+    let stuck = file("schema", "stuck.json", stuck.to_string());
+    let mut formats: Vec<String> = Vec::new();
+    for arguments in [
+        &["regions", PAPER, "--slices", "2", "--margin", "0.05"][..],
+        &["regions", &labelled],
+        &["regions", &outlines, "--scalar", "q16"],
+        &["check", PAPER, "--closest"],
+        &["check", &labelled],
+        &["plan", PAPER],
+        &["plan", &labelled, "--method", "speed"],
+        &["plan", &stuck],
+        &["simulate", &labelled],
+        &["compare", &labelled, "--method", "polyline", "--rounds", "1"],
+        &["locks", &layout, "--radius", "0.3", "--nodes"],
+        &["locks", &lif, "--radius", "0.3"],
+        &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
+        &["nodes", &layout],
+        &["nodes", &lif],
+        &["nodes", &real("opendrive/Town02.planview.xodr")],
+        &["nodes", &real("rmf/office.building.yaml")],
+    ] {
+        let run = run(&[arguments, &["--json", "-q"]].concat());
+        assert!(run.status < 2, "{arguments:?}: {}", run.err);
+        formats.push(fits(&run.out));
+    }
+    for refused in [&["regions", "-"][..], &["check", "-"]] {
+        fits(&run_with(&[refused, &["--json"]].concat(), b"{}\n").out);
+    }
+    formats.push(fits(&run(&["plan", &labelled, "-o", "-", "-q"]).out));
+    let factsheet = format!("{ROOT}/tests/data/small/factsheet.json");
+    formats.push(fits(&run(&["import", "nav2", &layout, "--route", "0:1", "--fleet", &factsheet, "-q"]).out));
+    let routes = ["import", "nav2", &layout, "--route", "0:1", "--radius", "0.3", "-q"];
+    formats.push(fits(&run(&routes).out));
+    // There is no schema of which nothing was seen.
+    let mut there: Vec<String> = fs::read_dir(format!("{ROOT}/docs/schema"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    there.sort();
+    formats.sort();
+    formats.dedup();
+    assert_eq!(there, formats.iter().map(|format| format!("{format}.schema.json")).collect::<Vec<_>>());
+}
+
+fn json_files(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "json") {
+            files.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_scenario_of_ours_fits_its_schema() {
+    let schema = schema("pcr-scenario");
+    let mut files = vec![PathBuf::from(PAPER)];
+    json_files(Path::new(&format!("{ROOT}/tests/data")), &mut files);
+    json_files(Path::new(&format!("{ROOT}/tests/data/small")), &mut files);
+    let mut scenarios = 0;
+    for file in files {
+        let value: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+        if value["agents"].is_array() {
+            assert_eq!(faults(&schema, &value), Vec::<String>::new(), "{}", file.display());
+            scenarios += 1;
+        }
+    }
+    assert!(scenarios > 6, "{scenarios}");
+}
+
+/// One change at a time to a scenario: the tool and the schema are of one mind about it.
+#[test]
+fn schema_and_tool_refuse_the_same_scenarios() {
+    let schema = schema("pcr-scenario");
+    let profile = json!({ "v0": 1, "pieces": [{ "duration": 4, "accel": 0 }] });
+    let polygon = json!([{ "ahead": 1, "left": 0 }, { "ahead": 0, "left": 1 }, { "ahead": 0, "left": -1 }]);
+    let changes = [
+        ("/name", json!(5)),
+        ("/name", json!("other")),
+        ("/format", json!("pcr-scenario")),
+        ("/format", json!("pcr-plan")),
+        ("/version", json!(1)),
+        ("/version", json!(2)),
+        ("/units", json!("m")),
+        ("/agents", json!([])),
+        ("/agents", json!({})),
+        ("/agents", Value::Null),
+        ("/agents/0/id", json!(-1)),
+        ("/agents/0/id", json!(1.5)),
+        ("/agents/0/id", json!("7")),
+        ("/agents/0/id", Value::Null),
+        ("/agents/0/label", json!("AGV-7")),
+        ("/agents/0/label", json!("a\u{1b}b")),
+        ("/agents/0/label", json!("x".repeat(201))),
+        ("/agents/0/label", json!(7)),
+        ("/agents/0/radius", json!(0)),
+        ("/agents/0/radius", json!("1")),
+        ("/agents/0/radius", json!(1e11)),
+        ("/agents/0/radius", Value::Null),
+        ("/agents/0/footprint", json!({ "polygon": polygon })),
+        ("/agents/0/margin", json!(0)),
+        ("/agents/0/margin", json!(-0.1)),
+        ("/agents/0/v_max", Value::Null),
+        ("/agents/0/a_max", json!(-1)),
+        ("/agents/0/t_start", json!(-5)),
+        ("/agents/0/t_start", json!("now")),
+        ("/agents/0/start/z", json!(1)),
+        ("/agents/0/start/x", Value::Null),
+        ("/agents/0/start", json!([0, 0, 0])),
+        ("/agents/0/path", json!([])),
+        ("/agents/0/path", json!([{ "kind": "line" }])),
+        ("/agents/0/path", json!([{ "kind": "line", "length": 0 }])),
+        ("/agents/0/path", json!([{ "kind": "line", "length": 1, "sweep": 1 }])),
+        ("/agents/0/path", json!([{ "kind": "arc", "radius": 0, "sweep": 1 }])),
+        ("/agents/0/path", json!([{ "kind": "arc", "radius": 1, "sweep": -9 }])),
+        ("/agents/0/path", json!([{ "kind": "spiral", "length": 1 }])),
+        ("/agents/0/profile", profile.clone()),
+        ("/agents/0/profile", json!({ "v0": -1, "pieces": [] })),
+        ("/agents/0/profile", json!({ "pieces": [] })),
+        ("/agents/0/loads", json!([{ "segments": [1, 1], "radius": 0.6 }])),
+        ("/agents/0/loads", json!([{ "segments": [0, 1], "radius": 0.6 }])),
+        ("/agents/0/loads", json!([{ "segments": [1, 1] }])),
+        ("/agents/0/colour", json!("red")),
+    ];
+    let (mut accepted, mut refused) = (0, 0);
+    for (pointer, value) in changes {
+        let mut scenario = crossing();
+        let (parent, key) = pointer.rsplit_once('/').unwrap();
+        let parent = scenario.pointer_mut(parent).unwrap().as_object_mut().unwrap();
+        if value.is_null() {
+            parent.remove(key)
+        } else {
+            parent.insert(key.into(), value.clone())
+        };
+        let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
+        let faults = faults(&schema, &scenario);
+        assert_eq!(run.status == 0, faults.is_empty(), "{pointer} {value}: {} {faults:?}", run.err);
+        if faults.is_empty() { accepted += 1 } else { refused += 1 }
+    }
+    assert!(accepted > 8 && refused > 25, "{accepted} accepted, {refused} refused");
+}
+
+#[test]
+fn a_field_that_no_schema_has_is_noticed() {
+    let mut verdict = run(&["check", PAPER, "--json"]).out;
+    assert_eq!(fits(&verdict), "pcr-conflicts");
+    verdict = verdict.replacen("\"depth\"", "\"deepness\"", 1);
+    let document: Value = serde_json::from_str(&verdict).unwrap();
+    assert_eq!(faults(&closed(schema("pcr-conflicts")), &document).len(), 2);
+}

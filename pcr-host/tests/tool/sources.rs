@@ -1,0 +1,134 @@
+//! Where scenarios come from: files, several of them, standard input; and never anything that was not asked for.
+
+use crate::fixture::{PAPER, crossing, directory, file, run, run_with, straight};
+use serde_json::{Value, json};
+
+fn free() -> Value {
+    let mut scenario = crossing();
+    scenario["agents"][1]["t_start"] = json!(9.0);
+    scenario
+}
+
+#[test]
+fn standard_input_is_read_where_no_file_is_named() {
+    assert_eq!(run_with(&["check"], b"{\"agents\":[]}\n").ok(), "scenario: no conflicts\n");
+    let pretty = serde_json::to_string_pretty(&crossing()).unwrap();
+    for arguments in [&["check"][..], &["check", "-"]] {
+        let found = run_with(arguments, pretty.as_bytes());
+        assert_eq!(found.status, 1, "{}", found.err);
+        assert!(found.out.starts_with("crossing: 1 conflict\n"), "{}", found.out);
+    }
+    for command in ["regions", "plan", "simulate"] {
+        let answer = run_with(&[command, "--json"], pretty.as_bytes());
+        assert_eq!(answer.status, 0, "{command}: {}", answer.err);
+        assert!(answer.out.contains("\"name\":\"crossing\""), "{command}: {}", answer.out);
+    }
+}
+
+#[test]
+fn nothing_is_not_the_demo() {
+    for command in ["regions", "check", "plan", "simulate", "compare", "map", "locks", "traffic", "nodes", "import"] {
+        let format: &[&str] = if command == "import" { &["nav2"] } else { &[] };
+        let output: &[&str] = if command == "map" { &["-o", "nowhere"] } else { &[] };
+        // As `pcr check $EMPTY` and `pcr check "$EMPTY"` in a script.
+        let message = run(&[&[command], format, output].concat()).failed(2);
+        assert!(message.starts_with("pcr: standard input:") && message.contains("empty"), "{command}: {message}");
+        let empty = run(&[&[command], format, &[""], output].concat());
+        assert_eq!((empty.status, empty.out.as_str()), (2, ""), "{command}");
+        assert!(empty.err.starts_with("error: a value is required for '["), "{command}: {}", empty.err);
+    }
+}
+
+/// Without the end of a pipe a terminal would wait for somebody to type a scenario.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_is_not_waited_for() {
+    let pcr = env!("CARGO_BIN_EXE_pcr");
+    let command = format!("{pcr} check; echo \"status $?\"");
+    let output = std::process::Command::new("script").args(["-qec", &command, "/dev/null"]).output();
+    let Ok(output) = output else { panic!("script (util-linux) is needed for this test") };
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("pcr: no FILE, and nothing comes in by a pipe") && text.contains("status 2"), "{text}");
+}
+
+#[test]
+fn the_demo_is_asked_for_by_name() {
+    let scenario = run(&["demo", "--scenario"]).ok();
+    assert_eq!(scenario, std::fs::read_to_string(PAPER).unwrap());
+    assert!(run_with(&["check"], scenario.as_bytes()).out.starts_with("paper12: 9 conflicts\n"));
+    let folder = directory("demo").join("pictures");
+    let tables = run(&["demo", "-o", folder.to_str().unwrap()]).ok();
+    assert!(tables.starts_with("Table V: ") && tables.contains("Pictures: "), "{tables}");
+    assert!(folder.join("index.html").exists());
+}
+
+#[test]
+fn several_files_are_answered_one_after_the_other() {
+    let [a, b] = [("one", crossing()), ("two", free())].map(|(name, mut scenario)| {
+        scenario["name"] = json!(name);
+        file("several-files", &format!("{name}.json"), scenario.to_string())
+    });
+    let both = run(&["check", &a, &b, "--json"]);
+    assert_eq!((both.status, both.err.as_str()), (1, ""));
+    let names: Vec<Value> =
+        both.out.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["name"].clone()).collect();
+    assert_eq!(names, ["one", "two"]);
+    let table = run(&["regions", &a, &b]).ok();
+    assert!(table.contains("one: 2 collision regions") && table.contains("\n\ntwo: 2 collision regions"), "{table}");
+    let plans = run(&["plan", &a, &b, "--format", "csv"]).ok();
+    assert_eq!(plans.matches("\none,").count() + plans.matches("\ntwo,").count(), 4, "{plans}");
+    let piped = run_with(&["check", &b, "-"], crossing().to_string().as_bytes());
+    assert_eq!(
+        (piped.status, piped.out.contains("two: no conflicts"), piped.out.contains("crossing: 1")),
+        (1, true, true)
+    );
+    // One that is refused costs no other one.
+    let bad = file("several-files", "bad.json", "{}");
+    let run = run(&["check", &bad, &b, "--json"]);
+    assert_eq!(run.status, 2);
+    let answers: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(answers[0]["error"].as_str().unwrap().contains("bad.json:1: agents: missing"), "{}", run.out);
+    assert_eq!(
+        (&answers[0]["name"], &answers[1]["name"], &answers[1]["error"]),
+        (&json!("bad"), &json!("two"), &Value::Null)
+    );
+    assert!(run.err.ends_with("pcr: 1 of 2 scenarios refused\n"), "{}", run.err);
+}
+
+#[test]
+fn plans_go_through_a_pipe() {
+    let input = file("pipe", "crossing.json", crossing().to_string());
+    let plan = run(&["plan", &input, "-o", "-"]);
+    assert_eq!(plan.status, 0);
+    assert!(plan.err.starts_with("crossing: a plan without conflicts"), "the table is on standard error: {}", plan.err);
+    for arguments in [&["check", "-"][..], &["check"]] {
+        assert_eq!(run_with(arguments, plan.out.as_bytes()).ok(), "crossing: no conflicts\n");
+    }
+    let quiet = run(&["plan", &input, "-o", "-", "-q"]);
+    assert_eq!((quiet.err.as_str(), quiet.out), ("", plan.out));
+    let page = run(&["simulate", &input, "--controller", "pcr", "-o", "-"]);
+    assert!(page.out.starts_with("<!DOCTYPE html>") && page.err.starts_with("crossing: seed 1"));
+    let two = run(&["plan", &input, &input, "-o", "somewhere.json"]).failed(2);
+    assert_eq!(two, "pcr: --output: one file for the plans of several; - takes them all\n");
+    // Without a plan nothing goes through, and nothing is no scenario.
+    let stuck = json!({ "agents": [straight(1, [0.0, 0.0, 0.0], 4.0), straight(2, [0.1, 0.0, 0.0], 4.0)] });
+    let stuck = run_with(&["plan", "-o", "-"], stuck.to_string().as_bytes());
+    assert_eq!((stuck.status, stuck.out.as_str()), (1, ""));
+    assert_eq!(run_with(&["check"], stuck.out.as_bytes()).status, 2);
+}
+
+#[test]
+fn orders_of_a_fleet_are_checked_against_one_another() {
+    let order = |id: &str, y: f64| {
+        let node = |x: f64| {
+            json!({ "nodeId": format!("{id}{x}"), "sequenceId": x as u32, "released": true, "actions": [],
+            "nodePosition": { "x": x, "y": y, "mapId": "m" } })
+        };
+        let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });
+        let order = json!({ "orderId": id, "nodes": [node(0.0), node(4.0)], "edges": [edge] });
+        file("fleet", &format!("{id}.json"), order.to_string())
+    };
+    let (a, b) = (order("a", 0.0), order("b", 0.1));
+    let check = run(&["check", &a, &b, "--radius", "0.3", "--json", "-q"]);
+    assert_eq!((check.status, check.out.lines().count(), check.err.as_str()), (1, 1, ""), "{}", check.out);
+}

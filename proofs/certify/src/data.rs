@@ -1,0 +1,137 @@
+//! What is certified, as plain numbers: `f64` holds those of every number format exactly.
+//!
+//! The numbers are those that the library holds, not those of a file that it has read: a checker that rounded them
+//! itself would check another table.
+
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+
+/// An angle as a format holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Angle {
+    /// Radians.
+    Radians(f64),
+    /// Turns.
+    Turns(f64),
+}
+
+/// A line or an arc of a path.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Segment {
+    /// Length \[m\].
+    pub length: f64,
+    /// Radius of an arc \[m\], positive where it turns left, negative where it turns right; none of a line.
+    pub radius: Option<f64>,
+    /// By how much the agent turns in place before it, turn by turn.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub turns: Vec<Angle>,
+    /// Length of the path before it, as the library has summed it up \[m\].
+    pub from: f64,
+    /// Length of the path up to its end, likewise \[m\].
+    pub to: f64,
+}
+
+/// A path: where it starts, and its segments, each from the end of the one before in its direction.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Path {
+    /// Abscissa and ordinate of the start \[m\].
+    pub start: [f64; 2],
+    /// Direction at the start.
+    pub heading: Angle,
+    /// At least one.
+    pub segments: Vec<Segment>,
+    /// What a length along the path may be off by the rounding of sums \[m\].
+    pub rounding: f64,
+}
+
+/// Motion at constant acceleration through the times and lengths at both of its ends, with the speed at the slower one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Phase {
+    /// Times since the start of the motion \[s\].
+    pub time: [f64; 2],
+    /// Travelled lengths \[m\].
+    pub length: [f64; 2],
+    /// Speeds \[m/s\].
+    pub speed: [f64; 2],
+}
+
+/// When an agent is where on its path.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Travel {
+    /// When it sets off \[s\].
+    pub start: f64,
+    /// Each begins where the one before ends; none if it never moves.
+    pub phases: Vec<Phase>,
+    /// What the travelled length at a time may be off by the rounding of times \[m\].
+    pub lag: f64,
+}
+
+/// A disc on a path.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Agent {
+    /// Number, for messages. Agents with the same number are discs of one body.
+    pub id: u64,
+    /// Radius \[m\].
+    pub radius: f64,
+    /// Path.
+    pub path: Path,
+    /// Its motion; none where only the path counts.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub travel: Option<Travel>,
+}
+
+/// Which of the intervals that are covered of an arc at once a piece stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Share {
+    /// The only one; of two each that meets its lengths.
+    Only,
+    /// Of two the one at the start of the segment.
+    Start,
+    /// Of two the one at the end.
+    End,
+}
+
+/// A part of a collision region: a rectangle of lengths along both paths, on one segment of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Piece {
+    /// Places of the segments in their paths.
+    pub segments: [usize; 2],
+    /// From and to, along the path of the first and of the second agent \[m\].
+    pub lengths: [[f64; 2]; 2],
+    /// Share of what is covered of the segment of the first agent.
+    pub share: Share,
+    /// Number of its region among those of the pair.
+    pub region: usize,
+}
+
+/// Two agents and the pieces of their regions.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Pair {
+    /// Places of the agents, the first one first.
+    pub agents: [usize; 2],
+    /// By how much the radius of the regions may be too large: ε \[m\].
+    pub excess: f64,
+    /// In no order.
+    pub pieces: Vec<Piece>,
+}
+
+/// A table of collision regions: every two agents that are not discs of one body are a pair of it.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Table {
+    /// The discs.
+    pub agents: Vec<Agent>,
+    /// The pairs.
+    pub pairs: Vec<Pair>,
+}

@@ -1,0 +1,66 @@
+//! An independent checker of collision regions: proves of one table that no contact is missing, or shows one; proves of motions that
+//! discs never touch, or shows when they do.
+//!
+//! It depends on nothing, and shares no geometry with what has computed a table. It looks at distances between parts of lines and arcs
+//! only, each bounded in closed form, and cuts parts in half where the bounds do not tell: nothing is sampled. Every number carries
+//! the bound on its error, so that no count of roundings has to be believed.
+//!
+//! ```text
+//! twofold    106 bits
+//! ball       numbers with a bound on their error, of 53 or 106 bits; answers that may be a doubt
+//! plane      lines and arcs, parts of them, distances from a point          bounds of lemma 3
+//! cell       all of a part farther than, or within, so much of another      lemmas 3 and 5
+//! data       what is read: paths, motions, pieces
+//! path       segments in the plane
+//! pair       the pieces of two segments: C-rect and C4                       lemma 2
+//! shares     one of two intervals: C-share                                  lemma 4
+//! table      all pairs; the margin
+//! motion     discs that never touch
+//! ```
+//!
+//! Why that proves what it says is in `docs/certificates.md` of the repository, with the lemmas by these numbers.
+//!
+//! ```
+//! use pcr_certify::data::{Agent, Angle, Pair, Path, Piece, Segment, Share, Table};
+//! use pcr_certify::table::{Checker, Margin};
+//!
+//! // Two lines that cross at right angles, discs of 0.25 m: contact wherever l² + s² <= 0.5², from the crossing.
+//! let line = |id, start, heading| Agent {
+//!     id,
+//!     radius: 0.25,
+//!     path: Path {
+//!         start,
+//!         heading: Angle::Turns(heading),
+//!         segments: vec![Segment { length: 2.0, radius: None, turns: vec![], from: 0.0, to: 2.0 }],
+//!         rounding: 0.0,
+//!     },
+//!     travel: None,
+//! };
+//! let agents = vec![line(1, [-1.0, 0.0], 0.0), line(2, [0.0, -1.0], 0.25)];
+//! let verdict = |reach: f64| {
+//!     let lengths = [[1.0 - reach, 1.0 + reach]; 2];
+//!     let pieces = vec![Piece { segments: [0, 0], lengths, share: Share::Only, region: 0 }];
+//!     let pairs = vec![Pair { agents: [0, 1], excess: 1e-3, pieces }];
+//!     let table = Table { agents: agents.clone(), pairs };
+//!     Checker::new(&table)?.check(Margin::Needed)
+//! };
+//! let proved = verdict(0.5005)?;
+//! assert!(proved.refuted.is_empty() && proved.undecided.is_empty());
+//! let short = verdict(0.499)?;
+//! assert!(short.refuted[0].clearance < 0.0); // a contact outside of the piece
+//! let long = verdict(0.502)?;
+//! assert!(long.refuted[0].clearance > 1e-3); // told, but farther than ε from any contact
+//! # Ok::<(), String>(())
+//! ```
+#![forbid(unsafe_code)]
+
+pub mod ball;
+pub mod cell;
+pub mod data;
+pub mod motion;
+pub mod pair;
+pub mod path;
+pub mod plane;
+pub mod shares;
+pub mod table;
+pub mod twofold;

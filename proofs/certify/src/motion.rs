@@ -1,0 +1,484 @@
+//! Discs in motion: no contact at any time, proved, or a time of contact.
+//!
+//! In an interval of half-length k about t in which both agents keep phase and segment, with r, w, q the relative position,
+//! velocity and acceleration at t, and J a bound on the third derivative, `|r(t + τ)| >= √μ - J k³/6` with
+//!
+//! ```text
+//! μ = min over |τ| <= k of |r|² + 2 r·w τ + (|w|² + r·q) τ²  -  |w·q| k³
+//! ```
+//!
+//! (the square of the polynomial of second order, its term |q|²τ⁴/4 left out). Before that, whatever the agents do, `|r| - (v + v') k`.
+//! What neither settles is cut: where a phase or a segment ends, then in half.
+//!
+//! The motion is what the phases say: constant acceleration through times and lengths at both ends, with the speed at the
+//! slower one. Where one phase or segment gives way to the next is rounded to an `f64`; how far an agent may have gone on by
+//! then along the wrong one is part of the bound.
+
+use crate::ball::{Ball, Real, Tri};
+use crate::data::{Agent, Phase};
+use crate::path::{Stretch, stretches};
+use crate::plane::{Carrier, Vector};
+use crate::twofold::Twofold;
+
+/// An agent between two times, in one phase and on one segment.
+#[derive(Clone, Debug)]
+struct Leg {
+    exact: Course<Twofold>,
+    near: Course<f64>,
+    /// Largest speed \[m/s\].
+    speed: f64,
+    /// Curvature \[1/m\].
+    curvature: f64,
+    /// How far the agent may be from where this says \[m\].
+    off: f64,
+}
+
+/// A carrier, and the length along it over time.
+#[derive(Clone, Copy, Debug)]
+struct Course<R> {
+    carrier: Carrier<R>,
+    /// Time at the slow end \[s\], length along the carrier there \[m\], speed there and acceleration in the direction of time.
+    time: Ball<R>,
+    length: Ball<R>,
+    speed: Ball<R>,
+    acceleration: Ball<R>,
+}
+
+/// Position, velocity and acceleration.
+type State<R> = [Vector<R>; 3];
+
+impl<R: Real> Course<R> {
+    fn of(course: &Course<Twofold>) -> Self {
+        Self {
+            carrier: Carrier::of(course.carrier),
+            time: Ball::of(course.time),
+            length: Ball::of(course.length),
+            speed: Ball::of(course.speed),
+            acceleration: Ball::of(course.acceleration),
+        }
+    }
+
+    fn at(&self, time: Ball<R>) -> State<R> {
+        let since = time - self.time;
+        let length = self.length + (self.speed + (self.acceleration * since).half()) * since;
+        let speed = self.speed + self.acceleration * since;
+        let (place, along) = (self.carrier.point(length), self.carrier.direction(length));
+        let straight = along.times(self.acceleration);
+        let acceleration = match self.carrier {
+            Carrier::Line { .. } => straight,
+            Carrier::Circle { radius, left, .. } => {
+                let inward = if left { along.left() } else { along.left().times(Ball::from(-1.0)) };
+                straight + inward.times(speed * speed / radius)
+            }
+        };
+        [place, along.times(speed), acceleration]
+    }
+}
+
+/// An agent in motion.
+#[derive(Clone, Debug)]
+pub struct Mover {
+    id: u64,
+    radius: f64,
+    /// Each from its time on \[s\]; the first one from the beginning of time.
+    legs: Vec<(f64, Leg)>,
+    speed: f64,
+    /// When it is there at all \[s\].
+    time: [f64; 2],
+    /// From setting off to arrival \[s\].
+    moves: [f64; 2],
+}
+
+/// The phase as a motion along the path: time, length, speed and acceleration at its slow end.
+fn slow_end(phase: &Phase, start: Twofold) -> [Ball<Twofold>; 4] {
+    let number = Ball::<Twofold>::from;
+    let slow = usize::from(phase.speed[1] < phase.speed[0]);
+    let sign = if slow == 0 { 1.0 } else { -1.0 };
+    let duration = number(phase.time[1]) - number(phase.time[0]);
+    let way = number(phase.length[1]) - number(phase.length[0]);
+    let speed = number(phase.speed[slow]);
+    // way = speed · duration + acceleration · duration² / 2
+    let gain = if duration.is_positive().is_certain() {
+        (way - speed * duration) * number(2.0) / (duration * duration)
+    } else {
+        number(0.0)
+    };
+    let time = Ball { mid: start, err: 0.0 } + number(phase.time[slow]);
+    [time, number(phase.length[slow]), speed, gain * number(sign)]
+}
+
+impl Mover {
+    /// An agent that is there for so long \[s\].
+    ///
+    /// # Errors
+    /// What is wrong with its path, or that it has no motion.
+    pub fn new(agent: &Agent, time: [f64; 2]) -> Result<Self, String> {
+        let stretches = stretches(&agent.path)?;
+        let travel = agent.travel.as_ref().ok_or("no motion")?;
+        let start = Twofold::from(travel.start);
+        let numbers =
+            travel.phases.iter().flat_map(|phase| phase.time.into_iter().chain(phase.length).chain(phase.speed));
+        if !numbers.chain([travel.start, agent.radius]).all(|number| number.abs() < 1e15) {
+            return Err("a number of the motion is out of range".into());
+        }
+        let mut legs: Vec<(f64, Leg)> = Vec::new();
+        let stands = |stretch: &Stretch, at: Twofold| {
+            let zero = Ball::from(0.0);
+            let course = Course {
+                carrier: stretch.placed.exact,
+                time: zero,
+                length: exact(at),
+                speed: zero,
+                acceleration: zero,
+            };
+            Leg { exact: course, near: Course::of(&course), speed: 0.0, curvature: 0.0, off: 0.0 }
+        };
+        let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return Err("no segments".into()) };
+        legs.push((f64::NEG_INFINITY, stands(first, Twofold::ZERO)));
+        let (mut arrival, mut reached) = (travel.start, [0.0, 0.0]);
+        for phase in &travel.phases {
+            let [time, length] = [phase.time, phase.length];
+            if time[0] != reached[0] || length[0] != reached[1] || time[1] < time[0] || length[1] < length[0] {
+                return Err("a phase does not begin where the one before ends".into());
+            }
+            if phase.speed.iter().any(|&speed| speed < 0.0) {
+                return Err("a speed below 0".into());
+            }
+            reached = [time[1], length[1]];
+            let ends = time.map(|time| (start + Twofold::from(time)).to_f64());
+            if time[0] < time[1] {
+                add_legs(&mut legs, &stretches, phase, start, ends);
+            }
+            arrival = ends[1];
+        }
+        let end = last.before + last.placed.length;
+        let gap = (end - Twofold::from(reached[1])).abs().to_f64();
+        legs.push((arrival, stands(last, last.placed.length)));
+        // A length beyond the end of the path is none: the agent is at its end.
+        legs.iter_mut().for_each(|(_, leg)| leg.off += gap);
+        let speed = legs.iter().map(|(_, leg)| leg.speed).fold(0.0, f64::max);
+        Ok(Self { id: agent.id, radius: agent.radius, legs, speed, time, moves: [travel.start, arrival] })
+    }
+
+    fn leg(&self, time: f64) -> usize {
+        self.legs.partition_point(|(from, _)| *from <= time).saturating_sub(1)
+    }
+}
+
+fn exact(value: Twofold) -> Ball<Twofold> {
+    Ball { mid: value, err: 0.0 }
+}
+
+/// The legs of a phase: one on each segment.
+fn add_legs(legs: &mut Vec<(f64, Leg)>, stretches: &[Stretch], phase: &Phase, start: Twofold, ends: [f64; 2]) {
+    let [time, length, speed, acceleration] = slow_end(phase, start);
+    let [lo, hi] = phase.length;
+    let at = |t: f64| {
+        let since = Ball::from(t) - time;
+        length + (speed + (acceleration * since).half()) * since
+    };
+    // The speed at the other end follows from the rest; it may differ from the one told by rounding.
+    let told = phase.time.map(|t| exact(start) + Ball::from(t));
+    let [a, b, c, d] = [told[0], told[1], Ball::from(ends[0]), Ball::from(ends[1])]
+        .map(|t: Ball<Twofold>| (speed + acceleration * (t - time)).abs());
+    let top = a.max(b).max(c.max(d));
+    let top = (top.to_f64() + top.err) * (1.0 + f64::EPSILON);
+    let mut from = ends[0];
+    for (place, stretch) in stretches.iter().enumerate() {
+        let (before, after) = (stretch.before, stretch.before + stretch.placed.length);
+        let last = place + 1 == stretches.len();
+        if (after <= Twofold::from(lo) && !last) || (before >= Twofold::from(hi) && place > 0 && from >= ends[1]) {
+            continue;
+        }
+        // When it leaves the segment, about: where the length passes its end.
+        let to = if last || after >= Twofold::from(hi) { ends[1] } else { crossing(&at, after, [from, ends[1]]) };
+        let beyond = |past: Ball<Twofold>| (past.to_f64() + past.err).max(0.0);
+        let over = beyond(exact(before) - at(from)).max(beyond(at(to) - exact(after)));
+        let early = beyond(Ball::from(phase.time[0]) + exact(start) - Ball::from(from));
+        let late = beyond(Ball::from(to) - exact(start) - Ball::from(phase.time[1]));
+        let course =
+            Course { carrier: stretch.placed.exact, time, length: length - exact(before), speed, acceleration };
+        let curvature = match course.carrier {
+            Carrier::Line { .. } => 0.0,
+            Carrier::Circle { radius, .. } => (1.0 / radius.to_f64()) * (1.0 + f64::EPSILON),
+        };
+        let off = 2.0 * over + 2.0 * top * (early.max(late));
+        legs.push((from, Leg { exact: course, near: Course::of(&course), speed: top, curvature, off }));
+        from = to;
+        if from >= ends[1] {
+            break;
+        }
+    }
+}
+
+/// A time at which a length that does not decrease passes a value, about.
+fn crossing(at: &impl Fn(f64) -> Ball<Twofold>, value: Twofold, [mut lo, mut hi]: [f64; 2]) -> f64 {
+    for _ in 0..64 {
+        let middle = 0.5 * (lo + hi);
+        if middle <= lo || middle >= hi {
+            break;
+        }
+        if at(middle).mid < value { lo = middle } else { hi = middle }
+    }
+    hi
+}
+
+/// Two discs in contact, or so near that rounding does not tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meeting {
+    /// Numbers of the agents.
+    pub agents: [u64; 2],
+    /// When \[s\].
+    pub time: f64,
+    /// Distance of the centres less the radii \[m\].
+    pub clearance: f64,
+}
+
+/// What has come of a check of motions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Meetings {
+    /// Contacts, one of each pair of discs.
+    pub contacts: Vec<Meeting>,
+    /// Where it is not decided.
+    pub undecided: Vec<Meeting>,
+    /// Intervals that were looked at.
+    pub steps: usize,
+    /// Pairs of discs.
+    pub pairs: usize,
+}
+
+/// Intervals of one pair at most.
+const MOST: usize = 2_000_000;
+
+/// All pairs of agents with different numbers, at all times.
+pub fn meetings(movers: &[Mover]) -> Meetings {
+    let mut found = Meetings::default();
+    for (place, own) in movers.iter().enumerate() {
+        for other in movers.get(place + 1..).unwrap_or_default().iter().filter(|other| other.id != own.id) {
+            found.pairs += 1;
+            pair(own, other, &mut found);
+        }
+    }
+    found
+}
+
+fn pair(own: &Mover, other: &Mover, found: &mut Meetings) {
+    let (from, to) = (own.time[0].max(other.time[0]), own.time[1].min(other.time[1]));
+    // Before both set off, and after both have arrived, nothing changes.
+    let (first, last) = (own.moves[0].min(other.moves[0]), own.moves[1].max(other.moves[1]));
+    let (from, to) = (from.max(first.min(to)), to.min(last.max(from)));
+    if from > to {
+        return;
+    }
+    let agents = [own.id, other.id];
+    let mut rest = vec![[from, to]];
+    let mut taken = 0;
+    while let Some([lo, hi]) = rest.pop() {
+        (taken, found.steps) = (taken + 1, found.steps + 1);
+        let both = Both { own, other, lo, hi };
+        let near = both.look::<f64>(|leg| &leg.near);
+        let seen = match near.clear {
+            Tri::Doubt => both.look::<Twofold>(|leg| &leg.exact),
+            Tri::No if near.meets == Tri::Doubt => both.look::<Twofold>(|leg| &leg.exact),
+            _ => near,
+        };
+        if seen.clear.is_certain() {
+            continue;
+        }
+        let meeting = Meeting { agents, time: both.middle(), clearance: seen.clearance };
+        if seen.meets.is_certain() {
+            found.contacts.push(meeting);
+            return;
+        }
+        match both.cut() {
+            Some(cut) if taken < MOST && seen.meets == Tri::No => rest.extend([[cut, hi], [lo, cut]]),
+            _ => {
+                found.undecided.push(meeting);
+                return;
+            }
+        }
+    }
+}
+
+/// Two agents in an interval of time.
+struct Both<'a> {
+    own: &'a Mover,
+    other: &'a Mover,
+    lo: f64,
+    hi: f64,
+}
+
+/// What one look shows.
+struct Seen {
+    clear: Tri,
+    meets: Tri,
+    clearance: f64,
+}
+
+impl Both<'_> {
+    fn middle(&self) -> f64 {
+        self.lo + 0.5 * (self.hi - self.lo)
+    }
+
+    /// Where a leg ends, nearest to the middle, or the middle; nowhere, if there is no number in between.
+    fn cut(&self) -> Option<f64> {
+        let inside = |cut: &f64| self.lo < *cut && *cut < self.hi;
+        let ends = [self.own, self.other].into_iter().flat_map(|mover| mover.legs.iter().map(|(from, _)| *from));
+        let middle = self.middle();
+        let far = |end: f64| (end - middle).abs();
+        let nearest = ends.filter(inside).min_by(|a, b| far(*a).total_cmp(&far(*b)));
+        nearest.or(Some(middle).filter(inside))
+    }
+
+    fn look<R: Real>(&self, course: impl Fn(&Leg) -> &Course<R>) -> Seen {
+        let middle = self.middle();
+        // No less than the way to either end, whatever was rounded.
+        let half = 0.5 * (self.hi - self.lo) * (1.0 + 4.0 * f64::EPSILON) + f64::EPSILON * middle.abs();
+        let places = [self.own.leg(middle), self.other.leg(middle)];
+        let legs = [&self.own.legs[places[0]].1, &self.other.legs[places[1]].1];
+        let [a, b] = legs.map(|leg| course(leg).at(Ball::from(middle)));
+        let [r, w, q] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let number = Ball::<R>::from;
+        let off = number(legs[0].off) + number(legs[1].off);
+        let (radius, k) = (number(self.own.radius) + number(self.other.radius), number(half));
+        let distance = r.norm();
+        let meets = radius.above(distance + off);
+        let clearance = (distance - radius).to_f64();
+        let ways = k * (number(self.own.speed) + number(self.other.speed));
+        let all = number(self.own.legs.iter().chain(&self.other.legs).map(|(_, leg)| leg.off).fold(0.0, f64::max));
+        let mut clear = distance.above(radius + ways + all + all);
+        // The leg that begins with the end of the interval counts from there on.
+        let until = |mover: &Mover, place: usize| {
+            mover.legs.get(place + 1).is_none_or(|(next, _)| self.hi <= *next) && mover.legs[place].0 <= self.lo
+        };
+        let one_leg = until(self.own, places[0]) && until(self.other, places[1]);
+        if one_leg && !clear.is_certain() {
+            let third = legs.iter().fold(number(0.0), |sum, leg| {
+                let (bend, speed) = (number(leg.curvature), number(leg.speed));
+                let gain = number({
+                    let acceleration = leg.exact.acceleration.abs();
+                    (acceleration.to_f64() + acceleration.err) * (1.0 + f64::EPSILON)
+                });
+                sum + bend * bend * speed * speed * speed + number(3.0) * bend * speed * gain
+            });
+            let cube = k * k * k;
+            let least = least(r.dot(r), number(2.0) * r.dot(w), w.dot(w) + r.dot(q), k) - w.dot(q).abs() * cube;
+            let bound = least.max(number(0.0)).sqrt() - third * cube / number(6.0) - off;
+            clear = clear.or(bound.above(radius));
+        }
+        Seen { clear, meets, clearance }
+    }
+}
+
+/// A lower bound on `a + b τ + c τ²` for `|τ| <= k`, the least value unless that is in doubt.
+fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
+    let ends = a - b.abs() * k + c * k * k;
+    let bends = c.is_positive();
+    if bends == Tri::No {
+        return ends;
+    }
+    // The vertex is at -b / 2c.
+    let outside = b.abs().above(Ball::from(2.0) * c * k);
+    if outside.is_certain() {
+        ends
+    } else if bends.is_certain() {
+        a - b * b / (Ball::from(4.0) * c)
+    } else {
+        a - b.abs() * k - c.abs() * k * k
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Angle, Path, Segment, Travel};
+
+    /// An agent that goes from rest to rest in two ramps.
+    fn agent(id: u64, start: [f64; 2], heading: f64, parts: &[(f64, Option<f64>)], at: f64, top: f64) -> Agent {
+        let mut from = 0.0;
+        let segments: Vec<Segment> = parts
+            .iter()
+            .map(|&(length, radius)| {
+                let before = from;
+                from += length;
+                Segment { length, radius, turns: Vec::new(), from: before, to: from }
+            })
+            .collect();
+        let half = from / top;
+        let phases = vec![
+            Phase { time: [0.0, half], length: [0.0, 0.5 * from], speed: [0.0, top] },
+            Phase { time: [half, 2.0 * half], length: [0.5 * from, from], speed: [top, 0.0] },
+        ];
+        let path = Path { start, heading: Angle::Radians(heading), segments, rounding: 1e-14 };
+        Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0 }) }
+    }
+
+    fn movers(agents: &[Agent]) -> Vec<Mover> {
+        agents.iter().map(|agent| Mover::new(agent, [-1e9, 1e9]).unwrap()).collect()
+    }
+
+    /// The least distance of the centres at so many times.
+    fn sampled(movers: &[Mover], from: f64, to: f64) -> f64 {
+        let at = |mover: &Mover, t: f64| {
+            let [place, ..] = mover.legs[mover.leg(t)].1.near.at(Ball::from(t));
+            [place.x.to_f64(), place.y.to_f64()]
+        };
+        let distance = |t: f64| {
+            let [[a, b], [c, d]] = [at(&movers[0], t), at(&movers[1], t)];
+            (a - c).hypot(b - d)
+        };
+        (0..=20_000).map(|k| distance(from + (to - from) * f64::from(k) / 20_000.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn crossing_pair(later: f64) -> [Agent; 2] {
+        let arc = std::f64::consts::FRAC_PI_2 * 2.0;
+        [
+            agent(1, [0.0, 0.0], 0.0, &[(3.0, None), (arc, Some(2.0)), (2.0, None)], 0.0, 1.25),
+            agent(2, [5.0, -3.0], 1.5, &[(2.0, None), (4.0, Some(3.0)), (1.0, None)], later, 0.9),
+        ]
+    }
+
+    #[test]
+    fn contacts_are_shown_and_the_clear_proved() {
+        let (mut met, mut passed) = (0, 0);
+        for k in 0..60 {
+            let agents = crossing_pair(0.5 * f64::from(k) - 10.0);
+            let movers = movers(&agents);
+            let (found, nearest) = (meetings(&movers), sampled(&movers, -12.0, 60.0));
+            assert!(found.undecided.is_empty(), "{k}: {found:?}");
+            assert_eq!(found.contacts.is_empty(), nearest > 1.0, "{k}: {found:?}, sampled {nearest}");
+            assert!(found.steps < 500, "{found:?}");
+            (met, passed) = (met + found.contacts.len(), passed + usize::from(found.contacts.is_empty()));
+            // With the radii at what samples find, less or more than their error: nothing below is a contact.
+            for (by, clear) in [(-1e-4, true), (1e-4, false)] {
+                let mut close = agents.clone();
+                close[0].radius = 0.5 * (nearest + by);
+                close[1].radius = 0.5 * (nearest + by);
+                let found = meetings(&self::movers(&close));
+                assert_eq!((found.contacts.is_empty(), found.undecided.len()), (clear, 0), "{k} {by}: {found:?}");
+                assert!(found.steps < 20_000, "{found:?}");
+            }
+        }
+        assert!(met > 5 && passed > 5, "{met} {passed}");
+    }
+
+    #[test]
+    fn agents_that_stand_touch_or_do_not() {
+        let stands = |id, x| Agent {
+            travel: Some(Travel { start: 3.0, phases: Vec::new(), lag: 0.0 }),
+            ..agent(id, [x, 0.0], 0.3, &[(0.0, None)], 0.0, 1.0)
+        };
+        let found = |x| meetings(&movers(&[stands(1, 0.0), stands(2, x)]));
+        assert_eq!(found(0.999_999).contacts.len(), 1);
+        assert!(found(1.000_001).contacts.is_empty() && found(1.000_001).undecided.is_empty());
+        // Just at contact: neither.
+        assert_eq!(found(1.0).undecided.len(), 1);
+    }
+
+    #[test]
+    fn discs_of_one_body_do_not_collide() {
+        let one = agent(1, [0.0, 0.0], 0.0, &[(3.0, None)], 0.0, 1.0);
+        let found = meetings(&movers(&[one.clone(), one.clone(), Agent { id: 2, ..one }]));
+        assert_eq!((found.pairs, found.contacts.len()), (2, 2));
+    }
+}

@@ -1,0 +1,232 @@
+//! Two agents: whether the pieces of their regions hold all contacts, and nothing else.
+
+use crate::ball::Ball;
+use crate::cell::{Both, Claim, Outcome};
+use crate::data::{Pair, Piece, Share};
+use crate::path::Stretch;
+use crate::shares;
+use crate::twofold::Twofold;
+
+/// What a table promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Promise {
+    /// Every contact lies in the rectangle of a piece (C-rect).
+    Covered,
+    /// The piece that holds it stands for the interval that holds it (C-share).
+    Shared,
+    /// No length is told that is farther than R + ε from all lengths of the other path told with it (C4).
+    Near,
+}
+
+/// Where a promise is broken, or may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Witness {
+    /// The promise.
+    pub promise: Promise,
+    /// Places of the agents.
+    pub agents: [usize; 2],
+    /// Lengths along their paths \[m\].
+    pub lengths: [f64; 2],
+    /// Distance of the discs' centres there less R \[m\].
+    pub clearance: f64,
+    /// ε \[m\].
+    pub excess: f64,
+}
+
+/// What has come of a check.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// What is wrong, the first one of each pair of segments.
+    pub refuted: Vec<Witness>,
+    /// Where rounding does not tell.
+    pub undecided: Vec<Witness>,
+    /// Cells that were looked at.
+    pub steps: usize,
+    /// Pairs of segments.
+    pub segments: usize,
+    /// Pieces.
+    pub pieces: usize,
+}
+
+impl Findings {
+    /// Both together.
+    pub fn add(&mut self, other: Self) {
+        self.refuted.extend(other.refuted);
+        self.undecided.extend(other.undecided);
+        self.steps += other.steps;
+        self.segments += other.segments;
+        self.pieces += other.pieces;
+    }
+}
+
+/// What is asked of a pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Radii {
+    /// The combined radius R \[m\].
+    pub radius: Ball<Twofold>,
+    /// What all contacts are within: R + δ \[m\].
+    pub covered: Ball<Twofold>,
+    /// What everything told is within: R + ε \[m\].
+    pub told: Ball<Twofold>,
+}
+
+/// Two segments and the pieces about them.
+pub struct Segments<'a> {
+    /// Those of the first and of the second agent.
+    pub stretches: [&'a Stretch; 2],
+    /// All of them.
+    pub whole: [Both<'a>; 2],
+    /// Lengths along the segments, and the share.
+    pub pieces: Vec<([[Twofold; 2]; 2], Share)>,
+}
+
+/// Lengths of the first segment in `within` that are in none of the ranges, closed.
+pub fn gaps(mut ranges: Vec<[Twofold; 2]>, within: [Twofold; 2]) -> Vec<[Twofold; 2]> {
+    ranges.sort_by(|a, b| a[0].partial_cmp(&b[0]).unwrap_or(std::cmp::Ordering::Equal));
+    let ([mut from, end], mut gaps) = (within, Vec::new());
+    let mut begun = false;
+    for [lo, hi] in ranges {
+        if lo > end {
+            break;
+        }
+        if lo > from {
+            gaps.push([from, lo]);
+        }
+        // A range that ends before does not hold the first length.
+        if hi >= from {
+            (from, begun) = (hi, true);
+        }
+    }
+    if from < end || (!begun && from <= end) {
+        gaps.push([from, end]);
+    }
+    gaps
+}
+
+impl Segments<'_> {
+    /// The parts of the second segment between ends of pieces.
+    pub fn cells(&self) -> Vec<[Twofold; 2]> {
+        let end = self.stretches[1].placed.length;
+        let mut cuts: Vec<Twofold> = self.pieces.iter().flat_map(|(lengths, _)| lengths[1]).collect();
+        cuts.extend([Twofold::ZERO, end]);
+        cuts.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        cuts.dedup();
+        if cuts.len() == 1 {
+            return vec![[Twofold::ZERO, end]];
+        }
+        cuts.windows(2).map(|cut| [cut[0], cut[1]]).collect()
+    }
+
+    /// The lengths of the first segment that pieces with one of these shares hold all along a cell of the second one.
+    pub fn held(&self, cell: [Twofold; 2], shares: &[Share]) -> Vec<[Twofold; 2]> {
+        let holds = |range: [Twofold; 2]| range[0] <= cell[0] && cell[1] <= range[1];
+        let those = self.pieces.iter().filter(|(lengths, share)| shares.contains(share) && holds(lengths[1]));
+        those.map(|(lengths, _)| lengths[0]).collect()
+    }
+
+    /// The point of the cell's middle and the point of a part of the first segment nearest to it, or the other way round.
+    pub fn witness(
+        &self,
+        promise: Promise,
+        pair: &Pair,
+        radii: &Radii,
+        at: Twofold,
+        of: usize,
+        near: &mut Both<'_>,
+    ) -> Witness {
+        let other = 1 - of;
+        let mut here = self.stretches[of].placed.part([at, at]);
+        let distance = near.exact().nearest(here.exact().middle);
+        let foot = near.foot(here.exact().middle);
+        let mut lengths = [0.0; 2];
+        lengths[of] = self.stretches[of].on_path(at);
+        lengths[other] = self.stretches[other].on_path(foot);
+        let clearance = (distance - radii.radius).to_f64();
+        Witness { promise, agents: pair.agents, lengths, clearance, excess: pair.excess }
+    }
+
+    /// C-rect and C4, and C-share where a piece stands for one interval of two.
+    pub fn check(&mut self, pair: &Pair, radii: &Radii, tells: bool, findings: &mut Findings) {
+        findings.segments += 1;
+        findings.pieces += self.pieces.len();
+        let covered = Claim::Above(radii.covered);
+        if self.pieces.is_empty() {
+            let [first, second] = &mut self.whole;
+            let outcome = covered.decide(second, first, &mut findings.steps);
+            if !matches!(outcome, Outcome::Proved) {
+                let mut near = first.clone();
+                self.note(outcome, Promise::Covered, pair, radii, 1, &mut near, findings);
+            }
+            return;
+        }
+        let [first, second] = self.stretches;
+        for cell in self.cells() {
+            let part = second.placed.part(cell);
+            for gap in
+                gaps(self.held(cell, &[Share::Only, Share::Start, Share::End]), [Twofold::ZERO, first.placed.length])
+            {
+                let mut near = first.placed.part(gap);
+                let outcome = covered.decide(&part, &mut near, &mut findings.steps);
+                self.note(outcome, Promise::Covered, pair, radii, 1, &mut near, findings);
+            }
+        }
+        if self.pieces.iter().any(|(_, share)| *share != Share::Only) {
+            shares::check(self, pair, radii, findings);
+        }
+        for (lengths, _) in self.pieces.clone().into_iter().filter(|_| tells) {
+            let mut parts = [0, 1].map(|k| self.stretches[k].placed.part(lengths[k]));
+            for of in [0, 1] {
+                let cell = parts[of].clone();
+                let outcome = Claim::Within(radii.told).decide(&cell, &mut parts[1 - of], &mut findings.steps);
+                self.note(outcome, Promise::Near, pair, radii, of, &mut parts[1 - of], findings);
+            }
+        }
+    }
+
+    /// Keeps what is not proved.
+    #[expect(clippy::too_many_arguments, reason = "what a witness is made of")]
+    fn note(
+        &self,
+        outcome: Outcome,
+        promise: Promise,
+        pair: &Pair,
+        radii: &Radii,
+        of: usize,
+        near: &mut Both<'_>,
+        findings: &mut Findings,
+    ) {
+        match outcome {
+            Outcome::Proved => {}
+            Outcome::Refuted(at) => findings.refuted.push(self.witness(promise, pair, radii, at, of, near)),
+            Outcome::Undecided(at) => findings.undecided.push(self.witness(promise, pair, radii, at, of, near)),
+        }
+    }
+}
+
+/// The pieces of a pair by their segments, as lengths along these.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn pieces_of(
+    pieces: &[Piece],
+    stretches: [&[Stretch]; 2],
+) -> Result<Vec<([usize; 2], [[Twofold; 2]; 2], Share)>, String> {
+    let mut placed = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let mut lengths = [[Twofold::ZERO; 2]; 2];
+        for k in [0, 1] {
+            let stretch = stretches[k].get(piece.segments[k]).ok_or("a piece of a segment that is not there")?;
+            let [lo, hi] = piece.lengths[k];
+            if !(stretch.holds(lo) && stretch.holds(hi) && lo <= hi) {
+                return Err(format!("a piece from {lo} to {hi} m is not on its segment"));
+            }
+            lengths[k] = stretch.range([lo, hi]);
+        }
+        if piece.share != Share::Only && stretches[0][piece.segments[0]].turns_left().is_none() {
+            return Err("a piece that stands for one of two intervals of a line".into());
+        }
+        placed.push((piece.segments, lengths, piece.share));
+    }
+    placed.sort_by_key(|(segments, ..)| *segments);
+    Ok(placed)
+}

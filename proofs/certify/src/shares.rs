@@ -1,0 +1,101 @@
+//! C-share: where two intervals of an arc may be covered at once, the piece that holds a contact selects the one with it.
+//!
+//! Let α be the length of the arc opposite to the foot, on the lap nearest to the middle of the arc. A piece that stands for
+//! the interval at the start selects it wherever l <= α, one for that at the end wherever l >= α (docs/certificates.md, lemma 4).
+//! So for every cell the contacts with l <= α must lie in rectangles of pieces `Only` or `Start`, those with l >= α in such of `Only` or
+//! `End`. On a cell α has a range; where that is too wide the cell is cut in half.
+
+use crate::ball::{Ball, Tri};
+use crate::cell::{Both, Claim};
+use crate::data::{Pair, Share};
+use crate::pair::{Findings, Promise, Radii, Segments, gaps};
+use crate::plane::Part;
+use crate::twofold::Twofold;
+
+/// Cells of one pair of segments at most.
+const MOST: usize = 20_000;
+
+type Number = Ball<Twofold>;
+
+/// The lengths, at most two ranges of them, that lie opposite to the feet of a cell \[m\].
+fn opposite(cell: &Part<Twofold>, arc: &Part<Twofold>) -> Vec<[Number; 2]> {
+    let Some(circle) = &arc.circle else { return Vec::new() };
+    let at = cell.middle - circle.centre;
+    let cross = arc.axis.cross(at);
+    let foot = Ball::angle(arc.axis.dot(at), cross);
+    let half_turn = Ball { mid: Twofold::TURN.half(), err: 1e-30 };
+    let back = half_turn - foot;
+    let spread = cell.spread(at);
+    let (least, most) = (back - spread, back + spread);
+    // Angles from the middle of the arc, in the direction of travel.
+    let ranges = if !(foot - spread).is_positive().is_certain() {
+        // The foot is about the middle, the point opposite about the seam of the laps.
+        vec![[least, half_turn], [-half_turn, -least]]
+    } else {
+        let side = if circle.left { cross } else { -cross };
+        match (least.is_positive(), side.is_positive()) {
+            (Tri::Yes, Tri::Yes) => vec![[-most, -least]],
+            (Tri::Yes, Tri::No) => vec![[least, most]],
+            _ => vec![[-most, most]],
+        }
+    };
+    ranges.into_iter().map(|range| range.map(|angle| arc.half + circle.radius * angle)).collect()
+}
+
+/// Checks two segments.
+pub fn check(segments: &Segments<'_>, pair: &Pair, radii: &Radii, findings: &mut Findings) {
+    let [first, second] = segments.stretches;
+    let mut arc = first.placed.whole();
+    let claim = Claim::Above(radii.covered);
+    let mut rest: Vec<_> = segments.cells().into_iter().map(|range| (range, second.placed.part(range))).collect();
+    let mut taken = 0;
+    while let Some((range, mut cell)) = rest.pop() {
+        (taken, findings.steps) = (taken + 1, findings.steps + 1);
+        let sides = |cell: &mut Both<'_>, arc: &mut Both<'_>, certain: bool| {
+            let ranges = opposite(cell.exact(), arc.exact());
+            let mut sides = Vec::new();
+            for [lo, hi] in &ranges {
+                let (to, from) = if certain { (below(*lo), above(*hi)) } else { (above(*hi), below(*lo)) };
+                let length = first.placed.length;
+                let ends =
+                    [[Twofold::ZERO, to.clamp(Twofold::ZERO, length)], [from.clamp(Twofold::ZERO, length), length]];
+                let there = [to >= Twofold::ZERO, from <= length];
+                for (k, shares) in [[Share::Only, Share::Start], [Share::Only, Share::End]].iter().enumerate() {
+                    if there[k] {
+                        sides.extend(gaps(segments.held(range, shares), ends[k]));
+                    }
+                }
+            }
+            // On two laps at once nothing is certain.
+            if certain && ranges.len() > 1 { Vec::new() } else { sides }
+        };
+        let open = sides(&mut cell, &mut arc, false);
+        let proved = open.into_iter().all(|gap| claim.holds_at_once(&mut cell, &mut first.placed.part(gap)));
+        if proved {
+            continue;
+        }
+        let middle = cell.middle();
+        let mut point = second.placed.part([middle, middle]);
+        for gap in sides(&mut point, &mut arc, true) {
+            let mut near = first.placed.part(gap);
+            if claim.fails(&mut point, &mut near).is_certain() {
+                findings.refuted.push(segments.witness(Promise::Shared, pair, radii, middle, 1, &mut near));
+                return;
+            }
+        }
+        let half = (cell.range[1] - cell.range[0]).half().to_f64();
+        if taken >= MOST || half <= 1e-26 * (1.0 + middle.to_f64()) {
+            findings.undecided.push(segments.witness(Promise::Shared, pair, radii, middle, 1, &mut arc));
+            return;
+        }
+        rest.extend(cell.halves().map(|half| (range, half)));
+    }
+}
+
+fn below(ball: Number) -> Twofold {
+    ball.mid - Twofold::from(2.0 * ball.err)
+}
+
+fn above(ball: Number) -> Twofold {
+    ball.mid + Twofold::from(2.0 * ball.err)
+}

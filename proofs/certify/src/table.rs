@@ -1,0 +1,159 @@
+//! A whole table: every pair of agents, every pair of their segments.
+
+use crate::ball::Ball;
+use crate::cell::Both;
+use crate::data::{Agent, Pair, Table};
+use crate::pair::{Findings, Radii, Segments, pieces_of};
+use crate::path::{Stretch, stretches};
+use crate::twofold::Twofold;
+
+/// How much farther than R contacts have to be covered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Margin {
+    /// As far as all queries of the library need it: it looks up lengths that are off by the lag of the motion and by the rounding
+    /// of the path's, and an interval of the second path by its middle, which takes ε/4.
+    Needed,
+    /// So many ε, whatever the queries need.
+    Epsilons(f64),
+}
+
+/// A disc with its path in the plane.
+#[derive(Clone, Debug)]
+pub struct Placed<'a> {
+    agent: &'a Agent,
+    stretches: Vec<Stretch>,
+}
+
+/// A table whose numbers have been looked through.
+#[derive(Clone, Debug)]
+pub struct Checker<'a> {
+    agents: Vec<Placed<'a>>,
+    pairs: &'a [Pair],
+}
+
+impl<'a> Checker<'a> {
+    /// Puts the paths into the plane.
+    ///
+    /// # Errors
+    /// What is wrong with the table: numbers out of range, a path that is none, a pair that is missing or there twice.
+    pub fn new(table: &'a Table) -> Result<Self, String> {
+        let agents = table.agents.iter().enumerate().map(|(place, agent)| {
+            let wrong = |problem: String| format!("agent {} (place {place}): {problem}", agent.id);
+            let numbers = [agent.radius, agent.path.rounding, agent.travel.as_ref().map_or(0.0, |travel| travel.lag)];
+            if !numbers.iter().all(|&number| (0.0..1e15).contains(&number)) {
+                return Err(wrong("a radius, rounding or lag is out of range".into()));
+            }
+            Ok(Placed { agent, stretches: stretches(&agent.path).map_err(wrong)? })
+        });
+        let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs };
+        checker.all_pairs_are_there()?;
+        Ok(checker)
+    }
+
+    fn all_pairs_are_there(&self) -> Result<(), String> {
+        let count = self.agents.len();
+        let mut there = vec![false; count * count];
+        for pair in self.pairs {
+            let [a, b] = pair.agents;
+            if a == b || a >= count || b >= count || std::mem::replace(&mut there[a.min(b) * count + a.max(b)], true) {
+                return Err(format!("the pair of places {a} and {b} is none, or there twice"));
+            }
+            if !(pair.excess > 0.0 && pair.excess < 1e15) {
+                return Err(format!("the excess of places {a} and {b} is out of range"));
+            }
+        }
+        for a in 0..count {
+            for b in a + 1..count {
+                if !there[a * count + b] && self.agents[a].agent.id != self.agents[b].agent.id {
+                    return Err(format!("the pair of places {a} and {b} is missing"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks every pair.
+    ///
+    /// # Errors
+    /// A piece that is none.
+    pub fn check(&self, margin: Margin) -> Result<Findings, String> {
+        let wholes = self.wholes();
+        let mut findings = Findings::default();
+        for pair in self.pairs {
+            findings.add(self.pair(pair, &wholes, self.radii(pair, margin), true)?);
+        }
+        Ok(findings)
+    }
+
+    fn wholes(&self) -> Vec<Vec<Both<'_>>> {
+        self.agents.iter().map(|agent| agent.stretches.iter().map(|stretch| stretch.placed.whole()).collect()).collect()
+    }
+
+    fn radii(&self, pair: &Pair, margin: Margin) -> Radii {
+        let [first, second] = pair.agents.map(|place| self.agents[place].agent);
+        let rounding =
+            [first, second].map(|agent| agent.path.rounding + agent.travel.as_ref().map_or(0.0, |travel| travel.lag));
+        let more = match margin {
+            Margin::Needed => rounding[0].max(rounding[1]).max(0.25 * pair.excess),
+            Margin::Epsilons(part) => part * pair.excess,
+        };
+        let number = Ball::<Twofold>::from;
+        let radius = number(first.radius) + number(second.radius);
+        Radii { radius, covered: radius + number(more), told: radius + number(pair.excess) }
+    }
+
+    fn pair(&self, pair: &Pair, wholes: &[Vec<Both<'a>>], radii: Radii, tells: bool) -> Result<Findings, String>
+    where
+        Self: 'a,
+    {
+        let [a, b] = pair.agents;
+        let (first, second) = (&self.agents[a].stretches, &self.agents[b].stretches);
+        let named = |problem: String| format!("the pair of places {a} and {b}: {problem}");
+        let pieces = pieces_of(&pair.pieces, [first, second]).map_err(named)?;
+        let mut findings = Findings::default();
+        for (i, own) in first.iter().enumerate() {
+            for (j, other) in second.iter().enumerate() {
+                let begin = pieces.partition_point(|(segments, ..)| *segments < [i, j]);
+                let those = pieces[begin..].iter().take_while(|(segments, ..)| *segments == [i, j]);
+                let mut segments = Segments {
+                    stretches: [own, other],
+                    whole: [wholes[a][i].clone(), wholes[b][j].clone()],
+                    pieces: those.map(|(_, lengths, share)| (*lengths, *share)).collect(),
+                };
+                segments.check(pair, &radii, tells, &mut findings);
+            }
+        }
+        Ok(findings)
+    }
+
+    /// The largest margin, in ε of its pair, at which contacts are covered in all pairs with regions, and the place of the pair that
+    /// limits it: what a search for a wrong table makes as small as it can. A table that keeps its promise has 0 or more, an exact one
+    /// with a slack of ε/2 would have 1/2. Found to 2^-12, up to 1; costs a dozen checks.
+    ///
+    /// # Errors
+    /// As [`Checker::check`].
+    pub fn margin(&self) -> Result<Option<(f64, usize)>, String> {
+        const STEPS: u32 = 12;
+        let wholes = self.wholes();
+        let holds = |pair: &Pair, part: f64| {
+            let found = self.pair(pair, &wholes, self.radii(pair, Margin::Epsilons(part)), false);
+            found.map(|found| found.refuted.is_empty() && found.undecided.is_empty())
+        };
+        let mut least: Option<(f64, usize)> = None;
+        for (place, pair) in self.pairs.iter().enumerate() {
+            if pair.pieces.is_empty() || least.map_or(Ok(false), |(least, _)| holds(pair, least))? {
+                continue;
+            }
+            let (mut lo, mut hi) = (-1.0, 1.0);
+            if !holds(pair, lo)? {
+                return Ok(Some((f64::NEG_INFINITY, place)));
+            }
+            for _ in 0..=STEPS {
+                let middle = 0.5 * (lo + hi);
+                if holds(pair, middle)? { lo = middle } else { hi = middle }
+            }
+            least = Some((lo, place));
+        }
+        Ok(least)
+    }
+}

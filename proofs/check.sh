@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Prints every claim of docs/errors*.md and docs/equations.md with how it is held, and fails if one is not.
+#   proofs/check.sh            all, 2 minutes
+#   proofs/check.sh --quick    without the runs over all inputs, whose claims then count as missed
+# Installs Gappa (Debian) and z3 (Debian's, or that of PyPI) where they are missing, and says so.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export RUSTUP_AUTO_INSTALL=0
+
+install() {
+  if [ "$(id -u)" != 0 ] || ! command -v apt-get >/dev/null; then return 1; fi
+  echo "installing $1"
+  { apt-get update && apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "$1"; } >/dev/null 2>&1
+}
+command -v python3 >/dev/null || install python3
+command -v gappa >/dev/null || install gappa || { echo "Gappa is missing: https://gappa.gitlabpages.inria.fr" >&2; exit 1; }
+if ! python3 -c 'import z3' 2>/dev/null; then
+  echo "installing z3-solver"
+  python3 -m pip install -q z3-solver 2>/dev/null || install python3-z3 || { echo "z3 for Python is missing" >&2; exit 1; }
+  python3 -c 'import z3'
+fi
+
+# The kernels are those that are proved things of: pcr-core/src/recorded.rs.
+cargo test -q --locked -p pcr-core --lib recorded::
+python3 proofs/check.py "$@"

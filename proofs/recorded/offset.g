@@ -1,0 +1,12 @@
+t10 rnd= radius - y; T10 = radius - y;
+t11 rnd= x * x; T11 = x * x;
+t12 rnd= t10 * t10; T12 = T10 * T10;
+t13 rnd= t11 + t12; T13 = T11 + T12;
+t14 rnd= sqrt(t13); T14 = sqrt(T13);
+t15 = 2 * radius; T15 = 2 * radius;
+t16 rnd= t15 - y; T16 = T15 - y;
+t17 rnd= y * t16; T17 = y * T16;
+t18 rnd= x * x; T18 = x * x;
+t19 rnd= t17 - t18; T19 = T17 - T18;
+t20 rnd= radius + t14; T20 = radius + T14;
+t21 rnd= t19 / t20; T21 = T19 / T20;

@@ -1,0 +1,118 @@
+//! Tables of random pairs, proved by `pcr_certify`.
+
+use crate::disc::{Course, Disc, Drive};
+use crate::generators::certifiable;
+use crate::outward::Total;
+use pcr_certify::data::Table;
+use pcr_certify::table::{Checker, Margin};
+use pcr_core::scalar::Micro;
+use pcr_fixed::{Q12, Q16, Q20};
+use pcr_host::certificate;
+use pcr_host::fleet::{Format, build_ecm};
+use std::fmt;
+
+/// What has come of many tables.
+#[derive(Clone, Debug, Default)]
+pub struct Proofs {
+    /// Tables that are proved.
+    pub proved: u64,
+    /// Pairs that the format or a table cannot hold.
+    pub refused: u64,
+    /// Tables with pieces that stand for one of two intervals.
+    pub shared: u64,
+    /// Pieces.
+    pub pieces: u64,
+    /// Cells that were looked at.
+    pub steps: u64,
+    /// Most of one table with one pair of segments.
+    pub most: u64,
+    /// What is refuted, with the seed.
+    pub refuted: Vec<String>,
+    /// What the checker's rounding does not tell, with the seed.
+    pub undecided: Vec<String>,
+}
+
+impl Total for Proofs {
+    fn add(&mut self, other: &Self) {
+        self.proved += other.proved;
+        self.refused += other.refused;
+        self.shared += other.shared;
+        self.pieces += other.pieces;
+        self.steps += other.steps;
+        self.most = self.most.max(other.most);
+        self.refuted.extend_from_slice(&other.refuted);
+        self.undecided.extend_from_slice(&other.undecided);
+    }
+}
+
+impl Proofs {
+    /// All of them.
+    pub fn cases(&self) -> u64 {
+        self.proved + self.refused + (self.refuted.len() + self.undecided.len()) as u64
+    }
+}
+
+impl fmt::Display for Proofs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { proved, refused, shared, pieces, steps, most, refuted, undecided } = self;
+        write!(f, "{proved} proved ({refused} refused by the format), {} refuted, ", refuted.len())?;
+        write!(f, "{} undecided; {pieces} pieces, in {shared} tables one of two intervals; ", undecided.len())?;
+        write!(f, "{steps} steps, {most} at most for one pair of segments")
+    }
+}
+
+/// The table of a pair in motion, as plain numbers; none where the format or a table cannot hold it.
+pub fn table<S: Format>(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Option<Table> {
+    let driven =
+        [(pair.0.clone(), drives[0].0.clone(), drives[0].1), (pair.1.clone(), drives[1].0.clone(), drives[1].1)];
+    let [first, second] = driven.each_ref().map(Course::<S>::rounded);
+    let courses = [first?, second?];
+    let motions = courses.each_ref().map(|(course, _)| course.motion());
+    let ecm = build_ecm(&motions).ok()?;
+    let agents = courses.iter().zip(&motions).enumerate().map(|(place, ((_, (disc, ..)), motion))| {
+        certificate::agent(place as u64, motion, S::angle(disc.start[2]), &[])
+    });
+    Some(certificate::table(agents.collect(), &motions, &ecm))
+}
+
+/// Certifies the tables of the cases `first`, `first + 1`, ... of [`certifiable`].
+pub fn run<S: Format>(first: u64, count: u64) -> Proofs {
+    let mut proofs = Proofs::default();
+    for seed in first..first + count {
+        let (pair, drives) = certifiable::<S>(seed);
+        let Some(table) = table::<S>(&pair, &drives) else {
+            proofs.refused += 1;
+            continue;
+        };
+        let found = Checker::new(&table).and_then(|checker| checker.check(Margin::Needed));
+        let found = found.unwrap_or_else(|wrong| panic!("{seed} in {}: {wrong}", S::NAME));
+        proofs.pieces += found.pieces as u64;
+        proofs.steps += found.steps as u64;
+        let one_of_two = |pair: &pcr_certify::data::Pair| {
+            pair.pieces.iter().any(|piece| piece.share != pcr_certify::data::Share::Only)
+        };
+        proofs.shared += u64::from(table.pairs.iter().any(one_of_two));
+        if found.segments == 1 {
+            proofs.most = proofs.most.max(found.steps as u64);
+        }
+        match (found.refuted.first(), found.undecided.first()) {
+            (Some(witness), _) => proofs.refuted.push(format!("{seed}: {witness:?}")),
+            (None, Some(witness)) => proofs.undecided.push(format!("{seed}: {witness:?}")),
+            (None, None) => proofs.proved += 1,
+        }
+    }
+    proofs
+}
+
+/// Certifies so many cases from a first one on.
+pub type Run = fn(u64, u64) -> Proofs;
+
+/// The formats by name.
+pub const FORMATS: &[(&str, Run)] = &[
+    (f64::NAME, run::<f64>),
+    (f32::NAME, run::<f32>),
+    (Micro::NAME, run::<Micro>),
+    (Q20::NAME, run::<Q20>),
+    (Q16::NAME, run::<Q16>),
+    (Q12::NAME, run::<Q12>),
+];

@@ -1,0 +1,76 @@
+//! Pairs whose numbers are multiples of a few, and pairs that touch from inside an arc: where many things happen at once.
+
+use super::{Dice, Pair, moved};
+use crate::disc::{Disc, Leg};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI, TAU};
+
+/// Integers and halves, and multiples of π/4 and π/6: what people draw.
+pub(super) fn lattice(dice: &mut Dice) -> Pair {
+    let unit = [FRAC_PI_4, FRAC_PI_6][dice.below(2)];
+    let disc = |dice: &mut Dice| {
+        let halves = |dice: &mut Dice, count: usize| 0.5 * dice.below(count) as f64;
+        let (x, y) = (halves(dice, 13) - 3.0, halves(dice, 13) - 3.0);
+        let start = [x, y, unit * dice.below((TAU / unit + 0.5) as usize) as f64 - PI];
+        let legs = (0..1 + dice.below(4)).map(|_| match dice.below(2) {
+            0 => Leg::Line(0.5 + halves(dice, 8)),
+            _ => {
+                let turns = (1 + dice.below((TAU / unit + 0.5) as usize)) as f64;
+                Leg::arc(0.5 + halves(dice, 6), dice.sign() * (turns * unit).min(TAU))
+            }
+        });
+        let legs = legs.collect();
+        Disc { radius: 0.25 + 0.25 * dice.below(8) as f64, start, legs }
+    };
+    (disc(dice), disc(dice))
+}
+
+/// A disc of radius R that touches an arc of radius ϱ from inside, |ϱ - R| from 0 to ϱ, or stays a few last digits of
+/// some format away from it: the path of its centre comes as near as |ϱ - R| to the centre of the arc, or as far.
+pub(super) fn inside(dice: &mut Dice) -> Pair {
+    let bend = dice.magnitude(0.2, 20.0);
+    let ring = bend
+        * match dice.below(4) {
+            0 => 0.0,
+            1 => dice.magnitude(1e-9, 1e-3),
+            2 => dice.magnitude(1e-3, 1.0),
+            _ => dice.range(0.0, 1.0),
+        };
+    let combined = if dice.chance(0.3) { bend + ring } else { (bend - ring).max(0.01 * bend) };
+    let ring = (bend - combined).abs();
+    let digit = [f64::EPSILON * bend, 6e-8 * bend, 1e-6, 1.5e-5, 2.5e-4][dice.below(5)];
+    let off = digit * dice.range(-12.0, 12.0);
+    let share = dice.range(0.1, 0.9);
+    // About the centre of the arc, which starts anywhere on its circle.
+    let (from, sweep) = (dice.range(-PI, PI), dice.sweep());
+    let on = [bend * from.cos(), bend * from.sin(), from + FRAC_PI_2];
+    let own = Disc { radius: share * combined, start: on, legs: vec![Leg::arc(bend, sweep)] };
+    // The other path, at its place nearest to the centre or farthest from it: there it goes straight up at x = `way`.
+    let way = ring + off;
+    let (before, after) = (dice.range(0.0, 1.5) * bend, dice.range(0.01, 1.5) * bend);
+    let legs = match dice.below(3) {
+        0 => vec![Leg::Line(before + after)],
+        _ => {
+            let radius = bend * dice.magnitude(0.05, 10.0);
+            vec![Leg::arc(radius, dice.sign() * ((before + after) / radius).min(TAU))]
+        }
+    };
+    let bent = legs[0].sweep() * before / (before + after);
+    let start = match legs[0].radius() {
+        None => [way, -before, FRAC_PI_2],
+        Some(radius) => {
+            // Its centre is at (way - radius, 0), where it turns left.
+            let (radius, (sin, cos)) = (radius.copysign(bent), (-bent).sin_cos());
+            [way - radius + radius * cos, radius * sin, FRAC_PI_2 - bent]
+        }
+    };
+    let other = Disc { radius: combined - share * combined, start, legs };
+    let turned = dice.range(-PI, PI);
+    let other = moved(&other, [0.0, 0.0, turned]);
+    let away = match dice.below(3) {
+        0 => [0.0; 3],
+        1 => [dice.range(-5.0, 5.0), dice.range(-5.0, 5.0), 0.0],
+        _ => [dice.range(-100.0, 100.0), dice.range(-100.0, 100.0), dice.range(-PI, PI)],
+    };
+    let (own, other) = (moved(&own, away), moved(&other, away));
+    if dice.chance(0.5) { (own, other) } else { (other, own) }
+}

@@ -1,0 +1,111 @@
+//! The first conflict of a row in fleets whose agents touch, as plans make them: a touch is told or stepped over, never the end of
+//! the search.
+
+use pcr_core::scalar::Micro;
+use pcr_core::{Conflict, Encounter, Interval, Motion, earliest_start, first_conflict, first_overlap};
+use pcr_fixed::{Q12, Q16, Q20};
+use pcr_host::fleet::{Fleet, Format, build_ecm};
+use pcr_host::scenario::Scenario;
+use pcr_tests::disc::{Course, Disc, Driven};
+use pcr_tests::generators::{Dice, drive, leg};
+use std::f64::consts::PI;
+
+/// The earliest of the conflicts with anybody that are deeper than so many tolerances.
+fn earliest<S: Format>(
+    fleet: &[Motion<'_, S>],
+    ego: &Motion<'_, S>,
+    all: Interval<S>,
+    tolerances: f64,
+) -> Option<Conflict<S>> {
+    let others = fleet.iter().skip(1);
+    let deep = |other| {
+        let pair = Encounter::new(ego, other);
+        let least = tolerances * pair.tolerance().to_f64();
+        pair.conflicts(all).find(|conflict| conflict.depth.to_f64() > least)
+    };
+    others.filter_map(deep).reduce(|a, b| if b.time.lo < a.time.lo { b } else { a })
+}
+
+/// The row of agent 0, which touches one of the others, against the least over all pairs.
+fn rows<S: Format>(cases: u64) {
+    let (mut touching, mut hidden) = (0, 0);
+    for seed in 0..cases {
+        let dice = &mut Dice::seeded(seed);
+        let driven: Vec<Driven> = (0..5)
+            .map(|_| {
+                let start = [dice.range(-3.0, 3.0), dice.range(-3.0, 3.0), dice.range(-PI, PI)];
+                let legs = (0..1 + dice.below(3)).map(|_| leg(dice)).collect();
+                let disc = Disc { radius: dice.range(0.05, 0.3), start, legs };
+                let drive = drive(dice, disc.length());
+                (disc, drive, dice.range(0.0, 5.0))
+            })
+            .collect();
+        let Some(courses) = driven.iter().map(Course::<S>::rounded).collect::<Option<Vec<_>>>() else { continue };
+        let fleet: Vec<Motion<'_, S>> = courses.iter().map(|(course, _)| course.motion()).collect();
+        let ecm = build_ecm(&fleet).expect("a small table");
+        let row = || ecm.row(&fleet, 0).expect("the table of the fleet");
+        // Later by the least delay at which it gets by another one, as if there were no others, or a little less.
+        for (partner, less) in (1..5).flat_map(|partner| [0.0, 1.0, 2.0, 4.0, 16.0, 64.0].map(|less| (partner, less))) {
+            let with = ecm.pair(&fleet, 0, partner).expect("the table of the fleet");
+            let Some(delay) = earliest_start(with, S::ZERO).filter(|&delay| delay > S::ZERO) else { continue };
+            let resolution = S::tolerance(fleet[0].time().hi.max(fleet[partner].time().hi)).to_f64();
+            let Ok(ego) = fleet[0].delayed(delay - S::from_f64(less * resolution)) else { continue };
+            let all = fleet.iter().map(Motion::time).fold(ego.time(), Interval::hull);
+            let (first, overlap) = (first_conflict(&ego, row(), all), first_overlap(&ego, row(), all));
+            let (any, deep) = (earliest(&fleet, &ego, all, 0.0), earliest(&fleet, &ego, all, 2.0));
+            touching += u32::from(any.is_some_and(|any| any.touching));
+            hidden += u32::from(any.is_some_and(|any| any.touching) && deep.is_some());
+            // A search within the ranges of a region begins where that does, one of a pair where the tolerance does.
+            let slip = 1e-2 + 20.0 * Encounter::new(&ego, &fleet[partner]).tolerance().to_f64();
+            let late =
+                |conflict: &Conflict<S>, by: &Conflict<S>| conflict.time.lo.to_f64() > by.time.lo.to_f64() + slip;
+            if let Some(deep) = deep {
+                let first = first.unwrap_or_else(|| panic!("seed {seed}, {partner}: lost {deep:?}")).conflict;
+                let overlap = overlap.unwrap_or_else(|| panic!("seed {seed}, {partner}: lost {deep:?}")).conflict;
+                assert!(!late(&first, &deep) && !late(&overlap, &deep), "seed {seed}, {partner}: {deep:?}");
+            }
+            if let Some(overlap) = overlap {
+                let pair = Encounter::new(&ego, &fleet[overlap.other]);
+                let there = pair
+                    .conflicts(all)
+                    .any(|conflict| conflict.time.meets(overlap.conflict.time) && !conflict.touching);
+                assert!(there && !overlap.conflict.touching, "seed {seed}, {partner}: {overlap:?}");
+            }
+        }
+    }
+    assert!(touching > 10 && hidden > 0, "{touching} touch, {hidden} of them before a conflict");
+}
+
+#[test]
+fn the_row_of_an_agent_that_touches_has_the_first_conflict_of_all_pairs() {
+    let cases = if cfg!(optimized) { 1_000 } else { 300 };
+    rows::<f64>(cases);
+    rows::<f32>(cases);
+    rows::<Micro>(cases);
+    rows::<Q12>(cases);
+    rows::<Q16>(cases);
+    rows::<Q20>(cases);
+}
+
+/// Found by an audit: agent 0 touches agent 3 at 17.036 s and overlaps agent 2 by 0.118 m from 29.604 s on.
+#[test]
+fn a_touch_does_not_hide_a_collision() {
+    let scenario =
+        Scenario::from_json(include_str!("../data/cases/first_conflict-merge-5034.json")).expect("a scenario");
+    let fleet = Fleet::<f64>::new(&scenario).expect("a fleet");
+    let motions = fleet.motions();
+    let ecm = build_ecm(&motions).expect("a small table");
+    let row = || ecm.row(&motions, 0).expect("the table of the fleet");
+    // Delayed until it gets by agent 3, which it touches then.
+    let with = ecm.pair(&motions, 0, 3).expect("the table of the fleet");
+    let delay = with.map(|region| region.forbidden_delays().hi).fold(0.0, f64::max);
+    let ego = motions[0].delayed(delay).expect("a delay");
+    let all = motions.iter().map(Motion::time).fold(ego.time(), Interval::hull);
+    let first = first_conflict(&ego, row(), all).expect("a touch at least");
+    assert!(first.other == 3 && first.conflict.touching && (first.conflict.time.lo - 17.036).abs() < 1e-2, "{first:?}");
+    let overlap = first_overlap(&ego, row(), all).expect("a collision");
+    assert_eq!(overlap.other, 2);
+    let conflict = overlap.conflict;
+    assert!((conflict.depth - 0.118).abs() < 1e-3 && (conflict.time.lo - 29.604).abs() < 1e-3, "{conflict:?}");
+    assert!((conflict.time.hi - 30.343).abs() < 1e-3, "to its end: {conflict:?}");
+}
