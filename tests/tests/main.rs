@@ -36,6 +36,7 @@ mod locks_footprints;
 mod micro;
 mod motions;
 mod orders_check;
+mod orders_fleet;
 mod orders_hold;
 mod orders_run;
 mod outward;
