@@ -188,13 +188,13 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     }
 
     /// Whether the table tells of all agents of the fleet.
-    fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
+    pub(crate) fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
         self.check(fleet)?;
         self.only.map_or(Ok(()), |only| Err(Mismatch::OnlyRow(only)))
     }
 
     /// Whether the table tells of two agents of the fleet, or of all regions of one.
-    fn holds(&self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Mismatch> {
+    pub(crate) fn holds(&self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Mismatch> {
         self.check(fleet)?;
         if let Some(agent) = agents.into_iter().find(|&agent| agent >= fleet.len()) {
             return Err(Mismatch::NoSuchAgent(agent));
@@ -209,6 +209,16 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         // In the order of the entries, those of lower partners come first and in order, then those of higher ones.
         let entries = self.entries().iter().filter(move |region| region.agents().contains(&ego));
         entries.filter_map(move |region| self.view(fleet, region, ego))
+    }
+
+    /// The agents of the region in a place of the table.
+    pub(crate) fn agents_at(&self, place: usize) -> Option<[usize; 2]> {
+        self.entries().get(place).map(|region| region.agents())
+    }
+
+    /// The region in a place of the table, as one of its agents sees it.
+    pub(crate) fn at<'a>(&'a self, fleet: &'a [Motion<'a, S>], place: usize, ego: usize) -> Option<RegionRef<'a, S>> {
+        self.view(fleet, self.entries().get(place)?, ego)
     }
 
     fn view<'a>(&'a self, fleet: &'a [Motion<'a, S>], region: &Region, ego: usize) -> Option<RegionRef<'a, S>> {

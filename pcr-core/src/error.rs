@@ -62,6 +62,10 @@ pub enum Full {
     Agents,
     /// Each agent of a [`BroadPhase`](crate::BroadPhase) needs two boxes at least.
     Boxes,
+    /// Each region of [`Orders`](crate::Orders) needs an order; an agent that is admitted needs as many more as it has regions.
+    Orders,
+    /// Each agent of a check of [`Orders`](crate::Orders) needs a [`Reach`](crate::Reach).
+    Reaches,
 }
 
 impl fmt::Display for Full {
@@ -72,6 +76,8 @@ impl fmt::Display for Full {
             Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 32767 pieces"),
             Self::Agents => f.write_str("the fleet has more than 65535 agents"),
             Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
+            Self::Orders => f.write_str("there is no room for another order"),
+            Self::Reaches => f.write_str("there is room to check the orders of fewer agents"),
         }
     }
 }
@@ -90,6 +96,8 @@ pub enum Mismatch {
     OtherFleet,
     /// The table holds the regions of this agent only ([`Ecm::fill_row`](crate::Ecm::fill_row)).
     OnlyRow(usize),
+    /// In this place of the table there is no region of the agent.
+    NoSuchRegion(usize),
 }
 
 impl fmt::Display for Mismatch {
@@ -98,6 +106,7 @@ impl fmt::Display for Mismatch {
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
             Self::OtherFleet => f.write_str("the table of regions is that of another fleet"),
             Self::OnlyRow(agent) => write!(f, "the table holds the regions of agent {agent} only"),
+            Self::NoSuchRegion(place) => write!(f, "the agent has no region in place {place} of the table"),
         }
     }
 }

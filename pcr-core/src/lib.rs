@@ -19,6 +19,7 @@
 //! region     connected regions in path-time space (t, l)    RegionRef
 //! ecm        all regions of a fleet                         Ecm
 //! query      conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
+//! orders     who passes whom, kept whatever the delays     Orders, Hold
 //! plan       start delays and speeds by priorities          plan_delays, plan_speed, plan_speeds
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
@@ -47,6 +48,7 @@ mod geometry;
 pub mod internals;
 mod intervals;
 mod motion;
+mod orders;
 mod pair;
 mod path;
 mod pieces;
@@ -62,6 +64,7 @@ pub use error::{Full, Invalid, Mismatch, Unchanged};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
+pub use orders::{Brakes, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
 pub use pair::footprint::Share;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;

@@ -110,6 +110,12 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         self.agents[usize::from(!self.transposed)]
     }
 
+    /// The same region as the other agent sees it, which is then the ego.
+    #[must_use]
+    pub fn swapped(self) -> Self {
+        Self { transposed: !self.transposed, ..self }
+    }
+
     /// Length range along the ego's path \[m\], rounded outward.
     pub fn length(&self) -> Interval<S> {
         self.hull(self.transposed)

@@ -34,6 +34,7 @@ pub mod footprint;
 pub mod import;
 pub mod input;
 mod json;
+pub mod lifelong;
 pub mod locks;
 pub mod nodes;
 pub mod output;

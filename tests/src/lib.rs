@@ -7,6 +7,7 @@ pub mod clearance;
 pub mod constants;
 pub mod disc;
 pub mod exact;
+pub mod execution;
 pub mod generators;
 pub mod limits;
 pub mod oracle;

@@ -156,3 +156,28 @@ fn the_others_of_a_fleet_block_together_and_parked_ones_for_good() {
     assert!(close(&lengths(10.0, 20.0), &[(0.0, 5.5), (6.5, 8.0)]), "{:?}", lengths(10.0, 20.0));
     assert!(close(&lengths(-1.0, 2.0), &[(0.0, 1.5), (2.5, 3.5), (4.5, 8.0)]), "{:?}", lengths(-1.0, 2.0));
 }
+
+#[test]
+fn the_end_of_a_path_is_blocked_though_its_length_is_rounded() {
+    let mut beyond = 0;
+    for k in 1..200 {
+        let parts = [f64::from(k) * 0.1, f64::from(k) * 0.07, 0.3];
+        let disc =
+            |start, legs: &[f64]| Disc { radius: 0.25, start, legs: legs.iter().map(|&l| Leg::Line(l)).collect() };
+        let course = |disc| Course::<f64>::new(&disc).expect("a valid disc");
+        let ego = course(disc([0.0, 0.0, 0.0], &parts));
+        let other = course(disc([parts.iter().sum(), -2.0, FRAC_PI_2], &[4.0]));
+        let fleet = [ego.motion(), other.motion()];
+        let path = fleet[0].path();
+        let (end, last) = (path.length(), path.segments()[2]);
+        beyond += u32::from(end > last.from() + last.length());
+        let (at, time) = (Interval::new(end, end), Interval::new(0.0, 4.0));
+        assert_eq!(Encounter::new(&fleet[0], &fleet[1]).blocked(at, time).count(), 1, "{k}");
+        let ecm = build_ecm(&fleet).expect("two agents");
+        let region = ecm.pair(&fleet, 1, 0).expect("the table of the fleet").next().expect("a crossing");
+        assert_eq!(region.swapped().blocked(at, time).count(), 1, "{k}");
+        let region = ecm.pair(&fleet, 1, 0).expect("the table of the fleet").next().expect("a crossing");
+        assert!(!region.hold(0.0, end).allows(2.0), "{k}");
+    }
+    assert!(beyond > 10, "{beyond}");
+}

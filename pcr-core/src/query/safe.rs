@@ -162,7 +162,7 @@ fn on_path<S: Scalar>(motion: &Motion<'_, S>, part: Interval<S>) -> Interval<S> 
 }
 
 /// The part of a segment between these lengths of its path, if there is any.
-fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
+pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
     // Not `from` + `length`, which is another number in floating point: a joint, and the end of the path, is on a segment.
     let own = Interval::new(segment.from, segment.to);
     if !own.meets(part) {
@@ -186,7 +186,12 @@ fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>>
 
 /// The lengths of the second segment from which some of the first one is within the radius, distances right within
 /// `slack`.
-fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
+pub(crate) fn covered<S: Scalar>(
+    first: &Segment<S>,
+    second: &Segment<S>,
+    radius: S,
+    slack: S,
+) -> [Option<Interval<S>>; PARTS] {
     let mut events = Lengths::new(S::ZERO);
     add_events(first, second, radius, slack, &mut events);
     events.sort();
@@ -237,7 +242,7 @@ fn kept_from<S: Scalar>(
 }
 
 /// The times of an interval at which an agent is on these lengths of its path, standing included.
-pub(super) fn times<S: Scalar>(
+pub(crate) fn times<S: Scalar>(
     motion: &Motion<'_, S>,
     lengths: Interval<S>,
     during: Interval<S>,

@@ -69,7 +69,16 @@ impl PartialOrd for Reached {
 }
 
 /// The edges of the shortest way, by length; of equally long ones that of the edges that come first in the file.
-pub(super) fn shortest(layout: &Layout, [from, to]: [usize; 2]) -> Option<Vec<Step<'_>>> {
+pub(super) fn shortest(layout: &Layout, ends: [usize; 2]) -> Option<Vec<Step<'_>>> {
+    cheapest(layout, ends, |step| step.edge.length())
+}
+
+/// The same by other costs, from 0; what costs an infinite amount is not travelled.
+pub(crate) fn cheapest<'a>(
+    layout: &'a Layout,
+    [from, to]: [usize; 2],
+    cost: impl Fn(Step<'a>) -> f64,
+) -> Option<Vec<Step<'a>>> {
     let mut leaving = vec![Vec::new(); layout.nodes.len()];
     for edge in &layout.edges {
         for backward in [false, true] {
@@ -92,7 +101,7 @@ pub(super) fn shortest(layout: &Layout, [from, to]: [usize; 2]) -> Option<Vec<St
             continue;
         }
         for &(origin, step) in leaving.get(node)? {
-            let total = length + step.edge.length();
+            let total = length + cost(step);
             let target = best.get_mut(step.target())?;
             if total < target.0 {
                 *target = (total, Some((origin, step)));

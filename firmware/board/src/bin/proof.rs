@@ -12,11 +12,12 @@ use core::ops::{Add, Neg, Sub};
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, BroadPhase, Conflict, Conflicts, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full, Gaps,
-    Interval, Invalid, Limits, Mismatch, Motion, NoSpeedPlan, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point,
-    Pose, Profile, ProfileRef, Region, RegionRef, Scalar, Segment, SpeedPlan, Station, Turn, Unchanged, Union,
-    Unsolved, Vector, crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps,
-    least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
+    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full,
+    Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders, Pass, Path, PathRef,
+    Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef,
+    Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector, crossings,
+    earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration, plan_delays,
+    plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -28,6 +29,8 @@ fn main() -> ! {
     motions::<Number>(any(&[]));
     queries::<Number>(any(&[]));
     table::<Number>(any(&mut []), any(&[]));
+    orders::<Number>(any(&mut []), any(&mut []), any(&mut []));
+    let _ = brakes::<Number>();
     messages::<Number>();
     #[cfg(any(feature = "q12", feature = "q16", feature = "q20"))]
     fixed();
@@ -282,6 +285,7 @@ fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
     any((RegionRef::ego_motion(region), RegionRef::forbidden_delays(region)));
     any(RegionRef::blocked(region, interval(), interval()).last());
     any(RegionRef::forbidden_durations::<4>(region).is_ok());
+    any((RegionRef::swapped(region.clone()), RegionRef::hold(region, number(), number())));
     any(earliest_start(core::iter::once(region.clone()), number()));
     any(earliest_departure(core::iter::once(region.clone()), number(), number()));
     any(least_duration::<S, 4>(core::iter::once(region.clone()), number()).is_ok());
@@ -289,6 +293,42 @@ fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
     for piece in RegionRef::pieces(region) {
         any((PieceRef::piece_type(&piece), PieceType::of(piece.ego.curve(), piece.other.curve())));
     }
+}
+
+#[inline(never)]
+fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], reaches: &mut [Reach<S>]) {
+    any(Orders::build(any(&mut [][..]), any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
+    let mut orders = any(Orders::<S, _, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8], [Order::EMPTY; 8]));
+    let (agent, other, place) = any((0, 0, 0));
+    any(Orders::fill_row(&mut orders, fleet, agent).is_ok());
+    any(Orders::insert(&mut orders, fleet, agent).is_ok());
+    any(Orders::decide(&mut orders, fleet, agent, other, any(Pass::First), number()).is_ok());
+    any(Orders::decide_at(&mut orders, fleet, place, agent, any(Pass::swapped(Pass::Second)), number()).is_ok());
+    any(Orders::as_planned(&mut orders, fleet).is_ok());
+    let tolerances = Tolerances { width: number(), gain: number() };
+    any(Orders::check(&mut orders, fleet, progress, any(tolerances), reaches).is_ok());
+    if let Some(&motion) = any(fleet.first()) {
+        let mission = Mission { agent, motion, progress: any(Progress::at_rest(number())) };
+        any(Orders::admit(&mut orders, fleet, progress, any(mission), tolerances, reaches, |_| any(Pass::First))
+            .is_ok());
+    }
+    let Ok::<Hold<S>, Mismatch>(hold) = Orders::hold(&orders, fleet, agent, progress) else { return };
+    any(Orders::hold_before(&orders, fleet, agent, progress, any(hold)).is_ok());
+    any((Hold::allows(hold, number()), Hold::min(hold, any(hold)), Hold::length(hold, number())));
+    any(Orders::row(&orders, fleet, agent)).into_iter().flatten().for_each(|(place, region, pass)| {
+        any((place, pass));
+        regions(&region);
+    });
+    any(Orders::ecm(&orders).len());
+    any(Orders::passed(&mut orders, progress));
+    any(Orders::remove(&mut orders, fleet, agent).is_ok());
+}
+
+#[inline(never)]
+fn brakes<S: Scalar>() -> Result<(), Invalid> {
+    let brakes = any(Brakes::<S>::new(number(), number())?);
+    any((Brakes::distance(&brakes, number()), Brakes::speed(&brakes, number())));
+    Ok(())
 }
 
 /// What only the formats of pcr-fixed have.
@@ -322,6 +362,7 @@ fn messages<S: Scalar>() {
     shown::<Unchanged>(any(<Unchanged as From<Full>>::from(any(Full::Agents))));
     shown::<Unsolved>(any(<Unsolved as From<Mismatch>>::from(any(Mismatch::NoSuchAgent(0)))));
     shown::<NoSpeedPlan<S>>(any(<NoSpeedPlan<S> as From<Invalid>>::from(any(Invalid::SweepOverOneTurn))));
+    shown::<Refused>(any(<Refused as From<Unchanged>>::from(any(Unchanged::Full(Full::Orders)))));
     shown::<PieceType>(any(PieceType::SS));
 }
 

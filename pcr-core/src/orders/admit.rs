@@ -1,0 +1,279 @@
+//! Orders for a new path, so that everybody can still finish.
+//!
+//! Who goes first is asked of the caller for each region of the new path, as far as both ways are possible. If somebody would
+//! then wait for ever, orders that hold a stuck agent are turned round, one after the other, each once at most; last of all the new
+//! path lets everybody else go first. Choosing orders is NP-hard in general: what is refused may be possible, what is
+//! admitted is safe and free of deadlock.
+
+use crate::ecm::Region;
+use crate::error::{Full, Mismatch};
+use crate::motion::Motion;
+use crate::orders::check::{Reach, Refused, Tolerances};
+use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::table::Orders;
+use crate::pieces::Piece;
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+/// A new path of an agent.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Mission<'a, S: Scalar> {
+    /// Who shall have it.
+    pub agent: usize,
+    /// The path and the disc; the profile does not matter. It begins where the agent is or before it, and goes on along the
+    /// old path up to where the agent can stop.
+    pub motion: Motion<'a, S>,
+    /// Where the agent is on the new path.
+    pub progress: Progress<S>,
+}
+
+impl<S, R, P, O> Orders<S, R, P, O>
+where
+    S: Scalar,
+    R: AsRef<[Region]> + AsMut<[Region]>,
+    P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
+    O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
+{
+    /// Gives an agent a new path, with orders for all its regions so that everybody can finish; the orders that the others have
+    /// with one another stay as they are. The path and progress in `fleet` and `progress` are exchanged.
+    ///
+    /// `prefer` says for a region, whose ego is the agent, who should go first: [`Pass::First`] or [`Pass::Second`]. Its
+    /// answer counts where both are possible: the second must be able to stop before the region, and the first to leave it
+    /// (`Progress::stop`: another agent that gets a lower hold by this must not set out beyond it any more, so places and
+    /// stopping points have to be those of now, or promised). Nobody who is in a region, or cannot stop before it, loses
+    /// the right to go on.
+    ///
+    /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds a region of the row, and at most as many
+    /// checks as the row has regions, and two.
+    ///
+    /// # Errors
+    /// [`Refused`], with who is in the way; everything is then as it was. Another path, or the same one later, may be admitted.
+    ///
+    /// ```
+    /// use pcr_core::{
+    ///     Hold, Limits, Mission, Motion, Order, Orders, Pass, Path, Piece, Point, Pose, Profile, Progress, Radians, Reach,
+    ///     Refused, Region, Tolerances,
+    /// };
+    /// let pose = |x, y, heading| Pose { position: Point::new(x, y), heading: Radians(heading) };
+    /// let east = Path::<f64, 1>::starting_at(pose(-2.0, 0.0, 0.0))?.line(4.0)?;
+    /// let north = Path::<f64, 1>::starting_at(pose(0.0, -2.0, core::f64::consts::FRAC_PI_2))?.line(4.0)?;
+    /// let (waiting, standing) = (Path::<f64, 1>::starting_at(pose(0.0, -2.0, 0.0))?, Profile::<f64, 1>::standing());
+    /// let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
+    /// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
+    ///
+    /// let mut fleet = [motion(east.as_path())?, Motion::new(waiting.as_path(), standing.as_profile(), 0.25, 0.0)?];
+    /// let mut progress = [Progress::at_rest(0.0); 2];
+    /// let mut orders = Orders::build([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 8], &fleet)?;
+    /// let (tolerances, mut reaches) = (Tolerances { width: 0.01, gain: 0.001 }, [Reach::EMPTY; 2]);
+    /// let mission = Mission { agent: 1, motion: motion(north.as_path())?, progress: Progress::at_rest(0.0) };
+    /// orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut reaches, |_| Pass::Second)?;
+    /// assert!(matches!(orders.hold(&fleet, 1, &progress)?, Hold::At(hold) if (hold - 1.5).abs() < 1e-9));
+    /// assert_eq!(orders.hold(&fleet, 0, &progress)?, Hold::Free);
+    ///
+    /// // An agent that stands on the crossing is in the way for good.
+    /// let stands = Path::<f64, 1>::starting_at(pose(0.0, 0.0, 0.0))?;
+    /// fleet[0] = Motion::new(stands.as_path(), standing.as_profile(), 0.25, 0.0)?;
+    /// progress[0] = Progress::at_rest(0.0);
+    /// let mut orders = Orders::build([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 8], &fleet)?;
+    /// let refused = orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut reaches, |_| Pass::First);
+    /// assert_eq!(refused, Err(Refused::Blocked { agent: 1, by: 0 }));
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn admit<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        progress: &mut [Progress<S>],
+        mission: Mission<'m, S>,
+        tolerances: Tolerances<S>,
+        reaches: &mut [Reach<S>],
+        prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
+    ) -> Result<(), Refused> {
+        let Mission { agent, motion, progress: own } = mission;
+        self.ecm.holds_all(fleet)?;
+        let (Some(&before), Some(place)) = (fleet.get(agent), progress.get_mut(agent)) else {
+            return Err(Mismatch::NoSuchAgent(agent).into());
+        };
+        let stood = core::mem::replace(place, own);
+        let replaced = self.exchange(fleet, agent, motion);
+        let admitted = replaced.and_then(|saved| {
+            let chosen = self.choose(fleet, progress, agent, tolerances.width, prefer);
+            let found = chosen.and_then(|()| self.repair(fleet, progress, agent, tolerances, reaches));
+            if found.is_err() {
+                self.restore(fleet, agent, before, saved)?;
+            }
+            found
+        });
+        if admitted.is_err()
+            && let Some(place) = progress.get_mut(agent)
+        {
+            *place = stood;
+        }
+        admitted
+    }
+
+    /// Exchanges the path; the old orders of the agent are kept at the end of the storage, the last one first. Returns how many
+    /// they are.
+    fn exchange<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<usize, Refused> {
+        let saved = self.places(agent).fold(0_usize, |count, _| count.saturating_add(1));
+        let room = self.orders.as_ref().len().saturating_sub(saved);
+        let Some(&before) = fleet.get(agent) else { return Err(Mismatch::NoSuchAgent(agent).into()) };
+        if self.ecm.len() > room {
+            return Err(Full::Orders.into());
+        }
+        let mut last = self.orders.as_ref().len();
+        let kept = self.gather(agent, |orders, order| {
+            last = last.saturating_sub(1);
+            if let Some(place) = orders.get_mut(last) {
+                *place = order;
+            }
+        });
+        let replaced = self.ecm.replace(fleet, agent, motion);
+        if replaced.is_ok() && self.ecm.len() <= room {
+            self.spread(agent, kept, |_| Order::EMPTY);
+            return Ok(saved);
+        }
+        if replaced.is_ok() {
+            self.ecm.replace(fleet, agent, before)?;
+        }
+        self.spread_saved(agent, kept, saved);
+        replaced?;
+        Err(Full::Orders.into())
+    }
+
+    /// Everything as it was before an exchange.
+    fn restore<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        before: Motion<'m, S>,
+        saved: usize,
+    ) -> Result<(), Refused> {
+        let kept = self.gather(agent, |_, _| {});
+        // What was there fits.
+        self.ecm.replace(fleet, agent, before)?;
+        self.spread_saved(agent, kept, saved);
+        Ok(())
+    }
+
+    fn spread_saved(&mut self, agent: usize, kept: usize, saved: usize) {
+        let mut next = self.orders.as_ref().len().saturating_sub(saved);
+        self.spread(agent, kept, |orders| {
+            let order = orders.get(next).copied().unwrap_or_default();
+            next = next.saturating_add(1);
+            order
+        });
+    }
+
+    /// Orders for all regions of an agent, those that are wanted where there is a choice.
+    fn choose(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        progress: &[Progress<S>],
+        agent: usize,
+        width: S,
+        mut prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
+    ) -> Result<(), Refused> {
+        for (place, order) in (0..self.ecm.len()).zip(self.orders.as_mut()) {
+            if !self.ecm.agents_at(place).is_some_and(|agents| agents.contains(&agent)) {
+                continue;
+            }
+            let Some(region) = self.ecm.at(fleet, place, agent) else { continue };
+            let by = region.other();
+            let [own, their] = [agent, by].map(|agent| progress.get(agent).copied().unwrap_or_default());
+            if own.is_beyond(region.length(), region.ego_motion())
+                || their.is_beyond(region.other_length(), region.other_motion())
+            {
+                *order = Order::new(&region, Pass::Over, S::ZERO);
+                continue;
+            }
+            let second = can_wait(&region, &own, &their, width);
+            let first = can_wait(&region.clone().swapped(), &their, &own, width);
+            let (pass, open) = match (first, second) {
+                (true, true) => (prefer(&region), true),
+                (true, false) => (Pass::First, false),
+                (false, true) => (Pass::Second, false),
+                (false, false) => return Err(Refused::Blocked { agent, by }),
+            };
+            let pass = if pass == Pass::First { Pass::First } else { Pass::Second };
+            *order = with_room(&region, pass, open, &own, &their);
+        }
+        Ok(())
+    }
+
+    /// Checks the orders, and turns some of the agent's round where somebody would wait for ever.
+    fn repair(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        progress: &[Progress<S>],
+        agent: usize,
+        tolerances: Tolerances<S>,
+        reaches: &mut [Reach<S>],
+    ) -> Result<(), Refused> {
+        loop {
+            let found = self.check(fleet, progress, tolerances, reaches);
+            if !matches!(found, Err(Refused::Stuck { .. })) {
+                return found;
+            }
+            let Some(place) = self.culprit(agent, tolerances.gain, reaches) else { break };
+            self.turn(fleet, progress, agent, place);
+        }
+        let yielding = self.places(agent).any(|(_, agents, order)| order.pass_of(agent, agents) == Pass::First);
+        if yielding {
+            self.choose(fleet, progress, agent, tolerances.width, |_| Pass::Second)?;
+        }
+        self.check(fleet, progress, tolerances, reaches)
+    }
+
+    /// An order of the agent that keeps somebody stuck, and can be turned round: one where it is first, else one where it is
+    /// stuck itself.
+    fn culprit(&self, agent: usize, gain: S, reaches: &[Reach<S>]) -> Option<usize> {
+        let holds = |pass: Pass| {
+            self.places(agent).find_map(|(place, agents, order)| {
+                let other = if agents[0] == agent { agents[1] } else { agents[0] };
+                let held = if pass == Pass::First { other } else { agent };
+                let held = reaches.get(held).filter(|reach| reach.is_stuck())?;
+                let counts = order.open && order.pass_of(agent, agents) == pass && order.hold < held.at + gain;
+                counts.then_some(place)
+            })
+        };
+        holds(Pass::First).or_else(|| holds(Pass::Second))
+    }
+
+    fn turn(&mut self, fleet: &[Motion<'_, S>], progress: &[Progress<S>], agent: usize, place: usize) {
+        let Some(region) = self.ecm.at(fleet, place, agent) else { return };
+        let [own, their] = [agent, region.other()].map(|agent| progress.get(agent).copied().unwrap_or_default());
+        if let (Some(order), Some(agents)) = (self.orders.as_mut().get_mut(place), self.ecm.agents_at(place)) {
+            *order = with_room(&region, order.pass_of(agent, agents).swapped(), false, &own, &their);
+        }
+    }
+}
+
+/// The order of a region whose ego is first or second, from where both are now.
+fn with_room<S: Scalar>(
+    region: &RegionRef<'_, S>,
+    pass: Pass,
+    open: bool,
+    own: &Progress<S>,
+    their: &Progress<S>,
+) -> Order<S> {
+    let since = if pass == Pass::First { their.at.lo } else { own.at.lo };
+    Order { open, ..Order::new(region, pass, since) }
+}
+
+/// Whether the ego of a region can let the other agent go first: it can stop before what that one has still to pass, and need
+/// not go into what that one never leaves.
+fn can_wait<S: Scalar>(region: &RegionRef<'_, S>, own: &Progress<S>, their: &Progress<S>, width: S) -> bool {
+    if !region.hold(own.at.lo, their.at.lo).allows(own.stop) {
+        return false;
+    }
+    let other_end = region.other_motion().path().length();
+    let last = (other_end - width).max(their.at.lo).min(other_end);
+    let end = region.ego_motion().path().length();
+    region.other_length().hi < last || region.hold(own.at.lo, last).allows(end)
+}

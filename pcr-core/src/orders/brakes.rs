@@ -1,0 +1,56 @@
+//! Stopping ways: a hold is kept by whoever can stop before it.
+
+use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::scalar::{Scalar, Wide};
+
+/// How an agent brakes: at a constant deceleration, after a reaction time during which it may go on at its speed.
+///
+/// ```
+/// use pcr_core::Brakes;
+/// let brakes = Brakes::new(0.5, 0.1)?; // 0.5 m/s² after 0.1 s
+/// assert!((brakes.distance(1.0) - 1.1_f64).abs() < 1e-12);
+/// assert!((brakes.speed(1.1) - 1.0_f64).abs() < 1e-12);
+/// # Ok::<(), pcr_core::Invalid>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Brakes<S> {
+    deceleration: S,
+    reaction: S,
+    /// Speed that is lost in the reaction time when braking \[m/s\].
+    lost: S,
+}
+
+impl<S: Scalar> Brakes<S> {
+    /// Deceleration \[m/s²\], and reaction time \[s\]: what passes between two controls, and until one takes effect.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for their product), [`Invalid::NonPositive`] (deceleration),
+    /// [`Invalid::Negative`] (reaction time).
+    pub fn new(deceleration: S, reaction: S) -> Result<Self, Invalid> {
+        positive(deceleration, "deceleration")?;
+        not_negative(reaction, "reaction time")?;
+        let lost = in_range(deceleration.times(reaction).narrow(), "speed lost in the reaction time")?;
+        Ok(Self { deceleration, reaction, lost })
+    }
+
+    /// The way that is needed to stop from a speed \[m/s\], rounded up \[m\]: `v τ + v² / 2a`.
+    pub fn distance(&self, speed: S) -> S {
+        let speed = speed.max(S::ZERO);
+        let ramp = speed.times(speed.quotient(self.deceleration)).narrow().half();
+        let way = speed.times(self.reaction).narrow() + ramp;
+        if way > S::ZERO { way + S::slack(way + speed) } else { way }
+    }
+
+    /// The speed from which this way \[m\] is enough to stop, rounded down \[m/s\]: its [`Brakes::distance`] is at most that,
+    /// rounding aside. 0 where there is no way.
+    pub fn speed(&self, distance: S) -> S {
+        if distance <= S::ZERO {
+            return S::ZERO;
+        }
+        let squares = self.deceleration.times(distance).double();
+        let root = (squares + self.lost.times(self.lost)).sqrt();
+        let speed = S::difference(root, self.lost, squares);
+        (speed - S::slack(root)).max(S::ZERO)
+    }
+}

@@ -1,0 +1,156 @@
+//! A table of orders answers for its own fleet only, a row for its own agent only; what it refuses changes nothing.
+
+use pcr_core::{
+    Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances,
+    Unchanged,
+};
+use pcr_tests::disc::{Course, Disc, Drive, Leg};
+use pcr_tests::execution::Table;
+use std::f64::consts::FRAC_PI_2;
+
+const TOLERANCES: Tolerances<f64> = Tolerances { width: 0.0, gain: 1e-4 };
+
+/// Four lanes around a block, each crossing the next one.
+fn lanes(radius: f64) -> [Course<f64>; 4] {
+    [0.0, 1.0, 2.0, 3.0].map(|quarter| {
+        let heading = FRAC_PI_2 * quarter;
+        let (sin, cos) = heading.sin_cos();
+        let start = [cos * -3.0 + sin, sin * -3.0 - cos, heading];
+        let disc = Disc { radius, start, legs: vec![Leg::Line(6.0)] };
+        Course::driven(&disc, &Drive::Unit, 0.0).expect("a valid disc")
+    })
+}
+
+fn empty(orders: usize) -> Table<f64> {
+    Orders::new(vec![Region::EMPTY; 8], vec![Piece::EMPTY; 40], vec![Order::EMPTY; orders])
+}
+
+fn table(fleet: &[Motion<'_, f64>], orders: usize) -> Table<f64> {
+    let storage = (vec![Region::EMPTY; 8], vec![Piece::EMPTY; 40], vec![Order::EMPTY; orders]);
+    Orders::build(storage.0, storage.1, storage.2, fleet).expect("room")
+}
+
+/// Holds and passes of everybody.
+fn trace(orders: &Table<f64>, fleet: &[Motion<'_, f64>]) -> String {
+    let progress = [Progress::at_rest(0.0); 4];
+    let of = |agent| {
+        let row = orders.row(fleet, agent).expect("the table of the fleet");
+        let passes: Vec<_> = row.map(|(place, region, pass)| (place, region.other(), pass)).collect();
+        format!("{:?} {passes:?}\n", orders.hold(fleet, agent, &progress).expect("the table of the fleet"))
+    };
+    (0..fleet.len()).map(of).collect()
+}
+
+/// All that a table refuses for the same reason, asked about these agents.
+fn refusals<'m>(
+    orders: &mut Table<f64>,
+    fleet: &mut [Motion<'m, f64>],
+    motion: Motion<'m, f64>,
+    agents: [usize; 2],
+) -> [Option<Mismatch>; 8] {
+    let [agent, other] = agents;
+    let mut progress = [Progress::at_rest(0.0); 4];
+    let mut reaches = [Reach::EMPTY; 4];
+    let mission = Mission { agent, motion, progress: Progress::at_rest(0.0) };
+    let refused = |found: Result<(), Refused>| match found {
+        Err(Refused::Mismatch(mismatch)) => Some(mismatch),
+        _ => None,
+    };
+    [
+        orders.hold(fleet, agent, &progress).err(),
+        orders.hold_before(fleet, agent, &progress, Hold::At(1.0)).err(),
+        orders.row(fleet, agent).err(),
+        orders.decide(fleet, agent, other, Pass::First, 0.0).err(),
+        orders.remove(fleet, agent).err(),
+        refused(orders.check(fleet, &progress, TOLERANCES, &mut reaches)),
+        refused(orders.as_planned(fleet)),
+        refused(orders.admit(fleet, &mut progress, mission, TOLERANCES, &mut reaches, |_| Pass::First)),
+    ]
+}
+
+#[test]
+fn another_fleet_is_refused_and_changes_nothing() {
+    let (lanes, wide) = (lanes(0.3), lanes(0.4));
+    let fleet = lanes.each_ref().map(Course::motion);
+    let mut orders = table(&fleet, 8);
+    orders.decide(&fleet, 0, 3, Pass::Second, 0.0).expect("the table of the fleet");
+    orders.decide(&fleet, 1, 0, Pass::First, 0.0).expect("the table of the fleet");
+    let before = trace(&orders, &fleet);
+    let [first, second, third, fourth] = fleet;
+    let strangers =
+        [vec![first, second, third], vec![second, first, third, fourth], vec![first, second, third, wide[3].motion()]];
+    for mut stranger in strangers {
+        let refused = refusals(&mut orders, &mut stranger, first, [0, 1]);
+        assert_eq!(refused, [Some(Mismatch::OtherFleet); 8]);
+        assert_eq!(orders.decide_at(&stranger, 0, 0, Pass::First, 0.0), Err(Mismatch::OtherFleet));
+        assert_eq!(orders.insert(&stranger, 0), Err(Unchanged::Mismatch(Mismatch::OtherFleet)));
+        assert_eq!(trace(&orders, &fleet), before);
+    }
+    let nobody = refusals(&mut orders, &mut fleet.clone(), first, [4, 1]);
+    for (place, refused) in nobody.into_iter().enumerate() {
+        // Two of them are about the whole fleet.
+        let expected = (!(5..7).contains(&place)).then_some(Mismatch::NoSuchAgent(4));
+        assert_eq!(refused, expected, "number {place}");
+    }
+}
+
+#[test]
+fn only_agents_of_a_region_decide_about_it() {
+    let lanes = lanes(0.3);
+    let fleet = lanes.each_ref().map(Course::motion);
+    let mut orders = table(&fleet, 8);
+    let before = trace(&orders, &fleet);
+    let count = orders.ecm().len();
+    let place = orders.row(&fleet, 0).expect("the table of the fleet").next().expect("a region").0;
+    assert_eq!(orders.decide_at(&fleet, count, 0, Pass::First, 0.0), Err(Mismatch::NoSuchRegion(count)));
+    assert_eq!(orders.decide_at(&fleet, place, 2, Pass::First, 0.0), Err(Mismatch::NoSuchRegion(place)));
+    assert_eq!(orders.decide_at(&fleet, place, 4, Pass::First, 0.0), Err(Mismatch::NoSuchAgent(4)));
+    assert_eq!(trace(&orders, &fleet), before);
+}
+
+#[test]
+fn a_row_answers_for_its_agent_only() {
+    let lanes = lanes(0.3);
+    let mut fleet = lanes.each_ref().map(Course::motion);
+    let (mut orders, mut whole) = (empty(2), table(&fleet, 4));
+    orders.fill_row(&fleet, 1).expect("room");
+    let before = [Progress::at_rest(0.0); 4];
+    let mut after = before;
+    after[0] = Progress::at_rest(6.0);
+    for progress in [before, after] {
+        for table in [&mut orders, &mut whole] {
+            table.decide(&fleet, 1, 0, Pass::Second, 0.0).expect("its row");
+            table.decide(&fleet, 2, 1, Pass::Second, 0.0).expect("its row");
+        }
+        assert_eq!(orders.hold(&fleet, 1, &progress), whole.hold(&fleet, 1, &progress));
+    }
+    assert!(matches!(orders.hold(&fleet, 1, &before), Ok(Hold::At(_))));
+    assert_eq!(orders.hold(&fleet, 1, &after), Ok(Hold::Free));
+    let motion = fleet[2];
+    let refused = refusals(&mut orders, &mut fleet, motion, [2, 3]);
+    assert_eq!(refused, [Some(Mismatch::OnlyRow(1)); 8]);
+    assert_eq!(orders.hold(&fleet, 1, &after), Ok(Hold::Free));
+    // Where there is no room for its orders the table is that of nobody.
+    let mut small = empty(1);
+    assert_eq!(small.fill_row(&fleet, 1), Err(Full::Orders));
+    assert_eq!(small.hold(&fleet, 1, &before), Err(Mismatch::OtherFleet));
+}
+
+#[test]
+fn who_comes_and_goes_leaves_the_orders_of_the_others() {
+    let lanes = lanes(0.3);
+    let fleet = lanes.each_ref().map(Course::motion);
+    let mut orders = table(&fleet[..3], 3);
+    orders.decide(&fleet[..3], 0, 1, Pass::Second, 0.0).expect("the table of the fleet");
+    orders.decide(&fleet[..3], 1, 2, Pass::First, 0.0).expect("the table of the fleet");
+    let before = trace(&orders, &fleet[..3]);
+    assert_eq!(orders.insert(&fleet, 3), Err(Unchanged::Full(Full::Orders)));
+    assert_eq!(trace(&orders, &fleet[..3]), before);
+    let mut roomy = table(&fleet[..3], 4);
+    roomy.decide(&fleet[..3], 0, 1, Pass::Second, 0.0).expect("the table of the fleet");
+    roomy.decide(&fleet[..3], 1, 2, Pass::First, 0.0).expect("the table of the fleet");
+    roomy.insert(&fleet, 3).expect("room");
+    assert!(matches!(roomy.hold(&fleet, 3, &[Progress::at_rest(0.0); 4]), Ok(Hold::At(_))), "nothing is decided");
+    roomy.remove(&fleet, 3).expect("the table of the fleet");
+    assert_eq!(trace(&roomy, &fleet[..3]), before);
+}
