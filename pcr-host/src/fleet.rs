@@ -161,7 +161,7 @@ impl<S: Format> Fleet<S> {
     }
 
     /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.
-    pub(crate) fn headings(&self, agent: usize) -> Option<(S::Angle, &[(usize, S::Angle)])> {
+    pub(crate) fn headings(&self, agent: usize) -> Option<(S::Angle, &[Turned<S>])> {
         self.agents.get(agent).map(|parts| (parts.heading, &parts.turns[..]))
     }
 
@@ -170,6 +170,9 @@ impl<S: Format> Fleet<S> {
         self.agents.get(agent)?.sources.get(segment).copied()
     }
 }
+
+/// The segment (from 0) before which an agent turns in place, and by how much.
+pub(crate) type Turned<S> = (usize, <S as Scalar>::Angle);
 
 /// Segment or piece of a profile (from 0) where there is one, and what is wrong there.
 type Fault = (Option<(&'static str, usize)>, String);

@@ -107,7 +107,11 @@ fn add_ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S
 pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S) -> bool {
     match segment.curve {
         Curve::Line => false,
-        Curve::Arc { radius: own, .. } => own <= radius || segment.length.double() >= segment.circumference,
+        // One that is as large but for what a distance is off whatever the extent counts, too: the gap beyond the centre may be
+        // narrower than a last digit.
+        Curve::Arc { radius: own, .. } => {
+            own <= radius + S::slack(S::ZERO) || segment.length.double() >= segment.circumference
+        }
     }
 }
 

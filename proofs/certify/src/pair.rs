@@ -203,14 +203,14 @@ impl Segments<'_> {
     }
 }
 
+/// The segments of a piece, its lengths along them, and its share.
+pub type Placed = ([usize; 2], [[Twofold; 2]; 2], Share);
+
 /// The pieces of a pair by their segments, as lengths along these.
 ///
 /// # Errors
 /// What is wrong with them.
-pub fn pieces_of(
-    pieces: &[Piece],
-    stretches: [&[Stretch]; 2],
-) -> Result<Vec<([usize; 2], [[Twofold; 2]; 2], Share)>, String> {
+pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Placed>, String> {
     let mut placed = Vec::with_capacity(pieces.len());
     for piece in pieces {
         let mut lengths = [[Twofold::ZERO; 2]; 2];
