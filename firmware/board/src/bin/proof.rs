@@ -131,6 +131,7 @@ fn operators<S: Scalar>() {
     let vector = <Point<S> as Sub>::sub(point(), point());
     any(<Point<S> as Add<Vector<S>>>::add(point(), vector));
     any((<Piece<S> as Default>::default(), <Region as Default>::default(), <Station<S> as Default>::default()));
+    any((<Order<S> as Default>::default(), <Reach<S> as Default>::default()));
 }
 
 #[inline(never)]
