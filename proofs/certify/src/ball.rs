@@ -8,12 +8,12 @@
 //!
 //! | | sum, product, quotient, root (relative) | sine, cosine (absolute) |
 //! |---|---|---|
-//! | `f64` | 2^-53: IEEE 754 rounds to nearest | 2^-50, [`sin_cos`] |
+//! | `f64` | 2^-53: IEEE 754 rounds to nearest | 2^-50, `sin_cos` |
 //! | `Twofold` | 2^-102, `twofold.rs` | 2^-99, `twofold.rs` |
 //!
 //! The radius itself is computed in `f64`. All its terms are non-negative and there are fewer than ten, so that it is
-//! too small by a factor of 1 - 16 * 2^-53 at most; [`UP`] makes up for that, and for taking the leading part of a `Twofold`
-//! as its magnitude. [`TINY`] is more than what underflow can take from a product or quotient, its error term included.
+//! too small by a factor of 1 - 16 * 2^-53 at most; `UP` makes up for that, and for taking the leading part of a `Twofold`
+//! as its magnitude. `TINY` is more than what underflow can take from a product or quotient, its error term included.
 
 use crate::twofold::Twofold;
 use std::f64::consts::{FRAC_PI_2, PI};
