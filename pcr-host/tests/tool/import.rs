@@ -116,7 +116,7 @@ fn warnings_are_in_every_answer() {
     let scenario = file("import", "one-id.json", &imported.out);
     assert!(warned(&run(&["check", &scenario, "--format", "json"]).json_of(1)));
     // And nothing where there is nothing to warn about.
-    let plain = run(&["regions", "--format", "json"]).json();
+    let plain = run(&["regions", crate::fixture::PAPER, "--format", "json"]).json();
     assert_eq!(plain["warnings"], json!([]));
 }
 
