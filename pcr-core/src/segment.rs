@@ -144,7 +144,7 @@ impl<S: Scalar> Segment<S> {
         not_negative(length, "length")?;
         let circumference = S::Angle::circumference(radius);
         // A full turn may come in with the rounding of `sweep * radius`.
-        if length > circumference + S::rounding(circumference) {
+        if length > circumference + S::slack(circumference) {
             return Err(Invalid::SweepOverOneTurn);
         }
         let length = length.min(circumference);

@@ -118,6 +118,12 @@ fn an_interval_may_be_part_of_two_pieces() {
     case_holds::<Q16>(&[41_800_936]);
 }
 
+/// Circles that all but touch from inside: a gap of two digits on one path, none on the other, and a turning point in it.
+#[test]
+fn a_gap_by_rounding_alone_is_none() {
+    case_holds::<Q16>(&[100_327_658]);
+}
+
 /// The whole circle in the piece, two intervals at the joint: the shorter one leads on.
 #[test]
 fn pieces_are_joined_by_any_of_their_intervals() {
