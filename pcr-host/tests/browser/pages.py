@@ -200,11 +200,11 @@ def check(browser, name, page, folder):
 def main(tool, folder):
     folder = Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    run = lambda *arguments: subprocess.run([tool, *map(str, arguments)], check=True, capture_output=True, cwd=folder)
+    run = lambda *arguments: subprocess.run([tool, *map(str, arguments)], check=True, capture_output=True, cwd=folder, stdin=subprocess.DEVNULL)
     run("map", DATA / "paper12.json", "-o", "map")
     run("traffic", GRAPH, "--agents", 30, "--seed", 1, "--radius", 0.4, "-o", "traffic")
     run("locks", GRAPH, "--radius", 0.4, "-o", "locks")
-    run("simulate", "-o", "replay.html")
+    run("simulate", "--foraging", "-o", "replay.html")
     pages = {"map": "map/index.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "replay": "replay.html"}
     program = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
     if not program:
