@@ -59,6 +59,10 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let certified = self.certified()?;
+        if certified.is_empty() {
+            // Nothing was proved.
+            return Err(Stop::Error("there is no table to be certified".into(), WRONG_INPUT));
+        }
         let mut out = self.printed.out(false);
         if self.printed.form() == Form::Csv {
             out.write_all(report::CERTIFIED_CSV_HEADER.as_bytes())?;
