@@ -34,6 +34,17 @@ impl Stretch {
         }
     }
 
+    /// What of the segment lies between lengths along the path that need be no numbers of the table; none, if nothing does.
+    pub fn common(&self, [lo, hi]: [Twofold; 2]) -> Option<[Twofold; 2]> {
+        let (from, to) = (Twofold::from(self.from), Twofold::from(self.to));
+        let along = |length: Twofold| (length - from).clamp(Twofold::ZERO, self.placed.length);
+        if hi < from || to < lo {
+            return None;
+        }
+        // All of it, whatever the sum of lengths is rounded to.
+        Some([along(lo), if hi < to { along(hi) } else { self.placed.length }])
+    }
+
     /// Whether a length along the path is on the segment.
     pub fn holds(&self, length: f64) -> bool {
         self.from <= length && length <= self.to
