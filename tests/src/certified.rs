@@ -47,15 +47,15 @@ impl Total for Proofs {
 
 impl Proofs {
     /// The headings of [`Proofs::row`].
-    pub const HEADINGS: &str = "| format | pairs | proved | refuted | undecided | refused by the format | pieces | most steps for one \
+    pub const HEADINGS: &str = "| format | refuted | pairs | proved | undecided | refused by the format | pieces | most steps for one \
                                 pair of segments |\n|---|---|---|---|---|---|---|---|";
 
-    /// A row of a table in a document.
+    /// A row of the table in `docs/errors.md`.
     pub fn row(&self, format: &str) -> String {
         let Self { proved, refused, pieces, most, refuted, undecided, .. } = self;
-        let numbers = [self.cases(), *proved, refuted.len() as u64, undecided.len() as u64, *refused, *pieces, *most];
+        let numbers = [refuted.len() as u64, self.cases(), *proved, undecided.len() as u64, *refused, *pieces, *most];
         let numbers: Vec<String> = numbers.iter().map(|&number| grouped(number)).collect();
-        format!("| `{format}` | {} |", numbers.join(" | "))
+        format!("| <a id=\"c-{format}\"></a>`{format}` | {} |", numbers.join(" | "))
     }
 
     /// All of them.
@@ -143,7 +143,8 @@ mod tests {
     #[test]
     fn a_row_is_one_of_a_table() {
         let proofs = Proofs { proved: 1_234_567, refused: 12, undecided: vec![String::new()], ..Proofs::default() };
-        assert_eq!(proofs.row("q16"), "| `q16` | 1,234,580 | 1,234,567 | 0 | 1 | 12 | 0 | 0 |");
+        let row = "| <a id=\"c-q16\"></a>`q16` | 0 | 1,234,580 | 1,234,567 | 1 | 12 | 0 | 0 |";
+        assert_eq!(proofs.row("q16"), row);
         let columns = |line: &str| line.matches('|').count();
         assert!(Proofs::HEADINGS.lines().all(|line| columns(line) == columns(&proofs.row("q16"))));
     }

@@ -52,16 +52,17 @@ impl Total for Searches {
 impl Searches {
     /// The headings of [`Searches::row`].
     pub const HEADINGS: &str =
-        "| format | starts | tables | refuted | smallest margin | its start |\n|---|---|---|---|---|---|";
+        "| format | refuted | starts | tables | smallest margin | its start |\n|---|---|---|---|---|---|";
 
-    /// A row of a table in a document.
+    /// A row of the table in `docs/errors.md`.
     pub fn row(&self, format: &str) -> String {
         let Self { starts, tables, worst, refuted } = self;
         let [margin, seed] = match worst {
             Some(worst) => [format!("{:.3}", worst.margin), worst.seed.to_string()],
             None => [const { String::new() }; 2],
         };
-        format!("| `{format}` | {starts} | {tables} | {} | {margin} | {seed} |", refuted.len())
+        let refuted = refuted.len();
+        format!("| <a id=\"s-{format}\"></a>`{format}` | {refuted} | {starts} | {tables} | {margin} | {seed} |")
     }
 }
 

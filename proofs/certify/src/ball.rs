@@ -147,25 +147,9 @@ impl Tri {
         }
     }
 
-    /// The contrary.
-    #[must_use]
-    pub fn not(self) -> Self {
-        match self {
-            Self::Yes => Self::No,
-            Self::No => Self::Yes,
-            Self::Doubt => Self::Doubt,
-        }
-    }
-
     /// Whether it is certain.
     pub fn is_certain(self) -> bool {
         self == Self::Yes
-    }
-}
-
-impl From<bool> for Tri {
-    fn from(yes: bool) -> Self {
-        if yes { Self::Yes } else { Self::No }
     }
 }
 

@@ -108,13 +108,12 @@ impl Told<'_> {
                 note(outcome, Promise::Timed, piece, findings);
             }
         }
-        // The piece that the end is of.
-        let Some(piece) = pieces.iter().find(|piece| {
+        // For messages the piece that the end is of.
+        let is_its_end = |piece: &&&Placed| {
             let stretch = &stretches[self.k][piece.segments[self.k]];
             stretch.holds(self.lengths[end]) && piece.lengths[self.k][end] == stretch.range([self.lengths[end]; 2])[end]
-        }) else {
-            return;
         };
+        let Some(piece) = pieces.iter().find(is_its_end).or(pieces.first()) else { return };
         let by_then = told + inward(self.travel.time_excess);
         let [lo, hi] = at(by_then);
         let latest = end_of_all + Twofold::from(self.travel.time_excess);
