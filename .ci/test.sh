@@ -41,6 +41,9 @@ tests() {
   step "plans of 100000 random fleets by either method, checked by the oracle"
   # Built with the tests; `cargo run` would build what it depends on with other features.
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
+  step "the examples of the libraries"
+  local example
+  for example in fleet_server late_robots no_fpu; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
   step "benchmarks, one pass each, as the tests are built"
   cargo bench --workspace --bench '*' --profile checked --features pcr-tests/peers --locked -- --test
 }
@@ -155,7 +158,7 @@ print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["doc
 
 c() {
   step "the C interface, on the host and in QEMU"
-  pcr-ffi/c/run.sh
+  bindings/c/c/run.sh
 }
 
 firmware() {

@@ -320,7 +320,7 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 /// # Errors
 /// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
-    grown(storage(motions.len()), |regions, pieces| Ecm::build(regions, pieces, motions))
+    Ecm::grown(motions)
 }
 
 /// The same with the regions of one agent with all others only.
@@ -328,7 +328,7 @@ pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
 /// # Errors
 /// As [`build_ecm`].
 pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
-    table_of(motions, agent, storage(motions.len()))
+    table_of(motions, agent, [16 * motions.len(), 32 * motions.len()])
 }
 
 /// The same, with storage for so many regions and pieces at first.
@@ -338,29 +338,11 @@ pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -
 pub(crate) fn table_of<S: Scalar>(
     motions: &[Motion<'_, S>],
     agent: usize,
-    storage: [usize; 2],
+    [regions, pieces]: [usize; 2],
 ) -> Result<HostEcm<S>, Full> {
-    grown(storage, |regions, pieces| {
-        let mut ecm = Ecm::new(regions, pieces);
-        ecm.fill_row(motions, agent).map(|()| ecm)
-    })
-}
-
-/// Regions and pieces that a fleet of so many agents may have: room for the paper's densest one at once, as a table that
-/// turns out too small is made again.
-fn storage(agents: usize) -> [usize; 2] {
-    [16 * agents + 16, 32 * agents + 16]
-}
-
-fn grown<S: Scalar>(
-    [mut regions, mut pieces]: [usize; 2],
-    build: impl Fn(Vec<Region>, Vec<Piece<S>>) -> Result<HostEcm<S>, Full>,
-) -> Result<HostEcm<S>, Full> {
-    loop {
-        match build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]) {
-            Err(Full::Regions) => regions = 2 * regions + 1,
-            Err(Full::Pieces) => pieces = 2 * pieces + 1,
-            done => return done,
-        }
+    let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+    while let Err(full) = ecm.fill_row(motions, agent) {
+        ecm.grow(full)?;
     }
+    Ok(ecm)
 }
