@@ -11,7 +11,7 @@ use crate::outward::Total;
 use pcr_certify::data::Table;
 use pcr_certify::pair::Findings;
 use pcr_certify::table::{Checker, Margin};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 /// What a search has come to.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@
 
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Fleet, Format};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format};
 use pcr_tests::audit::Audit;
 use pcr_tests::clearance::of_ends;
 use pcr_tests::disc::Disc;
@@ -106,8 +106,8 @@ fn nothing_that_a_disc_covers_is_left_over() {
 }
 
 fn withstands<S: Format>() {
-    let starts = count(16, 3);
-    let found = searches::<S>(0, starts, count(300, 30));
+    let starts = count(8, 3);
+    let found = searches::<S>(0, starts, count(200, 30));
     println!("{}", found.row(S::NAME));
     assert!(found.refuted.is_empty(), "{}: {:?}", S::NAME, found.refuted);
     // What queries need is a quarter; the undecided is where a search ends, if it gets there.
