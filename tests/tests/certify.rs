@@ -196,10 +196,21 @@ fn locks_of_all_layouts_are_proved_in_all_formats() {
     for found in [are_proved::<f64>(&layouts), are_proved::<f32>(&layouts), are_proved::<Micro>(&layouts)] {
         assert_eq!(found.refused, Vec::<String>::new());
     }
-    for found in [are_proved::<Q20>(&layouts), are_proved::<Q16>(&layouts), are_proved::<Q12>(&layouts)] {
-        assert!(found.refused.iter().all(|why| why.contains("is out of range")), "{:#?}", found.refused);
-        // Town01 and Town02 are 400 m wide, more than Q20 holds; one of their lines is shorter than a digit of Q12.
-        assert!(found.refused.len() <= 2 && found.proved.len() + found.refused.len() == layouts.len(), "{found:#?}");
+    // 400 m and an arc of 300 m are more than Q20 holds; a line of 17 µm is less than a digit of Q12.
+    let wide =
+        ["real/opendrive/Town01.planview.xodr", "real/opendrive/Town02.planview.xodr", "real/opentcs/Demo-01.xml"];
+    let beyond: [(Layouts, &[&str]); 3] = [
+        (are_proved::<Q20>(&layouts), &wide),
+        (are_proved::<Q16>(&layouts), &[]),
+        (are_proved::<Q12>(&layouts), &wide[1..2]),
+    ];
+    for (found, beyond) in beyond {
+        for why in &found.refused {
+            let expected = beyond.iter().any(|file| why.starts_with(file)) && why.contains("is out of range");
+            assert!(expected, "{why}");
+        }
+        assert!(!cfg!(optimized) || found.refused.len() == beyond.len(), "{found:#?}");
+        assert_eq!(found.proved.len() + found.refused.len(), layouts.len());
     }
 }
 
@@ -308,10 +319,13 @@ fn what_is_left_out_of_a_file_is_an_error() {
     let without = |field: &str| {
         let begin = text.find(field).unwrap_or_else(|| panic!("{field}"));
         let value = &text[begin + field.len()..];
-        let end = value.find([',', '}']).unwrap() + 1;
-        read(&format!("{}{}", &text[..begin], &value[end..])).unwrap_err()
+        let rest = &value[value.find([',', '}']).unwrap()..];
+        // The last one has its comma before it.
+        let before = if rest.starts_with('}') { text[..begin].trim_end_matches(',') } else { &text[..begin] };
+        read(&format!("{before}{}", rest.trim_start_matches(','))).unwrap_err()
     };
-    for field in ["\"radius\":", "\"from\":", "\"lag\":", "\"time_excess\":", "\"excess\":", "\"rounding\":", "\"id\":"] {
+    for field in ["\"radius\":", "\"from\":", "\"lag\":", "\"time_excess\":", "\"excess\":", "\"rounding\":", "\"id\":"]
+    {
         assert!(without(field).contains("missing field"), "{field}: {}", without(field));
     }
     // Of a line, too: an arc whose radius is lost would be one.

@@ -221,7 +221,11 @@ impl<'a> Lines<'a> {
                     let told = words.bits()?;
                     words.end()?;
                     let sum = !self.sum;
-                    return if told == sum { Ok(pairs) } else { Err(format!("its check is {told:08x}, not {sum:08x}")) };
+                    return if told == sum {
+                        Ok(pairs)
+                    } else {
+                        Err(format!("its check is {told:08x}, not {sum:08x}"))
+                    };
                 }
                 other => return Err(format!("{other} where pair or end is expected")),
             }

@@ -120,8 +120,8 @@ fn add_legs(legs: &mut Vec<(f64, Leg)>, stretches: &[Stretch], phase: &Phase, st
     let at = |t: f64| ramp.length_at(Ball::from(t));
     // The speed at the other end follows from the rest; it may differ from the one told by rounding.
     let told = phase.time.map(|t| exact(start) + Ball::from(t));
-    let [a, b, c, d] = [told[0], told[1], Ball::from(ends[0]), Ball::from(ends[1])]
-        .map(|t: Ball<Twofold>| ramp.speed_at(t).abs());
+    let [a, b, c, d] =
+        [told[0], told[1], Ball::from(ends[0]), Ball::from(ends[1])].map(|t: Ball<Twofold>| ramp.speed_at(t).abs());
     let top = a.max(b).max(c.max(d));
     let top = (top.to_f64() + top.err) * (1.0 + f64::EPSILON);
     let mut from = ends[0];
