@@ -347,7 +347,7 @@ fn ends(table: &Table) -> [f64; 2] {
 /// A contact that no piece holds, if points show one: on a lattice of the whole paths, and about the ends of pieces.
 fn left_out(routes: &[Route; 2], table: &Table, radius: Twofold, dice: &mut Dice) -> Option<[f64; 2]> {
     let (pair, ends) = (&table.pairs[0], ends(table));
-    let mut places: [Vec<f64>; 2] = ends.map(|end| (0..=12).map(|k| end * f64::from(k) / 12.0).collect());
+    let mut places: [Vec<f64>; 2] = ends.map(|end| (0..=12).map(|k| end.min(end * f64::from(k) / 12.0)).collect());
     for piece in &pair.pieces {
         for k in [0, 1] {
             for end in piece.lengths[k] {
