@@ -2,7 +2,7 @@
 
 use pcr_core::{Drive as Speeds, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed};
 use pcr_fixed::Q16;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, leg};
 use pcr_tests::oracle::contact::Meeting;

@@ -4,8 +4,8 @@ use pcr_core::{
     Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef, Turn,
     Unchanged, Unsolved, plan_delays,
 };
-use pcr_host::fleet::{Fleet, HostEcm, build_ecm};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, HostEcm, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::Dice;
 

@@ -55,42 +55,51 @@ impl Agent {
 
 /// The agents of a fleet.
 #[derive(Debug)]
-pub struct Agents(Vec<Agent, AGENTS>);
+pub struct Agents {
+    all: Vec<Agent, AGENTS>,
+    /// Whether these were taken. Until then there are no answers: none would be one about nobody.
+    known: bool,
+}
 
 /// Their motions.
 pub type Motions<'a> = Vec<Motion<'a, f64>, AGENTS>;
 
 impl Agents {
     /// Nobody.
-    pub const NONE: Self = Self(Vec::new());
+    pub const NONE: Self = Self { all: Vec::new(), known: false };
 
-    /// Becomes the first so many agents of the input; nobody if one of them is refused.
+    /// Becomes the first so many agents of the input. If one of them is refused there are no answers.
     ///
     /// # Errors
     /// [`Fault`], with the agent and the leg.
     pub fn read(&mut self, input: &Input, count: usize) -> Result<(), Fault> {
-        self.0.clear();
+        self.clear();
         if count > AGENTS {
             return Err(Fault::Agents(count));
         }
         let read = input.chunks_exact(STRIDE).zip(0..count).try_for_each(|(row, number)| {
             let agent = Agent::read(number, row)?;
             agent.motion().map_err(Fault::of_agent(number))?;
-            self.0.push(agent).map_err(|_| Fault::Agents(count))
+            self.all.push(agent).map_err(|_| Fault::Agents(count))
         });
-        if read.is_err() {
-            self.0.clear();
-        }
+        self.known = read.is_ok();
         read
     }
 
     /// Forgets all of them.
     pub fn clear(&mut self) {
-        self.0.clear();
+        self.all.clear();
+        self.known = false;
     }
 
     /// Their motions; all of them, as each was tried when it was read.
-    pub fn motions(&self) -> Motions<'_> {
-        self.0.iter().filter_map(|agent| agent.motion().ok()).collect()
+    ///
+    /// # Errors
+    /// [`Fault::NotBuilt`].
+    pub fn motions(&self) -> Result<Motions<'_>, Fault> {
+        if !self.known {
+            return Err(Fault::NotBuilt);
+        }
+        Ok(self.all.iter().filter_map(|agent| agent.motion().ok()).collect())
     }
 }

@@ -3,9 +3,7 @@
 use crate::agents::{AGENTS, Agents, Input};
 use crate::message::Fault;
 use heapless::Vec;
-use pcr_core::{
-    Ecm, Encounter, Hold, Interval, Motion, Order, Orders, Piece, Progress, Region, plan_delays,
-};
+use pcr_core::{Ecm, Encounter, Hold, Interval, Motion, Order, Orders, Piece, Progress, Region, plan_delays};
 
 /// Numbers of an answer, at most.
 pub const ROOM: usize = 1 << 16;
@@ -81,11 +79,10 @@ impl<'s> Fleet<'s> {
     /// Reads the first so many agents, and computes all their regions. Returns how many there are.
     ///
     /// # Errors
-    /// [`Fault`]; the fleet is then without agents.
+    /// [`Fault`]; there are no answers then, until another one is built.
     pub fn build(&mut self, input: &Input, count: usize) -> Result<usize, Fault> {
-        self.table.clear();
         self.agents.read(input, count)?;
-        let built = self.table.fill(&self.agents.motions());
+        let built = self.table.fill(&self.agents.motions()?);
         if built.is_err() {
             self.agents.clear();
         }
@@ -99,7 +96,7 @@ impl<'s> Fleet<'s> {
     /// # Errors
     /// [`Fault::Rows`].
     pub fn regions(&mut self, rows: &mut Rows) -> Result<usize, Fault> {
-        let motions = self.agents.motions();
+        let motions = self.agents.motions()?;
         rows.used = 0;
         let mut count = 0_usize;
         for region in self.table.regions(&motions)? {
@@ -119,7 +116,7 @@ impl<'s> Fleet<'s> {
         if !(from.is_finite() && step.is_finite()) {
             return Err(Fault::Question("the time"));
         }
-        let motions = self.agents.motions();
+        let motions = self.agents.motions()?;
         rows.used = 0;
         let mut count = 0_usize;
         for region in self.table.row(&motions, ego)? {
@@ -144,7 +141,7 @@ impl<'s> Fleet<'s> {
     /// # Errors
     /// [`Fault::Rows`].
     pub fn conflicts(&mut self, rows: &mut Rows) -> Result<usize, Fault> {
-        let motions = self.agents.motions();
+        let motions = self.agents.motions()?;
         rows.used = 0;
         let (span, mut count) = (Motion::span(&motions), 0_usize);
         for (first, a) in (0..motions.len()).zip(&motions) {
@@ -154,7 +151,16 @@ impl<'s> Fleet<'s> {
                     let touching = f64::from(u8::from(met.touching));
                     let ends = [l.lo, l.hi, s.lo, s.hi];
                     rows.push([
-                        first as f64, second as f64, t.lo, t.hi, met.depth, touching, ends[0], ends[1], ends[2], ends[3],
+                        first as f64,
+                        second as f64,
+                        t.lo,
+                        t.hi,
+                        met.depth,
+                        touching,
+                        ends[0],
+                        ends[1],
+                        ends[2],
+                        ends[3],
                     ])?;
                     count = count.saturating_add(1);
                 }
@@ -171,7 +177,7 @@ impl<'s> Fleet<'s> {
         if !time.is_finite() {
             return Err(Fault::Question("the time"));
         }
-        let motions = self.agents.motions();
+        let motions = self.agents.motions()?;
         rows.used = 0;
         for motion in &motions {
             let length = motion.length_at(time);
@@ -187,7 +193,7 @@ impl<'s> Fleet<'s> {
     /// # Errors
     /// [`Fault::Unsolved`].
     pub fn plan(&mut self, rows: &mut Rows) -> Result<usize, Fault> {
-        let motions = self.agents.motions();
+        let motions = self.agents.motions()?;
         let mut larger = motions.clone();
         for (place, agent) in larger.iter_mut().zip(0_usize..) {
             *place = place.for_plan().map_err(Fault::of_agent(agent))?;
@@ -215,7 +221,7 @@ impl<'s> Fleet<'s> {
         if !time.is_finite() {
             return Err(Fault::Question("the time"));
         }
-        let motions = self.agents.motions();
+        let motions = self.agents.motions()?;
         self.orders.fill(&motions)?;
         self.orders.as_planned(&motions)?;
         let mut places: Vec<Progress<f64>, AGENTS> =
@@ -234,7 +240,10 @@ impl<'s> Fleet<'s> {
     }
 
     /// From the first start to the last arrival \[s\].
-    pub fn span(&self) -> Interval<f64> {
-        Motion::span(&self.agents.motions())
+    ///
+    /// # Errors
+    /// [`Fault::NotBuilt`].
+    pub fn span(&self) -> Result<Interval<f64>, Fault> {
+        Ok(Motion::span(&self.agents.motions()?))
     }
 }

@@ -16,7 +16,7 @@
 //! pcr_places(time)                     -> rows of 6    x, y, heading, travelled length, length of the path, arrival
 //! pcr_plan()                           -> rows of 1    delay of each agent's start so that nobody collides
 //! pcr_holds(time)                      -> rows of 1    how far each may go in the order of the motions, if the others stop now
-//! pcr_first(), pcr_last()              -> first start, last arrival
+//! pcr_first(), pcr_last()              -> first start, last arrival; NaN without a fleet
 //! pcr_output()                         -> address of the answer
 //! pcr_message(), pcr_message_length()  -> address and length of the last message, UTF-8
 //! ```
@@ -156,14 +156,14 @@ pub extern "C" fn pcr_holds(time: f64) -> i32 {
     answer(|fleet, _, rows| fleet.holds(rows, time))
 }
 
-/// The first start \[s\].
+/// The first start \[s\]; NaN without a fleet.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_first() -> f64 {
-    with(|fleet, _, _, _| fleet.span().lo)
+    with(|fleet, _, _, _| fleet.span().map_or(f64::NAN, |span| span.lo))
 }
 
-/// The last arrival \[s\].
+/// The last arrival \[s\]; NaN without a fleet.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_last() -> f64 {
-    with(|fleet, _, _, _| fleet.span().hi)
+    with(|fleet, _, _, _| fleet.span().map_or(f64::NAN, |span| span.hi))
 }

@@ -12,6 +12,8 @@ pub enum Fault {
     Legs(usize),
     /// This agent, or its leg, is not what it should be.
     Invalid(usize, Option<usize>, Invalid),
+    /// No fleet was built, or the last one was refused.
+    NotBuilt,
     /// The table is full.
     Full(Full),
     /// What was asked for is not of this fleet.
@@ -72,6 +74,7 @@ impl fmt::Display for Fault {
             Self::Legs(agent) => write!(f, "agent {}: 0 to {} legs", number(agent), crate::agents::LEGS),
             Self::Invalid(agent, None, why) => write!(f, "agent {}: {why}", number(agent)),
             Self::Invalid(agent, Some(leg), why) => write!(f, "agent {}, leg {}: {why}", number(agent), number(leg)),
+            Self::NotBuilt => f.write_str("there is no fleet: none was built, or the last one was refused"),
             Self::Full(full) => full.fmt(f),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Unsolved(Unsolved::Starts([a, b])) => {

@@ -8,7 +8,7 @@ use crate::orders::check::Refused;
 use crate::orders::hold::Hold;
 use crate::orders::order::{Order, Pass, Progress};
 use crate::pieces::Piece;
-use crate::query::times;
+use crate::query::{first_overlap, times};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
@@ -292,7 +292,8 @@ where
     }
 
     /// Takes the orders in which the motions of the fleet pass their regions, those of a plan without collisions.
-    /// Decisions that were made before are overwritten. Cost: a few slices a region.
+    /// Decisions that were made before are overwritten. Cost: that of [`first_overlap`](crate::first_overlap) a region, and a few
+    /// slices.
     ///
     /// # Errors
     /// [`Refused::Meeting`] for two that meet, or pass so near that it cannot be told who is first; [`Refused::Mismatch`].
@@ -301,6 +302,10 @@ where
         for place in 0..self.ecm.len() {
             let Some([lower, higher]) = self.ecm.agents_at(place) else { continue };
             let Some(region) = self.ecm.at(fleet, place, lower) else { continue };
+            let during = Motion::span(&[*region.ego_motion(), *region.other_motion()]);
+            if first_overlap(region.ego_motion(), core::iter::once(region.clone()), during).is_some() {
+                return Err(Refused::Meeting([lower, higher]));
+            }
             let pass = planned(&region).ok_or(Refused::Meeting([lower, higher]))?;
             let order = Order::new(&region, pass, S::ZERO);
             if let Some(room) = self.orders.as_mut().get_mut(place) {
