@@ -150,7 +150,7 @@ print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["doc
 
 c() {
   step "the C interface, on the host and in QEMU"
-  pcr-ffi/c/run.sh
+  bindings/c/c/run.sh
 }
 
 firmware() {

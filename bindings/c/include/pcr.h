@@ -1,4 +1,4 @@
-/* Collision regions of discs on line/arc paths. Made by cbindgen from pcr-ffi/src: see pcr-ffi/tests/header.rs. */
+/* Collision regions of discs on line/arc paths. Made by cbindgen from bindings/c/src: see bindings/c/tests/header.rs. */
 
 #ifndef PCR_H
 #define PCR_H

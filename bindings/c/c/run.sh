@@ -4,7 +4,7 @@
 #   --accept   writes these anew
 set -euo pipefail
 cd "$(dirname "$0")"
-root=$PWD/../..
+root=$PWD/../../..
 target=thumbv7em-none-eabihf
 packages=()
 command -v arm-none-eabi-gcc >/dev/null || packages+=(gcc-arm-none-eabi libnewlib-arm-none-eabi)
@@ -21,19 +21,19 @@ cd "$root"
 built=${CARGO_TARGET_DIR:-$root/target}
 cargo build --quiet --locked --profile ffi -p pcr-ffi
 firmware/cross.sh $target build --quiet --locked --profile ffi -p pcr-ffi
-warnings=(-std=c11 -O2 -Wall -Wextra -Wpedantic -Werror -Ipcr-ffi/include)
+warnings=(-std=c11 -O2 -Wall -Wextra -Wpedantic -Werror -Ibindings/c/include)
 for program in crossing resolve; do
-  cc "${warnings[@]}" pcr-ffi/c/$program.c "$built/ffi/libpcr_ffi.a" -lpthread -ldl -lm -o "$build/host"
+  cc "${warnings[@]}" bindings/c/c/$program.c "$built/ffi/libpcr_ffi.a" -lpthread -ldl -lm -o "$build/host"
   arm-none-eabi-gcc "${warnings[@]}" -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -ffunction-sections \
-    -fdata-sections -Wl,--gc-sections -nostartfiles -T pcr-ffi/c/m4.ld pcr-ffi/c/start.c pcr-ffi/c/$program.c \
+    -fdata-sections -Wl,--gc-sections -nostartfiles -T bindings/c/c/m4.ld bindings/c/c/start.c bindings/c/c/$program.c \
     "$built/$target/ffi/libpcr_ffi.a" --specs=nano.specs --specs=rdimon.specs -u _printf_float -lm -o "$build/$program.elf"
   "$build/host" >"$build/host.out"
   # Only a program that never ends takes that long.
   timeout 3600 qemu-system-arm -machine mps2-an386 -display none -monitor none -serial none \
     -semihosting-config enable=on,target=native -kernel "$build/$program.elf" </dev/null >"$build/target.out"
-  if [ "${1:-}" = --accept ]; then cp "$build/host.out" pcr-ffi/c/$program.out; fi
-  diff pcr-ffi/c/$program.out "$build/host.out"
-  diff pcr-ffi/c/$program.out "$build/target.out"
+  if [ "${1:-}" = --accept ]; then cp "$build/host.out" bindings/c/c/$program.out; fi
+  diff bindings/c/c/$program.out "$build/host.out"
+  diff bindings/c/c/$program.out "$build/target.out"
   arm-none-eabi-size "$build/$program.elf"
   cat "$build/target.out"
 done
