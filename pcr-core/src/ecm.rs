@@ -89,8 +89,8 @@ struct Known {
 impl Known {
     const NOBODY: Self = Self { agents: 0, sum: 0 };
 
-    fn all<S: Scalar>(fleet: &[Motion<'_, S>]) -> Self {
-        (0..fleet.len()).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
+    fn all<'m, S: Scalar + 'm>(fleet: impl IntoIterator<Item = &'m Motion<'m, S>>) -> Self {
+        (0_usize..).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
     }
 
     fn with<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
@@ -299,6 +299,21 @@ where
         Ok(())
     }
 
+    /// Removes one agent for good, with its regions: those behind it move up by one number, and the table is that of the fleet
+    /// without it. O(agents + regions).
+    ///
+    /// # Errors
+    /// As [`Ecm::remove`].
+    pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        self.remove(fleet, agent)?;
+        for region in self.regions.as_mut().iter_mut().take(self.len) {
+            region.agents = region.agents.map(|other| other.wrapping_sub(u16::from(usize::from(other) > agent)));
+        }
+        let rest = (0..).zip(fleet).filter(|&(place, _): &(usize, _)| place != agent);
+        self.fleet = Known::all(rest.map(|(_, motion)| motion));
+        Ok(())
+    }
+
     /// Exchanges the motion of one agent and computes its regions anew; those of the others are not touched.
     ///
     /// # Errors
@@ -323,7 +338,7 @@ where
             *place = before;
             self.add_row(fleet, agent)?;
         }
-        self.fleet = Known::all(fleet);
+        self.fleet = Known::all(&*fleet);
         Ok(outcome?)
     }
 

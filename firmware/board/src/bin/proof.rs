@@ -245,6 +245,7 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
     for &agent in agents {
         any(Ecm::insert(&mut ecm, fleet, agent).is_ok());
         any(Ecm::remove(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::erase(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill_row(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill(&mut ecm, fleet).is_ok());
         Ecm::clear(any(&mut ecm));
@@ -323,6 +324,12 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     any(Orders::ecm(&orders).len());
     any(Orders::passed(&mut orders, progress));
     any(Orders::remove(&mut orders, fleet, agent).is_ok());
+    any(Orders::erase(&mut orders, fleet, agent).is_ok());
+    any(Orders::fill(&mut orders, fleet).is_ok());
+    if let Some(&motion) = any(fleet.first()) {
+        any(Orders::replace(&mut orders, fleet, agent, motion).is_ok());
+    }
+    Orders::clear(any(&mut orders));
 }
 
 #[inline(never)]
