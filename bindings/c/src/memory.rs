@@ -2,6 +2,7 @@
 //!
 //! Sound under what the crate's documentation asks of the caller, and no more is assumed.
 
+use core::cell::Cell;
 use core::mem::{align_of, size_of};
 use core::ptr::NonNull;
 use core::slice;
@@ -43,8 +44,15 @@ impl<R: Copy + 'static> Stack<R> {
 
     /// Takes a value out; those behind it move down.
     pub(crate) fn remove(&mut self, index: usize) {
-        let Some(behind) = self.values_mut().get_mut(index..).filter(|behind| !behind.is_empty()) else { return };
-        behind.rotate_left(1);
+        if index >= self.len {
+            return;
+        }
+        let places = Cell::from_mut(self.values_mut()).as_slice_of_cells();
+        for neighbours in places.windows(2).skip(index) {
+            if let [place, next] = neighbours {
+                place.set(next.get());
+            }
+        }
         self.len = self.len.saturating_sub(1);
     }
 
