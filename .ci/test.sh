@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web python packages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -68,6 +68,34 @@ web() {
   browser
   cargo build --workspace --profile checked --features pcr-tests/peers --locked
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+}
+
+python() {
+  step "the Python package"
+  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+}
+
+# The crates that could be published: licences, a README and all that they need are in them.
+packages() {
+  step "packages, built and tested outside of the workspace"
+  local target=${CARGO_TARGET_DIR:-target} crates=() crate
+  for crate in $(sed -n '/^members/,/^\]/s/^ *"\(.*\)",/\1/p' Cargo.toml); do
+    grep -q '^publish = false' "$crate/Cargo.toml" || crates+=("$(sed -n 's/^name = "\(.*\)"/\1/p' "$crate/Cargo.toml" | head -1)")
+  done
+  rm -rf "$target/package"
+  # shellcheck disable=SC2046
+  cargo package $(printf -- '-p %s ' "${crates[@]}") --locked --allow-dirty --no-verify
+  local archive file
+  for crate in "${crates[@]}"; do
+    archive=$(ls "$target/package/$crate"-[0-9]*.crate)
+    for file in README.md LICENSE-MIT LICENSE-APACHE Cargo.toml; do
+      tar -tf "$archive" | grep "/$file\$" >/dev/null || { echo "$crate has no $file" >&2; return 1; }
+    done
+    tar -C "$target/package" -xf "$archive"
+  done
+  # What is recorded for the proofs is compared in the repository, where the proofs are.
+  (cd "$target/package"/pcr-core-*[0-9] && CARGO_TARGET_DIR=.. cargo test -q --lib --examples --features std -- --skip recorded::)
 }
 
 instructions() {
@@ -185,7 +213,7 @@ fuzz() {
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests pages web instructions fuzz proofs}; do
+for part in ${*:-style docs features no_std c firmware tests pages web python packages instructions fuzz proofs}; do
   "$part"
 done
 step "all passed"
