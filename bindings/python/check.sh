@@ -8,7 +8,7 @@ target=${CARGO_TARGET_DIR:-target}
 wheels=$target/wheels environment=$target/python
 python=${PYTHON:-python3}
 if ! "$python" -m venv "$environment" >/dev/null 2>&1; then
-  apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends python3-venv >/dev/null
+  .ci/install.sh python3-venv
   "$python" -m venv "$environment"
 fi
 bin=$environment/bin
