@@ -33,6 +33,9 @@ figure() {
     figure pairs $fleet "when agents are in contact, pair by pair"
   done
   figure exchange table6-100 "exchange of one agent"
+  figure certify paper12 "proof of the table"
+  figure motions paper12 "proof of the motions, or a contact of each pair"
+  figure certify table6-100 "proof of the table"
 } | tee /dev/stderr >instructions.new
 
 if [ "${UPDATE:-}" = 1 ]; then

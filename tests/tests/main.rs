@@ -51,6 +51,7 @@ mod plans;
 mod plans_bounds;
 mod plans_footprints;
 mod properties;
+mod refuted;
 mod regressions;
 mod safe;
 mod search;

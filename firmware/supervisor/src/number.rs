@@ -10,6 +10,8 @@ pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + Dese
     const NAME: &'static str;
     /// The bits of the number: what is compared between machines.
     fn bits(self) -> u32;
+    /// The bits of an angle.
+    fn angle_bits(angle: Self::Angle) -> u32;
     /// Thousandths, rounded to nearest: what people read.
     fn thousandths(self) -> i32;
 }
@@ -19,6 +21,9 @@ impl Number for f32 {
     const NAME: &'static str = "f32";
     fn bits(self) -> u32 {
         self.to_bits()
+    }
+    fn angle_bits(angle: Self::Angle) -> u32 {
+        angle.0.bits()
     }
     fn thousandths(self) -> i32 {
         (self * 1000.0 + if self < 0.0 { -0.5 } else { 0.5 }) as i32
@@ -30,6 +35,9 @@ impl Number for pcr_core::scalar::Micro {
     const NAME: &'static str = "micro";
     fn bits(self) -> u32 {
         self.0.to_bits()
+    }
+    fn angle_bits(angle: Self::Angle) -> u32 {
+        angle.0.bits()
     }
     fn thousandths(self) -> i32 {
         self.0.thousandths()
@@ -43,6 +51,9 @@ macro_rules! fixed {
             const NAME: &'static str = $name;
             fn bits(self) -> u32 {
                 self.to_bits().cast_unsigned()
+            }
+            fn angle_bits(angle: Self::Angle) -> u32 {
+                angle.to_bits().cast_unsigned()
             }
             fn thousandths(self) -> i32 {
                 // What a table holds is far below the millions where this would wrap.
