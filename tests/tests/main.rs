@@ -35,6 +35,7 @@ mod locks;
 mod locks_footprints;
 mod micro;
 mod motions;
+mod no_numbers;
 mod orders_check;
 mod orders_fleet;
 mod orders_hold;
