@@ -2,7 +2,7 @@
 
 use pcr_core::{Encounter, Interval, RegionRef, earliest_start, union};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::{Dice, drive, driven_pairs, leg};
 use pcr_tests::oracle::Pair;

@@ -6,7 +6,7 @@ use pcr_core::{
     Profile, Progress, Reach, Region, Tolerances, earliest_departure, earliest_start, first_conflict, first_overlap,
     least_duration, safe_intervals, safe_lengths,
 };
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use std::f64::consts::FRAC_PI_2;
 
 /// Two agents that collide in the middle of two lines of 4 m after 2 s.
