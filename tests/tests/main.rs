@@ -36,6 +36,7 @@ mod locks;
 mod locks_footprints;
 mod micro;
 mod motions;
+mod near_misses;
 mod no_numbers;
 mod orders_check;
 mod orders_fleet;
