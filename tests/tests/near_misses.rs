@@ -1,7 +1,7 @@
 //! What only just does not touch: events and turning points of contacts that are missed by parts of the slack, as derived in
 //! docs/errors.md, and of none that is missed by more. The slack is far above rounding here, so that each rule shows alone.
 
-use pcr_core::{Point, Pose, Scalar, Segment, Turn, internals};
+use pcr_core::{Point, Pose, Segment, Turn, internals};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::Format;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
