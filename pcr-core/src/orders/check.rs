@@ -87,7 +87,8 @@ where
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();
-            let at = progress.get(agent).copied().unwrap_or_default().at.lo.clamp(S::ZERO, end);
+            // What is no number may be the start.
+            let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().at.lo).min(end);
             *reach = Reach { at, next: end, end, moved: true };
         }
         while self.sweep(fleet, progress, tolerances, reaches)? {
