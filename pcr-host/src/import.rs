@@ -55,7 +55,7 @@ mod warnings;
 mod xml;
 
 pub use layout::{Edge, Id, Layout, Node, Placed};
-pub(crate) use route::{Step, cheapest, ride, turn};
+pub(crate) use route::{Step, ride, turn};
 pub use trace::{KINK, TURN};
 pub use useful::Kind;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};

@@ -1,15 +1,14 @@
-//! Fleets that run on a layout: `cargo run --release -p pcr-tests --example lifelong -- LAYOUT RADIUS HOURS STOPPED SEED ROBOTS...`
-//! prints missions an hour, contacts and waits, and how long decisions took.
+//! Fleets that run on a layout: `cargo run --release -p pcr-tests --example lifelong -- LAYOUT RADIUS HOURS SEED METHODS ROBOTS...`
+//! prints what comes of it, and how long decisions took. Methods are letters: o(rders), r(oute locks), e(dge locks), d(elays).
 
 use pcr_host::import::{self, Format, Options, Warnings};
-use pcr_host::lifelong::{Request, run};
+use pcr_host::lifelong::{Delays, Method, Request, run};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [layout, radius, hours, stopped, seed, robots @ ..] = arguments.as_slice() else {
-        eprintln!("lifelong LAYOUT RADIUS HOURS STOPPED SEED ROBOTS...");
+    let [layout, radius, hours, seed, methods, robots @ ..] = arguments.as_slice() else {
+        eprintln!("lifelong LAYOUT RADIUS HOURS SEED METHODS ROBOTS...");
         return ExitCode::from(2);
     };
     let number = |text: &str| text.parse::<f64>().unwrap_or(f64::NAN);
@@ -24,24 +23,24 @@ fn main() -> ExitCode {
     };
     let imported = import::layout(Format::Nav2, &text, &options, &mut Warnings::default()).expect("a layout");
     for agents in robots {
-        let request = Request {
-            agents: agents.parse().unwrap_or(0),
-            duration: 3600.0 * number(hours),
-            stopped: number(stopped),
-            seed: seed.parse().unwrap_or(0),
-        };
-        let begin = Instant::now();
-        let (outcome, mut decisions) = run(&imported, request).expect("a run");
-        decisions.sort();
-        let part = |per_cent: usize| decisions.get(decisions.len() * per_cent / 100).copied().unwrap_or(Duration::ZERO);
-        println!("{outcome:?}");
-        println!(
-            "  {} decisions: median {:.1?}, 99 % {:.1?}; {:.1?} in all",
-            decisions.len(),
-            part(50),
-            part(99),
-            begin.elapsed()
-        );
+        for method in Method::ALL.into_iter().filter(|method| methods.contains(&method.name()[..1].replace('s', "d"))) {
+            let request = Request {
+                agents: agents.parse().unwrap_or(0),
+                duration: 3600.0 * number(hours),
+                delays: Delays::default(),
+                seed: seed.parse().unwrap_or(0),
+                method,
+            };
+            let report = run(&imported, request).expect("a run");
+            println!("{agents} {}: {:?}", method.name(), report.outcome);
+            println!(
+                "  {} decisions: median {:.2} ms, 99 % {:.2} ms; {:.1?} in all",
+                report.decisions.len(),
+                1e3 * report.decided_within(0.5),
+                1e3 * report.decided_within(0.99),
+                report.time
+            );
+        }
     }
     ExitCode::SUCCESS
 }
