@@ -1,0 +1,105 @@
+//! Fleets that run for hours: missions come one after the other, ways and orders are admitted when a robot needs them, and
+//! robots keep their orders however late anybody is.
+//!
+//! A robot goes to its goal and on to a node where it may stand for good, so that nobody ever waits for somebody without a
+//! mission; where its next mission is admitted on the way it turns off. Who passes whom first is settled when a way is admitted
+//! (`docs/theory.md`); locks and start delays do the same missions under the same delays, for comparison.
+//!
+//! ```text
+//! gates      holds as lists of places to wait                  Contact, Gate
+//! site       pieces of way, and how robots on them touch       Site
+//! ends       where robots may stand for good                   WellFormedness
+//! routes     quickest routes
+//! robot      how robots move and are delayed
+//! way        from node to node, and times without waits
+//! book       regions of the ways, and who goes first
+//! forecast   whether all can finish, and when
+//! dispatch   ways and orders for a mission
+//! edges      locks on edges, for comparison
+//! record     what was done, for the independent checker        Certificate
+//! run        a run                                             Outcome
+//! answer     what `pcr traffic --hours` prints                 Lifelong
+//! ```
+
+mod answer;
+mod book;
+mod dispatch;
+mod edges;
+mod ends;
+mod forecast;
+mod gates;
+mod record;
+mod robot;
+mod routes;
+mod run;
+mod site;
+mod way;
+
+pub use answer::{Driven, Lifelong};
+pub use ends::WellFormedness;
+pub use record::Certificate;
+pub use run::{Outcome, Report, run};
+
+use serde::Serialize;
+
+/// How robots are kept apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Passing orders.
+    Orders,
+    /// A robot sets off when nobody else has anything in its way, up to its end.
+    RouteLocks,
+    /// A robot takes one edge after the other, if a banker's check lets it.
+    EdgeLocks,
+    /// A robot sets off when it is expected to meet nobody; orders keep to that when somebody is late.
+    StartDelays,
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Orders, Self::RouteLocks, Self::EdgeLocks, Self::StartDelays];
+
+    /// What it is called in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Orders => "orders",
+            Self::RouteLocks => "route locks",
+            Self::EdgeLocks => "edge locks",
+            Self::StartDelays => "start delays",
+        }
+    }
+}
+
+/// What goes wrong with robots.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Delays {
+    /// Part of the time for which a robot is stopped for no reason.
+    pub stopped: f64,
+    /// Mean duration of a stop \[s\].
+    pub stop: f64,
+    /// Largest part of its speed that a robot loses, another one each few seconds.
+    pub slip: f64,
+}
+
+impl Default for Delays {
+    /// Stopped for 2 % of the time, 5 s each; up to 5 % slower.
+    fn default() -> Self {
+        Self { stopped: 0.02, stop: 5.0, slip: 0.05 }
+    }
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Robots.
+    pub agents: usize,
+    /// For how long missions come \[s\].
+    pub duration: f64,
+    /// What goes wrong.
+    pub delays: Delays,
+    /// Another number gives other missions and delays.
+    pub seed: u64,
+    /// How robots are kept apart.
+    pub method: Method,
+}
