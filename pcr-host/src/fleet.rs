@@ -9,6 +9,7 @@ pub(crate) mod speed;
 mod tests;
 
 use crate::import::TURN;
+use crate::memory;
 use crate::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
 use pcr_certify::data::Angle;
 use pcr_core::{
@@ -158,6 +159,16 @@ impl<S: Format> Fleet<S> {
         let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
         debug_assert_eq!(motions.len(), self.agents.len());
         motions
+    }
+
+    /// The motion of one agent.
+    pub(crate) fn motion(&self, agent: usize) -> Option<Motion<'_, S>> {
+        self.agents.get(agent)?.motion().ok()
+    }
+
+    /// Adds the agents of another one behind its own.
+    pub(crate) fn append(&mut self, other: Self) {
+        self.agents.extend(other.agents);
     }
 
     /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.
@@ -357,10 +368,23 @@ fn grown<S: Scalar>(
     build: impl Fn(Vec<Region>, Vec<Piece<S>>) -> Result<HostEcm<S>, Full>,
 ) -> Result<HostEcm<S>, Full> {
     loop {
-        match build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]) {
+        match build(room(regions, Region::EMPTY, Full::Regions)?, room(pieces, Piece::EMPTY, Full::Pieces)?) {
             Err(Full::Regions) => regions = 2 * regions + 1,
             Err(Full::Pieces) => pieces = 2 * pieces + 1,
             done => return done,
         }
     }
+}
+
+/// A storage of this size; where memory does not hold it, no room is what the table is told.
+fn room<T: Copy>(size: usize, empty: T, full: Full) -> Result<Vec<T>, Full> {
+    let mut storage = Vec::new();
+    let bytes = size as u64 * size_of::<T>() as u64;
+    // What is small is there, and asking takes its time.
+    if bytes >= memory::STEP {
+        memory::ask(bytes, String::new).map_err(|_| full)?;
+    }
+    storage.try_reserve_exact(size).map_err(|_| full)?;
+    storage.resize(size, empty);
+    Ok(storage)
 }

@@ -8,6 +8,7 @@
 //! rows       regions of fleets of any size, an agent at a time       Row, Grid
 //! check      the conflicts of the motions as given              Verdict
 //! locks      which edges of a layout exclude one another        Locks
+//! memory     what cannot be held is refused                 TooLarge
 //! nodes      what a layout holds                                Listing
 //! plan       delays without conflicts                           Plan
 //! traffic    random missions on a layout, and their plan             Traffic
@@ -27,6 +28,7 @@
 pub mod certificate;
 pub mod certify;
 pub mod check;
+mod checksum;
 pub mod compare;
 pub mod evaluate;
 pub mod fleet;
@@ -36,6 +38,7 @@ pub mod input;
 mod json;
 pub mod lifelong;
 pub mod locks;
+pub mod memory;
 pub mod nodes;
 pub mod output;
 pub mod paper;
