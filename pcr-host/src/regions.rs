@@ -215,10 +215,10 @@ impl Answer {
 
 impl Cover {
     /// Those of an agent, for each stretch of its path with another outline, and the discs that they became.
-    fn of(agent: &Agent, place: usize, owners: &[Disced]) -> Vec<Self> {
+    fn of(agent: &Agent, own: &[Disced]) -> Vec<Self> {
         let covers = agent.outlines().into_iter().filter_map(|outline| {
             let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
-            let own = owners.iter().filter(|disc| disc.agent == place && disc.first() == outline.segments[0]);
+            let own = own.iter().filter(|disc| disc.first() == outline.segments[0]);
             let growth = own.map(|disc| disc.growth).fold(0.0, f64::max);
             let footprint = outline.footprint?;
             let (overhang, discs) = (footprint.overhang(), footprint.discs().to_vec());

@@ -30,6 +30,8 @@ pub struct Sheet<'s, S: Format> {
     discs: Vec<Range<usize>>,
     /// The agents that are asked for, by their numbers.
     egos: Vec<usize>,
+    /// Whether any agent is more than one disc.
+    outlined: bool,
 }
 
 impl<'s, S: Format> Sheet<'s, S> {
@@ -51,7 +53,8 @@ impl<'s, S: Format> Sheet<'s, S> {
         }
         let mut egos: Vec<usize> = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|it| ids[ego] == it)).collect();
         egos.sort_by_key(|&ego| ids[ego]);
-        Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos })
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
+        Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos, outlined })
     }
 
     /// Pairs of discs that come near one another, each counted from both sides: what a pass looks at.
@@ -119,7 +122,7 @@ impl<'s, S: Format> Sheet<'s, S> {
         });
         let works: Vec<(Work<'_, S>, usize)> = works.collect();
         let mut regions = match &works[..] {
-            [(work, place)] if !self.is_outlined() => work.row(*place),
+            [(work, place)] if !self.outlined => work.row(*place),
             works => outlines::regions(works, &self.bodies.discs, &self.ids),
         };
         regions.sort_by(|a, b| {
@@ -127,10 +130,6 @@ impl<'s, S: Format> Sheet<'s, S> {
             a.j.cmp(&b.j).then(starts)
         });
         Ok(regions)
-    }
-
-    fn is_outlined(&self) -> bool {
-        self.scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty())
     }
 
     fn failure(&self, full: Full) -> Failure {
@@ -150,14 +149,14 @@ impl<'s, S: Format> Sheet<'s, S> {
     /// [`Failure`] where a value does not fit the format.
     pub fn head(&self) -> Result<Answer, Failure> {
         let certificate = || certify::table_of::<S>(self.scenario);
-        let agents = self.scenario.agents.iter().enumerate();
+        let agents = self.scenario.agents.iter().zip(&self.discs);
         Ok(Answer {
             name: self.scenario.name.clone(),
             labels: self.labels.clone(),
             scalar: S::NAME,
             regions: Vec::new(),
             margin_regions: self.has_margins().then(Vec::new),
-            footprints: agents.flat_map(|(place, agent)| Cover::of(agent, place, &self.bodies.discs)).collect(),
+            footprints: agents.flat_map(|(agent, own)| Cover::of(agent, &self.bodies.discs[own.clone()])).collect(),
             warnings: self.scenario.warnings.clone(),
             certificate: self.request.certificate.then(certificate).transpose()?,
             error: None,
