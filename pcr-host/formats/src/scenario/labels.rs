@@ -1,0 +1,62 @@
+//! What people call the agents: text beside their numbers.
+
+use super::{Agent, Scenario};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Longest label, in characters.
+pub const LONGEST_LABEL: usize = 200;
+
+/// The labels of the agents that have one, by their numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Labels(BTreeMap<u64, String>);
+
+impl Labels {
+    /// Those of a scenario.
+    pub fn of(scenario: &Scenario) -> Self {
+        let labelled = scenario.agents.iter().filter(|agent| !agent.label.is_empty());
+        Self(labelled.map(|agent| (agent.id, agent.label.clone())).collect())
+    }
+
+    /// Whether no agent has one.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// That of an agent; empty if it has none.
+    pub fn get(&self, id: u64) -> &str {
+        self.0.get(&id).map_or("", String::as_str)
+    }
+
+    /// The number of an agent and its label, as in `7 AGV-3`.
+    pub fn called(&self, id: u64) -> String {
+        called(id, self.get(id))
+    }
+}
+
+impl Agent {
+    /// Its number and its label, as in `7 AGV-3`.
+    pub fn called(&self) -> String {
+        called(self.id, &self.label)
+    }
+}
+
+/// A number with a label, if there is one.
+pub(super) fn called(id: u64, label: &str) -> String {
+    if label.is_empty() { id.to_string() } else { format!("{id} {label}") }
+}
+
+/// What a label may not be.
+pub(super) fn fault(label: &str) -> Option<String> {
+    if let Some(c) = label.chars().find(|c| c.is_control()) {
+        return Some(format!("has the control character {}; allowed is printable text", c.escape_default()));
+    }
+    let length = label.chars().count();
+    (length > LONGEST_LABEL).then(|| format!("has {length} characters; allowed are up to {LONGEST_LABEL}"))
+}
+
+/// Text from elsewhere as a label: without control characters, and not too long.
+pub fn label(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(LONGEST_LABEL).collect()
+}

@@ -1,0 +1,268 @@
+//! Whether the agents of a scenario collide as they move: what `pcr check` prints in every format.
+//!
+//! The types are the JSON output, field for field in this order. All motions run from the earliest start to the latest
+//! arrival; every agent stands at its start before and at its end after its motion.
+
+use crate::bodies::{Bodies, Disced};
+use crate::certify::Proof;
+use crate::fleet::Format;
+use crate::memory::{self, Held};
+use crate::regions::{Failure, Told};
+use crate::rows::{Grid, grown};
+use pcr_core::{Encounter, Interval, Motion};
+use pcr_formats::scenario::{Labels, Scenario};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Conflicts of one scenario, or why there is no answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// Name of the scenario.
+    pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
+    /// Sorted by their begin, then by the agents.
+    pub conflicts: Vec<Conflict>,
+    /// Every pair, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closest: Option<Vec<Closest>>,
+    /// What an independent checker has proved, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
+    /// Why the scenario was refused.
+    pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// Two discs in contact, from begin to end. What is deeper than [`Encounter::tolerance`] is always there, what is
+/// clearer never.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Conflict {
+    /// Number of an agent.
+    pub i: u64,
+    /// Number of the other one, larger.
+    pub j: u64,
+    /// From when to when \[s\].
+    pub t: [f64; 2],
+    /// Largest overlap: sum of the radii less the separation \[m\].
+    pub depth: f64,
+    /// Lengths along the path of `i` meanwhile \[m\].
+    pub l_i: [f64; 2],
+    /// Lengths along the path of `j` meanwhile \[m\].
+    pub l_j: [f64; 2],
+    /// Whether the depth is within the tolerance of 0.
+    pub touching: bool,
+}
+
+/// How near two agents come.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Closest {
+    /// Number of an agent.
+    pub i: u64,
+    /// Number of the other one, larger.
+    pub j: u64,
+    /// When, for the first time \[s\].
+    pub t: f64,
+    /// Distance of the centres \[m\].
+    pub separation: f64,
+    /// Separation less the radii \[m\].
+    pub clearance: f64,
+}
+
+impl Verdict {
+    /// The conflicts of a scenario, computed in the format `S`.
+    ///
+    /// # Errors
+    /// [`Failure`] where a value does not fit the format, or memory does not hold the answer.
+    pub fn of<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
+        Self::watched::<S>(scenario, closest, &|_, _| {})
+    }
+
+    /// The same, telling how many agents of how many are done.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+        let Bodies { fleet, discs, .. } = Bodies::<S>::new(scenario)?;
+        let motions = fleet.motions();
+        let pairs = Pairs::new(scenario, &discs, &motions);
+        let count = pairs.agents.len();
+        if closest {
+            let all = count as u64 * count.saturating_sub(1) as u64 / 2;
+            let what = || format!("how near all {all} pairs come");
+            memory::ask(all.saturating_mul(size_of::<Closest>() as u64), what)?;
+        }
+        let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), Held::default());
+        for first in (0..count).step_by(STRETCH) {
+            let stretch = first..count.min(first + STRETCH);
+            let found: Vec<_> = stretch.clone().into_par_iter().map(|k| pairs.of(k, closest)).collect();
+            for (found, near) in found {
+                held.extend(&mut conflicts, found, 0, "conflicts")?;
+                nearest.extend(near);
+            }
+            told(stretch.end, count);
+        }
+        // Stable: those that begin together stay in the order of the agents.
+        conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
+        Ok(Self {
+            name: scenario.name.clone(),
+            labels: Labels::of(scenario),
+            conflicts,
+            closest: closest.then_some(nearest),
+            certificate: None,
+            warnings: scenario.warnings.clone(),
+            error: None,
+        })
+    }
+
+    /// The same with a certificate.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
+        let certificate = Some(Proof::of::<S>(scenario)?);
+        Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
+    }
+
+    /// No answer, and why.
+    pub fn refused(name: &str, error: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            labels: Labels::default(),
+            conflicts: Vec::new(),
+            closest: None,
+            certificate: None,
+            warnings: Vec::new(),
+            error: Some(error),
+        }
+    }
+}
+
+/// A disc of an agent, and its motion.
+type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
+
+/// Agents that are looked at between two words on how far it is.
+const STRETCH: usize = 1024;
+
+/// The agents by their numbers, and who may come near whom.
+struct Pairs<'a, S: Format> {
+    agents: Vec<(u64, Vec<Body<'a, S>>)>,
+    /// Their places in the scenario.
+    ranks: Vec<usize>,
+    grid: Grid,
+    discs: &'a [Disced],
+    /// From the first start to the last arrival \[s\].
+    time: Interval<S>,
+}
+
+impl<'a, S: Format> Pairs<'a, S> {
+    fn new(scenario: &Scenario, discs: &'a [Disced], motions: &'a [Motion<'a, S>]) -> Self {
+        let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        let mut order: Vec<usize> = (0..scenario.agents.len()).collect();
+        order.sort_by_key(|&agent| scenario.agents[agent].id);
+        let mut ranks = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);
+        let mut agents: Vec<(u64, Vec<Body<'a, S>>)> =
+            order.iter().map(|&agent| (scenario.agents[agent].id, Vec::new())).collect();
+        for body in discs.iter().zip(motions) {
+            agents[ranks[body.0.agent]].1.push(body);
+        }
+        let grid = Grid::new(motions.iter().map(area).collect());
+        Self { agents, ranks, grid, discs, time }
+    }
+
+    /// The agents after one that may come near it.
+    fn after(&self, agent: usize) -> Vec<usize> {
+        let (mut near, mut after) = (Vec::new(), Vec::new());
+        for (_, motion) in &self.agents[agent].1 {
+            self.grid.meeting(&area(motion), &mut near);
+            after.extend(near.iter().map(|&disc| self.ranks[self.discs[disc as usize].agent]));
+        }
+        after.retain(|&other| other > agent);
+        after.sort_unstable();
+        after.dedup();
+        after
+    }
+
+    /// The conflicts of an agent with those after it; with `closest` how near each of them comes.
+    fn of(&self, agent: usize, closest: bool) -> (Vec<Conflict>, Vec<Closest>) {
+        let others = if closest { (agent + 1..self.agents.len()).collect() } else { self.after(agent) };
+        let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
+        for other in others {
+            let (found, near) = encounters(&self.agents[agent], &self.agents[other], self.time, closest);
+            conflicts.extend(found);
+            nearest.extend(near);
+        }
+        (conflicts, nearest)
+    }
+}
+
+/// Where a disc is in contact with nothing that is not there, too.
+fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
+    let reach = (motion.radius() + Encounter::new(motion, motion).tolerance()).to_f64();
+    grown(motion, reach)
+}
+
+/// The conflicts of two agents, and how near they come if asked for.
+fn encounters<S: Format>(
+    (i, first): &(u64, Vec<Body<'_, S>>),
+    (j, second): &(u64, Vec<Body<'_, S>>),
+    time: Interval<S>,
+    closest: bool,
+) -> (Vec<Conflict>, Option<Closest>) {
+    let mut found: Vec<Conflict> = Vec::new();
+    let mut closest_of: Option<Closest> = None;
+    for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
+        let [own_time, their_time] = [own, other].map(|(disc, motion)| disc.time(motion, time));
+        let time = Interval { lo: own_time.lo.max(their_time.lo), hi: own_time.hi.min(their_time.hi) };
+        if time.lo > time.hi {
+            continue;
+        }
+        let encounter = Encounter::new(own.1, other.1);
+        found.extend(encounter.conflicts(time).map(|conflict| Conflict {
+            i: *i,
+            j: *j,
+            t: ends(conflict.time),
+            depth: conflict.depth.to_f64(),
+            l_i: own.0.on_agent(ends(conflict.length)),
+            l_j: other.0.on_agent(ends(conflict.other_length)),
+            touching: conflict.touching,
+        }));
+        if closest {
+            let approach = encounter.closest(time);
+            let clearance = (approach.separation - encounter.radius()).to_f64();
+            if closest_of.is_none_or(|closest| clearance < closest.clearance) {
+                let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
+                closest_of = Some(Closest { i: *i, j: *j, t, separation, clearance });
+            }
+        }
+    }
+    (if first.len() * second.len() > 1 { joined(found) } else { found }, closest_of)
+}
+
+/// Times that are one but for rounding \[s\].
+const NEAR: f64 = 1e-9;
+
+/// The conflicts of two agents by those of their discs: what lasts on is one.
+fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
+    conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
+    let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let mut joined: Vec<Conflict> = Vec::new();
+    for next in conflicts {
+        match joined.last_mut() {
+            Some(last) if next.t[0] <= last.t[1] + NEAR => {
+                (last.t, last.depth) = (hull(last.t, next.t), last.depth.max(next.depth));
+                (last.l_i, last.l_j) = (hull(last.l_i, next.l_i), hull(last.l_j, next.l_j));
+                last.touching &= next.touching;
+            }
+            _ => joined.push(next),
+        }
+    }
+    joined
+}
+
+fn ends<S: Format>(interval: Interval<S>) -> [f64; 2] {
+    [interval.lo.to_f64(), interval.hi.to_f64()]
+}

@@ -1,0 +1,209 @@
+//! Which edges of a layout may not be used at the same time, and on which lengths: the table of locks of a fleet control.
+//!
+//! Two vehicles are anywhere on two edges. The lengths (l₁, l₂) at which their discs overlap are the collision regions of the two
+//! edges in coordination space: the kernels of the library find them, whatever the motions. The extents of a connected region
+//! are the lengths within which one edge is blocked while the other is used. They contain the true ones, the deviation of arcs from the
+//! curves of the file included. A footprint is the union of its discs in every pose that the vehicle has on an edge, its turns at both ends included; extents that
+//! overlap are joined, so that the locks of two edges are apart. A vehicle that stops or turns at a node is at the end of an edge, so
+//! that nodes are part of their edges; on their own they can be asked for.
+
+mod index;
+mod rides;
+mod sweep;
+mod table;
+
+use crate::memory;
+use pcr_formats::footprint::Disc;
+use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
+use pcr_formats::scenario::{Agent, Scenario};
+pub use index::{Index, IndexError, Partner, write_index};
+use rides::Ride;
+pub use rides::{Rides, corridor};
+use serde::Serialize;
+pub use sweep::{Found, Sweep, Told};
+pub use table::{Change, Table};
+
+/// The locks of a layout for a vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Locks {
+    /// Name of the layout.
+    pub layout: String,
+    /// The vehicle.
+    pub vehicle: LockVehicle,
+    /// By `a`, then `b`, then the lengths.
+    pub locks: Vec<Lock>,
+    /// What a vehicle that stands at a node blocks, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<Vec<NodeLock>>,
+    /// Nodes at which vehicles cannot stand at the same time, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub node_pairs: Option<Vec<[Id; 2]>>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// The vehicle of a table of locks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LockVehicle {
+    /// Its type, where the layout has several.
+    pub name: Option<String>,
+    /// Radius of its disc \[m\], margin included; with a footprint that of the disc around all of it.
+    pub radius: f64,
+    /// With a footprint: no point of a disc is farther than this from the outline \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overhang: Option<f64>,
+    /// With a footprint: the discs that are computed with, margin included.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub discs: Vec<Disc>,
+}
+
+/// Two edges, and the lengths of each within which a vehicle may touch one on the other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lock {
+    /// Edge, as in the layout.
+    pub a: Id,
+    /// Edge, after `a` in order.
+    pub b: Id,
+    /// From and to, from the start of `a` \[m\].
+    pub a_length: [f64; 2],
+    /// From and to, from the start of `b` \[m\].
+    pub b_length: [f64; 2],
+}
+
+/// A node, and the lengths of an edge within which a vehicle may touch one that stands at the node.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NodeLock {
+    /// Node, as in the layout.
+    pub node: Id,
+    /// Edge.
+    pub edge: Id,
+    /// From and to, from the start of the edge \[m\].
+    pub edge_length: [f64; 2],
+}
+
+/// Lengths of two edges at which vehicles may touch \[m\].
+pub type Extents = [[f64; 2]; 2];
+
+impl Locks {
+    /// The locks of a layout for its vehicle; with `nodes`, what standing at a node blocks as well, in any heading.
+    ///
+    /// Cost: less than a microsecond for each pair of straight segments whose boxes meet, on each core.
+    ///
+    /// # Errors
+    /// [`ImportError`] for coordinates beyond what can be computed with, and for a table that memory does not hold.
+    pub fn of(imported: &Imported, nodes: bool) -> Result<Self, ImportError> {
+        Self::watched(imported, nodes, &|_, _| {})
+    }
+
+    /// The same, telling how many pairs of how many have been looked at.
+    ///
+    /// # Errors
+    /// As [`Locks::of`].
+    pub fn watched(imported: &Imported, nodes: bool, told: Told<'_>) -> Result<Self, ImportError> {
+        let sweep = Sweep::new(imported, nodes)?;
+        let mut locks = Self::head(imported, nodes);
+        let mut held = 0;
+        sweep.each(told, <[Found]>::to_vec, |found| {
+            // Two names a lock.
+            held += found.len() as u64 * (size_of::<Lock>() + 64) as u64;
+            if held > memory::STEP {
+                let count = locks.locks.len();
+                memory::ask(held + 2 * (count * size_of::<Lock>()) as u64, || format!("a table of over {count} locks"))
+                    .map_err(|large| ImportError::new(large.to_string()))?;
+                held = 0;
+            }
+            found.iter().for_each(|found| locks.add(&sweep, found));
+            Ok::<(), ImportError>(())
+        })?;
+        Ok(locks)
+    }
+
+    /// The table without its locks.
+    pub fn head(imported: &Imported, nodes: bool) -> Self {
+        let (layout, rides) = (&imported.layout, Rides::new(imported));
+        let vehicle = rides.vehicle();
+        let footprint = vehicle.footprint.as_ref();
+        Self {
+            layout: layout.name.clone(),
+            vehicle: LockVehicle {
+                name: vehicle.name.clone(),
+                radius: vehicle.radius,
+                overhang: footprint.map(|footprint| footprint.overhang()),
+                discs: footprint.map_or_else(Vec::new, |footprint| footprint.discs().to_vec()),
+            },
+            locks: Vec::new(),
+            nodes: nodes.then(Vec::new),
+            node_pairs: nodes.then(Vec::new),
+            warnings: layout.warnings.iter().cloned().chain(rounded(layout)).collect(),
+        }
+    }
+
+    fn add(&mut self, sweep: &Sweep, &Found { places: [a, b], lengths: [a_length, b_length] }: &Found) {
+        let [(Some(a_id), a_edge), (Some(b_id), b_edge)] =
+            [a, b].map(|place| (sweep.ids().get(place).cloned(), sweep.is_edge(place)))
+        else {
+            return;
+        };
+        match (a_edge, b_edge) {
+            (true, true) => self.locks.push(Lock { a: a_id, b: b_id, a_length, b_length }),
+            (true, false) => {
+                let lock = NodeLock { node: b_id, edge: a_id, edge_length: a_length };
+                self.nodes.get_or_insert_default().push(lock);
+            }
+            // Edges come before nodes.
+            (false, _) => self.node_pairs.get_or_insert_default().push([a_id, b_id]),
+        }
+    }
+}
+
+/// What has to be said of layouts of which routes round the corners.
+fn rounded(layout: &Layout) -> Option<String> {
+    let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
+    Some(format!(
+        "corners: routes round them with {radius} m, off their edges by up to {radius} m (1 - cos(a/2)) in a turn by a; locks are those of \
+         vehicles that keep to the edges: give that as --margin"
+    ))
+}
+
+/// What vehicles sweep on all edges and nodes of each level, as the agents whose regions the locks are made of: what has to be certified
+/// of a table of locks.
+///
+/// # Errors
+/// As [`Locks::of`].
+pub fn scenarios(imported: &Imported) -> Result<Vec<Scenario>, ImportError> {
+    let (layout, rides) = (&imported.layout, Rides::new(imported));
+    let levels = layout.levels.iter().enumerate();
+    levels
+        .map(|(level, name)| {
+            let mut edges: Vec<&Edge> = layout.edges.iter().filter(|edge| layout.is_on(edge, level)).collect();
+            edges.sort_by(|a, b| a.id.cmp(&b.id));
+            let mut nodes: Vec<usize> = (0..layout.nodes.len()).filter(|&k| layout.nodes[k].level == level).collect();
+            nodes.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
+            let there = edges.into_iter().flat_map(|edge| rides.on(edge)).chain(nodes.into_iter().map(|k| rides.at(k)));
+            let rides: Vec<Ride> = there.collect();
+            Ok(Scenario { name: format!("{} {name}", layout.name).trim().to_owned(), ..scenario(&rides)? })
+        })
+        .collect()
+}
+
+/// The rides as agents.
+fn scenario(rides: &[Ride]) -> Result<Scenario, ImportError> {
+    let agents = rides.iter().enumerate().map(|(k, ride)| Agent { id: k as u64, ..ride.agent.clone() });
+    import::checked(&Scenario::new("", agents.collect()))
+}
+
+/// The hulls of those that overlap, again and again until all are apart.
+fn joined(extents: Vec<Extents>) -> Vec<Extents> {
+    let mut apart: Vec<Extents> = Vec::new();
+    for mut next in extents {
+        let overlap = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a <= d && c <= b;
+        while let Some(place) = apart.iter().position(|other| (0..2).all(|k| overlap(next[k], other[k]))) {
+            let other = apart.swap_remove(place);
+            for (a, b) in next.iter_mut().zip(other) {
+                *a = [a[0].min(b[0]), a[1].max(b[1])];
+            }
+        }
+        apart.push(next);
+    }
+    apart
+}
