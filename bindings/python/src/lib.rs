@@ -91,7 +91,9 @@ impl Fleet {
                 [id(region.ego()), id(region.other()), t.lo, t.hi, l.lo, l.hi, s.lo, s.hi, open[0], open[1]]
             })
             .collect();
-        rows.sort_by(|a, b| [0, 1, 2, 4].iter().fold(std::cmp::Ordering::Equal, |order, &k| order.then(a[k].total_cmp(&b[k]))));
+        rows.sort_by(|a, b| {
+            [0, 1, 2, 4].iter().fold(std::cmp::Ordering::Equal, |order, &k| order.then(a[k].total_cmp(&b[k])))
+        });
         Ok(rows)
     }
 }
@@ -149,7 +151,11 @@ impl Fleet {
     /// What `pcr regions --json` prints, of fleets with footprints as well.
     #[pyo3(signature = (slices = None, agent = None))]
     fn regions_json(&self, py: Python<'_>, slices: Option<usize>, agent: Option<u64>) -> PyResult<String> {
-        py.detach(|| Answer::of::<f64>(&self.scenario, Request { agent, slices, certificate: false }).map_err(refused).and_then(|answer| json(&answer)))
+        py.detach(|| {
+            Answer::of::<f64>(&self.scenario, Request { agent, slices, certificate: false })
+                .map_err(refused)
+                .and_then(|answer| json(&answer))
+        })
     }
 
     fn check_json(&self, py: Python<'_>) -> PyResult<String> {
@@ -157,7 +163,14 @@ impl Fleet {
     }
 
     /// The forbidden lengths of an agent at these times: number of the time, other agent, from, to.
-    fn map<'py>(&self, py: Python<'py>, agent: u64, from: f64, step: f64, times: usize) -> PyResult<Bound<'py, PyBytes>> {
+    fn map<'py>(
+        &self,
+        py: Python<'py>,
+        agent: u64,
+        from: f64,
+        step: f64,
+        times: usize,
+    ) -> PyResult<Bound<'py, PyBytes>> {
         self.discs()?;
         let ego = self.place(agent)?;
         let rows = py.detach(|| -> PyResult<Vec<[f64; 4]>> {
@@ -194,7 +207,13 @@ impl Fleet {
     }
 
     /// When no other agent blocks these lengths of an agent's path.
-    fn safe_intervals(&self, py: Python<'_>, agent: u64, length: (f64, f64), during: (f64, f64)) -> PyResult<Vec<(f64, f64)>> {
+    fn safe_intervals(
+        &self,
+        py: Python<'_>,
+        agent: u64,
+        length: (f64, f64),
+        during: (f64, f64),
+    ) -> PyResult<Vec<(f64, f64)>> {
         self.discs()?;
         let ego = self.place(agent)?;
         for (name, (lo, hi)) in [("length", length), ("during", during)] {
@@ -295,7 +314,9 @@ struct Layout(Imported);
 impl Layout {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<Self> {
-        py.detach(|| input::read_layout(&path, &options.into(), false).map(|(imported, _)| Self(imported)).map_err(refused))
+        py.detach(|| {
+            input::read_layout(&path, &options.into(), false).map(|(imported, _)| Self(imported)).map_err(refused)
+        })
     }
 
     fn locks_json(&self, py: Python<'_>, nodes: bool) -> PyResult<String> {
