@@ -27,6 +27,7 @@ from os import PathLike
 from typing import Any, NamedTuple, Optional, Union, overload
 
 from . import _pcr
+from ._options import Options
 from ._pcr import Error
 
 __all__ = ["Conflict", "Error", "Fleet", "Layout", "Lock", "Plan", "Region", "Regions", "ScenarioError"]
@@ -265,7 +266,7 @@ class Fleet:
 
     def plot(self, ax: Any = None, *, agent: Optional[int] = None, columns: int = 400) -> Any:
         """Draws the paths, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""
-        import matplotlib.pyplot as plt
+        import matplotlib.pyplot as plt  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
         axes = plt.subplots()[1] if ax is None else ax
         arrivals = {a["id"]: a for a in self.agents}
@@ -297,7 +298,7 @@ class Fleet:
 
 
 def _options(radius: Optional[float], speed: Optional[float], acceleration: Optional[float], rotation: Optional[float],
-             vehicle: Optional[str], routes: Sequence[str], partial: bool) -> _pcr.Options:
+             vehicle: Optional[str], routes: Sequence[str], partial: bool) -> Options:
     for name, number in (("radius", radius), ("speed", speed), ("acceleration", acceleration), ("rotation", rotation)):
         if number is not None and not (math.isfinite(number) and number > 0):
             raise Error(f"{name}: {number} is not above 0")

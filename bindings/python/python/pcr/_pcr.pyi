@@ -1,16 +1,7 @@
 from os import PathLike
-from typing import Optional, TypedDict, Union, final
+from typing import Optional, Union, final
 
-__all__ = ["Error", "Fleet", "Layout", "version"]
-
-class Options(TypedDict):
-    radius: Optional[float]
-    speed: Optional[float]
-    acceleration: Optional[float]
-    rotation: Optional[float]
-    vehicle: Optional[str]
-    routes: list[str]
-    partial: bool
+from ._options import Options
 
 version: str
 
