@@ -3,6 +3,8 @@ from typing import Optional, Union, final
 
 from ._options import Options
 
+__all__ = ["Error", "Fleet", "Layout", "version"]
+
 version: str
 
 class Error(ValueError): ...
