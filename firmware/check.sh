@@ -24,11 +24,7 @@ fail() { echo "firmware: $*" >&2; exit 1; }
 # need COMMAND PACKAGE
 need() {
   command -v "$1" >/dev/null && return
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || fail "no $1: install $2"
-  echo "installing $2"
-  # Another process that installs something is waited for.
-  { apt-get -o DPkg::Lock::Timeout=600 update && apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "$2"; } \
-    >"$scratch/apt.log" 2>&1 || fail "apt-get: $(tail -3 "$scratch/apt.log")"
+  ../.ci/install.sh "$2" || fail "no $1"
   command -v "$1" >/dev/null || fail "no $1 in the package $2"
 }
 

@@ -31,3 +31,8 @@ pub struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/cookbook.md")]
 pub struct Cookbook;
+
+/// The example of the core's package runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../pcr-core/README.md")]
+pub struct Core;

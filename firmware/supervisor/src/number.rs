@@ -8,6 +8,8 @@ use serde::de::DeserializeOwned;
 pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + DeserializeOwned {
     /// Name in commands and expected files.
     const NAME: &'static str;
+    /// One metre, one second.
+    const ONE: Self;
     /// The bits of the number: what is compared between machines.
     fn bits(self) -> u32;
     /// The bits of an angle.
@@ -19,6 +21,7 @@ pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + Dese
 #[cfg(feature = "float")]
 impl Number for f32 {
     const NAME: &'static str = "f32";
+    const ONE: Self = 1.0;
     fn bits(self) -> u32 {
         self.to_bits()
     }
@@ -33,6 +36,7 @@ impl Number for f32 {
 #[cfg(feature = "micromath")]
 impl Number for pcr_core::scalar::Micro {
     const NAME: &'static str = "micro";
+    const ONE: Self = Self(1.0);
     fn bits(self) -> u32 {
         self.0.to_bits()
     }
@@ -49,6 +53,7 @@ macro_rules! fixed {
     ($($format:ident, $name:literal, $fraction_bits:literal;)*) => {
         $(impl Number for pcr_fixed::$format {
             const NAME: &'static str = $name;
+            const ONE: Self = Self::ONE;
             fn bits(self) -> u32 {
                 self.to_bits().cast_unsigned()
             }
