@@ -15,9 +15,7 @@ command -v c++ >/dev/null || packages+=(g++)
 command -v pkg-config >/dev/null || packages+=(pkg-config)
 command -v cmake >/dev/null || packages+=(cmake make)
 if [ ${#packages[@]} -gt 0 ]; then
-  echo "bindings/c: installing ${packages[*]}" >&2
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "bindings/c: please install ${packages[*]}" >&2; exit 2; }
-  { apt-get -o DPkg::Lock::Timeout=600 update && apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "${packages[@]}"; } >&2
+  "$root/.ci/install.sh" "${packages[@]}"
 fi
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT

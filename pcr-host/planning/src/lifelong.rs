@@ -10,6 +10,7 @@
 //! site       pieces of way, and how robots on them touch       Site
 //! ends       where robots may stand for good                   WellFormedness
 //! routes     quickest routes
+//! abilities  what a robot can do
 //! robot      how robots move and are delayed
 //! way        from node to node, and times without waits
 //! book       regions of the ways, and who goes first
@@ -21,6 +22,7 @@
 //! answer     what `pcr traffic --hours` prints                 Lifelong
 //! ```
 
+mod abilities;
 mod answer;
 mod book;
 mod dispatch;

@@ -2,9 +2,10 @@
 //! ever; what lets everybody arrive soonest is taken.
 
 use super::Method;
+use super::abilities::Abilities;
 use super::book::{Book, Region};
 use super::forecast::{Forecast, Stuck, Trial};
-use super::robot::{Abilities, Robot};
+use super::robot::Robot;
 use super::routes::routes;
 use super::site::Site;
 use super::way::{Kept, Way};

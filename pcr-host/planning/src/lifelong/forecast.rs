@@ -1,9 +1,10 @@
 //! Whether everybody can finish under some orders, and about when: robots are taken from gate to gate, each as soon as what it waits
 //! for has happened. Whoever is left has to wait for ever.
 
+use super::abilities::Abilities;
 use super::book::{Book, Region};
 use super::gates::Gate;
-use super::robot::{Abilities, Robot, SHORT};
+use super::robot::{Robot, SHORT};
 use super::way::Way;
 
 /// What is looked at: the fleet, one of its robots on another way.

@@ -1,49 +1,10 @@
 //! A robot on its way: it stops before its hold, at corners and goals, slips, and is stopped at random.
 
+use super::abilities::Abilities;
 use super::way::Way;
-use pcr_formats::import::Vehicle;
 
 /// A robot stands so far before its hold at least, for rounding \[m\].
 pub(super) const SHORT: f64 = 1e-6;
-
-/// What a robot can do.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Abilities {
-    pub(super) speed: f64,
-    pub(super) acceleration: f64,
-    rotation: f64,
-    rotation_acceleration: f64,
-}
-
-impl Abilities {
-    /// For robots that only stand.
-    pub(super) const NONE: Self = Self { speed: 1.0, acceleration: 1.0, rotation: 1.0, rotation_acceleration: 1.0 };
-
-    pub(super) fn of(vehicle: &Vehicle) -> Self {
-        let Vehicle { speed, acceleration, rotation, rotation_acceleration, .. } = *vehicle;
-        Self { speed, acceleration, rotation, rotation_acceleration }
-    }
-
-    /// Time of a turn in place from rest to rest \[s\].
-    pub(super) fn turn(&self, angle: f64) -> f64 {
-        let (angle, ramp) = (angle.abs(), self.rotation / self.rotation_acceleration);
-        if angle > self.rotation * ramp {
-            angle / self.rotation + ramp
-        } else {
-            2.0 * (angle / self.rotation_acceleration).sqrt()
-        }
-    }
-
-    /// Time that is lost by a stop \[s\].
-    pub(super) fn stop(&self) -> f64 {
-        self.speed / self.acceleration
-    }
-
-    /// Way to stop from a speed \[m\].
-    pub(super) fn braking(&self, speed: f64) -> f64 {
-        speed * speed / (2.0 * self.acceleration)
-    }
-}
 
 /// So long at constant acceleration, between these speeds, on this atom from this length on.
 #[derive(Clone, Copy, Debug, PartialEq)]

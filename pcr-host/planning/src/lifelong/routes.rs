@@ -1,6 +1,6 @@
 //! Quickest routes over a layout, with the turns at its nodes, and what else an atom is made to cost.
 
-use super::robot::Abilities;
+use super::abilities::Abilities;
 use super::site::{Site, wrapped};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet};

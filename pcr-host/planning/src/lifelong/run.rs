@@ -1,11 +1,12 @@
 //! A run: missions, decisions, motion, and what comes of it.
 
+use super::abilities::Abilities;
 use super::book::Book;
 use super::dispatch::{Admitted, Refused, Scene};
 use super::edges::EdgeLocks;
 use super::ends::{Ends, WellFormedness};
 use super::record::{Certificate, Window};
-use super::robot::{Abilities, Robot};
+use super::robot::Robot;
 use super::routes::routes;
 use super::site::Site;
 use super::way::Way;

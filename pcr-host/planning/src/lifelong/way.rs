@@ -1,6 +1,6 @@
 //! The path of a robot from node to node, where it stops on it, and when it would be where with nobody in its way.
 
-use super::robot::Abilities;
+use super::abilities::Abilities;
 use super::site::{Site, wrapped};
 
 /// Angles below are no corner \[rad\].
