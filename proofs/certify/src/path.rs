@@ -8,6 +8,8 @@ use crate::twofold::Twofold;
 
 type Number = Ball<Twofold>;
 
+/// How far before the end of a segment a length is that rounding would put there, as a part of the segment: 2^-80.
+const BELOW: f64 = 1.0 / (1_u128 << 80) as f64;
 /// No number of a path is larger.
 const MOST: f64 = 1e15;
 
@@ -30,7 +32,10 @@ impl Stretch {
         } else if length == self.to {
             self.placed.length
         } else {
-            (Twofold::from(length) - Twofold::from(self.from)).clamp(Twofold::ZERO, self.placed.length)
+            // The rounding of `to` may put a length before it at the exact end, or beyond. It is none of the end all the same: what
+            // ends there does not hold `to`.
+            let below = self.placed.length - self.placed.length * BELOW;
+            (Twofold::from(length) - Twofold::from(self.from)).clamp(Twofold::ZERO, below)
         }
     }
 
