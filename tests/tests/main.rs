@@ -54,6 +54,7 @@ mod plans;
 mod plans_bounds;
 mod plans_footprints;
 mod properties;
+mod refuted;
 mod regressions;
 mod regressions_shared;
 mod regressions_tangent;
