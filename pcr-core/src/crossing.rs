@@ -151,6 +151,28 @@ mod tests {
         }
     }
 
+    /// Two arcs that meet at the origin in this heading, after 1.7 m.
+    fn arcs(heading: f64, turn: Turn) -> Path<f64, 2> {
+        let side = if turn == Turn::Left { 1.0 } else { -1.0 };
+        let begin = heading - side * 1.7 / 2.0;
+        let (x, y) = (2.0 * side * (begin.sin() - heading.sin()), 2.0 * side * (heading.cos() - begin.cos()));
+        from(x, y, begin).arc(2.0, turn, 1.7).unwrap().arc(2.0, turn, 1.0).unwrap()
+    }
+
+    #[test]
+    fn a_crossing_at_joints_of_arcs_counts_once() {
+        for k in 0..1000 {
+            let k = f64::from(k);
+            let (own, their) = (0.1 + 0.001 * k, 0.4 + 0.003 * k);
+            for turn in [Turn::Left, Turn::Right] {
+                let line = from(-0.2 * own.cos(), -0.2 * own.sin(), own).line(0.2).unwrap().line(0.1).unwrap();
+                let other = arcs(their, turn);
+                assert_eq!(count(&line, &other), 1, "headings {own} and {their}, {turn:?}");
+                assert_eq!(count(&other, &line), 1, "headings {own} and {their}, {turn:?}");
+            }
+        }
+    }
+
     #[test]
     fn a_line_crosses_a_circle_twice_and_touches_it_not_at_all() {
         let circle = from(0.0, -1.0, 0.0).arc(1.0, Turn::Left, core::f64::consts::TAU).unwrap();

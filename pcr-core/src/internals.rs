@@ -1,10 +1,13 @@
 //! Kernels that tests hold to their bounds, number by number: no part of the interface, and subject to change.
 
-use crate::geometry::Point;
+use crate::error::Full;
+use crate::geometry::{Interval, Point};
+use crate::pair::cells::SegmentPair;
 use crate::pair::events::{add_events, add_turning_lengths};
 use crate::pair::footprint::{Footprint, Reach};
 use crate::pair::lengths::Lengths;
 use crate::pair::offset::{Carrier, Relative};
+use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
@@ -21,6 +24,26 @@ pub fn events<S: Scalar>(
     add_turning_lengths(first, second, ends, radius, slack, &mut turning);
     events.as_slice().iter().copied().for_each(event);
     turning.as_slice().iter().copied().for_each(turn);
+}
+
+/// Tells `found` the pieces of two segments: from where to where they lie along the first and the second \[m\].
+///
+/// # Errors
+/// [`Full`] for more than 16.
+pub fn pieces<S: Scalar>(
+    first: &Segment<S>,
+    second: &Segment<S>,
+    [radius, slack]: [S; 2],
+    mut found: impl FnMut([Interval<S>; 2]),
+) -> Result<(), Full> {
+    let mut pieces = Pieces::new([Piece::EMPTY; 16]);
+    SegmentPair { first, second, indices: [0; 2], radius, slack }.find(&mut pieces)?;
+    let mut index = pieces.first_pending();
+    while let Some(piece) = pieces.get_mut(index) {
+        found([piece.first, piece.second]);
+        index = piece.next;
+    }
+    Ok(())
 }
 
 /// Tells `found` the lengths of a segment at which P3 finds a contact from inside an arc \[m\].

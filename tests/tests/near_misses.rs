@@ -22,10 +22,14 @@ fn segment<S: Format>([x, y, heading]: [f64; 3], length: f64, bend: Option<f64>)
     next.expect("small")
 }
 
-/// Two radians of the upper half of a circle about the origin, to the left, whose middle is on top: one lap, with no change of it.
-fn upper<S: Format>(bend: f64) -> Segment<S> {
-    let from = FRAC_PI_2 - 1.0;
-    segment([bend * from.cos(), bend * from.sin(), from + FRAC_PI_2], 2.0 * bend, Some(bend))
+/// Two radians of the upper half of a circle about the origin, to the left or to the right, whose middle is on top: one lap, with
+/// no change of it.
+fn upper<S: Format>(bend: f64, turn: Turn) -> Segment<S> {
+    let side = if turn == Turn::Left { 1.0 } else { -1.0 };
+    let from = FRAC_PI_2 - side;
+    let position = Point::new(S::from_f64(bend * from.cos()), S::from_f64(bend * from.sin()));
+    let start = Segment::standing(Pose { position, heading: S::angle(from + side * FRAC_PI_2) }).expect("small");
+    start.then_arc(S::from_f64(bend), turn, S::from_f64(2.0 * bend)).expect("small")
 }
 
 /// Events along the second, and turning lengths of the first \[m\].
@@ -80,8 +84,8 @@ fn normals<S: Format>() {
         let [_, turns] = found(&arc, &line, RADIUS);
         assert_eq!(has(&turns, PI), there, "turning point of an arc, {missed} slacks: {turns:?}");
         // A line that passes an arc of 2 m about the origin outside, and a smaller one.
-        for bend in [2.0, 1.25] {
-            let own = upper::<S>(bend);
+        for (bend, turn) in [(2.0, Turn::Left), (2.0, Turn::Right), (1.25, Turn::Left), (1.25, Turn::Right)] {
+            let own = upper::<S>(bend, turn);
             let passing = segment::<S>([-3.0, bend + RADIUS + missed * SLACK, 0.0], 6.0, None);
             let [events, _] = found(&own, &passing, RADIUS);
             assert_eq!(has(&events, 3.0), there, "line outside {bend} m, {missed} slacks: {events:?}");
@@ -89,18 +93,22 @@ fn normals<S: Format>() {
             assert_eq!(has(&turns, 3.0), there, "turning point outside {bend} m, {missed} slacks: {turns:?}");
         }
         // Two arcs of 2 m whose circles are as far apart.
-        let own = upper::<S>(2.0);
-        let other = segment::<S>([-2.0, 4.0 + RADIUS + missed * SLACK, -FRAC_PI_2], 2.0 * PI, Some(2.0));
-        let [events, turns] = found(&own, &other, RADIUS);
-        assert_eq!([has(&events, PI), has(&turns, 2.0)], [there; 2], "two arcs, {missed} slacks: {events:?} {turns:?}");
+        for turn in [Turn::Left, Turn::Right] {
+            let own = upper::<S>(2.0, turn);
+            let other = segment::<S>([-2.0, 4.0 + RADIUS + missed * SLACK, -FRAC_PI_2], 2.0 * PI, Some(2.0));
+            let [events, turns] = found(&own, &other, RADIUS);
+            let both = [has(&events, PI), has(&turns, 2.0)];
+            assert_eq!(both, [there; 2], "two arcs, {missed} slacks: {events:?} {turns:?}");
+        }
     }
 }
 
 /// From inside an arc: P1 about the centre below twice the radius, right to a slack; P3 beyond, which takes (ϱ + R) / (ϱ - R) times
 /// half a slack for touching.
 fn inside<S: Format>() {
-    for (bend, missed, there) in [(1.5, 0.9, true), (1.5, 1.2, false), (4.0, 0.7, true), (4.0, 1.0, false)] {
-        let own = upper::<S>(bend);
+    let cases = [(1.5, 0.9, true), (1.5, 1.2, false), (4.0, 0.7, true), (4.0, 1.0, false)];
+    for ((bend, missed, there), turn) in cases.into_iter().flat_map(|case| [(case, Turn::Left), (case, Turn::Right)]) {
+        let own = upper::<S>(bend, turn);
         // A line through the circle that stays off the ring inside which nothing is in contact.
         let passing = segment::<S>([-1.0, bend - RADIUS + missed * SLACK, 0.0], 2.0, None);
         let [events, _] = found(&own, &passing, RADIUS);
@@ -118,6 +126,50 @@ fn whole_circles<S: Format>() {
     }
 }
 
+/// An arc that bulges away from a line by so many slacks more than it may: its two ends are within reach, its middle is not. By half a
+/// slack at most that is no gap, as rounding makes those, and there is one piece; else there are two, and both reach to where the
+/// line comes nearest to the circle from inside, beyond the points at which they end on the arc.
+fn gaps<S: Format>() {
+    let line = segment::<S>([0.0, 0.0, 0.0], 8.0, None);
+    let (half, radius) = (0.5_f64, 2.0);
+    for (missed, count) in [(-0.5, 1), (0.3, 1), (0.7, 2), (2.0, 2)] {
+        let above = RADIUS + missed * SLACK;
+        // From left to right over the top of a circle about (4, above - 2).
+        let (sin, cos) = half.sin_cos();
+        let position = Point::new(S::from_f64(4.0 - radius * sin), S::from_f64(above - radius + radius * cos));
+        let start = Segment::standing(Pose { position, heading: S::angle(half) }).expect("small");
+        let arc = start.then_arc(S::from_f64(radius), Turn::Right, S::from_f64(2.0 * half * radius)).expect("small");
+        let mut found = Vec::new();
+        let sizes = [S::from_f64(RADIUS), S::from_f64(SLACK)];
+        let to_f64 = |interval: pcr_core::Interval<S>| [interval.lo.to_f64(), interval.hi.to_f64()];
+        internals::pieces(&line, &arc, sizes, |ranges| found.push(ranges.map(to_f64))).expect("room");
+        assert_eq!(found.len(), count, "{missed} slacks: {found:?}");
+        let near = |a: f64, b: f64| (a - b).abs() < 8e-3;
+        // The ends of the arc are the lowest points, at this height.
+        let height = above - radius + radius * cos;
+        let reach = (RADIUS * RADIUS - height * height).sqrt();
+        let outer = [4.0 - radius * sin - reach, 4.0 + radius * sin + reach];
+        let [first, last] = [found[0], found[count - 1]];
+        assert!(near(first[0][0], outer[0]) && near(last[0][1], outer[1]), "{missed} slacks: {found:?}, {outer:?}");
+        assert!(near(first[1][0], 0.0) && near(last[1][1], 2.0 * half * radius), "{missed} slacks: {found:?}");
+        if count == 2 {
+            // Along the arc up to where it is at the height of R, along the line to where the ring of ϱ - R meets it.
+            let edge = (1.0 - missed * SLACK / radius).acos() * radius;
+            let turn = (1.0 - (1.0 - missed * SLACK).powi(2)).sqrt();
+            assert!(near(first[1][1], radius * half - edge) && near(last[1][0], radius * half + edge), "{found:?}");
+            assert!(near(first[0][1], 4.0 - turn) && near(last[0][0], 4.0 + turn), "{found:?}");
+        }
+        // The other way round there are as many pieces, over the same lengths.
+        let mut swapped = Vec::new();
+        internals::pieces(&arc, &line, sizes, |ranges| swapped.push(ranges.map(to_f64))).expect("room");
+        assert_eq!(swapped.len(), count, "{missed} slacks: {swapped:?}");
+        for ([line, arc], [first, second]) in found.iter().zip(&swapped) {
+            let same = |a: &[f64; 2], b: &[f64; 2]| near(a[0], b[0]) && near(a[1], b[1]);
+            assert!(same(line, second) && same(arc, first), "{missed} slacks: {found:?} {swapped:?}");
+        }
+    }
+}
+
 macro_rules! in_format {
     ($name:ident, $format:ty) => {
         #[test]
@@ -126,6 +178,7 @@ macro_rules! in_format {
             normals::<$format>();
             inside::<$format>();
             whole_circles::<$format>();
+            gaps::<$format>();
         }
     };
 }
