@@ -90,7 +90,7 @@ impl Known {
     const NOBODY: Self = Self { agents: 0, sum: 0 };
 
     fn all<'m, S: Scalar + 'm>(fleet: impl IntoIterator<Item = &'m Motion<'m, S>>) -> Self {
-        (0_usize..).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
+        fleet.into_iter().fold(Self::NOBODY, |known, motion| known.with(known.agents, motion))
     }
 
     fn with<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
@@ -309,8 +309,8 @@ where
         for region in self.regions.as_mut().iter_mut().take(self.len) {
             region.agents = region.agents.map(|other| other.wrapping_sub(u16::from(usize::from(other) > agent)));
         }
-        let rest = (0..).zip(fleet).filter(|&(place, _): &(usize, _)| place != agent);
-        self.fleet = Known::all(rest.map(|(_, motion)| motion));
+        let rest = [fleet.get(..agent), fleet.get(agent.saturating_add(1)..)];
+        self.fleet = Known::all(rest.into_iter().flatten().flatten());
         Ok(())
     }
 

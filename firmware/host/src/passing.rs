@@ -46,6 +46,15 @@ impl Rounded for f32 {
     }
 }
 
+impl Rounded for pcr_core::scalar::Micro {
+    fn from_f64(value: f64) -> Self {
+        Self(value as f32)
+    }
+    fn to_f64(self) -> f64 {
+        f64::from(self.0)
+    }
+}
+
 impl Rounded for pcr_fixed::Q16 {
     fn from_f64(value: f64) -> Self {
         Self::from_f64(value).expect("a small number")
@@ -363,7 +372,12 @@ fn run<S: Rounded>(
     }
     match drivers.iter().find(|driver| driver.at < driver.end()) {
         Some(late) if !reckless => {
-            return Err(format!("{} stands at {} m of {} m for ever", late.index, late.at, late.end()).into());
+            let Driver { index, at, hold, asks, .. } = late;
+            let (end, edition) = (late.end(), late.robot.edition());
+            return Err(format!(
+                "{index} stands at {at} m of {end} m for ever, hold {hold} m, {edition:?}, asking: {asks}"
+            )
+            .into());
         }
         _ => tally.arrived += drivers.len(),
     }
@@ -438,14 +452,20 @@ impl<S: Rounded> Driver<S> {
 
     fn hear(&mut self, bytes: &[u8], tally: &mut Tally) -> Result<(), Box<dyn Error>> {
         for &byte in bytes {
-            let (Some(Event::Answer(answer)) | Some(Event::Last(answer))) = self.client.take::<S>(byte) else {
-                continue;
+            let answer = match self.client.take::<S>(byte) {
+                Some(Event::Answer(answer) | Event::Last(answer)) => answer,
+                Some(Event::Changed) => {
+                    self.inquire();
+                    continue;
+                }
+                _ => continue,
             };
             match answer {
                 Answer::Refused(Refusal::Edition(_)) => self.inquire(),
                 Answer::Orders { agent, edition, path } if self.asks && agent == self.index => {
                     self.brief(edition, path)?;
                 }
+                Answer::Refused(refusal) if self.asks => return Err(format!("no orders but {refusal:?}").into()),
                 answer if self.asks => {
                     match self.briefing.take(&answer) {
                         // They have changed meanwhile.
@@ -469,6 +489,12 @@ impl<S: Rounded> Driver<S> {
         let at = self.reported();
         let fleet = self.briefing.motions().map_err(|invalid| format!("{invalid:?}"))?;
         let changed = self.robot.brief(&self.briefing, &fleet, edition, path, at);
+        if changed == Err(Unclear::Disagreement) {
+            // They have changed meanwhile.
+            drop(fleet);
+            self.inquire();
+            return Ok(());
+        }
         if changed.map_err(|unclear| format!("{unclear:?}"))? {
             (self.at, self.speed, self.hold) = (0.0, 0.0, 0.0);
             self.path = self.told.take();
