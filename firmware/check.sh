@@ -136,8 +136,9 @@ figures() {
   case $target in
     thumb*) printf '%9d  bytes of stack of the supervisor, bound\n' "$(tools/fwcheck.py "$programs/supervisor" --root supervisor::__cortex_m_rt_main 2>/dev/null)" ;;
   esac
-  printf '%9d  bytes of flash of a robot without the library\n' \
-    $(($(section "$programs/robot" $code .data) - $(section "$programs/nothing" $code .data) - $(tools/codesize.py "$programs/robot")))
+  printf '%9d  bytes of code of a robot that keeps orders, the library not included\n' \
+    "$(tools/codesize.py "$programs/robot" 'supervisor/src/(robot|fleet)\.rs')"
+  printf '%9d  bytes of flash of a robot with its line\n' "$(section "$programs/robot" $code .data)"
   printf '%9d  bytes of RAM of a robot among 30, its stack not included\n' "$(section "$programs/robot" .data .bss .uninit)"
   case $target in
     thumb*)
@@ -186,6 +187,7 @@ budgets() {
       tools/fwcheck.py "$programs/robot" --root robot::__cortex_m_rt_main --max-stack "$room" --no-alloc --no-panic \
         >/dev/null 2>"$scratch/fwcheck" || fail "$(cat "$scratch/fwcheck")"
       limit "$file" "bytes of stack of a hold, bound" "$stack"
+      limit "$file" "bytes of code of a robot that keeps orders, the library not included" 8192
       ;;
   esac
   case $target in

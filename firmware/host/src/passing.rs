@@ -9,7 +9,9 @@ use pcr_core::scalar::Angle;
 use pcr_core::{Brakes, Curve, Interval, Limits, Pass, Point, Pose, Turn};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
 use pcr_supervisor::robot::Unclear;
-use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Number, Request, Robot, Service, Session, Step, Traffic};
+use pcr_supervisor::{
+    Agent, Answer, Briefing, Client, Event, Motions, Number, Request, Robot, Service, Session, Step, Traffic,
+};
 use std::error::Error;
 
 /// Most robots, and what a supervisor needs for them.
@@ -487,7 +489,7 @@ impl<S: Rounded> Driver<S> {
     fn brief(&mut self, edition: Edition, path: u16) -> Result<(), Box<dyn Error>> {
         self.asks = false;
         let at = self.reported();
-        let fleet = self.briefing.motions().map_err(|invalid| format!("{invalid:?}"))?;
+        let fleet = motions(&self.briefing)?;
         let changed = self.robot.brief(&self.briefing, &fleet, edition, path, at);
         if changed == Err(Unclear::Disagreement) {
             // They have changed meanwhile.
@@ -506,7 +508,7 @@ impl<S: Rounded> Driver<S> {
     /// A control: how fast it goes until the next one.
     fn control(&mut self, random: &mut Random, reckless: bool) -> Result<(), Box<dyn Error>> {
         if !self.asks {
-            let fleet = self.briefing.motions().map_err(|invalid| format!("{invalid:?}"))?;
+            let fleet = motions(&self.briefing)?;
             let hold = self.robot.hold(&fleet).to_f64();
             if hold < self.hold {
                 return Err("a hold went back".into());
@@ -527,6 +529,15 @@ impl<S: Rounded> Driver<S> {
         self.speed = safe.min(wanted).min(self.speed + STEP);
         Ok(())
     }
+}
+
+/// The paths that a robot knows.
+pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>(
+    told: &Briefing<S, A, N, R>,
+) -> Result<Motions<'_, S, A>, Box<dyn Error>> {
+    let mut fleet = Motions::new();
+    told.put_motions(&mut fleet).map_err(|invalid| format!("{invalid:?}"))?;
+    Ok(fleet)
 }
 
 /// All go on until the next control; where two touch is an error.

@@ -1,7 +1,7 @@
 //! The other end of the line of one robot: the supervisor of 30, and the 29 others, which go first. Every report is where the same
 //! robot would be here, bit by bit.
 
-use crate::passing::Rounded;
+use crate::passing::{Rounded, motions};
 use pcr_core::scalar::Angle;
 use pcr_core::{Curve, Limits, Point, Pose, Turn};
 use pcr_supervisor::frame::{Reads, Receiver};
@@ -21,11 +21,12 @@ fn agent<S: Rounded>(index: usize) -> Agent<S> {
     let heading = |x: f64, y: f64| S::Angle::atan2(number(y), number(x));
     let at = |x: f64, y: f64, heading: S::Angle| Pose { position: Point::new(number(x), number(y)), heading };
     let line = |length| Step { curve: Curve::Line, length: number(length) };
-    let bend = Step { curve: Curve::Arc { radius: number(2.0), turn: Turn::Left }, length: number(4.0) };
+    // A quarter of a metre beside the line between its ends.
+    let bend = Step { curve: Curve::Arc { radius: number(8.0), turn: Turn::Left }, length: number(4.0) };
     let x = index as f64 + 1.0;
     let (start, step, start_time) = match index {
         _ if index == usize::from(OWN) => (at(0.0, 0.0, heading(1.0, 0.0)), line(31.0), 600.0),
-        _ if index % 3 == 0 => (at(x - 1.5, -1.75, heading(1.0, 0.0)), bend, 20.0 * x),
+        _ if index % 3 == 0 => (at(x, -2.0, heading(0.25, 1.0)), bend, 20.0 * x),
         _ => (at(x, -2.0, heading(0.0, 1.0)), line(4.0), 20.0 * x),
     };
     Agent {
@@ -121,7 +122,7 @@ impl<S: Rounded> Here<S> {
         })?;
         let Answer::Orders { path, .. } = last else { return Err(format!("{last:?}").into()) };
         clear.map_err(|unclear| format!("{unclear:?}"))?;
-        let fleet = told.motions().map_err(|invalid| format!("{invalid:?}"))?;
+        let fleet = motions(&told)?;
         robot.brief(&told, &fleet, edition, path, zero).map_err(|unclear| format!("{unclear:?}"))?;
         drop(fleet);
         let others = (0..OWN).map(Client::robot).collect();
@@ -150,7 +151,7 @@ impl<S: Rounded> Here<S> {
         let report = Request::Report { agent: OWN, edition, at: pcr_core::Interval::new(said, said) };
         let (told, robot) = (&self.told, &mut self.robot);
         ask(supervisor, &mut self.client, &report, |answer| robot.hear(told, answer))?;
-        let fleet = self.told.motions().map_err(|invalid| format!("{invalid:?}"))?;
+        let fleet = motions(&self.told)?;
         self.at = self.robot.hold(&fleet);
         Ok(said)
     }

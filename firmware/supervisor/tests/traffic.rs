@@ -3,7 +3,7 @@
 use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Radians};
 use pcr_supervisor::frame::{self, Tag};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
-use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Request, Robot, Service, Step, Traffic};
+use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Motions, Request, Robot, Service, Step, Traffic};
 use std::f32::consts::FRAC_PI_2;
 
 type Table = Traffic<f32, 3, 8, 12, 16>;
@@ -73,7 +73,8 @@ fn robots_get_their_orders_and_go_by_them() {
 
     let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
     told.iter().for_each(|answer| briefing.take(answer).expect("room"));
-    let fleet = briefing.motions().expect("motions");
+    let mut fleet = Motions::new();
+    briefing.put_motions(&mut fleet).expect("motions");
     let mut robot = Robot::<f32, 3, 4, 8>::new();
     assert_eq!(robot.hold(&fleet), 0.0, "no orders yet");
     assert_eq!(robot.brief(&briefing, &fleet, FIRST, 1, 0.0), Ok(true));
@@ -117,7 +118,8 @@ fn what_a_robot_was_not_told_of_is_no_order() {
     };
     let brief = |told: &[Answer<f32>]| {
         let briefing = fleet_of(told);
-        let fleet = briefing.motions().expect("motions");
+        let mut fleet = Motions::new();
+        briefing.put_motions(&mut fleet).expect("motions");
         let mut robot = Robot::<f32, 3, 4, 8>::new();
         let briefed = robot.brief(&briefing, &fleet, FIRST, 1, 0.0).is_ok();
         robot.hear(&briefing, &Answer::Go { agent: 1, edition: FIRST, to: 4.0 });

@@ -12,7 +12,7 @@ use pcr_board::{Number, entry, out};
 use pcr_core::{Interval, Motion, Scalar};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::scenario::crowd::{OWN, PIECES, REGIONS, ROBOTS, SEGMENTS};
-use pcr_supervisor::{Answer, Briefing, Client, Event, Request, Robot};
+use pcr_supervisor::{Answer, Briefing, Client, Event, Motions, Request, Robot};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
@@ -67,7 +67,8 @@ fn work(link: &mut Link, told: &mut Told, keeper: &mut Keeper) -> Option<()> {
     let mut clear = true;
     let last = link.ask(&Request::Orders { agent: OWN }, |answer| clear &= told.take(answer).is_ok())?;
     let Answer::Orders { edition, path, .. } = last else { return None };
-    let fleet = told.motions().ok().filter(|_| clear)?;
+    let mut fleet = Motions::new();
+    told.put_motions(&mut fleet).ok().filter(|()| clear)?;
     keeper.brief(told, &fleet, edition, path, Number::ZERO).ok()?;
     let end = fleet.get(keeper.own())?.path().length();
     let meter = Meter::new();
