@@ -1,5 +1,8 @@
 //! The extended collision map: all collision regions of a fleet, both directions of every pair.
 
+#[cfg(feature = "std")]
+mod grow;
+
 use crate::bits::{self, Ones};
 use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
@@ -48,7 +51,8 @@ impl Default for Region {
 ///
 /// The fleet itself is handed to each method, always the same one: another one is refused, by a checksum of the number of
 /// agents, their paths and radii. Start times, profiles, margins and lateness may change. [`Ecm::replace`] exchanges one agent,
-/// [`Ecm::insert`] and [`Ecm::remove`] are for fleets that grow or shrink at their end.
+/// [`Ecm::insert`] and [`Ecm::remove`] are for fleets that grow or shrink at their end. On a host, with the feature `std`, a table
+/// over vectors makes room for itself: `Ecm::grown`.
 ///
 /// ```
 /// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
