@@ -78,20 +78,22 @@ pub(crate) fn check<S: Rounded>(command: &[&str]) -> Result<(), Box<dyn Error>> 
     let (mut to, from) = (child.stdin.take().ok_or("no line")?, child.stdout.take().ok_or("no line")?);
     let mut requests = Receiver::new(Reads::Requests);
     let (mut reports, mut places) = (0_usize, [0.0; ROBOTS]);
+    let mut frame = Vec::new();
     for byte in from.bytes() {
         let byte = byte?;
-        let mut said = Vec::new();
-        if let Some(request) = requests.take::<Request<S>>(byte) {
-            if let Request::Report { at, .. } = request.map_err(|damage| format!("{damage:?}"))?.message {
-                let here = own.report(&mut supervisor, reports, &mut places)?;
-                if at.lo.bits() != here.bits() {
-                    let (there, here) = (at.lo.to_f64(), here.to_f64());
-                    return Err(format!("report {reports}: the robot is at {there} m, not at {here} m").into());
-                }
-                reports += 1;
+        frame.push(byte);
+        let Some(request) = requests.take::<Request<S>>(byte) else { continue };
+        if let Request::Report { at, .. } = request.map_err(|damage| format!("{damage:?}"))?.message {
+            let here = own.report(&mut supervisor, reports, &mut places)?;
+            if at.lo.bits() != here.bits() {
+                let (there, here) = (at.lo.to_f64(), here.to_f64());
+                return Err(format!("report {reports}: the robot is at {there} m, not at {here} m").into());
             }
+            reports += 1;
         }
-        supervisor.take(byte, |frame| said.extend_from_slice(frame));
+        // Behind what the others have said.
+        let mut said = Vec::new();
+        frame.drain(..).for_each(|byte| supervisor.take(byte, |frame| said.extend_from_slice(frame)));
         to.write_all(&said)?;
         to.flush()?;
     }
