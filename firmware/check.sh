@@ -47,7 +47,7 @@ tools() {
   cc -shared -fPIC -O2 -Wall -Wextra -o "$scratch/mcount.so" tools/mcount.c
   cargo build --locked --quiet --target "$host" -p pcr-link
   cargo test --locked --quiet --target "$host" -p pcr-supervisor --features micromath,fixed
-  step "random fleets on a bad line: no two discs touch (100000 runs: docs/firmware.md)"
+  step "random fleets on a bad line: no two discs touch (docs/firmware.md has the long one)"
   link passing f32 1000
   link passing q16 1000
 }
