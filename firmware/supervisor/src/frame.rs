@@ -24,7 +24,7 @@ pub const MAX_FRAME: usize = MAX_PLAIN + 3;
 
 const HEADER: usize = 7;
 const CHECK: usize = 4;
-const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+pub(crate) const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 // COBS adds one byte up to this length.
 const _: () = assert!(MAX_PLAIN <= 254);

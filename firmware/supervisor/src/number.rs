@@ -12,6 +12,8 @@ pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + Dese
     const ONE: Self;
     /// The bits of the number: what is compared between machines.
     fn bits(self) -> u32;
+    /// The bits of an angle.
+    fn angle_bits(angle: Self::Angle) -> u32;
     /// Thousandths, rounded to nearest: what people read.
     fn thousandths(self) -> i32;
 }
@@ -22,6 +24,9 @@ impl Number for f32 {
     const ONE: Self = 1.0;
     fn bits(self) -> u32 {
         self.to_bits()
+    }
+    fn angle_bits(angle: Self::Angle) -> u32 {
+        angle.0.bits()
     }
     fn thousandths(self) -> i32 {
         (self * 1000.0 + if self < 0.0 { -0.5 } else { 0.5 }) as i32
@@ -34,6 +39,9 @@ impl Number for pcr_core::scalar::Micro {
     const ONE: Self = Self(1.0);
     fn bits(self) -> u32 {
         self.0.to_bits()
+    }
+    fn angle_bits(angle: Self::Angle) -> u32 {
+        angle.0.bits()
     }
     fn thousandths(self) -> i32 {
         self.0.thousandths()
@@ -48,6 +56,9 @@ macro_rules! fixed {
             const ONE: Self = Self::ONE;
             fn bits(self) -> u32 {
                 self.to_bits().cast_unsigned()
+            }
+            fn angle_bits(angle: Self::Angle) -> u32 {
+                angle.to_bits().cast_unsigned()
             }
             fn thousandths(self) -> i32 {
                 // What a table holds is far below the millions where this would wrap.
