@@ -43,6 +43,9 @@ tools() {
   cc -shared -fPIC -O2 -Wall -Wextra -o "$scratch/mcount.so" tools/mcount.c
   cargo build --locked --quiet --target "$host" -p pcr-link
   cargo test --locked --quiet --target "$host" -p pcr-supervisor --features micromath,fixed
+  step "random fleets on a bad line: no two discs touch (docs/firmware.md has the long one)"
+  link passing f32 1000
+  link passing q16 1000
 }
 
 link() { "$out/$host/debug/pcr-link" "$@"; }
@@ -75,6 +78,12 @@ behaviour() {
   grep " pieces$" "$scratch/target"
   link certify <"$scratch/target" || fail "the table that was printed is not proved"
   SERIAL=stdio link serial "$format" ./qemu-run.sh "$programs/supervisor"
+  # The Cortex-M0 has no memory for orders of a fleet.
+  case $target:$format in
+    *:micro | thumbv6m*) ;;
+    *) SERIAL=stdio link passing "$format" 5 ./qemu-run.sh "$programs/supervisor" ;;
+  esac
+  SERIAL=stdio ICOUNT=7 link robot "$format" ./qemu-run.sh "$programs/robot" 2>"$scratch/robot"
   if [ "$format" = f32 ]; then ./qemu-run.sh "$programs/roots"; fi
 }
 
@@ -124,6 +133,18 @@ figures() {
   case $target in
     thumb*) printf '%9d  bytes of stack of the supervisor, bound\n' "$(tools/fwcheck.py "$programs/supervisor" --root supervisor::__cortex_m_rt_main 2>/dev/null)" ;;
   esac
+  printf '%9d  bytes of code of a robot that keeps orders, the library not included\n' \
+    "$(tools/codesize.py "$programs/robot" 'supervisor/src/(robot|fleet)\.rs')"
+  printf '%9d  bytes of flash of a robot with its line\n' "$(section "$programs/robot" $code .data)"
+  printf '%9d  bytes of RAM of a robot among 30, its stack not included\n' "$(section "$programs/robot" .data .bss .uninit)"
+  case $target in
+    thumb*)
+      printf '%9d  bytes of stack of a robot, bound\n' "$(tools/fwcheck.py "$programs/robot" --root robot::__cortex_m_rt_main 2>/dev/null)"
+      printf '%9d  bytes of stack of a hold, bound\n' "$(tools/fwcheck.py "$programs/robot" --root robot::hold 2>/dev/null)"
+      ;;
+  esac
+  # What the robot has told, while it was run above.
+  sed 's/^\( *[0-9]*  \)/\1instructions: /' "$scratch/robot"
   ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /'
 }
 
@@ -155,6 +176,15 @@ budgets() {
       local room=$((0x$(symbol "$programs/supervisor" _stack_start) - 0x$(symbol "$programs/supervisor" __sheap)))
       tools/fwcheck.py "$programs/supervisor" --root supervisor::__cortex_m_rt_main --max-stack "$room" --no-alloc --no-panic \
         >/dev/null 2>"$scratch/fwcheck" || fail "$(cat "$scratch/fwcheck")"
+      ;;
+  esac
+  case $target in
+    thumb*)
+      local room=$((0x$(symbol "$programs/robot" _stack_start) - 0x$(symbol "$programs/robot" __sheap)))
+      tools/fwcheck.py "$programs/robot" --root robot::__cortex_m_rt_main --max-stack "$room" --no-alloc --no-panic \
+        >/dev/null 2>"$scratch/fwcheck" || fail "$(cat "$scratch/fwcheck")"
+      limit "$file" "bytes of stack of a hold, bound" "$stack"
+      limit "$file" "bytes of code of a robot that keeps orders, the library not included" 8192
       ;;
   esac
   case $target in
@@ -204,7 +234,7 @@ compare() {
 }
 
 one() {
-  local target=$1 format=$2 bins=(proof demo supervisor pipeline nothing measure)
+  local target=$1 format=$2 bins=(proof demo supervisor robot pipeline nothing measure)
   if [ "$format" = f32 ]; then bins+=(roots); fi
   step "$target, $format: build; no public function can panic, or its proof would not link"
   build "$target" "$format" "${bins[@]}"

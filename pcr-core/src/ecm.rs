@@ -287,8 +287,8 @@ where
         for region in self.regions.as_mut().iter_mut().take(self.len) {
             region.agents = region.agents.map(|other| other.wrapping_sub(u16::from(usize::from(other) > agent)));
         }
-        let rest = (0..).zip(fleet).filter(|&(place, _): &(usize, _)| place != agent);
-        self.fleet = Known::all(rest.map(|(_, motion)| motion));
+        let rest = [fleet.get(..agent), fleet.get(agent.saturating_add(1)..)];
+        self.fleet = Known::all(rest.into_iter().flatten().flatten());
         Ok(())
     }
 

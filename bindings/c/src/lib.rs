@@ -34,6 +34,8 @@
 //! are used during the call only. A fleet is used by one thread at a time, only after `pcr_fleet_init` has succeeded on it,
 //! and is not moved or copied.
 #![cfg_attr(target_os = "none", no_std)]
+// One source for all number formats.
+#![allow(clippy::duplicate_mod)]
 
 mod memory;
 mod status;

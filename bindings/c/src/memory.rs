@@ -88,7 +88,7 @@ pub(crate) fn both<C, A: Copy + 'static, B: Copy + 'static>(
     room: usize,
 ) -> Option<(Stack<A>, Stack<B>)> {
     const {
-        assert!(size_of::<C>() == size_of::<A>() + size_of::<B>() && size_of::<A>() % align_of::<B>() == 0);
+        assert!(size_of::<C>() == size_of::<A>() + size_of::<B>() && size_of::<A>().is_multiple_of(align_of::<B>()));
         assert!(align_of::<C>() >= align_of::<A>() && align_of::<C>() >= align_of::<B>());
     };
     let first = NonNull::new(first.cast::<A>())?;

@@ -4,10 +4,21 @@ use semihosting::io::Write;
 
 /// Prints bytes; a console that does not take them has no one to complain to.
 pub fn print(bytes: &[u8]) {
-    if let Ok(mut out) = semihosting::io::stdout() {
-        let mut rest = bytes;
-        while let Ok(written @ 1..) = out.write(rest) {
-            rest = rest.get(written..).unwrap_or_default();
-        }
+    if let Ok(out) = semihosting::io::stdout() {
+        write(out, bytes);
+    }
+}
+
+/// The same beside what is printed.
+pub fn tell(bytes: &[u8]) {
+    if let Ok(out) = semihosting::io::stderr() {
+        write(out, bytes);
+    }
+}
+
+fn write(mut out: impl Write, bytes: &[u8]) {
+    let mut rest = bytes;
+    while let Ok(written @ 1..) = out.write(rest) {
+        rest = rest.get(written..).unwrap_or_default();
     }
 }

@@ -9,7 +9,9 @@ use pcr_core::scalar::Angle;
 use pcr_core::{Brakes, Curve, Interval, Limits, Pass, Point, Pose, Turn};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
 use pcr_supervisor::robot::Unclear;
-use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Number, Request, Robot, Service, Session, Step, Traffic};
+use pcr_supervisor::{
+    Agent, Answer, Briefing, Client, Event, Motions, Number, Request, Robot, Service, Session, Step, Traffic,
+};
 use std::error::Error;
 
 /// Most robots, and what a supervisor needs for them.
@@ -43,6 +45,15 @@ impl Rounded for f32 {
     }
     fn to_f64(self) -> f64 {
         f64::from(self)
+    }
+}
+
+impl Rounded for pcr_core::scalar::Micro {
+    fn from_f64(value: f64) -> Self {
+        Self(value as f32)
+    }
+    fn to_f64(self) -> f64 {
+        f64::from(self.0)
     }
 }
 
@@ -363,7 +374,12 @@ fn run<S: Rounded>(
     }
     match drivers.iter().find(|driver| driver.at < driver.end()) {
         Some(late) if !reckless => {
-            return Err(format!("{} stands at {} m of {} m for ever", late.index, late.at, late.end()).into());
+            let Driver { index, at, hold, asks, .. } = late;
+            let (end, edition) = (late.end(), late.robot.edition());
+            return Err(format!(
+                "{index} stands at {at} m of {end} m for ever, hold {hold} m, {edition:?}, asking: {asks}"
+            )
+            .into());
         }
         _ => tally.arrived += drivers.len(),
     }
@@ -438,14 +454,20 @@ impl<S: Rounded> Driver<S> {
 
     fn hear(&mut self, bytes: &[u8], tally: &mut Tally) -> Result<(), Box<dyn Error>> {
         for &byte in bytes {
-            let (Some(Event::Answer(answer)) | Some(Event::Last(answer))) = self.client.take::<S>(byte) else {
-                continue;
+            let answer = match self.client.take::<S>(byte) {
+                Some(Event::Answer(answer) | Event::Last(answer)) => answer,
+                Some(Event::Changed) => {
+                    self.inquire();
+                    continue;
+                }
+                _ => continue,
             };
             match answer {
                 Answer::Refused(Refusal::Edition(_)) => self.inquire(),
                 Answer::Orders { agent, edition, path } if self.asks && agent == self.index => {
                     self.brief(edition, path)?;
                 }
+                Answer::Refused(refusal) if self.asks => return Err(format!("no orders but {refusal:?}").into()),
                 answer if self.asks => {
                     match self.briefing.take(&answer) {
                         // They have changed meanwhile.
@@ -467,8 +489,14 @@ impl<S: Rounded> Driver<S> {
     fn brief(&mut self, edition: Edition, path: u16) -> Result<(), Box<dyn Error>> {
         self.asks = false;
         let at = self.reported();
-        let fleet = self.briefing.motions().map_err(|invalid| format!("{invalid:?}"))?;
+        let fleet = motions(&self.briefing)?;
         let changed = self.robot.brief(&self.briefing, &fleet, edition, path, at);
+        if changed == Err(Unclear::Disagreement) {
+            // They have changed meanwhile.
+            drop(fleet);
+            self.inquire();
+            return Ok(());
+        }
         if changed.map_err(|unclear| format!("{unclear:?}"))? {
             (self.at, self.speed, self.hold) = (0.0, 0.0, 0.0);
             self.path = self.told.take();
@@ -480,7 +508,7 @@ impl<S: Rounded> Driver<S> {
     /// A control: how fast it goes until the next one.
     fn control(&mut self, random: &mut Random, reckless: bool) -> Result<(), Box<dyn Error>> {
         if !self.asks {
-            let fleet = self.briefing.motions().map_err(|invalid| format!("{invalid:?}"))?;
+            let fleet = motions(&self.briefing)?;
             let hold = self.robot.hold(&fleet).to_f64();
             if hold < self.hold {
                 return Err("a hold went back".into());
@@ -501,6 +529,15 @@ impl<S: Rounded> Driver<S> {
         self.speed = safe.min(wanted).min(self.speed + STEP);
         Ok(())
     }
+}
+
+/// The paths that a robot knows.
+pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>(
+    told: &Briefing<S, A, N, R>,
+) -> Result<Motions<'_, S, A>, Box<dyn Error>> {
+    let mut fleet = Motions::new();
+    told.put_motions(&mut fleet).map_err(|invalid| format!("{invalid:?}"))?;
+    Ok(fleet)
 }
 
 /// All go on until the next control; where two touch is an error.

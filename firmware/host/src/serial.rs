@@ -86,7 +86,7 @@ impl Link {
             match event {
                 None => {}
                 Some(Event::Answer(answer) | Event::Last(answer)) => return Ok(answer),
-                Some(Event::OutOfStep) => return Err("the supervisor has started anew".into()),
+                Some(Event::Changed | Event::OutOfStep) => return Err("the supervisor has started anew".into()),
                 Some(Event::Again) => {
                     patience = patience.checked_sub(1).ok_or("the supervisor does not answer")?;
                     self.repeat()?;

@@ -19,6 +19,8 @@ pub enum Event<S: Number> {
     Last(Answer<S>),
     /// Something was lost: send the request again.
     Again,
+    /// What was asked for has changed while it was sent: ask anew. Only robots get that.
+    Changed,
     /// The supervisor is at another request: it has started anew, or somebody else talks to it. The request was not done,
     /// and nobody knows its fleet. Wait until nothing can be under way, greet it, and begin with [`Request::Clear`] or
     /// [`Request::Load`].
@@ -122,6 +124,11 @@ impl Client {
         }
         // Again, or behind one that is missing.
         match tag.place.cmp(&self.heard) {
+            // A list of orders has become shorter meanwhile: the rest of the old one does not come any more.
+            Ordering::Less if !answer.goes_on() => {
+                self.waiting = false;
+                return Some(Event::Changed);
+            }
             Ordering::Less => return None,
             Ordering::Greater => return (!answer.goes_on()).then_some(Event::Again),
             Ordering::Equal => {}

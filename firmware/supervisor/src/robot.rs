@@ -5,7 +5,7 @@
 //! loop {
 //!     briefing.clear();                                  // Request::Orders, answer by answer
 //!     briefing.take(&answer)?;
-//!     let fleet = briefing.motions()?;
+//!     briefing.put_motions(&mut fleet)?;
 //!     robot.brief(&briefing, &fleet, edition, path, at)?; // Answer::Orders
 //!     loop {
 //!         robot.hear(&briefing, &answer);                // Answer::Place, Answer::Go
@@ -82,12 +82,14 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
         if *self.edition.get_or_insert(edition) == edition { Ok(()) } else { Err(Unclear::Disagreement) }
     }
 
-    /// What the orders are about: the paths of all, in the order of their indices.
+    /// Puts what the orders are about, the paths of all in the order of their indices, where they are to be: an empty list. What is
+    /// returned would lie on the stack more than once.
     ///
     /// # Errors
-    /// As [`Store::motions`].
-    pub fn motions(&self) -> Result<Motions<'_, S, A>, Invalid> {
-        self.paths.motions()
+    /// As [`Store::put_motions`].
+    #[inline(never)]
+    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), Invalid> {
+        self.paths.put_motions(motions)
     }
 
     fn place_of(&self, agent: u16) -> Option<usize> {

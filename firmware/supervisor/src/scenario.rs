@@ -3,6 +3,8 @@
 //! `scenario/paper12.rs` is generated from the scenario embedded in the tool: `cargo run -p pcr-tests --example
 //! constants`. A test of the host's workspace compares the two.
 
+pub mod crowd;
+
 /// Agents of the scenario.
 pub const AGENTS: usize = 12;
 /// Lines and arcs of the scenario.
@@ -13,6 +15,9 @@ pub const ROOM: usize = SEGMENTS + crate::agent::MAX_STEPS;
 pub const REGIONS: usize = 80;
 /// Pieces of these regions, with room for a few more.
 pub const PIECES: usize = 112;
+
+/// Orders for these regions, and those of a robot that gets another path.
+pub const ORDERS: usize = REGIONS + 40;
 
 /// A module with the scenario: its format, and how a decimal becomes a number and an angle of it.
 macro_rules! scenario {

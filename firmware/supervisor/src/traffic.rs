@@ -169,8 +169,10 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         let (path, edition) = (self.robot(agent)?.path, self.edition);
         let partners = || Ok::<_, Refusal>(self.orders.row(fleet, agent)?.map(|(_, region, _)| region.other()));
         let mut next = 0_usize;
-        for other in
-            partners()?.filter(|&other| other < agent).chain([agent]).chain(partners()?.filter(|&other| other > agent))
+        for other in partners()?
+            .filter(|&other| other < agent)
+            .chain(core::iter::once(agent))
+            .chain(partners()?.filter(|&other| other > agent))
         {
             if other >= next {
                 send(Answer::Member { agent: short(other), edition, with: with(other)? });

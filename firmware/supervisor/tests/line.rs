@@ -124,7 +124,7 @@ impl Link {
                     }
                     Some(Event::OutOfStep) => return None,
                     // Nothing more comes in this round: it is asked again in the next.
-                    Some(Event::Again) | None => {}
+                    Some(Event::Again | Event::Changed) | None => {}
                 }
             }
         }

@@ -1,8 +1,9 @@
 //! Orders are handed out once, go on as robots do, and whatever belongs to other orders is refused.
 
 use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Radians};
+use pcr_supervisor::frame::{self, Tag};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
-use pcr_supervisor::{Agent, Answer, Briefing, Request, Robot, Service, Step, Traffic};
+use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Motions, Request, Robot, Service, Step, Traffic};
 use std::f32::consts::FRAC_PI_2;
 
 type Table = Traffic<f32, 3, 8, 12, 16>;
@@ -72,7 +73,8 @@ fn robots_get_their_orders_and_go_by_them() {
 
     let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
     told.iter().for_each(|answer| briefing.take(answer).expect("room"));
-    let fleet = briefing.motions().expect("motions");
+    let mut fleet = Motions::new();
+    briefing.put_motions(&mut fleet).expect("motions");
     let mut robot = Robot::<f32, 3, 4, 8>::new();
     assert_eq!(robot.hold(&fleet), 0.0, "no orders yet");
     assert_eq!(robot.brief(&briefing, &fleet, FIRST, 1, 0.0), Ok(true));
@@ -116,7 +118,8 @@ fn what_a_robot_was_not_told_of_is_no_order() {
     };
     let brief = |told: &[Answer<f32>]| {
         let briefing = fleet_of(told);
-        let fleet = briefing.motions().expect("motions");
+        let mut fleet = Motions::new();
+        briefing.put_motions(&mut fleet).expect("motions");
         let mut robot = Robot::<f32, 3, 4, 8>::new();
         let briefed = robot.brief(&briefing, &fleet, FIRST, 1, 0.0).is_ok();
         robot.hear(&briefing, &Answer::Go { agent: 1, edition: FIRST, to: 4.0 });
@@ -226,4 +229,23 @@ fn a_new_path_begins_where_the_old_one_ends_and_yields_to_whoever_may_be_on_the_
     let told = answers(&mut service, Request::Orders { agent: 0 });
     let passing = |answer: &&Answer<f32>| matches!(answer, Answer::Passing { other: 1, pass: Pass::Second, .. });
     assert_eq!(told.iter().filter(passing).count(), 1, "{told:?}");
+}
+
+#[test]
+fn a_list_that_has_become_shorter_while_it_was_sent_is_asked_for_anew() {
+    let mut client = Client::robot(1);
+    assert!(client.ask(&Request::<f32>::Orders { agent: 1 }));
+    let mut hear = |place, answer: &Answer<f32>| {
+        let frame = frame::encode(Tag { who: 2, sequence: 1, place }, answer).expect("a short answer");
+        frame.iter().filter_map(|&byte| client.take::<f32>(byte)).collect::<Vec<_>>()
+    };
+    let passing = Answer::Passing { other: 0, edition: FIRST, pass: Pass::First, from: 1.0 };
+    let end = Answer::Orders { agent: 1, edition: Edition { number: 2, ..FIRST }, path: 1 };
+    for place in 0..3 {
+        assert_eq!(hear(place, &passing), [Event::Answer(passing.clone())]);
+    }
+    // Of the same question, asked again, but for a region less.
+    assert_eq!(hear(0, &passing), []);
+    assert_eq!(hear(1, &end), [Event::Changed]);
+    assert_eq!(hear(3, &end), [], "nothing is waited for");
 }

@@ -14,7 +14,7 @@ impl Known {
     pub(super) const NOBODY: Self = Self { agents: 0, sum: 0 };
 
     pub(super) fn all<'m, S: Scalar + 'm>(fleet: impl IntoIterator<Item = &'m Motion<'m, S>>) -> Self {
-        (0_usize..).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
+        fleet.into_iter().fold(Self::NOBODY, |known, motion| known.with(known.agents, motion))
     }
 
     pub(super) fn with<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {

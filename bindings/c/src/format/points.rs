@@ -67,7 +67,7 @@ pub(super) fn number(value: Real) -> Result<S, PcrStatus> {
     let value = inner(value);
     match value {
         _ if !Scalar::is_finite(value) => Err(PcrStatus::NonFinite),
-        _ if value > S::LIMIT || value < -S::LIMIT => Err(PcrStatus::OutOfRange),
+        _ if !(-S::LIMIT..=S::LIMIT).contains(&value) => Err(PcrStatus::OutOfRange),
         _ => Ok(value),
     }
 }

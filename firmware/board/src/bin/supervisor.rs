@@ -4,12 +4,30 @@
 
 use pcr_board::uart::Uart;
 use pcr_board::{AGENTS, Number, entry};
-use pcr_supervisor::Session;
+#[cfg(armv6m)]
+use pcr_core::{Ecm, Piece, Region};
+#[cfg(not(armv6m))]
+use pcr_supervisor::Traffic;
+#[cfg(not(armv6m))]
+use pcr_supervisor::scenario::ORDERS;
 use pcr_supervisor::scenario::{self, PIECES, REGIONS, ROOM};
+#[cfg(armv6m)]
+use pcr_supervisor::table::Regions;
+use pcr_supervisor::{Service, Session};
 use static_cell::ConstStaticCell;
 
-static SESSION: ConstStaticCell<Session<Number, { scenario::AGENTS }, ROOM, REGIONS, PIECES>> =
-    ConstStaticCell::new(Session::new(&AGENTS));
+/// With orders; a Cortex-M0 with 16 KiB of RAM has no room for those of 12 agents.
+#[cfg(not(armv6m))]
+type Table = Traffic<Number, { scenario::AGENTS }, REGIONS, PIECES, ORDERS>;
+#[cfg(not(armv6m))]
+const TABLE: Table = Traffic::new();
+#[cfg(armv6m)]
+type Table = Regions<Number, REGIONS, PIECES>;
+#[cfg(armv6m)]
+const TABLE: Table = Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]);
+
+static SESSION: ConstStaticCell<Session<Number, { scenario::AGENTS }, ROOM, REGIONS, PIECES, Table>> =
+    ConstStaticCell::new(Session::of(Service::with(TABLE, &AGENTS)));
 
 #[entry]
 fn main() -> ! {
