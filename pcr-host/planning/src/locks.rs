@@ -13,10 +13,10 @@ mod sweep;
 mod table;
 
 use crate::memory;
+pub use index::{Index, IndexError, Partner, write_index};
 use pcr_formats::footprint::Disc;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, Scenario};
-pub use index::{Index, IndexError, Partner, write_index};
 use rides::Ride;
 pub use rides::{Rides, corridor};
 use serde::Serialize;

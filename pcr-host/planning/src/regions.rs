@@ -16,8 +16,8 @@ use pcr_core::{Full, Motion};
 use pcr_formats::footprint::Disc;
 use pcr_formats::scenario::{Agent, Labels, Scenario};
 pub use record::{Descriptor, Piece, Region, Slice};
-pub use sheet::{Sheet, Told};
 use serde::Serialize;
+pub use sheet::{Sheet, Told};
 use std::fmt;
 
 /// Regions of one scenario, or why there are none.
@@ -165,7 +165,9 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
             [Some(i), Some(j)] => Failure::Overfull([i, j]),
             _ => Failure::Full(full),
         },
-        Full::Regions | Full::Pieces => TooLarge::of(format!("the table of all pairs of {} discs", motions.len())).into(),
+        Full::Regions | Full::Pieces => {
+            TooLarge::of(format!("the table of all pairs of {} discs", motions.len())).into()
+        }
         _ => Failure::Full(full),
     })
 }

@@ -13,8 +13,8 @@ mod simulation;
 mod table;
 mod traffic;
 
-pub use columns::ROW_BYTES;
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
+pub use columns::ROW_BYTES;
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use locks::{
     EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, locks_csv, locks_lines, locks_table,
@@ -104,13 +104,7 @@ pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
 }
 
 /// Some of its lines.
-fn csv_rows(
-    name: &str,
-    labels: &Labels,
-    regions: &[Region],
-    margin: bool,
-    out: &mut impl Write,
-) -> io::Result<()> {
+fn csv_rows(name: &str, labels: &Labels, regions: &[Region], margin: bool, out: &mut impl Write) -> io::Result<()> {
     let (name, margin) = (quoted(name), u8::from(margin));
     for region in regions {
         let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;

@@ -61,7 +61,8 @@ impl Arguments {
         if self.certify && self.printed.form() == Form::Csv {
             return Err(Stop::arguments("--certify is for --format json and table"));
         }
-        let work = Check { form: self.printed.form(), scalar: self.scalar, closest: self.closest, certify: self.certify };
+        let work =
+            Check { form: self.printed.form(), scalar: self.scalar, closest: self.closest, certify: self.certify };
         let found = run(&work, self.files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }

@@ -3,8 +3,8 @@
 use super::printed::notes;
 use super::sources::{layout, source};
 use super::{Form, Printed, STATUSES, Stop};
-use clap::Args;
 use crate::progress::Progress;
+use clap::Args;
 use pcr_drawing as picture;
 use pcr_formats::import::{ImportError, Options};
 use pcr_formats::output;
@@ -99,7 +99,8 @@ impl Arguments {
         match form {
             Form::Table => {
                 let count = locks.locks.len();
-                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} locks")).map_err(too_large)?;
+                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} locks"))
+                    .map_err(too_large)?;
                 report::locks_table(&locks, &mut out)?;
             }
             Form::Json => report::json(&locks, &mut out)?,

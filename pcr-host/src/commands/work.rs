@@ -96,7 +96,9 @@ fn lines<W: Work>(
                 scenario.give_margin(margin.unwrap_or(0.0));
                 match work.print(&scenario, &|_, _| {}, out) {
                     Ok(found) => Ok(found),
-                    Err(Unprinted::Failure(failure)) => Err((scenario.name, format!("line {}: {failure}", line.number))),
+                    Err(Unprinted::Failure(failure)) => {
+                        Err((scenario.name, format!("line {}: {failure}", line.number)))
+                    }
                     Err(Unprinted::Output(error)) => return Err(error.into()),
                 }
             }

@@ -315,11 +315,13 @@ impl Sweep {
         let mut partners = Vec::new();
         for (other, [lengths, other_lengths]) in self.row_of(track)?.0 {
             let their = &self.tracks[other];
-            partners.extend(their.members.iter().filter(|member| member.0 != place).map(|&(there, other_turned)| Partner {
-                name: self.ids()[there].clone(),
-                node: !self.is_edge(there),
-                own: own.on_member(lengths, turned),
-                other: their.on_member(other_lengths, other_turned),
+            partners.extend(their.members.iter().filter(|member| member.0 != place).map(|&(there, other_turned)| {
+                Partner {
+                    name: self.ids()[there].clone(),
+                    node: !self.is_edge(there),
+                    own: own.on_member(lengths, turned),
+                    other: their.on_member(other_lengths, other_turned),
+                }
             }));
         }
         sort(&mut partners);

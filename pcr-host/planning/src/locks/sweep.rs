@@ -6,13 +6,13 @@
 
 use super::rides::{Lengths, Ride, Rides, reversed};
 use super::{Extents, joined};
-use crate::fleet::Fleet;
 use crate::bodies::{Bodies, Disced};
-use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
+use crate::fleet::Fleet;
 use crate::memory::{self, Held};
 use crate::rows::{Grid, area};
-use pcr_formats::scenario::{Agent, PathSegment, Scenario, label};
 use pcr_core::{Full, Interval, Motion, Piece, overlaps};
+use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
+use pcr_formats::scenario::{Agent, PathSegment, Scenario, label};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -110,7 +110,12 @@ impl Sweep {
                 let (place, rides, level) = (ids.len(), &rides, layout.nodes[node].level);
                 ids.push(layout.nodes[node].id.clone());
                 let members = vec![(place, false)];
-                let plan = move || Plan { members: members.clone(), length: 0.0, levels: [level; 2], rides: vec![rides.at(node)] };
+                let plan = move || Plan {
+                    members: members.clone(),
+                    length: 0.0,
+                    levels: [level; 2],
+                    rides: vec![rides.at(node)],
+                };
                 plans.push(Box::new(plan));
             }
         }
@@ -302,7 +307,11 @@ impl<'a> Pass<'a> {
         let own = &sweep.tracks[track];
         let (mut near, mut pairs) = (Vec::new(), Vec::new());
         for disc in own.discs.clone() {
-            if both { self.grid.around(disc, &mut near) } else { self.grid.after(disc, &mut near) }
+            if both {
+                self.grid.around(disc, &mut near)
+            } else {
+                self.grid.after(disc, &mut near)
+            }
             let others = near.iter().map(|&other| (sweep.track_of(other as usize), [disc, other as usize]));
             pairs.extend(others.filter(|&(other, _)| other != track && own.shares_a_level(&sweep.tracks[other])));
         }

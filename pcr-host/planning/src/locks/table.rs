@@ -1,9 +1,9 @@
 //! The locks of a layout that changes: an edge that is added, moved or removed costs a comparison with the box of every other
 //! edge, and its own locks.
 
+use super::Lock;
 use super::rides::Rides;
 use super::sweep::Sweep;
-use super::Lock;
 use pcr_formats::import::{Edge, Id, ImportError, Imported};
 use std::collections::HashMap;
 
@@ -34,7 +34,8 @@ impl Table {
     /// As [`Sweep::new`].
     pub fn new(imported: Imported) -> Result<Self, ImportError> {
         let sweep = Sweep::new(&imported, false)?;
-        let members = sweep.tracks.iter().enumerate().flat_map(|(track, it)| it.members.iter().map(move |m| (m.0, track)));
+        let members =
+            sweep.tracks.iter().enumerate().flat_map(|(track, it)| it.members.iter().map(move |m| (m.0, track)));
         let tracks = members.filter_map(|(place, track)| Some((sweep.ids().get(place)?.clone(), track))).collect();
         Ok(Self { imported, sweep, tracks })
     }

@@ -3,12 +3,12 @@
 
 use super::record::Work;
 use super::{Answer, Cover, Failure, Region, Request, outlines};
-use crate::fleet::Format;
 use crate::bodies::Bodies;
+use crate::fleet::Format;
 use crate::memory::Held;
 use crate::rows::{self, Grid, Row};
-use pcr_formats::scenario::{Labels, Scenario};
 use pcr_core::{Full, Motion};
+use pcr_formats::scenario::{Labels, Scenario};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -50,7 +50,8 @@ impl<'s, S: Format> Sheet<'s, S> {
                 *own = if own.start < own.end { own.start..place + 1 } else { place..place + 1 };
             }
         }
-        let mut egos: Vec<usize> = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|it| ids[ego] == it)).collect();
+        let mut egos: Vec<usize> =
+            (0..ids.len()).filter(|&ego| request.agent.is_none_or(|it| ids[ego] == it)).collect();
         egos.sort_by_key(|&ego| ids[ego]);
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
         Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos, outlined })
@@ -175,10 +176,15 @@ impl<'s, S: Format> Sheet<'s, S> {
 
     fn all(&self, margin: bool, told: Told<'_>) -> Result<Vec<Region>, Failure> {
         let (mut all, mut held) = (Vec::new(), Held::default());
-        self.each(margin, told, |row| row, |row| {
-            let beside = row.iter().map(Region::bytes).sum();
-            Ok::<(), Failure>(held.extend(&mut all, row, beside, "regions")?)
-        })?;
+        self.each(
+            margin,
+            told,
+            |row| row,
+            |row| {
+                let beside = row.iter().map(Region::bytes).sum();
+                Ok::<(), Failure>(held.extend(&mut all, row, beside, "regions")?)
+            },
+        )?;
         Ok(all)
     }
 }

@@ -2,8 +2,8 @@
 
 use super::columns::Columns;
 use super::{Document, json, printable, quoted};
-use pcr_formats::import::{Id, ImportError};
 use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
+use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -77,12 +77,7 @@ impl Document for Head<'_> {
 ///
 /// # Errors
 /// As [`locks_csv`].
-pub fn locks_lines(
-    head: &Locks,
-    sweep: &Sweep,
-    told: Told<'_>,
-    out: &mut impl Write,
-) -> Result<(), LocksUnprinted> {
+pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
     json(&Head { layout: &head.layout, vehicle: &head.vehicle, warnings: &head.warnings }, out)?;
     let names: Vec<String> =
         sweep.ids().iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(io::Error::from)?;
