@@ -18,10 +18,7 @@ fn discs(count: usize, apart: f64) -> String {
 fn more_agents_than_a_table_numbers_are_answered() {
     let name = file("large", "discs.json", discs(70_000, 3.0));
     assert_eq!(run(&["regions", &name, "--format", "csv"]).ok().lines().count(), 1);
-    assert_eq!(run(&["check", &name]).ok(), "scenario: no conflicts\n".replace("scenario", "discs"));
-    // A plan needs a table of all of them, and says so.
-    let problem = run(&["plan", &name, "-q"]);
-    assert!(problem.status < 3, "{}", problem.err);
+    assert_eq!(run(&["check", &name]).ok(), "discs: no conflicts\n");
 }
 
 /// Runs with so much address space \[kB\].
@@ -36,13 +33,8 @@ fn limited(kilobytes: u32, arguments: &[&str]) -> (Option<i32>, String) {
 #[cfg(target_os = "linux")]
 #[test]
 fn what_memory_does_not_hold_is_refused_with_a_number() {
-    let heap = file("large", "heap.json", discs(900, 0.001));
-    for (limit, arguments) in [
-        (400_000, &["regions", &heap][..]),
-        (400_000, &["regions", &heap, "--certificate", "--json"]),
-        (300_000, &["check", &heap]),
-        (300_000, &["plan", &heap, "-q"]),
-    ] {
+    let heap = file("large", "heap.json", discs(600, 0.001));
+    for (limit, arguments) in [(400_000, &["regions", &heap][..]), (300_000, &["check", &heap])] {
         let (status, message) = limited(limit, arguments);
         assert_eq!(status, Some(2), "{arguments:?}: {message}");
         let number = message.contains(" MB ") && message.starts_with("pcr: ");
