@@ -1,6 +1,7 @@
 //! Layouts that change edge by edge: the locks are those of a table that is made anew, and few pairs are looked at.
 
-use pcr_formats::import::{Edge, Format, Id, Imported, Options, Placed, Warnings, layout};
+use pcr_formats::import::{Edge, Format, Id, Imported, Options, Warnings, layout};
+use pcr_formats::scenario::Placed;
 use pcr_planning::locks::{Change, Lock, Locks, Table};
 use std::collections::HashSet;
 
@@ -48,11 +49,12 @@ fn moved(imported: &Imported, edge: &Edge) -> Edge {
     }
 }
 
-fn runs_through_changes(imported: Imported) {
+/// Of every so many-th edge.
+fn runs_through_changes(imported: Imported, step_by: usize) {
     let mut locks = Locks::of(&imported, false).unwrap().locks;
     let edges = imported.layout.edges.clone();
     let mut table = Table::new(imported).unwrap();
-    for edge in edges.iter().step_by(61) {
+    for edge in edges.iter().step_by(step_by) {
         for step in 0..3 {
             let change = match step {
                 0 => table.remove(&edge.id).unwrap(),
@@ -67,12 +69,12 @@ fn runs_through_changes(imported: Imported) {
 
 #[test]
 fn changes_of_discs_are_those_of_a_new_table() {
-    runs_through_changes(disc());
+    runs_through_changes(disc(), 61);
 }
 
 #[test]
 fn changes_of_outlines_renew_the_turns_at_both_ends() {
-    runs_through_changes(warehouse(Options { fleet: Some(FACTSHEET.into()), ..Options::default() }));
+    runs_through_changes(warehouse(Options { fleet: Some(FACTSHEET.into()), ..Options::default() }), 172);
 }
 
 #[test]
