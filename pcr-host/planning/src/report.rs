@@ -4,6 +4,7 @@ mod certified;
 pub mod columns;
 mod conflicts;
 pub mod figures;
+mod lifelong;
 mod locks;
 mod nodes;
 mod overview;
@@ -16,6 +17,7 @@ mod traffic;
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use columns::ROW_BYTES;
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
+pub use lifelong::{LIFELONG_CSV_HEADER, lifelong_csv, lifelong_table};
 pub use locks::{
     EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, locks_csv, locks_lines, locks_table,
 };
@@ -29,6 +31,7 @@ pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
 use crate::certify::Certified;
 use crate::check::Verdict;
+use crate::lifelong::Lifelong;
 use crate::locks::Locks;
 use crate::nodes::Listing;
 use crate::plan::Plan;
@@ -69,6 +72,9 @@ impl Document for Locks {
 }
 impl Document for Traffic {
     const FORMAT: &'static str = "pcr-traffic";
+}
+impl Document for Lifelong {
+    const FORMAT: &'static str = "pcr-lifelong";
 }
 impl Document for Listing<'_> {
     const FORMAT: &'static str = "pcr-nodes";

@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     /// Add the table as it is held, path by path and piece by piece, for `pcr certify --table` (JSON only)
     #[arg(long)]
     certificate: bool,
-    /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]
