@@ -3,8 +3,9 @@
 use std::fmt;
 use std::fs;
 
-/// What is left alone, so that what is small need not ask \[bytes\].
+/// What is left alone, so that what is small need not ask \[bytes\]: of address space more, as each thread takes it 64 MB at a time.
 const RESERVE: u64 = 48 << 20;
+const ADDRESSES: u64 = 160 << 20;
 
 /// What may be taken between two questions \[bytes\].
 pub const STEP: u64 = 16 << 20;
@@ -60,6 +61,7 @@ pub(crate) fn for_list(count: usize, size: u64) -> Result<(), TooLarge> {
 #[derive(Debug, Default)]
 pub(crate) struct Held {
     since: u64,
+    all: u64,
 }
 
 impl Held {
@@ -76,14 +78,17 @@ impl Held {
     ) -> Result<(), TooLarge> {
         let own = size_of::<T>() as u64;
         let count = list.len() + items.len();
-        let needed = 2 * count as u64 * own;
+        let grows = count > list.capacity();
+        let added = items.len() as u64 * own + beside;
+        (self.since, self.all) = (self.since + added, self.all + added);
+        let more = if grows { 2 * count as u64 * own } else { STEP };
         let what = || format!("a list of {count} {what} and those that are to come");
-        self.since += items.len() as u64 * own + beside;
+        let so_far = self.all + more;
         if self.since >= STEP {
             self.since = 0;
-            ask(if count > list.capacity() { needed } else { STEP }, what)?;
+            ask(more, what).map_err(|large| TooLarge { needed: Some(so_far), ..large })?;
         }
-        list.try_reserve(items.len()).map_err(|_| TooLarge { needed: Some(needed), ..TooLarge::of(what()) })?;
+        list.try_reserve(items.len()).map_err(|_| TooLarge { needed: Some(so_far), ..TooLarge::of(what()) })?;
         list.extend(items);
         Ok(())
     }
@@ -92,8 +97,8 @@ impl Held {
 /// Bytes that may be allocated yet, by the limit of the address space (`ulimit -v`), that of the group of processes and what the
 /// machine has, less a reserve; nothing where no system tells.
 pub fn left() -> Option<u64> {
-    let limits = [address_space(), group(), machine()];
-    limits.into_iter().flatten().min().map(|bytes| bytes.saturating_sub(RESERVE))
+    let limits = [(address_space(), ADDRESSES), (group(), RESERVE), (machine(), RESERVE)];
+    limits.into_iter().filter_map(|(bytes, reserve)| Some(bytes?.saturating_sub(reserve))).min()
 }
 
 /// A number of kilobytes in a file of lines `name: number kB` \[bytes\].

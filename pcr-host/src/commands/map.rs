@@ -8,6 +8,7 @@ use pcr_drawing::{self as picture, Ground};
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Fleet;
+use pcr_planning::memory;
 use pcr_planning::regions::{self, Failure};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -17,6 +18,9 @@ const EXAMPLES: &str = "\
 Examples:
   pcr map fleet.json -o pictures                 begin with pictures/index.html
   pcr demo --scenario | pcr map -o pictures      the paper's 12 agents";
+
+/// What a drawn region takes \[bytes\].
+const SHAPE_BYTES: u64 = 4096;
 
 /// Draw a scenario: its paths, and the collision map of each agent
 #[derive(Args)]
@@ -38,7 +42,12 @@ impl Arguments {
         // What is wrong with the scenario is said before anything is written.
         let named = |failure: Failure| Stop::wrong(file, failure);
         let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
-        regions::table(&scenario, &fleet.motions()).map_err(named)?;
+        let table = regions::table(&scenario, &fleet.motions()).map_err(named)?;
+        // Each region is drawn for both of its agents, in the page and in a picture.
+        let shapes = 2 * table.len() as u64;
+        let what = || format!("pictures of {shapes} regions");
+        memory::ask(shapes * SHAPE_BYTES, what).map_err(|large| named(large.into()))?;
+        drop(table);
         let mut out: Box<dyn Write> = if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) };
         draw(&scenario, None, &self.output, &mut out)?;
         Ok(ExitCode::SUCCESS)

@@ -1,7 +1,7 @@
 //! `pcr locks`: a table for people, CSV and JSON for programs, a page.
 
 use crate::fixture::{directory, file, run, run_with};
-use serde_json::json;
+use serde_json::{Value, json};
 
 const WAREHOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
 
@@ -78,4 +78,139 @@ fn what_is_no_layout_is_refused() {
         failed.ends_with("scenario.json: this is a scenario, with paths of its own; a layout is expected\n"),
         "{failed}"
     );
+}
+
+/// All lines of a run, in order.
+fn sorted(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = text.lines().skip(1).map(str::to_owned).collect();
+    lines.sort();
+    lines
+}
+
+#[test]
+fn lines_say_what_the_table_says_and_that_they_are_all() {
+    let arguments = ["locks", WAREHOUSE, "--radius", "0.4", "--nodes"];
+    let table: Value = run(&[&arguments[..], &["--json"]].concat()).json();
+    let lines = run(&[&arguments[..], &["--lines"]].concat()).ok();
+    let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let [head, locks @ .., end] = &lines[..] else { panic!("{lines:?}") };
+    assert_eq!((&head["format"], &head["vehicle"]), (&json!("pcr-lock-lines"), &table["vehicle"]));
+    assert_eq!(end, &json!({ "locks": locks.len() }));
+    let list = |name: &str| table[name].as_array().unwrap().clone();
+    let pairs = list("node_pairs").into_iter().map(|pair| json!({ "nodes": pair }));
+    let expected: Vec<Value> = list("locks").into_iter().chain(list("nodes")).chain(pairs).collect();
+    assert_eq!(locks, expected);
+}
+
+#[test]
+fn an_edge_is_found_in_an_index_without_the_others() {
+    let index = directory("locks").join("warehouse.locks");
+    let index = index.to_str().unwrap();
+    let arguments = ["locks", WAREHOUSE, "--radius", "0.4", "--nodes"];
+    let written = run(&[&arguments[..], &["--index", index]].concat());
+    assert_eq!((written.status, written.out.as_str()), (0, ""), "{}", written.err);
+    let table: Value = run(&[&arguments[..], &["--json"]].concat()).json();
+    let mut edges = 0;
+    for edge in table["locks"].as_array().unwrap().iter().step_by(37).map(|lock| lock["a"].to_string()) {
+        let of = |source: &[&str]| run(&[&["locks"], source, &["--edge", &edge, "--json"]].concat()).json();
+        let [held, computed] = [of(&[index]), of(&arguments[1..])];
+        let [held, computed] = [&held, &computed].map(|of| of["partners"].as_array().unwrap());
+        assert_eq!(held.len(), computed.len(), "{edge}");
+        let own = |lock: &&Value| lock["a"].to_string() == edge || lock["b"].to_string() == edge;
+        let nodes = table["nodes"].as_array().unwrap().iter().filter(|lock| lock["edge"].to_string() == edge).count();
+        assert_eq!(held.len(), table["locks"].as_array().unwrap().iter().filter(own).count() + nodes, "{edge}");
+        for (held, computed) in held.iter().zip(computed) {
+            assert_eq!((&held["name"], &held["node"]), (&computed["name"], &computed["node"]), "{edge}");
+            for lengths in ["own", "other"] {
+                let [[lo, hi], [exact_lo, exact_hi]] =
+                    [held, computed].map(|of| [0, 1].map(|end| of[lengths][end].as_f64().unwrap()));
+                // Rounded outward to seven digits.
+                assert!(lo <= exact_lo && exact_lo - lo < 1e-5 && exact_hi <= hi && hi - exact_hi < 1e-5, "{held}");
+            }
+        }
+        edges += 1;
+    }
+    assert!(edges > 10, "{edges}");
+    let unknown = run(&["locks", index, "--edge", "nowhere"]).failed(2);
+    assert!(unknown.ends_with("there is no edge nowhere; pcr nodes lists them\n"), "{unknown}");
+    let again = run(&["locks", index]).failed(2);
+    assert!(again.ends_with("this is a table of locks already; say which --edge it is asked for\n"), "{again}");
+}
+
+#[test]
+fn a_damaged_index_gives_no_answer() {
+    let name = file("locks", "damaged.geojson", cross());
+    let index = directory("locks").join("damaged.locks");
+    let path = index.to_str().unwrap();
+    assert_eq!(run(&["locks", &name, "--radius", "0.25", "--index", path, "-q"]).status, 0);
+    let whole = std::fs::read(&index).unwrap();
+    let asked = ["locks", path, "--edge", "7", "--format", "csv"];
+    let answer = run(&asked).ok();
+    assert_eq!(answer.lines().count(), 2);
+    // What is reserved is covered by a checksum, too; the locks of the other edge are not read.
+    let mut unread = 0;
+    for byte in 0..whole.len() {
+        let mut damaged = whole.clone();
+        damaged[byte] ^= 0x10;
+        std::fs::write(&index, damaged).unwrap();
+        let run = run(&asked);
+        unread += usize::from(run.out == answer);
+        assert!(run.status == 2 || run.out == answer, "byte {byte}: {}", run.out);
+    }
+    assert_eq!(unread, 20);
+    std::fs::write(&index, &whole[..whole.len() - 1]).unwrap();
+    assert!(run(&asked).failed(2).contains("it is longer or shorter than its header says"));
+}
+
+/// A roadmap as Continuous-CBS has them, each way in both directions: a lattice with diagonals, not all of it even.
+fn roadmap(side: usize) -> String {
+    let mut text = String::from("<graphml><graph edgedefault=\"directed\">");
+    let node = |x: usize, y: usize| x * side + y;
+    for (x, y) in (0..side * side).map(|k| (k / side, k % side)) {
+        let shift = ((7 * x + 3 * y) % 5) as f64 * 0.1;
+        text += &format!("<node id=\"n{}\"><data>{},{}</data></node>", node(x, y), x as f64 + shift, y as f64 - shift);
+    }
+    let mut count = 0;
+    for (x, y) in (0..side * side).map(|k| (k / side, k % side)) {
+        for (to_x, to_y) in [(x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+            if to_x < side && to_y < side {
+                for (from, to) in [(node(x, y), node(to_x, to_y)), (node(to_x, to_y), node(x, y))] {
+                    text += &format!("<edge id=\"e{count}\" source=\"n{from}\" target=\"n{to}\"/>");
+                    count += 1;
+                }
+            }
+        }
+    }
+    text + "</graph></graphml>"
+}
+
+#[test]
+fn both_directions_of_a_way_have_the_same_locks() {
+    let roadmap = file("locks", "roadmap.xml", roadmap(6));
+    let csv = run(&["locks", &roadmap, "--radius", "0.2", "--format", "csv"]).ok();
+    let lines = sorted(&csv);
+    assert!(lines.windows(2).all(|pair| pair[0] != pair[1]) && lines.len() > 2000, "{}", lines.len());
+    let mut of: std::collections::BTreeMap<u32, Vec<(u32, [f64; 2])>> = std::collections::BTreeMap::new();
+    for line in &lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [a, b] = [cells[0], cells[1]].map(|name| name[1..].parse::<u32>().unwrap());
+        let number = |k: usize| cells[k].parse::<f64>().unwrap();
+        of.entry(a).or_default().push((b, [number(2), number(3)]));
+        of.entry(b).or_default().push((a, [number(4), number(5)]));
+    }
+    for there in (0..of.len() as u32).step_by(2) {
+        let partners = |edge: u32| {
+            let others = of[&edge].iter().filter(|(other, _)| other / 2 != edge / 2);
+            let mut others: Vec<(u32, [f64; 2])> = others.copied().collect();
+            others.sort_by(|a, b| a.0.cmp(&b.0).then(a.1[0].total_cmp(&b.1[0])));
+            others
+        };
+        let (ahead, back) = (partners(there), partners(there + 1));
+        let length = of[&there].iter().find(|(other, _)| other / 2 == there / 2).unwrap().1[1];
+        assert_eq!(ahead.len(), back.len());
+        for ((other, [from, to]), (same, [back_from, back_to])) in ahead.iter().zip(&back) {
+            assert_eq!(other, same);
+            assert!((from + back_to - length).abs() < 1e-9 && (to + back_from - length).abs() < 1e-9, "e{there}");
+        }
+    }
 }

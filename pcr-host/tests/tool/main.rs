@@ -11,6 +11,7 @@ mod formats;
 mod habits;
 mod identity;
 mod import;
+mod large;
 mod lines;
 mod locks;
 mod margins;

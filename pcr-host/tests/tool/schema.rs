@@ -73,6 +73,7 @@ fn every_output_fits_its_schema() {
         &["compare", &labelled, "--method", "polyline", "--rounds", "1"],
         &["locks", &layout, "--radius", "0.3", "--nodes"],
         &["locks", &lif, "--radius", "0.3"],
+        &["locks", &layout, "--radius", "0.3", "--nodes", "--edge", "26"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
         &["nodes", &layout],
         &["nodes", &lif],
@@ -91,6 +92,8 @@ fn every_output_fits_its_schema() {
     formats.push(fits(&run(&["import", "nav2", &layout, "--route", "0:1", "--fleet", &factsheet, "-q"]).out));
     let routes = ["import", "nav2", &layout, "--route", "0:1", "--radius", "0.3", "-q"];
     formats.push(fits(&run(&routes).out));
+    let lines = run(&["locks", &layout, "--radius", "0.3", "--lines", "-q"]).out;
+    formats.push(fits(lines.lines().next().unwrap()));
     // There is no schema of which nothing was seen.
     let mut there: Vec<String> = fs::read_dir(format!("{ROOT}/docs/schema"))
         .unwrap()

@@ -311,7 +311,7 @@ impl Sweep {
         let track = |place| self.tracks.iter().position(|track| track.members.iter().any(|member| member.0 == place));
         let Some((place, track)) = found.and_then(|place| Some((place, track(place)?))) else { return Ok(None) };
         let own = &self.tracks[track];
-        let turned = own.members.iter().any(|&member| member == (place, true));
+        let turned = own.members.contains(&(place, true));
         let mut partners = Vec::new();
         for (other, [lengths, other_lengths]) in self.row_of(track)?.0 {
             let their = &self.tracks[other];
