@@ -12,7 +12,7 @@ use pcr_host::check::Verdict;
 use pcr_host::fleet::Format;
 use pcr_host::import::{self, Options, Warnings};
 use pcr_host::locks;
-use pcr_host::plan::{Method, Plan, Priority};
+use pcr_host::plan::{Method, Plan, Request};
 use pcr_host::regions::{Answer, Request};
 use pcr_host::scenario::Scenario;
 use pcr_tests::certified::{run, table};
@@ -349,7 +349,7 @@ fn the_margin_is_where_a_proof_ends() {
 #[test]
 fn plans_are_proved_to_be_without_contact() {
     for (name, method) in [("paper12.json", Method::Delay), ("paper12.json", Method::Speed)] {
-        let (plan, solved) = Plan::of(&fleet(name), method, &Priority::Best).unwrap();
+        let (plan, solved) = Plan::of(&fleet(name), &Request::of(method)).unwrap();
         let proof = plan.certificate.expect("a plan");
         assert_eq!((proof.verdict, solved.is_some()), ("proved", true), "{name}: {proof:?}");
         assert!(proof.pairs > 0 && proof.steps >= proof.pairs);

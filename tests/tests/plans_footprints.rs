@@ -3,7 +3,7 @@
 
 use pcr_host::check::Verdict;
 use pcr_host::fleet::Fleet;
-use pcr_host::plan::{Method, Plan, Priority};
+use pcr_host::plan::{Method, Plan, Request};
 use pcr_host::scenario::Scenario;
 use pcr_tests::polygons::{Point, apart, placed};
 use serde_json::{Value, json};
@@ -23,7 +23,7 @@ fn line(length: f64) -> Value {
 
 fn planned(agents: &[Value], method: Method) -> (Plan, Option<Scenario>) {
     let scenario = Scenario::from_json(&json!({ "name": "trucks", "agents": agents }).to_string()).unwrap();
-    Plan::of(&scenario, method, &Priority::Best).unwrap()
+    Plan::of(&scenario, &Request::of(method)).unwrap()
 }
 
 /// The least distance of the outlines of a scenario.

@@ -6,18 +6,19 @@ use super::sources::{Source, gathered};
 use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, is_standard, write_to};
 use clap::{Args, ValueEnum};
 use pcr_host::import::Options;
-use pcr_host::plan::{Method, Plan, Priority};
+use pcr_host::plan::{Effort, Method, Objective, Plan, Priority, Request};
 use pcr_host::regions::{Failure, find};
 use pcr_host::report;
 use pcr_host::scenario::Scenario;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
-  1  no plan
+  1  no plan, or with --partial none for all
   2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
@@ -27,7 +28,9 @@ Examples:
   pcr plan fleet.json -o - | pcr check                to standard output; the table goes to standard error
   pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
-  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first, then the others as in the file";
+  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first, then the others as in the file
+  pcr plan fleet.json --partial -o plan.json          without those that cannot go, if there are any
+  pcr plan fleet.json --prove --time-limit 60         until nothing better can exist, a minute at most";
 
 /// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
 #[derive(Args)]
@@ -48,6 +51,18 @@ pub(super) struct Arguments {
     /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best`
     #[arg(long, value_name = "ORDER", default_value = "best", value_parser = asked)]
     priority: Asked,
+    /// What shall be least: the sum over the agents from their start in the file to their arrival, or the last arrival
+    #[arg(long, value_enum, default_value_t = Least::SumOfCosts)]
+    objective: Least,
+    /// If not all agents can have a plan, one for the others: the fewest are left out, as if they were not there
+    #[arg(long)]
+    partial: bool,
+    /// Search until it is proved that no start delays are better, or until --time-limit
+    #[arg(long)]
+    prove: bool,
+    /// Stop the search for better start delays after this time; what was found depends on the machine then
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    time_limit: Option<Duration>,
     #[command(flatten)]
     printed: Printed,
     #[command(flatten)]
@@ -67,6 +82,26 @@ impl From<Means> for Method {
             Means::Speed => Self::Speed,
         }
     }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Least {
+    SumOfCosts,
+    Makespan,
+}
+
+impl From<Least> for Objective {
+    fn from(least: Least) -> Self {
+        match least {
+            Least::SumOfCosts => Self::Sum,
+            Least::Makespan => Self::Makespan,
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse::<f64>().map_err(|error| error.to_string())?;
+    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
 }
 
 /// An order of priority from the command line.
@@ -149,12 +184,19 @@ impl Arguments {
         }
     }
 
-    /// Whether there is a plan.
+    /// Whether there is a plan for all.
     fn plan(&self, source: &Source, out: &mut impl Write) -> Result<bool, Stop> {
         let scenario = source.scenario(&self.import)?;
         let wrong = |failure: Failure| Stop::wrong(source.file(), failure);
         let priority = self.priority.of(&scenario).map_err(wrong)?;
-        let (plan, solved) = Plan::of(&scenario, self.method.into(), &priority).map_err(wrong)?;
+        let request = Request {
+            method: self.method.into(),
+            priority,
+            objective: self.objective.into(),
+            partial: self.partial,
+            effort: Effort { prove: self.prove, time: self.time_limit },
+        };
+        let (plan, solved) = Plan::of(&scenario, &request).map_err(wrong)?;
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
             write_to(output, &solved.to_json())?;
         }
@@ -172,6 +214,6 @@ impl Arguments {
                 draw(solved, None, &directory.join("after"), told)?;
             }
         }
-        Ok(solved.is_some())
+        Ok(solved.is_some() && plan.left_out.is_empty())
     }
 }
