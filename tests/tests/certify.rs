@@ -7,14 +7,15 @@ use pcr_certify::pair::Findings;
 use pcr_certify::table::{Checker, Margin};
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::certify::{Certified, Dump, table_of};
-use pcr_host::check::Verdict;
-use pcr_host::fleet::Format;
-use pcr_host::import::{self, Options, Warnings};
-use pcr_host::locks;
-use pcr_host::plan::{Method, Plan, Request};
-use pcr_host::regions::{Answer, Request};
-use pcr_host::scenario::Scenario;
+use pcr_formats::import::{self, Options, Warnings};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::certify::{Certified, Dump};
+use pcr_planning::check::Verdict;
+use pcr_planning::fleet::Format;
+use pcr_planning::locks;
+use pcr_planning::plan::{self, Method, Plan};
+use pcr_planning::regions::table_of;
+use pcr_planning::regions::{Answer, Request};
 use pcr_tests::certified::{run, table};
 use pcr_tests::disc::Disc;
 use pcr_tests::exact::{Route, Twofold};
@@ -349,7 +350,7 @@ fn the_margin_is_where_a_proof_ends() {
 #[test]
 fn plans_are_proved_to_be_without_contact() {
     for (name, method) in [("paper12.json", Method::Delay), ("paper12.json", Method::Speed)] {
-        let (plan, solved) = Plan::of(&fleet(name), &Request::of(method)).unwrap();
+        let (plan, solved) = Plan::of(&fleet(name), &plan::Request::of(method)).unwrap();
         let proof = plan.certificate.expect("a plan");
         assert_eq!((proof.verdict, solved.is_some()), ("proved", true), "{name}: {proof:?}");
         assert!(proof.pairs > 0 && proof.steps >= proof.pairs);

@@ -3,9 +3,10 @@
 use super::sources::{layout, source};
 use super::{Form, Printed, STATUSES, Stop};
 use clap::Args;
-use pcr_host::import::Options;
-use pcr_host::locks::Locks;
-use pcr_host::{picture, report};
+use pcr_drawing as picture;
+use pcr_formats::import::Options;
+use pcr_planning::locks::Locks;
+use pcr_planning::report;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;

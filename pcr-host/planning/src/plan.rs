@@ -1,0 +1,213 @@
+//! Plans without collisions: what `pcr plan` prints and writes.
+//!
+//! By start delays: the best ones by branch and bound, or one agent after the other in an order of priority. By speeds: each agent
+//! arrives as early as those before it in an order allow, and the delays are a plan, too. Starts are planned with the discs of footprints, speeds with the one disc
+//! around them: another speed along the path is none of a disc beside it. Every plan is checked as `pcr check` does and proved by the
+//! independent checker before it is returned.
+
+mod bound;
+mod circle;
+mod delays;
+mod forbidden;
+mod planner;
+mod reason;
+mod speeds;
+mod starts;
+
+use crate::certify::Proof;
+use crate::fleet::Fleet;
+use crate::regions::{self, Failure};
+pub(crate) use circle::sides;
+pub use delays::{Effort, Objective};
+pub(crate) use forbidden::Forbidden;
+pub use forbidden::{Out, Schedule};
+use pcr_core::{Encounter, Motion};
+use pcr_formats::scenario::{Labels, Scenario};
+use planner::Planner;
+pub use reason::Spot;
+use serde::Serialize;
+use starts::Starts;
+
+/// How conflicts are avoided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Agents start later and then move as the scenario says.
+    #[default]
+    Delay,
+    /// Agents wait and change their speed on the way, under the largest speed and acceleration of their own motions.
+    Speed,
+}
+
+impl Method {
+    /// Its name in the output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Delay => "delay",
+            Self::Speed => "speed",
+        }
+    }
+}
+
+/// How the agents are put in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Priority {
+    /// By their numbers in this order; those that are left out come last, as in the file.
+    Given(Vec<u64>),
+    /// The one that travels longest first; else as in the file.
+    Longest,
+    /// The one with most regions first; else as in the file.
+    Crowded,
+    /// Whatever costs least: of delays the best of all orders, of speeds the best of those that are tried.
+    #[default]
+    Best,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Request {
+    /// How conflicts are avoided.
+    pub method: Method,
+    /// How the agents are put in order.
+    pub priority: Priority,
+    /// What shall be least.
+    pub objective: Objective,
+    /// Where not all agents can have a plan: one for the others, with as few left out as possible.
+    pub partial: bool,
+    /// How long to search.
+    pub effort: Effort,
+}
+
+impl Request {
+    /// The best plan by a method.
+    pub fn of(method: Method) -> Self {
+        Self { method, ..Self::default() }
+    }
+}
+
+/// A plan, or why there is none. The JSON output, field for field in this order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    /// Name of the scenario.
+    pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
+    /// How conflicts are avoided.
+    pub method: &'static str,
+    /// The agents by priority, or by their starts where none was asked for.
+    pub order: Vec<u64>,
+    /// In the order of the file; none where there is no plan.
+    pub agents: Vec<Planned>,
+    /// Those that the plan is not for, as if they were not there.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<u64>,
+    /// From the earliest start in the file to the last arrival \[s\].
+    pub makespan: f64,
+    /// Sum over the agents from their start in the file to their arrival \[s\].
+    pub sum_of_costs: f64,
+    /// What was to be least: `sum_of_costs` or `makespan`.
+    pub objective: &'static str,
+    /// No plan by this method for the same agents is less by that \[s\].
+    pub lower_bound: f64,
+    /// How much less it could be at most, of itself.
+    pub gap: f64,
+    /// Whether nothing is less but for rounding.
+    pub proved: bool,
+    /// Who cannot be planned; each is a set of agents of which at least one has to be left out.
+    pub unsolved: Vec<Unsolved>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+    /// What an independent checker has proved of the plan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Proof>,
+}
+
+/// An agent of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Planned {
+    /// Number.
+    pub id: u64,
+    /// How much later it starts than the file says \[s\].
+    pub delay: f64,
+    /// When it arrives \[s\].
+    pub t_end: f64,
+}
+
+/// Agents for which there is no plan.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unsolved {
+    /// Their numbers.
+    pub ids: Vec<u64>,
+    /// Why.
+    pub why: String,
+    /// Where, if it is about two agents and a place.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub spot: Option<Spot>,
+}
+
+impl Unsolved {
+    /// The first agent cannot start because of the second, `always` or after it.
+    pub(crate) fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
+        let (why, spot) = reason::reason(scenario, ids, always);
+        Self { ids: ids.to_vec(), why, spot }
+    }
+
+    /// Without a place.
+    fn nowhere(ids: Vec<u64>, why: impl Into<String>) -> Self {
+        Self { ids, why: why.into(), spot: None }
+    }
+}
+
+/// A plan, and the scenario that it makes, where there is one.
+type Answer = (Plan, Option<Scenario>);
+
+impl Plan {
+    /// Starts or speeds for the agents of a scenario, and the scenario with them where there are.
+    ///
+    /// # Errors
+    /// [`Failure`] where a value does not fit, the table cannot hold the fleet, or an agent of the order is not there.
+    pub fn of(scenario: &Scenario, request: &Request) -> Result<Answer, Failure> {
+        let fleet = Fleet::<f64>::new(scenario)?;
+        let motions = grown(&fleet);
+        let ecm = regions::table(scenario, &motions)?;
+        let planner = Planner { scenario, request, motions: &motions, ecm: &ecm };
+        let starts = Starts::of(&planner)?;
+        let everybody = starts.of_all();
+        let (plan, solved) = match request.method {
+            Method::Delay if everybody.is_none() => {
+                (Self { unsolved: starts.unsolved(&planner), ..planner.none() }, None)
+            }
+            _ => planner.plan(everybody)?,
+        };
+        let staying = if request.partial && solved.is_none() { starts.staying() } else { Vec::new() };
+        if staying.is_empty() {
+            return Ok((plan, solved));
+        }
+        let rest = Scenario {
+            agents: staying.iter().map(|&agent| scenario.agents[agent].clone()).collect(),
+            ..scenario.clone()
+        };
+        let fleet = Fleet::<f64>::new(&rest)?;
+        let motions = grown(&fleet);
+        let ecm = regions::table(&rest, &motions)?;
+        let of_rest = Planner { scenario: &rest, request, motions: &motions, ecm: &ecm };
+        let (mut partial, solved) = of_rest.plan(Some(starts.known(&staying)))?;
+        partial.labels = plan.labels;
+        partial.left_out = (0..planner.motions.len())
+            .filter(|agent| !staying.contains(agent))
+            .map(|agent| planner.id(agent))
+            .collect();
+        partial.unsolved.splice(0..0, plan.unsolved);
+        Ok((partial, solved))
+    }
+}
+
+/// The motions with their margins, and with what the check may take for a contact. A radius at the limit of the format
+/// stays as it is, and the check has the last word.
+pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
+    let motions = fleet.motions();
+    let tolerance = motions.iter().map(|motion| Encounter::new(motion, motion).tolerance()).fold(0.0, f64::max);
+    // The growths of two agents add up: what planning and what the check may be off.
+    let grown = motions.iter().map(|&motion| motion.with_margin(motion.margin() + tolerance).unwrap_or(motion));
+    grown.map(|motion| motion.inflated()).collect()
+}
