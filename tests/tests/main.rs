@@ -50,6 +50,7 @@ mod paper_tables;
 mod plans;
 mod plans_bounds;
 mod plans_footprints;
+mod plans_proved;
 mod properties;
 mod regressions;
 mod safe;

@@ -49,9 +49,9 @@ fn trucks_on_lanes_beside_one_another_need_not_wait() {
     let (plan, solved) = planned(&agents, Method::Delay);
     assert!(plan.agents.iter().all(|agent| agent.delay == 0.0), "{plan:?}");
     assert!(clearance(&solved.unwrap()) > 0.29);
-    // A speed plan takes the discs around them, which meet head-on.
+    // A speed plan takes the discs around them, which meet head-on; but the delays are a plan.
     let (plan, solved) = planned(&agents, Method::Speed);
-    assert!(solved.is_none() && plan.unsolved[0].why.contains("head-on"), "{plan:?}");
+    assert!(solved.is_some() && plan.proved && plan.agents.iter().all(|agent| agent.delay == 0.0), "{plan:?}");
 }
 
 #[test]

@@ -72,7 +72,7 @@ pub struct Request {
     /// What shall be least.
     pub objective: Objective,
     /// Where not all agents can have a plan: one for the others, with as few left out as possible.
-    pub partial: bool,
+    pub leave_out: bool,
     /// How long to search.
     pub effort: Effort,
 }
@@ -179,7 +179,7 @@ impl Plan {
             }
             _ => planner.plan(everybody)?,
         };
-        let staying = if request.partial && solved.is_none() { starts.staying() } else { Vec::new() };
+        let staying = if request.leave_out && solved.is_none() { starts.staying() } else { Vec::new() };
         if staying.is_empty() {
             return Ok((plan, solved));
         }

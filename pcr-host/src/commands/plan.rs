@@ -18,7 +18,7 @@ use std::time::Duration;
 const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
-  1  no plan, or with --partial none for all
+  1  no plan, or with --leave-out none for all
   2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
@@ -29,7 +29,7 @@ Examples:
   pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
   pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first, then the others as in the file
-  pcr plan fleet.json --partial -o plan.json          without those that cannot go, if there are any
+  pcr plan fleet.json --leave-out -o plan.json        without those that cannot go, if there are any
   pcr plan fleet.json --prove --time-limit 60         until nothing better can exist, a minute at most";
 
 /// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     objective: Least,
     /// If not all agents can have a plan, one for the others: the fewest are left out, as if they were not there
     #[arg(long)]
-    partial: bool,
+    leave_out: bool,
     /// Search until it is proved that no start delays are better, or until --time-limit
     #[arg(long)]
     prove: bool,
@@ -193,7 +193,7 @@ impl Arguments {
             method: self.method.into(),
             priority,
             objective: self.objective.into(),
-            partial: self.partial,
+            leave_out: self.leave_out,
             effort: Effort { prove: self.prove, time: self.time_limit },
         };
         let (plan, solved) = Plan::of(&scenario, &request).map_err(wrong)?;

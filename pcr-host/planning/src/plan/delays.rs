@@ -16,6 +16,8 @@ mod leave;
 mod net;
 mod problem;
 mod search;
+#[cfg(test)]
+mod tests;
 
 pub use problem::Objective;
 pub(crate) use problem::{NEVER, Pair, Problem, Ticks, slack};

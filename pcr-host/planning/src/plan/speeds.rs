@@ -1,4 +1,7 @@
-//! Speeds for a fleet: delays, what `plan_speeds` finds in several orders, and each agent again while all others move as planned.
+//! Speeds for a fleet: delays, what `plan_speeds` finds in several orders, priorities by need, and each agent again while all others
+//! move as planned.
+
+mod branching;
 
 use super::Priority;
 use super::planner::Planner;
@@ -6,12 +9,13 @@ use crate::regions::Failure;
 use pcr_core::{Drive, Motion, Profile, Station, Unsolved as Never, plan_speed, plan_speeds};
 
 /// Phases of a speed profile, at most.
-const PHASES: usize = 256;
+const PHASES: usize = 128;
 /// Stations along a path: 256 cells.
 const STATIONS: usize = 257;
-/// Profiles for each agent, and for the fleet.
+/// Profiles for each agent where fleets are small, for all, and for each agent at least.
 const PROFILES: usize = 64;
-const LEAST: usize = 64;
+const MOST: usize = 8_192;
+const LEAST: usize = 16;
 /// Rounds in which the agent that loses most is moved to the front.
 const ROUNDS: usize = 8;
 /// Rounds in which each agent is planned again.
@@ -23,7 +27,7 @@ type Speeds = Profile<f64, PHASES>;
 
 /// Room for the profiles of all attempts.
 pub(super) fn pool(agents: usize) -> Vec<Speeds> {
-    vec![Profile::standing(); LEAST + PROFILES * agents]
+    vec![Profile::standing(); (PROFILES * agents).min(MOST).max(LEAST * agents)]
 }
 
 type Room<'m> = std::slice::IterMut<'m, Speeds>;
@@ -34,7 +38,9 @@ pub(super) fn plan<'m>(
     known: Option<Vec<Motion<'m, f64>>>,
     pool: &'m mut [Speeds],
 ) -> Result<Result<Vec<Motion<'m, f64>>, Never>, Failure> {
-    let mut room = pool.iter_mut();
+    // What is kept back is for the last step.
+    let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
+    let (mut room, mut last) = (pool.iter_mut(), kept_back.iter_mut());
     let mut stations = vec![Station::EMPTY; STATIONS];
     let by_start = |plan: &[Motion<'_, f64>]| {
         let mut order: Vec<usize> = (0..plan.len()).collect();
@@ -62,8 +68,12 @@ pub(super) fn plan<'m>(
                 break;
             }
         }
+        let limit = best.as_ref().map_or(f64::INFINITY, |plan| planner.cost(plan));
+        if let Some(plan) = branching::searched(planner, limit, &mut room, &mut stations) {
+            best = Ok(plan);
+        }
         if let Ok(plan) = &mut best {
-            again(planner, plan, &mut room, &mut stations);
+            again(planner, plan, &mut last, &mut stations);
         }
     }
     Ok(best)

@@ -77,6 +77,12 @@ impl Pair {
         Self { agents, forbidden: disjoint }
     }
 
+    /// What is forbidden: open, disjoint and in order \[ticks\].
+    #[cfg(test)]
+    pub(super) fn intervals(&self) -> &[[i64; 2]] {
+        &self.forbidden
+    }
+
     /// The interval that holds the difference of two delays, if one does.
     pub(super) fn violated(&self, delays: &[i64]) -> Option<[i64; 2]> {
         let difference = self.difference(delays);
