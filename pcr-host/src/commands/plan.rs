@@ -24,13 +24,13 @@ Exit status:
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr plan fleet.json -o plan.json                    the scenario with start delays, without conflicts
-  pcr plan fleet.json -o - | pcr check                to standard output; the table goes to standard error
+  pcr plan fleet.json -o plan.json                    the scenario with start delays
+  pcr plan fleet.json -o - | pcr check                the table goes to standard error
   pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
-  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first, then the others as in the file
+  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first
   pcr plan fleet.json --leave-out -o plan.json        without those that cannot go, if there are any
-  pcr plan fleet.json --prove --time-limit 60         until nothing better can exist, a minute at most";
+  pcr plan fleet.json --prove --time-limit 60         until it is the best, or a minute";
 
 /// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
 #[derive(Args)]
@@ -39,28 +39,28 @@ pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out or `-`
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The scenario with the plan, `-` for standard output; none is written where there is no plan
+    /// The scenario with the plan, if there is one; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw the extended collision maps to DIR/before, and those of the plan to DIR/after
+    /// Draw the collision maps before and after to folders of DIR
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
-    /// Later starts, or waits and other speeds on the way under the limits that the scenario gives
+    /// Later starts, or other speeds on the way as well
     #[arg(long, value_enum, default_value_t = Means::Delay)]
     method: Means,
     /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best`
     #[arg(long, value_name = "ORDER", default_value = "best", value_parser = asked)]
     priority: Asked,
-    /// What shall be least: the sum over the agents from their start in the file to their arrival, or the last arrival
-    #[arg(long, value_enum, default_value_t = Least::SumOfCosts)]
+    /// The least sum of times to the arrivals, or the earliest last one
+    #[arg(long, value_enum, default_value_t = Least::Sum)]
     objective: Least,
-    /// If not all agents can have a plan, one for the others: the fewest are left out, as if they were not there
+    /// Plan for the others if not all can go; the fewest are left out
     #[arg(long)]
     leave_out: bool,
-    /// Search until it is proved that no start delays are better, or until --time-limit
+    /// Search until it is proved that no start delays are better
     #[arg(long)]
     prove: bool,
-    /// Stop the search for better start delays after this time; what was found depends on the machine then
+    /// End that search then; its plan depends on the machine
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<Duration>,
     #[command(flatten)]
@@ -86,14 +86,14 @@ impl From<Means> for Method {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Least {
-    SumOfCosts,
+    Sum,
     Makespan,
 }
 
 impl From<Least> for Objective {
     fn from(least: Least) -> Self {
         match least {
-            Least::SumOfCosts => Self::Sum,
+            Least::Sum => Self::Sum,
             Least::Makespan => Self::Makespan,
         }
     }

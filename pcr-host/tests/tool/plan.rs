@@ -120,7 +120,7 @@ fn the_others_are_planned_if_that_is_asked_for() {
 
 #[test]
 fn what_is_to_be_least_is_said_and_proved() {
-    for (objective, least) in [("sum-of-costs", "sum_of_costs"), ("makespan", "makespan")] {
+    for (objective, least) in [("sum", "sum_of_costs"), ("makespan", "makespan")] {
         let (status, report, _) = plan("least", &crossing(), &["--objective", objective, "--prove"]);
         assert_eq!((status, &report["objective"], &report["proved"]), (0, &json!(least), &json!(true)));
         let [cost, bound, gap] = [least, "lower_bound", "gap"].map(|key| report[key].as_f64().unwrap());
