@@ -13,7 +13,7 @@ use pcr_planning::certify::{Certified, Dump};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::Format;
 use pcr_planning::locks;
-use pcr_planning::plan::{Method, Plan, Priority};
+use pcr_planning::plan::{self, Method, Plan};
 use pcr_planning::regions::table_of;
 use pcr_planning::regions::{Answer, Request};
 use pcr_tests::certified::run;
@@ -286,7 +286,7 @@ fn the_margin_is_where_a_proof_ends() {
 #[test]
 fn plans_are_proved_to_be_without_contact() {
     for (name, method) in [("paper12.json", Method::Delay), ("paper12.json", Method::Speed)] {
-        let (plan, solved) = Plan::of(&fleet(name), method, &Priority::Best).unwrap();
+        let (plan, solved) = Plan::of(&fleet(name), &plan::Request::of(method)).unwrap();
         let proof = plan.certificate.expect("a plan");
         assert_eq!((proof.verdict, solved.is_some()), ("proved", true), "{name}: {proof:?}");
         assert!(proof.pairs > 0 && proof.steps >= proof.pairs);

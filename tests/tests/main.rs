@@ -55,6 +55,7 @@ mod paper_tables;
 mod plans;
 mod plans_bounds;
 mod plans_footprints;
+mod plans_proved;
 mod properties;
 mod refuted;
 mod regressions;

@@ -1,7 +1,7 @@
 //! No plan costs less than its lower bound.
 
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
-use pcr_planning::plan::{Method, Plan, Priority};
+use pcr_planning::plan::{Method, Plan, Request};
 use pcr_tests::generators::Dice;
 
 const OPEN: &str = include_str!("../data/cases/lower-bound-open-2.json");
@@ -11,7 +11,7 @@ const FLEETS: u64 = if cfg!(optimized) { 1_000 } else { 60 };
 /// The cost and the bound of a plan, where there is one.
 #[track_caller]
 fn planned(scenario: &Scenario, method: Method) -> Option<[f64; 2]> {
-    let (plan, solved) = Plan::of(scenario, method, &Priority::Best).unwrap();
+    let (plan, solved) = Plan::of(scenario, &Request::of(method)).unwrap();
     solved.is_some().then_some([plan.sum_of_costs, plan.lower_bound])
 }
 

@@ -8,6 +8,7 @@
 //! grazing     contacts and near misses down to a ten-millionth of a metre
 //! memory      what is kept of a collision, and what goes over a wire
 //! traffic     random missions in a real warehouse
+//! plans       costs of start delays, and what is proved of them
 //! scale       fleets of up to 100,000 agents
 //! ```
 
@@ -16,6 +17,7 @@ mod fleets;
 mod grazing;
 mod machine;
 mod memory;
+mod plans;
 mod scale;
 mod shares;
 mod traffic;
@@ -109,13 +111,14 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 7] = [
+    const PARTS: [Part; 8] = [
         fleets::section,
         shares::section,
         figures::section,
         grazing::section,
         memory::section,
         traffic::section,
+        plans::section,
         scale::section,
     ];
     let mut text = machine::preamble(extent);

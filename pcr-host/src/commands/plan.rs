@@ -7,27 +7,30 @@ use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, is_standard, 
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::plan::{Method, Plan, Priority};
+use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
 use pcr_planning::regions::{Failure, find};
 use pcr_planning::report;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
-  1  no plan
+  1  no plan, or with --leave-out none for all
   2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr plan fleet.json -o plan.json                    the scenario with start delays, without conflicts
-  pcr plan fleet.json -o - | pcr check                to standard output; the table goes to standard error
+  pcr plan fleet.json -o plan.json                    the scenario with start delays
+  pcr plan fleet.json -o - | pcr check                the table goes to standard error
   pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
-  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first, then the others as in the file";
+  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first
+  pcr plan fleet.json --leave-out -o plan.json        without those that cannot go, if there are any
+  pcr plan fleet.json --prove --time-limit 60         until it is the best, or a minute";
 
 /// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
 #[derive(Args)]
@@ -36,18 +39,30 @@ pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out or `-`
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The scenario with the plan, `-` for standard output; none is written where there is no plan
+    /// The scenario with the plan, if there is one; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw the extended collision maps to DIR/before, and those of the plan to DIR/after
+    /// Draw the collision maps before and after to folders of DIR
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
-    /// Later starts, or waits and other speeds on the way under the limits that the scenario gives
+    /// Later starts, or other speeds on the way as well
     #[arg(long, value_enum, default_value_t = Means::Delay)]
     method: Means,
     /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best`
     #[arg(long, value_name = "ORDER", default_value = "best", value_parser = asked)]
     priority: Asked,
+    /// The least sum of times to the arrivals, or the earliest last one
+    #[arg(long, value_enum, default_value_t = Least::Sum)]
+    objective: Least,
+    /// Plan for the others if not all can go; the fewest are left out
+    #[arg(long)]
+    leave_out: bool,
+    /// Search until it is proved that no start delays are better
+    #[arg(long)]
+    prove: bool,
+    /// End that search then; its plan depends on the machine
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    time_limit: Option<Duration>,
     #[command(flatten)]
     printed: Printed,
     #[command(flatten)]
@@ -67,6 +82,26 @@ impl From<Means> for Method {
             Means::Speed => Self::Speed,
         }
     }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Least {
+    Sum,
+    Makespan,
+}
+
+impl From<Least> for Objective {
+    fn from(least: Least) -> Self {
+        match least {
+            Least::Sum => Self::Sum,
+            Least::Makespan => Self::Makespan,
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse::<f64>().map_err(|error| error.to_string())?;
+    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
 }
 
 /// An order of priority from the command line.
@@ -149,12 +184,19 @@ impl Arguments {
         }
     }
 
-    /// Whether there is a plan.
+    /// Whether there is a plan for all.
     fn plan(&self, source: &Source, out: &mut impl Write) -> Result<bool, Stop> {
         let scenario = source.scenario(&self.import)?;
         let wrong = |failure: Failure| Stop::wrong(source.file(), failure);
         let priority = self.priority.of(&scenario).map_err(wrong)?;
-        let (plan, solved) = Plan::of(&scenario, self.method.into(), &priority).map_err(wrong)?;
+        let request = Request {
+            method: self.method.into(),
+            priority,
+            objective: self.objective.into(),
+            leave_out: self.leave_out,
+            effort: Effort { prove: self.prove, time: self.time_limit },
+        };
+        let (plan, solved) = Plan::of(&scenario, &request).map_err(wrong)?;
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
             write_to(output, &solved.to_json())?;
         }
@@ -172,6 +214,6 @@ impl Arguments {
                 draw(solved, None, &directory.join("after"), told)?;
             }
         }
-        Ok(solved.is_some())
+        Ok(solved.is_some() && plan.left_out.is_empty())
     }
 }

@@ -3,7 +3,7 @@
 use pcr_core::{Drive, Limits};
 
 /// What rounding may take off the time of a motion, relative.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The least time from one speed to another over a length \[s\]: full acceleration, the largest speed, full deceleration.
 pub(super) fn fastest(Drive { limits: Limits { speed, acceleration }, start, goal }: Drive<f64>, length: f64) -> f64 {

@@ -9,22 +9,24 @@
 //! agents has to go before one another, an order that keeps to this has a schedule for all of them: each waits until those
 //! before it are out of its way, at the latest until they have arrived.
 //!
-//! `plan_delays` of pcr-core, which `pcr plan` uses where there are no footprints, needs no heap: it finds delays by contacts, anew for
-//! every order, each motion with its own. It serves neither discs that are delayed together nor `pcr traffic`, which tries thousands of
-//! orders. What a region forbids is the core's in both (`RegionRef::forbidden_delays`).
+//! `plan_delays` of pcr-core needs no heap: it finds delays by contacts, anew for every order, each motion with its own. It serves
+//! neither discs that are delayed together nor searches over thousands of orders. What a region forbids is the core's in both
+//! (`RegionRef::forbidden_delays`).
 
+use super::delays::{NEVER, Objective, Pair, Problem, Ticks};
 use super::grown;
 use crate::bodies::Bodies;
 use crate::regions::{self, Failure};
 use pcr_core::Scalar;
 use pcr_formats::scenario::{Agent, Scenario};
 
-/// An end of an interval of delays that stands for infinity \[s\].
-const NEVER: f64 = <f64 as Scalar>::LIMIT;
-
-/// For each agent and each other one the differences of their delays, own less other, at which they meet \[s\].
+/// For each agent and each other one the differences of their delays, own less other, at which they meet.
 pub(crate) struct Forbidden {
-    intervals: Vec<Vec<Vec<[f64; 2]>>>,
+    /// \[ticks\], outward.
+    intervals: Vec<Vec<Vec<[i64; 2]>>>,
+    ticks: Ticks,
+    /// When each agent arrives without a delay \[s\].
+    ends: Vec<f64>,
     /// For each agent those that have to start before it.
     first: Vec<Vec<usize>>,
 }
@@ -68,7 +70,7 @@ impl Forbidden {
         let ecm = regions::table(&bodies.scenario, &motions)?;
         let owner = |disc: usize| bodies.discs.get(disc).map(|disc| disc.agent);
         let count = scenario.agents.len();
-        let mut intervals = vec![vec![Vec::new(); count]; count];
+        let mut found = Vec::new();
         let regions = (0..motions.len()).flat_map(|disc| {
             ecm.row(&motions, disc).expect("the table of the fleet").map(move |region| (disc, region))
         });
@@ -77,16 +79,47 @@ impl Forbidden {
             let (Some(agent), Some(other)) = (owner(disc), owner(region.other())) else { continue };
             if agent != other {
                 let delays = region.forbidden_delays();
-                intervals[agent][other].push([delays.lo, delays.hi]);
-                intervals[other][agent].push([-delays.hi, -delays.lo]);
+                found.push(([agent, other], [delays.lo, delays.hi]));
             }
+        }
+        let limit = <f64 as Scalar>::LIMIT;
+        let mut ends = vec![f64::NEG_INFINITY; count];
+        for (disc, motion) in motions.iter().enumerate() {
+            if let Some(end) = owner(disc).and_then(|agent| ends.get_mut(agent)) {
+                *end = end.max(motion.time().hi);
+            }
+        }
+        // No chain of waits is longer than all agents and the longest wait.
+        let waits = found.iter().flat_map(|(_, delays)| delays).map(|end| end.abs()).filter(|end| *end < limit);
+        let times = motions.iter().flat_map(|motion| [motion.time().lo, motion.time().hi]).map(f64::abs);
+        let ticks = Ticks::up_to(times.fold(0.0, f64::max) + count as f64 * waits.fold(0.0, f64::max));
+        let mut intervals = vec![vec![Vec::new(); count]; count];
+        for ([agent, other], delays) in found {
+            let [lo, hi] = ticks.outward(delays, limit);
+            intervals[agent][other].push([lo, hi]);
+            intervals[other][agent].push([-hi, -lo]);
         }
         let goes_first = |agent: usize, other: usize| {
             let mut intervals = intervals[agent][other].iter();
-            intervals.any(|&[lo, hi]: &[f64; 2]| lo <= -NEVER && hi < NEVER)
+            intervals.any(|&[lo, hi]: &[i64; 2]| lo <= -NEVER && hi < NEVER)
         };
         let first = (0..count).map(|agent| (0..count).filter(|&other| goes_first(agent, other)).collect()).collect();
-        Ok(Self { intervals, first })
+        Ok(Self { intervals, ticks, ends, first })
+    }
+
+    /// The delays to be found for all agents.
+    pub(crate) fn problem(&self, objective: Objective) -> Problem {
+        let pair = |i: usize, j: usize| {
+            let intervals = &self.intervals[j][i];
+            (!intervals.is_empty()).then(|| Pair::new([i, j], intervals.clone()))
+        };
+        let pairs = (0..self.len()).flat_map(|i| (i + 1..self.len()).filter_map(move |j| pair(i, j))).collect();
+        Problem { objective, ends: self.ends.iter().map(|&end| self.ticks.nearest(end)).collect(), pairs }
+    }
+
+    /// What its times are measured in.
+    pub(crate) fn ticks(&self) -> Ticks {
+        self.ticks
     }
 
     /// Number of agents.
@@ -110,33 +143,35 @@ impl Forbidden {
 
     /// One agent after the other, each as early as those before it allow; one that cannot start is left out.
     pub(crate) fn in_order(&self, order: Vec<usize>) -> Schedule {
-        let mut schedule = Schedule { delays: vec![None; order.len()], out: Vec::new(), order: Vec::new() };
+        let mut delays = vec![None; self.len()];
+        let mut out = Vec::new();
         let mut before = Vec::new();
         for &agent in &order {
-            match self.earliest(&schedule.delays, &before, agent) {
+            match self.earliest(&delays, &before, agent) {
                 Ok(delay) => {
-                    schedule.delays[agent] = Some(delay);
+                    delays[agent] = Some(delay);
                     before.push(agent);
                 }
-                Err(Blocked { by, always }) => schedule.out.push(Out { agent, by, always }),
+                Err(Blocked { by, always }) => out.push(Out { agent, by, always }),
             }
         }
-        Schedule { order, ..schedule }
+        let seconds = |delay: Option<i64>| delay.map(|delay| self.ticks.seconds(i128::from(delay)));
+        Schedule { delays: delays.into_iter().map(seconds).collect(), out, order }
     }
 
     /// The least delay of an agent that those before it allow.
-    fn earliest(&self, delays: &[Option<f64>], before: &[usize], agent: usize) -> Result<f64, Blocked> {
+    fn earliest(&self, delays: &[Option<i64>], before: &[usize], agent: usize) -> Result<i64, Blocked> {
         let intervals = before.iter().flat_map(|&other| {
-            let delay = delays[other].unwrap_or(0.0);
+            let delay = delays[other].unwrap_or(0);
             self.intervals[agent][other]
                 .iter()
                 .map(move |&ends| ends.map(|end| if end.abs() < NEVER { end + delay } else { end }))
         });
-        let mut intervals: Vec<[f64; 2]> = intervals.collect();
-        intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut delay = 0.0;
+        let mut intervals: Vec<[i64; 2]> = intervals.collect();
+        intervals.sort_unstable();
+        let mut delay = 0;
         for [lo, hi] in intervals {
-            if lo <= delay && delay < hi {
+            if lo < delay && delay < hi {
                 delay = hi;
             }
         }

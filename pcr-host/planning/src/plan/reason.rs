@@ -55,7 +55,17 @@ pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (Strin
         let last = regions.iter().find(|region| sides(region)[0]);
         let first = regions.iter().find(|region| sides(region)[1]);
         let longest = || regions.iter().max_by(|a, b| a.length().length().total_cmp(&b.length().length()));
+        let overlap = |at_end: bool| {
+            let at =
+                |motion: &Motion<'_, f64>| motion.path().point_at(if at_end { motion.path().length() } else { 0.0 });
+            let [a, b] = [motions.first()?, motions.get(1)?];
+            let apart = [at(a).x - at(b).x, at(a).y - at(b).y];
+            Some(apart[0].hypot(apart[1]) < a.radius() + b.radius())
+        };
+        let standing = |at_end: bool| Some(Spot::standing([motions.first()?, motions.get(1)?], at_end));
         Some(match (always, first, last) {
+            (true, ..) if overlap(false)? => ("they overlap at their starts".to_owned(), standing(false)?),
+            (true, ..) if overlap(true)? => ("they overlap at the ends of their paths".to_owned(), standing(true)?),
             (true, Some(first), Some(last)) => (contradiction(last, first), Spot::of(last)),
             _ => (general.to_owned(), Spot::of(last.or_else(longest)?)),
         })

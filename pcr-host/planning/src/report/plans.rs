@@ -26,15 +26,20 @@ pub fn plan_csv(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
 /// Those of the writer.
 pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&plan.name);
-    if !plan.unsolved.is_empty() {
-        writeln!(out, "{name}: no plan")?;
-        for unsolved in &plan.unsolved {
-            writeln!(out, "  agents {}: {}", all_called(&plan.labels, &unsolved.ids), unsolved.why)?;
+    let left_out = all_called(&plan.labels, &plan.left_out);
+    match (plan.agents.is_empty() && !plan.unsolved.is_empty(), plan.left_out.is_empty()) {
+        (true, _) => writeln!(out, "{name}: no plan")?,
+        (false, true) => writeln!(out, "{name}: a plan without conflicts, by {}", means(plan))?,
+        (false, false) => {
+            writeln!(out, "{name}: a plan without conflicts for some, by {}; left out: {left_out}", means(plan))?;
         }
+    }
+    for unsolved in &plan.unsolved {
+        writeln!(out, "  agents {}: {}", all_called(&plan.labels, &unsolved.ids), unsolved.why)?;
+    }
+    if plan.agents.is_empty() && !plan.unsolved.is_empty() {
         return Ok(());
     }
-    let means = if plan.method == "speed" { "speeds" } else { "start delays" };
-    writeln!(out, "{name}: a plan without conflicts, by {means}; priorities from top to bottom")?;
     let title = if plan.labels.is_empty() { "agent" } else { "<agent" };
     let mut columns = Columns::new(&[title, "delay [s]", "t_end [s]"]);
     let by_priority = plan.order.iter().filter_map(|id| plan.agents.iter().find(|agent| agent.id == *id));
@@ -42,10 +47,24 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
         columns.row(vec![called(&plan.labels, agent.id), format!("{:.3}", agent.delay), format!("{:.3}", agent.t_end)]);
     }
     columns.write(out)?;
-    let Plan { makespan, sum_of_costs, lower_bound, .. } = plan;
-    writeln!(out, "makespan {makespan:.3} s, sum of costs {sum_of_costs:.3} s (at least {lower_bound:.3} s)")?;
+    writeln!(out, "{}", costs(plan))?;
     match &plan.certificate {
         Some(proof) => writeln!(out, "{}", proof.sentence()),
         None => Ok(()),
     }
+}
+
+fn means(plan: &Plan) -> &'static str {
+    if plan.method == "speed" { "speeds" } else { "start delays" }
+}
+
+/// What a plan costs, and how much less it could.
+fn costs(plan: &Plan) -> String {
+    let Plan { makespan, sum_of_costs, lower_bound, gap, .. } = plan;
+    let what = if plan.objective == "makespan" { "makespan" } else { "sum of costs" };
+    let good = match plan.proved {
+        true => format!("the {what} is proved to be the least"),
+        false => format!("the {what} is at least {lower_bound:.3} s, gap {:.2} %", 100.0 * gap),
+    };
+    format!("makespan {makespan:.3} s, sum of costs {sum_of_costs:.3} s; {good}")
 }

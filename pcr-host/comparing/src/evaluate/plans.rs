@@ -1,0 +1,100 @@
+//! How good start delays are: what they cost, what is proved of that, and how long it takes.
+
+use super::{Extent, Fleets, Problem, Section};
+use crate::compare::crowd;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::plan::{Plan, Request};
+use pcr_planning::report::figures::{digits, time};
+use pcr_planning::traffic;
+use std::fmt::Write as _;
+use std::time::Instant;
+
+/// Radius of the discs on the warehouse graph \[m\].
+const RADIUS: f64 = 0.4;
+
+/// Agents of random fleets, and how many fleets of each number.
+const SIZES: [usize; 7] = [2, 5, 10, 20, 50, 100, 193];
+const SEEDS: u64 = 20;
+/// Agents with missions on the warehouse graph.
+const MISSIONS: [usize; 3] = [10, 20, 40];
+
+/// What came of some fleets.
+#[derive(Default)]
+struct Row {
+    fleets: usize,
+    planned: usize,
+    left_out: usize,
+    proved: usize,
+    /// Of the sums of costs.
+    costs: f64,
+    bounds: f64,
+    widest: f64,
+    /// \[ms\]
+    times: Vec<f64>,
+}
+
+impl Row {
+    fn add(&mut self, scenario: &Scenario) -> Result<(), Problem> {
+        let request = Request { leave_out: true, ..Request::default() };
+        let begin = Instant::now();
+        let (plan, _) = Plan::of(scenario, &request)?;
+        self.times.push(1e3 * begin.elapsed().as_secs_f64());
+        self.fleets += 1;
+        self.planned += plan.agents.len();
+        self.left_out += scenario.agents.len() - plan.agents.len();
+        self.proved += usize::from(plan.proved);
+        self.costs += plan.sum_of_costs;
+        self.bounds += plan.lower_bound;
+        self.widest = self.widest.max(plan.gap);
+        Ok(())
+    }
+
+    fn write(mut self, name: &str, text: &mut String) {
+        self.times.sort_by(f64::total_cmp);
+        let gap = if self.costs > 0.0 { 1.0 - self.bounds / self.costs } else { 0.0 };
+        let percent = |part: f64| format!("{:.4} %", 100.0 * part);
+        let [middle, longest] = [self.times.len() / 2, self.times.len().saturating_sub(1)]
+            .map(|place| self.times.get(place).map_or_else(String::new, |&taken| time(taken)));
+        let Self { fleets, planned, left_out, proved, .. } = self;
+        let _ = writeln!(
+            text,
+            "| {name} | {fleets} | {planned} | {left_out} | {} s | {proved} | {} | {} | {middle} | {longest} |",
+            digits(self.costs),
+            percent(gap),
+            percent(self.widest)
+        );
+    }
+}
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let mut text = format!(
+        "## Plans and their bounds\n\nStart delays of least sum of costs (`pcr plan --leave-out`). *Left out*: agents of the fleets that have no delays together \
+        with the others, the fewest possible. *Proved*: fleets of which the delays are proved to be the best but for rounding. *Gap*: by how much the sums of costs are above their \
+        lower bounds, of all fleets and at most. *In*: the whole command without reading the file, from the regions to the certificate, the median and the longest. Random fleets are {SEEDS} of each size, as \
+        dense as the paper\'s; missions are those of the warehouse above, seed 1, before any delay.\n\n\
+        | fleets | number | planned | left out | sum of costs | proved | gap | largest gap | in | at most |\n\
+        |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    let (sizes, seeds, missions): (&[usize], _, &[usize]) = match extent {
+        Extent::Full => (&SIZES, SEEDS, &MISSIONS),
+        Extent::Quick => (&SIZES[..3], 2, &MISSIONS[..1]),
+    };
+    for fleet in &fleets.all {
+        let mut row = Row::default();
+        row.add(&fleet.scenario)?;
+        row.write(&format!("Table VI, {} agents, {} regions", fleet.size[0], fleet.size[1]), &mut text);
+    }
+    for &agents in sizes {
+        let mut row = Row::default();
+        (0..seeds).try_for_each(|seed| row.add(&crowd(agents, seed)))?;
+        row.write(&format!("random, {agents} agents"), &mut text);
+    }
+    let warehouse = fleets.warehouse(RADIUS)?;
+    for &agents in missions {
+        let (_, [scenario, _]) = traffic::Traffic::of(&warehouse, traffic::Request { agents, seed: 1 })?;
+        let mut row = Row::default();
+        row.add(&scenario)?;
+        row.write(&format!("missions, {agents} agents"), &mut text);
+    }
+    Ok(Section { text, pictures: Vec::new() })
+}

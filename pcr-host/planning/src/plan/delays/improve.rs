@@ -1,0 +1,62 @@
+//! Better delays by large neighbourhood search (Shaw 1998): some agents are freed, all others keep their sides among one another,
+//! and what is left is solved exactly.
+
+use super::problem::Problem;
+use super::search::{Search, Stop};
+use crate::random::Random;
+
+/// Nodes of one neighbourhood at most.
+const NODES: u64 = 200;
+/// Agents that are freed at first.
+const FIRST: f64 = 6.0;
+/// At least.
+const FEWEST: f64 = 3.0;
+/// The number grows by this where a neighbourhood was searched in vain, and shrinks where it was not searched out.
+const GROWTH: f64 = 1.02;
+const SHRINKAGE: f64 = 0.9;
+/// Neighbours that are drawn for each agent that is wanted.
+const DRAWS: usize = 20;
+
+/// The delays, or better ones, after a number of rounds.
+pub(super) fn improved(problem: &Problem, mut delays: Vec<i64>, rounds: usize, clock: &dyn Fn() -> bool) -> Vec<i64> {
+    let mut near = vec![Vec::new(); problem.len()];
+    for [i, j] in problem.pairs.iter().map(|pair| pair.agents) {
+        near[i].push(j);
+        near[j].push(i);
+    }
+    let mut random = Random(0);
+    let mut size = FIRST;
+    for _ in 0..rounds {
+        if clock() {
+            break;
+        }
+        let Some(freed) = neighbourhood(&near, &delays, size as usize, &mut random) else { break };
+        let is_freed = |place: &usize| problem.pairs[*place].agents.iter().any(|&agent| freed[agent]);
+        let (pairs, kept): (Vec<usize>, Vec<usize>) = (0..problem.pairs.len()).partition(is_freed);
+        let sides = kept.iter().flat_map(|&place| problem.pairs[place].gap(&delays));
+        let found = Search::among(problem, pairs, Stop { nodes: NODES, clock }).run(sides, problem.cost(&delays));
+        match found.delays {
+            Some(better) => delays = better,
+            None if found.complete => size = (size * GROWTH).min(problem.len() as f64),
+            None => size = (size * SHRINKAGE).max(FEWEST),
+        }
+    }
+    delays
+}
+
+/// Whom to free: one of those that are delayed, and others that forbid one of the chosen something. None if nobody is delayed.
+fn neighbourhood(near: &[Vec<usize>], delays: &[i64], size: usize, random: &mut Random) -> Option<Vec<bool>> {
+    let delayed: Vec<usize> = (0..delays.len()).filter(|&agent| delays[agent] > 0).collect();
+    let mut chosen = vec![*delayed.get(random.below(delayed.len()))?];
+    let mut freed = vec![false; delays.len()];
+    freed[chosen[0]] = true;
+    for _ in 0..DRAWS * size {
+        let beside = &near[chosen[random.below(chosen.len())]];
+        let Some(&agent) = beside.get(random.below(beside.len())) else { continue };
+        if chosen.len() < size && !freed[agent] {
+            freed[agent] = true;
+            chosen.push(agent);
+        }
+    }
+    Some(freed)
+}

@@ -1,0 +1,84 @@
+//! Difference constraints, and the least delays that fulfil them: longest paths, kept up to date constraint by constraint.
+//!
+//! A constraint raises the delay it ends in, and that raises others. A circle of constraints that adds up to more than 0 has no solution;
+//! as there was one before, it goes through the new constraint, so that the raise comes back to where that one begins.
+
+use super::problem::{Constraint, NEVER};
+use std::collections::VecDeque;
+
+pub(super) struct Net {
+    /// The least delays \[ticks\].
+    pub(super) least: Vec<i64>,
+    /// For each agent where its constraints lead to, and how much more that is.
+    out: Vec<Vec<(usize, i64)>>,
+    /// What was changed: an agent that got a constraint, or its delay before it was raised.
+    changes: Vec<(usize, Option<i64>)>,
+    queue: VecDeque<usize>,
+    queued: Vec<bool>,
+}
+
+impl Net {
+    /// Without constraints but that delays are at least these.
+    pub(super) fn new(least: Vec<i64>) -> Self {
+        let count = least.len();
+        Self {
+            least,
+            out: vec![Vec::new(); count],
+            changes: Vec::new(),
+            queue: VecDeque::new(),
+            queued: vec![false; count],
+        }
+    }
+
+    /// Adds a constraint; false if no delays are left: then it has to be taken back.
+    pub(super) fn impose(&mut self, constraint: Constraint) -> bool {
+        let Constraint { from, to, least } = constraint;
+        if least >= NEVER || from == to {
+            return false;
+        }
+        self.out[from].push((to, least));
+        self.changes.push((from, None));
+        self.raise(to, self.least[from] + least);
+        let mut possible = true;
+        while let Some(agent) = self.queue.pop_front() {
+            self.queued[agent] = false;
+            possible &= agent != from;
+            // What is queued yet is taken out all the same.
+            let reached = if possible { self.out[agent].len() } else { 0 };
+            for place in 0..reached {
+                let (next, least) = self.out[agent][place];
+                self.raise(next, self.least[agent] + least);
+            }
+        }
+        possible
+    }
+
+    fn raise(&mut self, agent: usize, least: i64) {
+        let before = self.least[agent];
+        if least <= before {
+            return;
+        }
+        self.changes.push((agent, Some(before)));
+        self.least[agent] = least;
+        if !self.queued[agent] {
+            self.queued[agent] = true;
+            self.queue.push_back(agent);
+        }
+    }
+
+    /// Where to come back to.
+    pub(super) fn mark(&self) -> usize {
+        self.changes.len()
+    }
+
+    /// Takes back all since a mark.
+    pub(super) fn take_back(&mut self, mark: usize) {
+        while self.changes.len() > mark {
+            match self.changes.pop() {
+                Some((agent, Some(before))) => self.least[agent] = before,
+                Some((agent, None)) => drop(self.out[agent].pop()),
+                None => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Start delays as difference constraints on whole numbers of ticks.
+//!
+//! What a pair forbids depends on the difference of its two delays. Ends of intervals are rounded outward to ticks, a power
+//! of two of a second, and once more by a tick for what a start time in a file is rounded by: then sums are exact, and
+//! delays that keep all intervals in ticks keep them in the numbers that are written.
+
+/// An end of an interval that stands for infinity \[ticks\].
+pub(crate) const NEVER: i64 = i64::MAX / 4;
+
+/// Most binary digits of a tick behind the point.
+const FINEST: i32 = 30;
+/// Binary digits that the largest time has beyond a tick at most: one less than a number of double precision holds.
+const DIGITS: i32 = 52;
+/// By how much each end is rounded outward at most \[ticks\].
+const OUTWARD: i128 = 2;
+
+/// How long a tick is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ticks {
+    per_second: f64,
+}
+
+impl Ticks {
+    /// As fine as times up to a latest one allow \[s\].
+    pub(crate) fn up_to(latest: f64) -> Self {
+        let digits = latest.max(1.0).log2().ceil() as i32 + 1;
+        Self { per_second: f64::exp2(f64::from(FINEST.min(DIGITS - digits))) }
+    }
+
+    /// What a pair must not have, rounded outward; `limit` and more stands for infinity \[s\].
+    pub(crate) fn outward(self, [lo, hi]: [f64; 2], limit: f64) -> [i64; 2] {
+        let below = if lo <= -limit { -NEVER } else { (lo * self.per_second).floor() as i64 - 1 };
+        [below, if hi >= limit { NEVER } else { (hi * self.per_second).ceil() as i64 + 1 }]
+    }
+
+    /// The nearest whole number of ticks.
+    pub(crate) fn nearest(self, seconds: f64) -> i64 {
+        (seconds * self.per_second).round() as i64
+    }
+
+    /// A time, exactly where it has no more digits than a number.
+    pub(crate) fn seconds(self, ticks: i128) -> f64 {
+        ticks as f64 / self.per_second
+    }
+}
+
+/// How much less a plan for intervals that are not rounded can cost, for a fleet \[ticks\]: no chain of constraints is
+/// longer than the fleet, and each is longer by the rounding of one end.
+pub(crate) fn slack(problem: &Problem) -> i128 {
+    let agents = problem.len() as i128;
+    let chain = OUTWARD * agents;
+    match problem.objective {
+        Objective::Sum => chain * agents,
+        Objective::Makespan => chain + 1,
+    }
+}
+
+/// What the delays of two agents, the second's less the first's, must not be.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Pair {
+    pub(crate) agents: [usize; 2],
+    /// Open intervals, disjoint and in order \[ticks\].
+    forbidden: Vec<[i64; 2]>,
+}
+
+impl Pair {
+    /// Of intervals that may overlap.
+    pub(crate) fn new(agents: [usize; 2], mut forbidden: Vec<[i64; 2]>) -> Self {
+        forbidden.sort_unstable();
+        let mut disjoint: Vec<[i64; 2]> = Vec::with_capacity(forbidden.len());
+        for [lo, hi] in forbidden {
+            match disjoint.last_mut() {
+                Some(last) if lo < last[1] => last[1] = last[1].max(hi),
+                _ => disjoint.push([lo, hi]),
+            }
+        }
+        Self { agents, forbidden: disjoint }
+    }
+
+    /// What is forbidden: open, disjoint and in order \[ticks\].
+    #[cfg(test)]
+    pub(super) fn intervals(&self) -> &[[i64; 2]] {
+        &self.forbidden
+    }
+
+    /// The interval that holds the difference of two delays, if one does.
+    pub(super) fn violated(&self, delays: &[i64]) -> Option<[i64; 2]> {
+        let difference = self.difference(delays);
+        self.forbidden.iter().copied().find(|&[lo, hi]| lo < difference && difference < hi)
+    }
+
+    pub(super) fn difference(&self, delays: &[i64]) -> i64 {
+        let [first, second] = self.agents;
+        delays[second] - delays[first]
+    }
+
+    /// Whether no difference is allowed.
+    pub(crate) fn is_impossible(&self) -> bool {
+        self.forbidden.iter().any(|&[lo, hi]| lo <= -NEVER && hi >= NEVER)
+    }
+
+    /// The constraints beside an interval: the difference below it, and above it.
+    pub(super) fn beside(&self, [lo, hi]: [i64; 2]) -> [Constraint; 2] {
+        let [first, second] = self.agents;
+        [
+            Constraint { from: second, to: first, least: if lo <= -NEVER { NEVER } else { -lo } },
+            Constraint { from: first, to: second, least: hi },
+        ]
+    }
+
+    /// What holds for all allowed differences: intervals without an end leave one side.
+    pub(super) fn forced(&self) -> impl Iterator<Item = Constraint> {
+        let sided = |&ends: &[i64; 2]| {
+            let [below, above] = self.beside(ends);
+            (ends[0] <= -NEVER).then_some(above).into_iter().chain((ends[1] >= NEVER).then_some(below))
+        };
+        self.forbidden.iter().flat_map(sided)
+    }
+
+    /// The constraints of the gap between intervals where the difference of these delays is.
+    pub(super) fn gap(&self, delays: &[i64]) -> impl Iterator<Item = Constraint> + use<> {
+        let difference = self.difference(delays);
+        let last = self.forbidden.iter().rfind(|ends| ends[1] <= difference).map(|&ends| self.beside(ends)[1]);
+        let next = self.forbidden.iter().find(|ends| difference <= ends[0]).map(|&ends| self.beside(ends)[0]);
+        last.into_iter().chain(next)
+    }
+}
+
+/// The delay of one agent is at least that of another and so much more \[ticks\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Constraint {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    pub(super) least: i64,
+}
+
+/// What shall be least.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Objective {
+    /// The sum over the agents from their start in the file to their arrival.
+    #[default]
+    Sum,
+    /// The last arrival.
+    Makespan,
+}
+
+impl Objective {
+    /// Its name in the output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sum => "sum_of_costs",
+            Self::Makespan => "makespan",
+        }
+    }
+}
+
+/// Delays to be found.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    pub(crate) objective: Objective,
+    /// When each agent arrives without a delay \[ticks\].
+    pub(crate) ends: Vec<i64>,
+    pub(crate) pairs: Vec<Pair>,
+}
+
+impl Problem {
+    /// Number of agents.
+    pub(crate) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Sum of the delays, or the last arrival \[ticks\].
+    pub(crate) fn cost(&self, delays: &[i64]) -> i128 {
+        match self.objective {
+            Objective::Sum => delays.iter().map(|&delay| i128::from(delay)).sum(),
+            Objective::Makespan => {
+                let ends = delays.iter().zip(&self.ends).map(|(delay, end)| i128::from(*delay) + i128::from(*end));
+                ends.max().unwrap_or(0)
+            }
+        }
+    }
+
+    /// Whether delays keep all that is forbidden.
+    pub(crate) fn allows(&self, delays: &[i64]) -> bool {
+        delays.iter().all(|&delay| delay >= 0) && self.pairs.iter().all(|pair| pair.violated(delays).is_none())
+    }
+
+    /// The same for some of the agents, in this order.
+    pub(crate) fn of(&self, agents: &[usize]) -> Self {
+        let mut places = vec![None; self.len()];
+        agents.iter().enumerate().for_each(|(place, &agent)| places[agent] = Some(place));
+        let pair = |pair: &Pair| {
+            let [Some(first), Some(second)] = pair.agents.map(|agent| places[agent]) else { return None };
+            Some(Pair { agents: [first, second], forbidden: pair.forbidden.clone() })
+        };
+        let pairs = self.pairs.iter().filter_map(pair).collect();
+        Self { objective: self.objective, ends: agents.iter().map(|&agent| self.ends[agent]).collect(), pairs }
+    }
+
+    /// The agents in groups that forbid one another nothing, each group in order.
+    pub(crate) fn parts(&self) -> Vec<Vec<usize>> {
+        let mut part: Vec<usize> = (0..self.len()).collect();
+        for pair in &self.pairs {
+            let [kept, joined] = pair.agents.map(|agent| part[agent]);
+            part.iter_mut().filter(|part| **part == joined).for_each(|part| *part = kept);
+        }
+        let members =
+            |name: usize| part.iter().enumerate().filter(move |(_, part)| **part == name).map(|(agent, _)| agent);
+        (0..self.len()).map(|name| members(name).collect::<Vec<_>>()).filter(|part| !part.is_empty()).collect()
+    }
+}

@@ -1,0 +1,209 @@
+//! One plan of a fleet: from delays or speeds to what is printed, checked and proved.
+
+use super::delays::Objective;
+use super::starts::Known;
+use super::{Answer, Method, Plan, Planned, Priority, Request, Unsolved, bound, circle, speeds};
+use crate::certify::Proof;
+use crate::check::Verdict;
+use crate::fleet::HostEcm;
+use crate::regions::Failure;
+use pcr_core::{Drive, Motion, Unsolved as Never};
+use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
+
+/// What all attempts have in common.
+pub(super) struct Planner<'a, 'm> {
+    pub(super) scenario: &'a Scenario,
+    pub(super) request: &'a Request,
+    /// Grown.
+    pub(super) motions: &'a [Motion<'m, f64>],
+    pub(super) ecm: &'a HostEcm<f64>,
+}
+
+impl<'m> Planner<'_, 'm> {
+    pub(super) fn id(&self, agent: usize) -> u64 {
+        self.scenario.agents.get(agent).map_or(0, |agent| agent.id)
+    }
+
+    /// The orders to be tried.
+    pub(super) fn orders(&self) -> Result<Vec<Vec<usize>>, Failure> {
+        let ids: Vec<u64> = self.scenario.agents.iter().map(|agent| agent.id).collect();
+        let file: Vec<usize> = (0..ids.len()).collect();
+        let place =
+            |id: &u64| ids.iter().position(|there| there == id).ok_or_else(|| Failure::NoSuchAgent(*id, ids.clone()));
+        let sorted = |key: &dyn Fn(usize) -> f64| {
+            let mut order = file.clone();
+            order.sort_by(|&a, &b| key(b).total_cmp(&key(a)));
+            order
+        };
+        let longest = || sorted(&|agent| self.motions[agent].time().length());
+        let crowded =
+            || sorted(&|agent| self.ecm.row(self.motions, agent).expect("the table of the fleet").count() as f64);
+        Ok(match &self.request.priority {
+            Priority::Given(given) => {
+                let mut order = given.iter().map(place).collect::<Result<Vec<usize>, Failure>>()?;
+                let rest: Vec<usize> = file.iter().copied().filter(|agent| !order.contains(agent)).collect();
+                order.extend(rest);
+                vec![order]
+            }
+            Priority::Longest => vec![longest()],
+            Priority::Crowded => vec![crowded()],
+            Priority::Best => vec![file.clone(), longest(), crowded()],
+        })
+    }
+
+    /// A plan without agents.
+    pub(super) fn none(&self) -> Plan {
+        Plan {
+            name: self.scenario.name.clone(),
+            labels: Labels::of(self.scenario),
+            method: self.request.method.name(),
+            order: Vec::new(),
+            agents: Vec::new(),
+            left_out: Vec::new(),
+            makespan: 0.0,
+            sum_of_costs: 0.0,
+            objective: self.request.objective.name(),
+            lower_bound: 0.0,
+            gap: 0.0,
+            proved: false,
+            unsolved: Vec::new(),
+            warnings: self.scenario.warnings.clone(),
+            certificate: None,
+        }
+    }
+
+    /// A plan by the method, with delays that are known for all agents.
+    pub(super) fn plan(&self, known: Option<Known>) -> Result<Answer, Failure> {
+        let later = known.as_ref().and_then(|known| {
+            let delayed = self.motions.iter().zip(&known.delays).map(|(motion, &delay)| motion.delayed(delay).ok());
+            delayed.collect::<Option<Vec<_>>>()
+        });
+        match self.request.method {
+            Method::Delay => {
+                let Some(planned) = later else {
+                    let why = "a start is out of range";
+                    return Ok((Plan { unsolved: vec![Unsolved::nowhere(Vec::new(), why)], ..self.none() }, None));
+                };
+                self.answer(&planned, known)
+            }
+            Method::Speed => {
+                let mut pool = speeds::pool(self.motions.len());
+                match speeds::plan(self, later, &mut pool)? {
+                    Ok(planned) => self.answer(&planned, None),
+                    Err(never) => Ok((Plan { unsolved: self.unsolved(never), ..self.none() }, None)),
+                }
+            }
+        }
+    }
+
+    /// What the objective is of these motions \[s\].
+    pub(super) fn cost(&self, planned: &[Motion<'_, f64>]) -> f64 {
+        match self.request.objective {
+            Objective::Sum => {
+                self.motions.iter().zip(planned).map(|(given, planned)| planned.time().hi - given.time().lo).sum()
+            }
+            Objective::Makespan => {
+                planned.iter().map(|planned| planned.time().hi).fold(0.0, f64::max).max(self.begin()) - self.begin()
+            }
+        }
+    }
+
+    /// The earliest start in the file \[s\].
+    fn begin(&self) -> f64 {
+        self.motions.iter().map(|motion| motion.time().lo).reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// What no plan by the method falls below \[s\].
+    fn bound(&self, known: Option<&Known>) -> f64 {
+        let least = |motion: &Motion<'_, f64>| match self.request.method {
+            Method::Delay => motion.time().length(),
+            Method::Speed => bound::fastest(Drive::of(motion), motion.path().length()),
+        };
+        let alone = match self.request.objective {
+            Objective::Sum => self.motions.iter().map(least).sum(),
+            Objective::Makespan => {
+                let ends = self.motions.iter().map(|motion| motion.time().lo + least(motion) - self.begin());
+                ends.fold(0.0, f64::max)
+            }
+        };
+        let together = known.map_or(0.0, |known| match self.request.objective {
+            Objective::Sum => alone + known.bound,
+            Objective::Makespan => known.bound - self.begin(),
+        });
+        alone.max(together)
+    }
+
+    /// Motions as a plan: nothing is returned that the check would refuse, or that has a contact.
+    fn answer(&self, planned: &[Motion<'_, f64>], known: Option<Known>) -> Result<Answer, Failure> {
+        let mut plan = self.none();
+        let solved = self.solved(planned);
+        let verdict = Verdict::of::<f64>(&solved, false)?;
+        if let Some(conflict) = verdict.conflicts.first() {
+            let why = format!("the plan has a conflict at {} s", conflict.t[0]);
+            plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
+            return Ok((plan, None));
+        }
+        let proof = Proof::of::<f64>(&solved)?;
+        if let Some(contact) = proof.contacts.first() {
+            let why = format!("the plan has a contact at {} s", contact.t);
+            plan.unsolved.push(Unsolved::nowhere(vec![contact.i, contact.j], why));
+            plan.certificate = Some(proof);
+            return Ok((plan, None));
+        }
+        plan.certificate = Some(proof);
+        for (agent, (motion, planned)) in self.motions.iter().zip(planned).enumerate() {
+            let [start, end] = [planned.time().lo, planned.time().hi];
+            plan.agents.push(Planned { id: self.id(agent), delay: start - motion.time().lo, t_end: end });
+            plan.makespan = plan.makespan.max(end - self.begin());
+            plan.sum_of_costs += end - motion.time().lo;
+        }
+        let mut order: Vec<usize> = (0..planned.len()).collect();
+        match &known {
+            Some(known) if !known.order.is_empty() => order.clone_from(&known.order),
+            _ => order.sort_by(|&a, &b| planned[a].time().lo.total_cmp(&planned[b].time().lo)),
+        }
+        plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
+        let cost = self.cost(planned);
+        // Sums are rounded.
+        plan.lower_bound = self.bound(known.as_ref()).min(cost);
+        plan.gap = if cost > 0.0 { (cost - plan.lower_bound) / cost } else { 0.0 };
+        plan.proved = known.is_some_and(|known| known.proved) || plan.gap <= 2.0 * bound::ROUNDING;
+        Ok((plan, Some(solved)))
+    }
+
+    fn unsolved(&self, never: Never) -> Vec<Unsolved> {
+        let ids = |agents: [usize; 2]| agents.map(|agent| self.id(agent));
+        let mut unsolved = Vec::new();
+        if let Some(circle) = circle::circle(self.ecm, self.motions) {
+            let why = "each has to let the next one pass first, the last one the first, however they move";
+            unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
+        }
+        unsolved.push(match never {
+            Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => {
+                Unsolved::of(self.scenario, ids(agents), true)
+            }
+            Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),
+            Never::Full(agent) => {
+                let why = "its plan takes too many profiles or phases, or too long";
+                Unsolved::nowhere(vec![self.id(agent)], why)
+            }
+            other => Unsolved::nowhere(Vec::new(), other.to_string()),
+        });
+        unsolved
+    }
+
+    /// The scenario with the motions of a plan.
+    fn solved(&self, planned: &[Motion<'_, f64>]) -> Scenario {
+        let mut solved = self.scenario.clone();
+        for ((agent, given), motion) in solved.agents.iter_mut().zip(self.motions).zip(planned) {
+            agent.t_start = motion.time().lo;
+            let phases = motion.profile().phases();
+            if phases != given.profile().phases() {
+                let v0 = phases.first().map_or(0.0, |first| first.speed()[0]);
+                let pieces = phases.iter().map(|phase| (phase.time().length(), phase.acceleration()));
+                agent.motion = MotionSpec::Profile { v0, pieces: pieces.collect() };
+            }
+        }
+        solved
+    }
+}

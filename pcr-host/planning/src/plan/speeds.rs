@@ -1,0 +1,135 @@
+//! Speeds for a fleet: delays, what `plan_speeds` finds in several orders, priorities by need, and each agent again while all others
+//! move as planned.
+
+mod branching;
+
+use super::Priority;
+use super::planner::Planner;
+use crate::regions::Failure;
+use pcr_core::{Drive, Motion, Profile, Station, Unsolved as Never, plan_speed, plan_speeds};
+
+/// Phases of a speed profile, at most.
+const PHASES: usize = 128;
+/// Stations along a path: 256 cells.
+const STATIONS: usize = 257;
+/// Profiles for each agent where fleets are small, for all, and for each agent at least.
+const PROFILES: usize = 64;
+const MOST: usize = 8_192;
+const LEAST: usize = 16;
+/// Rounds in which the agent that loses most is moved to the front.
+const ROUNDS: usize = 8;
+/// Rounds in which each agent is planned again.
+const AGAIN: usize = 4;
+/// What is sooner by less than this is as good \[s\].
+const SOONER: f64 = 1e-6;
+
+type Speeds = Profile<f64, PHASES>;
+
+/// Room for the profiles of all attempts.
+pub(super) fn pool(agents: usize) -> Vec<Speeds> {
+    vec![Profile::standing(); (PROFILES * agents).min(MOST).max(LEAST * agents)]
+}
+
+type Room<'m> = std::slice::IterMut<'m, Speeds>;
+
+/// The best motions that were found; beginning with some that are known.
+pub(super) fn plan<'m>(
+    planner: &Planner<'_, 'm>,
+    known: Option<Vec<Motion<'m, f64>>>,
+    pool: &'m mut [Speeds],
+) -> Result<Result<Vec<Motion<'m, f64>>, Never>, Failure> {
+    // What is kept back is for the last step.
+    let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
+    let (mut room, mut last) = (pool.iter_mut(), kept_back.iter_mut());
+    let mut stations = vec![Station::EMPTY; STATIONS];
+    let by_start = |plan: &[Motion<'_, f64>]| {
+        let mut order: Vec<usize> = (0..plan.len()).collect();
+        order.sort_by(|&a, &b| plan[a].time().lo.total_cmp(&plan[b].time().lo));
+        order
+    };
+    let mut orders = planner.orders()?;
+    if planner.request.priority == Priority::Best {
+        orders.extend(known.as_deref().map(by_start));
+    }
+    let mut best: Result<Vec<Motion<'m, f64>>, Never> = known.ok_or(Never::Full(0));
+    let mut kept = Vec::new();
+    for order in orders {
+        kept = attempt(planner, order, &mut best, &mut room, &mut stations);
+    }
+    if planner.request.priority == Priority::Best {
+        for _ in 0..ROUNDS {
+            let Ok(plan) = &best else { break };
+            let cost = planner.cost(plan);
+            let latest = (0..plan.len()).max_by(|&a, &b| late(planner, plan, a).total_cmp(&late(planner, plan, b)));
+            let Some(latest) = latest.filter(|latest| kept.first() != Some(latest)) else { break };
+            let order = std::iter::once(latest).chain(kept.into_iter().filter(|&agent| agent != latest)).collect();
+            kept = attempt(planner, order, &mut best, &mut room, &mut stations);
+            if best.as_ref().is_ok_and(|plan| planner.cost(plan) >= cost) {
+                break;
+            }
+        }
+        let limit = best.as_ref().map_or(f64::INFINITY, |plan| planner.cost(plan));
+        if let Some(plan) = branching::searched(planner, limit, &mut room, &mut stations) {
+            best = Ok(plan);
+        }
+        if let Ok(plan) = &mut best {
+            again(planner, plan, &mut last, &mut stations);
+        }
+    }
+    Ok(best)
+}
+
+/// By how much later an agent arrives than by itself \[s\].
+fn late(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>], agent: usize) -> f64 {
+    plan[agent].time().hi - planner.motions[agent].time().hi
+}
+
+/// One after the other; the order that it led to.
+fn attempt<'m>(
+    planner: &Planner<'_, 'm>,
+    mut order: Vec<usize>,
+    best: &mut Result<Vec<Motion<'m, f64>>, Never>,
+    room: &mut Room<'m>,
+    stations: &mut [Station<f64>],
+) -> Vec<usize> {
+    let mut plan = planner.motions.to_vec();
+    let done = plan_speeds(planner.ecm, planner.motions, &mut plan, &mut order, room, stations);
+    match (done, &best) {
+        (Ok(()), Ok(before)) if planner.cost(&plan) >= planner.cost(before) => {}
+        (Ok(()), _) => *best = Ok(plan),
+        (Err(never), Err(Never::Full(_))) => *best = Err(never),
+        (Err(_), _) => {}
+    }
+    order
+}
+
+/// Plans each agent again, those first that lose most, while all others move as they do.
+fn again<'m>(
+    planner: &Planner<'_, 'm>,
+    plan: &mut [Motion<'m, f64>],
+    room: &mut Room<'m>,
+    stations: &mut [Station<f64>],
+) {
+    for _ in 0..AGAIN {
+        let mut order: Vec<usize> = (0..plan.len()).collect();
+        order.sort_by(|&a, &b| late(planner, plan, b).total_cmp(&late(planner, plan, a)));
+        let mut sooner = false;
+        for agent in order {
+            let motion = planner.motions[agent];
+            let regions = planner.ecm.row(plan, agent).expect("the table of the fleet");
+            let Ok(found) = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, stations) else { continue };
+            if found.end() >= plan[agent].time().hi - SOONER {
+                continue;
+            }
+            let Some(profile) = room.next() else { return };
+            *profile = found.profile;
+            if let Ok(motion) = motion.with_profile(profile.as_profile(), found.start) {
+                plan[agent] = motion;
+                sooner = true;
+            }
+        }
+        if !sooner {
+            return;
+        }
+    }
+}

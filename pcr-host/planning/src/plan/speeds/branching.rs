@@ -1,0 +1,123 @@
+//! Priorities by need (priority-based search, Ma, Harabor, Stuckey, Li, Koenig 2019): two agents that collide are put in order, either way
+//! round, and who comes second is planned again, and so are those who come after it; depth first, the cheaper way first.
+
+use super::{PHASES, Room};
+use crate::plan::planner::Planner;
+use pcr_core::{Drive, Interval, Motion, Station, first_overlap, plan_speed};
+
+/// Nodes at most.
+const NODES: usize = 400;
+
+/// A fleet that moves by some priorities.
+#[derive(Clone)]
+struct Node<'m> {
+    plan: Vec<Motion<'m, f64>>,
+    /// For each agent those that it gives way to.
+    above: Vec<Vec<usize>>,
+    cost: f64,
+}
+
+/// A plan that costs less than a limit, the best one that is found.
+pub(super) fn searched<'m>(
+    planner: &Planner<'_, 'm>,
+    mut limit: f64,
+    room: &mut Room<'m>,
+    stations: &mut [Station<f64>],
+) -> Option<Vec<Motion<'m, f64>>> {
+    let count = planner.motions.len();
+    let mut root = Node { plan: planner.motions.to_vec(), above: vec![Vec::new(); count], cost: 0.0 };
+    for agent in 0..count {
+        plan_again(planner, &mut root, agent, room, stations)?;
+    }
+    root.cost = planner.cost(&root.plan);
+    let (mut open, mut best) = (vec![root], None);
+    for _ in 0..NODES {
+        let Some(node) = open.pop() else { break };
+        if node.cost >= limit {
+            continue;
+        }
+        let Some([i, j]) = collision(planner, &node.plan) else {
+            limit = node.cost;
+            best = Some(node.plan);
+            continue;
+        };
+        let mut ways: Vec<Node<'m>> =
+            [[i, j], [j, i]].into_iter().filter_map(|way| put_in_order(planner, &node, way, room, stations)).collect();
+        // The last one is looked at first.
+        ways.sort_by(|a, b| b.cost.total_cmp(&a.cost));
+        open.append(&mut ways);
+    }
+    best
+}
+
+/// Two agents that collide.
+fn collision(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]> {
+    let all = plan.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+    (0..plan.len()).find_map(|agent| {
+        let regions = planner.ecm.row(plan, agent).expect("the table of the fleet");
+        let after = regions.filter(|region| region.other() > agent);
+        first_overlap(&plan[agent], after, all).map(|met| [agent, met.other])
+    })
+}
+
+/// The node with one more priority, if there is a plan for all who have to give way.
+fn put_in_order<'m>(
+    planner: &Planner<'_, 'm>,
+    node: &Node<'m>,
+    [first, second]: [usize; 2],
+    room: &mut Room<'m>,
+    stations: &mut [Station<f64>],
+) -> Option<Node<'m>> {
+    if superiors(&node.above, first).contains(&second) {
+        return None;
+    }
+    let mut node = node.clone();
+    node.above[second].push(first);
+    // Whoever gives way to more is planned later.
+    let count = node.plan.len();
+    let mut below: Vec<(usize, usize)> = (0..count)
+        .map(|agent| (superiors(&node.above, agent), agent))
+        .filter(|(above, agent)| *agent == second || above.contains(&second))
+        .map(|(above, agent)| (above.len(), agent))
+        .collect();
+    below.sort_unstable();
+    for (_, agent) in below {
+        plan_again(planner, &mut node, agent, room, stations)?;
+    }
+    node.cost = planner.cost(&node.plan);
+    Some(node)
+}
+
+/// All that an agent gives way to, by way of others as well.
+fn superiors(above: &[Vec<usize>], agent: usize) -> Vec<usize> {
+    let mut found: Vec<usize> = Vec::new();
+    let mut next = vec![agent];
+    while let Some(agent) = next.pop() {
+        for &superior in &above[agent] {
+            if !found.contains(&superior) {
+                found.push(superior);
+                next.push(superior);
+            }
+        }
+    }
+    found
+}
+
+/// The earliest arrival of an agent behind those that it gives way to.
+fn plan_again<'m>(
+    planner: &Planner<'_, 'm>,
+    node: &mut Node<'m>,
+    agent: usize,
+    room: &mut Room<'m>,
+    stations: &mut [Station<f64>],
+) -> Option<()> {
+    let above = superiors(&node.above, agent);
+    let motion = planner.motions[agent];
+    let regions = planner.ecm.row(&node.plan, agent).expect("the table of the fleet");
+    let regions = regions.filter(|region| above.contains(&region.other()));
+    let found = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, stations).ok()?;
+    let profile = room.next()?;
+    *profile = found.profile;
+    node.plan[agent] = motion.with_profile(profile.as_profile(), found.start).ok()?;
+    Some(())
+}

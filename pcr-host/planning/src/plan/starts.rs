@@ -1,0 +1,132 @@
+//! Start delays of a scenario, for all of its agents or for as many as can have one, and how good they are.
+
+use super::circle;
+use super::delays::{self, Outcome};
+use super::forbidden::{Forbidden, Out, Schedule};
+use super::planner::Planner;
+use super::{Priority, Unsolved};
+use crate::regions::Failure;
+
+/// Delays of some agents of a fleet, in its order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Known {
+    /// \[s\]
+    pub(super) delays: Vec<f64>,
+    /// The agents by priority, or by their starts where none was asked for.
+    pub(super) order: Vec<usize>,
+    /// No delays sum up to less, or none has an earlier last arrival \[s\].
+    pub(super) bound: f64,
+    /// Whether that is reached but for rounding.
+    pub(super) proved: bool,
+}
+
+pub(super) struct Starts {
+    /// By the place of the agent \[s\]; none where the search was stopped before it found any.
+    delays: Option<Vec<Option<f64>>>,
+    order: Vec<usize>,
+    bound: f64,
+    proved: bool,
+    /// Agents that have no delays together.
+    conflicts: Vec<Vec<usize>>,
+    /// Who cannot start in the order that was asked for.
+    out: Vec<Out>,
+    /// Whether discs of footprints were planned with.
+    outlined: bool,
+}
+
+impl Starts {
+    pub(super) fn of(planner: &Planner<'_, '_>) -> Result<Self, Failure> {
+        let (scenario, request) = (planner.scenario, planner.request);
+        let forbidden = Forbidden::of(scenario)?;
+        let ticks = forbidden.ticks();
+        let problem = forbidden.problem(request.objective);
+        let schedules = planner.orders()?.into_iter().map(|order| forbidden.in_order(forbidden.respecting(order)));
+        let schedules: Vec<Schedule> = schedules.collect();
+        let is_best = request.priority == Priority::Best;
+        let in_ticks = |schedule: &Schedule| {
+            schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Option<Vec<i64>>>()
+        };
+        let known: Vec<Vec<i64>> = schedules.iter().filter_map(in_ticks).collect();
+        let Outcome { delays, bound, proved, conflicts } = delays::best(&problem, &known, request.effort);
+        let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
+        let found = Self {
+            delays: delays.map(|delays| delays.iter().map(seconds).collect()),
+            order: Vec::new(),
+            bound: ticks.seconds(bound),
+            proved,
+            conflicts,
+            out: Vec::new(),
+            outlined,
+        };
+        if is_best {
+            return Ok(found);
+        }
+        let Some(Schedule { delays, out, order }) = schedules.into_iter().next() else { return Ok(found) };
+        let whole = delays.iter().all(Option::is_some);
+        let reached = known.first().is_some_and(|known| problem.cost(known) <= bound + delays::slack(&problem));
+        // A bound for other agents is none for these.
+        let bound = if whole { found.bound } else { 0.0 };
+        Ok(Self { delays: Some(delays), order, out, bound, proved: found.proved && whole && reached, ..found })
+    }
+
+    /// For all agents, if all have delays.
+    pub(super) fn of_all(&self) -> Option<Known> {
+        let delays = self.delays.as_ref()?;
+        delays.iter().all(Option::is_some).then(|| self.known(&(0..delays.len()).collect::<Vec<_>>()))
+    }
+
+    /// Those that have delays.
+    pub(super) fn staying(&self) -> Vec<usize> {
+        let delays = self.delays.as_deref().unwrap_or_default();
+        (0..delays.len()).filter(|&agent| delays[agent].is_some()).collect()
+    }
+
+    /// For those that have delays.
+    pub(super) fn known(&self, staying: &[usize]) -> Known {
+        let delays = self.delays.as_deref().unwrap_or_default();
+        let place = |agent: &usize| staying.iter().position(|stays| stays == agent);
+        Known {
+            delays: staying.iter().filter_map(|&agent| delays[agent]).collect(),
+            order: self.order.iter().filter_map(place).collect(),
+            bound: self.bound,
+            proved: self.proved,
+        }
+    }
+
+    /// Why not all have delays.
+    pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<Unsolved> {
+        let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
+        let mut unsolved: Vec<Unsolved> = Vec::new();
+        // Of footprints it would be no proof: the discs around them may have to wait where they do not.
+        let circle = if self.outlined { None } else { circle::circle(planner.ecm, planner.motions) };
+        if let Some(circle) = &circle {
+            let why = "each has to let the next one pass first, the last one the first, however they move";
+            unsolved.push(Unsolved::nowhere(ids(circle), why));
+        }
+        for conflict in &self.conflicts {
+            let is_circle = circle.as_ref().is_some_and(|circle| {
+                circle.len() == conflict.len() && circle.iter().all(|agent| conflict.contains(agent))
+            });
+            match conflict.as_slice() {
+                _ if is_circle => {}
+                &[i, j] => unsolved.push(Unsolved::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
+                agents => {
+                    let why = "two of them meet whenever they start";
+                    unsolved.push(Unsolved::nowhere(ids(agents), why));
+                }
+            }
+        }
+        let mut blocked = self.out.iter().filter(|out| !out.always);
+        if unsolved.is_empty()
+            && let Some(out) = blocked.next()
+        {
+            unsolved.push(Unsolved::of(planner.scenario, [planner.id(out.agent), planner.id(out.by)], false));
+        }
+        if unsolved.is_empty() {
+            let why = "no start delays were found before the search was stopped; nor was it proved that there are none";
+            unsolved.push(Unsolved::nowhere(Vec::new(), why));
+        }
+        unsolved
+    }
+}

@@ -1,0 +1,91 @@
+//! Start delays of whole scenarios: solved where they were not, proved to be the best, certified.
+
+use pcr_formats::scenario::Scenario;
+use pcr_planning::plan::{Method, Objective, Plan, Priority, Request};
+
+const SOLVABLE: [(&str, &str); 3] = [
+    ("dense", include_str!("../data/cases/solvable-dense-10358.json")),
+    ("lanes", include_str!("../data/cases/solvable-lanes-10008.json")),
+    ("swap", include_str!("../data/cases/solvable-swap-10078.json")),
+];
+
+const PAPER: [(&str, &str); 5] = [
+    ("5", include_str!("../data/table6-5.json")),
+    ("12", include_str!("../data/table6-12.json")),
+    ("paper12", include_str!("../data/paper12.json")),
+    ("30", include_str!("../data/table6-30.json")),
+    ("50", include_str!("../data/table6-50.json")),
+];
+
+#[track_caller]
+fn planned(text: &str, request: &Request) -> (Plan, Option<Scenario>) {
+    Plan::of(&Scenario::from_json(text).unwrap(), request).unwrap()
+}
+
+#[track_caller]
+fn proved(plan: &Plan) {
+    assert!(plan.proved && plan.gap < 1e-6 && plan.lower_bound <= plan.sum_of_costs, "{plan:?}");
+    assert_eq!(plan.certificate.as_ref().map(|proof| proof.verdict), Some("proved"), "{plan:?}");
+}
+
+#[test]
+fn fleets_that_have_delays_get_the_best_ones() {
+    for (name, text) in SOLVABLE {
+        let (plan, solved) = planned(text, &Request::default());
+        assert!(solved.is_some() && plan.unsolved.is_empty() && plan.left_out.is_empty(), "{name}: {plan:?}");
+        proved(&plan);
+    }
+}
+
+#[test]
+fn an_order_of_priority_costs_no_less_and_has_the_same_bound() {
+    for (name, text) in &PAPER[..3] {
+        let best = planned(text, &Request::default()).0;
+        proved(&best);
+        for priority in [Priority::Longest, Priority::Crowded] {
+            let plan = planned(text, &Request { priority, ..Request::default() }).0;
+            assert!(plan.unsolved.is_empty() && plan.sum_of_costs >= best.sum_of_costs - 1e-9, "{name}: {plan:?}");
+            assert!((plan.lower_bound - best.lower_bound).abs() < 1e-6, "{name}: {plan:?}");
+        }
+    }
+}
+
+#[test]
+fn the_last_arrival_is_the_earliest_if_that_is_asked_for() {
+    let least = Request { objective: Objective::Makespan, ..Request::default() };
+    for (name, text) in PAPER[..3].iter().chain(&SOLVABLE) {
+        let [sum, last] = [Request::default(), least.clone()].map(|request| planned(text, &request).0);
+        assert!(last.makespan <= sum.makespan + 1e-9 && sum.sum_of_costs <= last.sum_of_costs + 1e-9, "{name}");
+        assert!(last.proved && last.lower_bound <= last.makespan && last.gap < 1e-6, "{name}: {last:?}");
+        assert_eq!(last.objective, "makespan");
+    }
+}
+
+#[test]
+fn the_others_have_a_plan_if_some_are_left_out() {
+    for (name, text) in &PAPER[3..] {
+        let whole = planned(text, &Request::default());
+        assert!(whole.1.is_none() && whole.0.agents.is_empty(), "{name}: {whole:?}");
+        let (plan, solved) = planned(text, &Request { leave_out: true, ..Request::default() });
+        proved(&plan);
+        assert_eq!(plan.unsolved, whole.0.unsolved, "{name}");
+        // Whoever is left out is in a set that is named, and every set loses one.
+        assert!(
+            plan.left_out.iter().all(|id| plan.unsolved.iter().any(|unsolved| unsolved.ids.contains(id))),
+            "{name}"
+        );
+        let loses = |ids: &[u64]| ids.iter().any(|id| plan.left_out.contains(id));
+        assert!(plan.unsolved.iter().all(|unsolved| loses(&unsolved.ids)), "{name}: {plan:?}");
+        assert_eq!(plan.agents.len(), solved.unwrap().agents.len(), "{name}");
+    }
+}
+
+#[test]
+fn speeds_cost_no_more_than_delays() {
+    for (name, text) in SOLVABLE.iter().chain(&PAPER[..1]) {
+        let [later, faster] = [Method::Delay, Method::Speed].map(|method| planned(text, &Request::of(method)));
+        let [later, faster] = [later.0, faster.0];
+        assert!(!faster.agents.is_empty() && faster.sum_of_costs <= later.sum_of_costs + 1e-9, "{name}: {faster:?}");
+        assert_eq!(faster.certificate.map(|proof| proof.verdict), Some("proved"), "{name}");
+    }
+}
