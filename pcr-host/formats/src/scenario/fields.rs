@@ -14,25 +14,25 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
-    place: Place,
-    field: Option<String>,
+    /// Where, and which field; in a box, as an error is returned by value everywhere.
+    about: Box<(Place, Option<String>)>,
     message: String,
 }
 
 impl ScenarioError {
     /// The agent that it is about, as messages name it: "agent 7".
     pub fn agent(&self) -> Option<&str> {
-        self.place.agent.as_deref()
+        self.about.0.agent.as_deref()
     }
 
     /// "segment" or "piece", and which one, counted from 1.
     pub fn part(&self) -> Option<(&'static str, usize)> {
-        self.place.part
+        self.about.0.part
     }
 
     /// The field.
     pub fn field(&self) -> Option<&str> {
-        self.field.as_deref()
+        self.about.1.as_deref()
     }
 
     /// Line of the text, counted from 1. It is not part of the message.
@@ -71,7 +71,7 @@ impl Place {
         let place: Vec<String> = [self.agent.clone(), part, field.clone()].into_iter().flatten().collect();
         let colon = if place.is_empty() { "" } else { ": " };
         let message = format!("{}{colon}{problem}", place.join(", "));
-        ScenarioError { scenario: String::new(), line, place: self.clone(), field, message }
+        ScenarioError { scenario: String::new(), line, about: Box::new((self.clone(), field)), message }
     }
 
     pub(super) fn part(&self, name: &'static str, index: usize) -> Self {
