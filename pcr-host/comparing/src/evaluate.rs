@@ -8,12 +8,14 @@
 //! grazing     contacts and near misses down to a ten-millionth of a metre
 //! memory      what is kept of a collision, and what goes over a wire
 //! traffic     random missions in a real warehouse
+//! lifelong    fleets that run there for an hour
 //! scale       fleets of up to 100,000 agents
 //! ```
 
 mod figures;
 mod fleets;
 mod grazing;
+mod lifelong;
 mod machine;
 mod memory;
 mod scale;
@@ -109,13 +111,14 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 7] = [
+    const PARTS: [Part; 8] = [
         fleets::section,
         shares::section,
         figures::section,
         grazing::section,
         memory::section,
         traffic::section,
+        lifelong::section,
         scale::section,
     ];
     let mut text = machine::preamble(extent);

@@ -3,7 +3,7 @@
 
 use super::Method;
 use super::book::{Book, Region};
-use super::forecast::{Forecast, Stuck, Trial};
+use super::forecast::{Forecast, Stuck, Trial, Waits};
 use super::robot::{Abilities, Robot};
 use super::routes::routes;
 use super::site::Site;
@@ -20,7 +20,7 @@ const ENDS: usize = 2;
 const TURNS: usize = 8;
 
 /// Forecasts that a decision may make for orders that are mended.
-const FORECASTS: usize = 32;
+const FORECASTS: usize = 24;
 
 /// Orders that are turned round where somebody would wait for ever.
 const REPAIRS: usize = 12;
@@ -99,10 +99,15 @@ impl Scene<'_> {
 
     /// Another way and other orders for a robot that has a mission, with which all are expected to arrive sooner by `gain` \[s\].
     pub(super) fn better(&self, robot: usize, goal: usize, gain: f64) -> Option<Admitted> {
-        let now =
-            Trial { robots: self.robots, book: self.book, abilities: self.abilities, time: self.time, changed: None };
-        let cost = now.forecast().ok()?.cost;
+        let cost = self.base().ok()?.cost;
         self.dispatch(robot, goal).ok().filter(|found| found.cost + gain < cost)
+    }
+
+    /// When all are where with the ways and orders that they have.
+    fn base(&self) -> Result<Forecast, Vec<Stuck>> {
+        let Scene { robots, abilities, time, .. } = *self;
+        let waits = &Waits::of(robots, self.book, None);
+        Trial { robots, waits, abilities, time, changed: None }.forecast()
     }
 
     fn kept(&self, robot: usize) -> Kept {
@@ -185,10 +190,9 @@ impl Scene<'_> {
     /// The way and orders with which all are expected to arrive soonest, of those that are admitted.
     fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Result<Admitted, Refused> {
         let it = &self.robots[robot];
-        let base =
-            Trial { robots: self.robots, book: self.book, abilities: self.abilities, time: self.time, changed: None };
         // The orders of all are sound before.
-        let base = base.forecast().unwrap_or_default();
+        let base = self.base().unwrap_or_default();
+        let waits = Waits::of(self.robots, self.book, Some(robot));
         let budget = &Cell::new(FORECASTS);
         let mut refused = Refused::default();
         let mut best: Option<Admitted> = None;
@@ -198,7 +202,7 @@ impl Scene<'_> {
             let goal = goal.map(|goal| kept.atoms.len() + goal);
             let way = Way::new(self.site, kept.from, &atoms, goal, self.abilities);
             let regions = self.book.regions(self.site, self.robots, robot, &way, at);
-            let case = Case { scene: self, base: &base, robot, way: &way, at, stop, budget };
+            let case = Case { scene: self, base: &base, waits: &waits, robot, way: &way, at, stop, budget };
             match case.solve(regions) {
                 Ok((regions, departs, cost)) => {
                     if best.as_ref().is_none_or(|best| cost < best.cost) {
@@ -211,7 +215,7 @@ impl Scene<'_> {
         }
         let mut best = best.ok_or(refused)?;
         if self.method == Method::Orders {
-            let case = Case { scene: self, base: &base, robot, way: &best.way, at, stop, budget };
+            let case = Case { scene: self, base: &base, waits: &waits, robot, way: &best.way, at, stop, budget };
             (best.regions, best.cost) = case.improved(std::mem::take(&mut best.regions), best.cost);
         }
         Ok(best)
@@ -222,6 +226,7 @@ impl Scene<'_> {
 struct Case<'c> {
     scene: &'c Scene<'c>,
     base: &'c Forecast,
+    waits: &'c Waits,
     robot: usize,
     way: &'c Way,
     at: f64,
@@ -244,9 +249,9 @@ impl Case<'_> {
     }
 
     fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
-        let Scene { robots, book, abilities, time, .. } = *self.scene;
+        let Scene { robots, abilities, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
-        Trial { robots, book, abilities, time, changed }.forecast()
+        Trial { robots, waits: self.waits, abilities, time, changed }.forecast()
     }
 
     /// Which of the two can go first at a region: the robot, the other one.
@@ -302,22 +307,18 @@ impl Case<'_> {
 
     /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
     fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
-        let own =
-            |length: f64| (self.way.time(length.clamp(self.at, self.way.length())) - self.way.time(self.at)) + late;
+        let now = self.way.time(self.at) - late;
         let other = region.robots[1];
-        let way = &self.scene.robots[other].way;
-        let their = |length: f64| self.base.time(other, way, length.max(0.0));
-        let first = Cell::new(0.0_f64);
-        let second = Cell::new(0.0_f64);
-        for gate in region.gates_of(1) {
-            let opens = if gate.needs <= self.way.length() { own(gate.needs) } else { f64::INFINITY };
-            first.set(first.get().max(opens - their(gate.at)));
+        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        for timed in region.gates_of(1) {
+            let comes = self.base.from(other, timed.comes, timed.gate.at);
+            first = first.max(timed.opens - now - comes);
         }
-        for gate in region.gates_of(0) {
-            let opens = if gate.needs <= way.length() { their(gate.needs) } else { f64::INFINITY };
-            second.set(second.get().max(opens - own(gate.at)));
+        for timed in region.gates_of(0) {
+            let opens = self.base.from(other, timed.opens, timed.gate.needs);
+            second = second.max(opens - (timed.comes - now).max(late));
         }
-        (first.get(), second.get())
+        (first, second)
     }
 
     /// Turns orders round until nobody waits for ever; last of all everybody else goes first.

@@ -25,7 +25,7 @@ const AGAIN: f64 = 2.0;
 const PATIENCE: f64 = 4.0;
 
 /// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\].
-const REVIEW: [f64; 2] = [1.0, 4.0];
+const REVIEW: [f64; 2] = [0.5, 3.0];
 
 /// Decisions between two controls.
 const TRIES: usize = 4;

@@ -84,9 +84,8 @@ impl Forbidden {
     /// The discs of so many agents, and whose they are.
     fn between(motions: &[Motion<'_, f64>], ecm: &HostEcm<f64>, owners: &[usize], count: usize) -> Self {
         let mut intervals = vec![vec![Vec::new(); count]; count];
-        let regions = (0..motions.len()).flat_map(|disc| {
-            ecm.row(motions, disc).expect("the table of the fleet").map(move |region| (disc, region))
-        });
+        let regions = (0..motions.len())
+            .flat_map(|disc| ecm.row(motions, disc).expect("the table of the fleet").map(move |region| (disc, region)));
         // The other direction of a pair is the same, with the sign turned round.
         for (disc, region) in regions.filter(|(disc, region)| region.other() > *disc) {
             let (Some(&agent), Some(&other)) = (owners.get(disc), owners.get(region.other())) else { continue };
