@@ -247,8 +247,8 @@ fn joined(mut ties: Vec<Tie>, robots: [usize; 2], ways: [&Way; 2]) -> Vec<Region
             }
         }
     }
-    for k in 0..ties.len() {
-        ties[k].group = root(&mut parents, k);
+    for (k, tie) in ties.iter_mut().enumerate() {
+        tie.group = root(&mut parents, k);
     }
     ties.sort_by_key(|tie| tie.group);
     let groups = ties.chunk_by(|a, b| a.group == b.group);

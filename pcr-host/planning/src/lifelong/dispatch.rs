@@ -5,7 +5,7 @@ use super::Method;
 use super::book::{Book, Region};
 use super::forecast::{Forecast, Stuck, Trial, Waits};
 use super::robot::{Abilities, Robot};
-use super::routes::routes;
+use super::routes::{From, routes};
 use super::site::Site;
 use super::way::{Kept, Way};
 use std::cell::Cell;
@@ -14,13 +14,13 @@ use std::cell::Cell;
 const TOLLS: [[f64; 2]; 4] = [[f64::INFINITY, 0.0], [f64::INFINITY, 4.0], [f64::INFINITY, 15.0], [20.0, 4.0]];
 
 /// Ends that are tried for each route.
-const ENDS: usize = 2;
+const ENDS: usize = 3;
 
 /// Orders that are turned round in search of better ones.
-const TURNS: usize = 8;
+const TURNS: usize = 16;
 
 /// Forecasts that a decision may make for orders that are mended.
-const FORECASTS: usize = 24;
+const FORECASTS: usize = 48;
 
 /// Orders that are turned round where somebody would wait for ever.
 const REPAIRS: usize = 12;
@@ -133,14 +133,13 @@ impl Scene<'_> {
         count: usize,
     ) -> Vec<Vec<usize>> {
         let heading = kept.atoms.last().and_then(|&last| self.site.atoms[last].headings).map(|headings| headings[1]);
-        self.onward(robot, kept.node, heading, [standing, coming], asked, towards, count)
+        self.onward(robot, From { node: kept.node, heading }, [standing, coming], asked, towards, count)
     }
 
     fn onward(
         &self,
         robot: usize,
-        from: usize,
-        heading: Option<f64>,
+        from: From,
         [standing, coming]: [f64; 2],
         asked: impl Fn(usize) -> bool,
         towards: Option<usize>,
@@ -158,7 +157,7 @@ impl Scene<'_> {
             }
             toll
         };
-        routes(self.site, self.abilities, from, heading, toll, asked, towards, count)
+        routes((self.site, self.abilities), from, toll, asked, towards, count)
     }
 
     /// Routes to a goal and on to an end.
@@ -171,10 +170,17 @@ impl Scene<'_> {
             let heading = there.last().or(kept.atoms.last()).and_then(|&last| self.site.atoms[last].headings);
             let heading = heading.map(|headings| headings[1]);
             let safe = |node: usize| self.is_free(robot, node) && self.ends.contains(&node);
-            let mut onward = self.onward(robot, goal, heading, tolls, safe, None, ENDS);
+            let mut onward = self.onward(robot, From { node: goal, heading }, tolls, safe, None, ENDS);
             if onward.is_empty() {
                 // More robots than ends: wherever nobody stands.
-                onward = self.onward(robot, goal, heading, tolls, |node| self.is_free(robot, node), None, ENDS);
+                onward = self.onward(
+                    robot,
+                    From { node: goal, heading },
+                    tolls,
+                    |node| self.is_free(robot, node),
+                    None,
+                    ENDS,
+                );
             }
             for end in onward {
                 let steps = there.len();
@@ -243,8 +249,23 @@ impl Case<'_> {
                 None => Ok((regions, self.scene.time, self.way.time(self.way.length()))),
                 Some(region) => Err(Refused { by: Some(region.robots[1]) }),
             },
-            Method::EdgeLocks => Ok((Vec::new(), self.scene.time, self.way.time(self.way.length()))),
+            Method::EdgeLocks => self.clear_of_ends(),
             Method::StartDelays => self.delayed(regions),
+        }
+    }
+
+    /// A banker needs that nobody ends on the way of another one, or those who could finish first stand in the way for good.
+    fn clear_of_ends(&self) -> Result<(Vec<Region>, f64, f64), Refused> {
+        let Scene { site, book, robots, parked, time, .. } = *self.scene;
+        let own = site.covers(robots[self.robot].way.end());
+        if self.way.atoms.iter().any(|atom| parked[*atom] > u16::from(own.contains(atom))) {
+            return Err(Refused::default());
+        }
+        let end = site.covers(self.way.end());
+        let passing = end.iter().find_map(|&atom| book.others_on(atom, self.robot, robots).next());
+        match passing {
+            Some((by, _)) => Err(Refused { by: Some(by) }),
+            None => Ok((Vec::new(), time, self.way.time(self.way.length()))),
         }
     }
 
