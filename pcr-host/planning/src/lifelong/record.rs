@@ -106,7 +106,7 @@ fn agent(
     (trail, since): (&[usize], f64),
     at: [f64; 2],
 ) -> Result<Agent, String> {
-    let mut travel = Travel { start: begin, phases: Vec::new(), lag: 0.0 };
+    let mut travel = Travel { start: begin, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
     let (mut time, mut length) = (0.0, 0.0);
     for phase in phases {
         // Each begins where the one before ends: times are summed up.
