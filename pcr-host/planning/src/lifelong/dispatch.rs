@@ -16,11 +16,13 @@ const TOLLS: [[f64; 2]; 4] = [[f64::INFINITY, 0.0], [f64::INFINITY, 4.0], [f64::
 /// Ends that are tried for each route.
 const ENDS: usize = 3;
 
-/// Orders that are turned round in search of better ones.
+/// Orders that are turned round in search of better ones, at most, and even if a decision has taken long already.
 const TURNS: usize = 16;
+const LEAST_TURNS: usize = 4;
 
-/// Forecasts that a decision may make for orders that are mended.
-const FORECASTS: usize = 48;
+/// Gates that a decision may go through in all its forecasts, about; and the least and the largest number of forecasts that it may make.
+const WORK: usize = 60_000;
+const FORECASTS: [usize; 2] = [12, 96];
 
 /// Orders that are turned round where somebody would wait for ever.
 const REPAIRS: usize = 12;
@@ -199,7 +201,8 @@ impl Scene<'_> {
         // The orders of all are sound before.
         let base = self.base().unwrap_or_default();
         let waits = Waits::of(self.robots, self.book, Some(robot));
-        let budget = &Cell::new(FORECASTS);
+        let [least, most] = FORECASTS;
+        let budget = &Cell::new((WORK / waits.len().max(1)).clamp(least, most));
         let mut refused = Refused::default();
         let mut best: Option<Admitted> = None;
         let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
@@ -312,11 +315,15 @@ impl Case<'_> {
         let mut turns = 0;
         for k in 0..regions.len() {
             let (ahead, behind) = self.waits(&regions[k], 0.0);
+            if turns >= LEAST_TURNS && self.budget.get() == 0 {
+                break;
+            }
             let free = if regions[k].first == 0 { ahead == 0.0 } else { behind == 0.0 };
             if turns >= TURNS || free || self.sides(&regions[k]) != [true; 2] {
                 continue;
             }
             turns += 1;
+            self.budget.set(self.budget.get().saturating_sub(1));
             regions[k].first = 1 - regions[k].first;
             match self.forecast(&regions, self.scene.time) {
                 Ok(other) if other.cost < cost => cost = other.cost,

@@ -54,6 +54,11 @@ impl Waits {
         });
         Self(all.collect())
     }
+
+    /// How many there are: what a forecast costs.
+    pub(super) fn len(&self) -> usize {
+        self.0.iter().map(Vec::len).sum()
+    }
 }
 
 /// The gates of a region that the second has still to pass.
