@@ -45,5 +45,6 @@ fn robots_that_are_stopped_at_random_arrive_all_the_same() {
 fn orders_do_more_missions_than_locks_and_start_delays() {
     let minutes = if cfg!(optimized) { 20.0 } else { 4.0 };
     let [orders, others @ ..] = Method::ALL.map(|method| warehouse(8, minutes, 0.02, method).missions);
-    assert!(others.iter().all(|&missions| missions > 0 && 3 * missions < 2 * orders), "{orders} {others:?}");
+    assert!(others.iter().all(|&missions| missions > 0 && missions < orders), "{orders} {others:?}");
+    assert!(2 * others[0] < orders, "{orders}, locks on routes {}", others[0]);
 }

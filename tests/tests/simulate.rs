@@ -270,6 +270,28 @@ fn robots_with_turns_in_place_get_where_they_go() {
     }
 }
 
+/// More of them than are planned by priority: lanes that cross everybody else's.
+#[test]
+fn a_larger_fleet_sets_off_one_after_the_other_and_arrives() {
+    const LANES: usize = 8;
+    let agent = |id: usize, [x, y, heading]: [f64; 3]| {
+        format!(
+            r#"{{ "id": {id}, "radius": 0.3, "v_max": 1.0, "a_max": 0.5, "start": {{ "x": {x}, "y": {y}, "heading": {heading} }},
+                 "path": [ {{ "kind": "line", "length": {} }} ] }}"#,
+            1.5 * LANES as f64 + 3.0
+        )
+    };
+    let east = (0..LANES).map(|k| agent(k, [-2.0, 1.5 * k as f64, 0.0]));
+    let north = (0..LANES).map(|k| agent(LANES + k, [1.5 * k as f64, -2.0, PI / 2.0]));
+    let agents: Vec<String> = east.chain(north).collect();
+    let scenario = Scenario::from_json(&format!(r#"{{ "agents": [{}] }}"#, agents.join(","))).expect("a scenario");
+    let task = Task::of(&scenario).expect("a task");
+    let outcome = run(&task, Controller::Pcr, settings(1, USUAL)).expect("a run");
+    assert_safe(&task, &outcome, "lanes");
+    // One plan is enough: its orders are kept.
+    assert_eq!(outcome.run.planning.map(|planning| planning.count), Some(1));
+}
+
 #[test]
 fn loads_take_their_room() {
     let agent = |loads: &str| {

@@ -11,7 +11,7 @@ use pcr_formats::scenario::{Scenario, ScenarioError};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::{Fleet as Parts, HostEcm};
 use pcr_planning::locks::Locks;
-use pcr_planning::plan::{Method, Plan, Request};
+use pcr_planning::plan::{self, Method, Plan};
 use pcr_planning::regions::{Answer, Request, find, table};
 use pcr_planning::report::{self, Document};
 use pyo3::create_exception;
@@ -245,7 +245,7 @@ impl Fleet {
     fn plan(&self, py: Python<'_>, speeds: bool) -> PyResult<(String, Option<Self>)> {
         py.detach(|| {
             let method = if speeds { Method::Speed } else { Method::Delay };
-            let (plan, scenario) = Plan::of(&self.scenario, &Request::of(method)).map_err(refused)?;
+            let (plan, scenario) = Plan::of(&self.scenario, &plan::Request::of(method)).map_err(refused)?;
             Ok((json(&plan)?, scenario.map(Self::new).transpose()?))
         })
     }

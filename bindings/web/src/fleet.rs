@@ -59,12 +59,15 @@ fn filled<T: Clone, const N: usize>(room: &mut Vec<T, N>, empty: T) -> &mut [T] 
     room
 }
 
+/// Who passes whom, in memory of its own.
+type Passing<'s> = Orders<f64, &'s mut [Region], &'s mut [Piece<f64>], &'s mut [Order<f64>]>;
+
 /// A fleet with its tables.
 #[derive(Debug)]
 pub struct Fleet<'s> {
     agents: &'s mut Agents,
     table: Ecm<f64, &'s mut [Region], &'s mut [Piece<f64>]>,
-    orders: Orders<f64, &'s mut [Region], &'s mut [Piece<f64>], &'s mut [Order<f64>]>,
+    orders: Passing<'s>,
 }
 
 impl<'s> Fleet<'s> {

@@ -19,7 +19,7 @@ fn fleet() -> Fleet<'static> {
         .stack_size(16 << 20)
         .spawn(|| Box::leak(Box::new(Memory::NEW)))
         .and_then(|thread| thread.join().map_err(|_| std::io::Error::other("no memory")))
-        .map(|memory| Fleet::new(memory))
+        .map(Fleet::new)
         .expect("memory for a test")
 }
 

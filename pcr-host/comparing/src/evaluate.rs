@@ -9,12 +9,14 @@
 //! memory      what is kept of a collision, and what goes over a wire
 //! traffic     random missions in a real warehouse
 //! plans       costs of start delays, and what is proved of them
+//! lifelong    fleets that run there for an hour
 //! scale       fleets of up to 100,000 agents
 //! ```
 
 mod figures;
 mod fleets;
 mod grazing;
+mod lifelong;
 mod machine;
 mod memory;
 mod plans;
@@ -111,7 +113,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 8] = [
+    const PARTS: [Part; 9] = [
         fleets::section,
         shares::section,
         figures::section,
@@ -119,6 +121,7 @@ pub fn write(
         memory::section,
         traffic::section,
         plans::section,
+        lifelong::section,
         scale::section,
     ];
     let mut text = machine::preamble(extent);

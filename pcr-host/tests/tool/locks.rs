@@ -116,8 +116,9 @@ fn an_edge_is_found_in_an_index_without_the_others() {
         let [held, computed] = [of(&[index]), of(&arguments[1..])];
         let [held, computed] = [&held, &computed].map(|of| of["partners"].as_array().unwrap());
         assert_eq!(held.len(), computed.len(), "{edge}");
-        let own = |lock: &&Value| lock["a"].to_string() == edge || lock["b"].to_string() == edge;
-        let nodes = table["nodes"].as_array().unwrap().iter().filter(|lock| lock["edge"].to_string() == edge).count();
+        let is = |id: &Value| format!("{id}") == edge;
+        let own = |lock: &&Value| is(&lock["a"]) || is(&lock["b"]);
+        let nodes = table["nodes"].as_array().unwrap().iter().filter(|lock| is(&lock["edge"])).count();
         assert_eq!(held.len(), table["locks"].as_array().unwrap().iter().filter(own).count() + nodes, "{edge}");
         for (held, computed) in held.iter().zip(computed) {
             assert_eq!((&held["name"], &held["node"]), (&computed["name"], &computed["node"]), "{edge}");

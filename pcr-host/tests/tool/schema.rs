@@ -75,6 +75,7 @@ fn every_output_fits_its_schema() {
         &["locks", &lif, "--radius", "0.3"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--edge", "26"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
+        &["traffic", &layout, "--radius", "0.3", "--agents", "3", "--hours", "0.01", "--compare"],
         &["nodes", &layout],
         &["nodes", &lif],
         &["nodes", &real("opendrive/Town02.planview.xodr")],

@@ -3,7 +3,7 @@
 //! A region is a set of pairs of atoms of two ways at which the robots touch and that hang together. Whoever is second at
 //! it waits at its gates.
 
-use super::gates::{Gate, hold, pruned};
+use super::gates::{Gate, Timed, hold, pruned};
 use super::robot::Robot;
 use super::site::Site;
 use super::way::Way;
@@ -18,19 +18,19 @@ pub(super) struct Region {
     /// Lengths of each of the two ways in it \[m\].
     pub(super) hull: [Interval<f64>; 2],
     /// Of each of them as the second.
-    gates: [Rc<[Gate]>; 2],
+    gates: [Rc<[Timed]>; 2],
     /// Which of the two goes first.
     pub(super) first: usize,
 }
 
 impl Region {
     /// The gates of whoever is second.
-    pub(super) fn gates(&self) -> &[Gate] {
+    pub(super) fn gates(&self) -> &[Timed] {
         &self.gates[1 - self.first]
     }
 
     /// The gates of one of the two as the second.
-    pub(super) fn gates_of(&self, second: usize) -> &[Gate] {
+    pub(super) fn gates_of(&self, second: usize) -> &[Timed] {
         &self.gates[second]
     }
 
@@ -49,7 +49,8 @@ impl Region {
     pub(super) fn can_be_first(&self, first: usize, at: [f64; 2], stop: [f64; 2], lengths: [f64; 2]) -> bool {
         let second = 1 - first;
         let gates = &self.gates[second];
-        let leaves = gates.last().is_none_or(|last| last.needs <= lengths[first] || last.at >= lengths[second]);
+        let leaves =
+            gates.last().is_none_or(|last| last.gate.needs <= lengths[first] || last.gate.at >= lengths[second]);
         leaves && stop[second] <= hold(gates, at[first])
     }
 }
@@ -186,7 +187,12 @@ impl Book {
         }
         let mut others: Vec<usize> = ties.keys().copied().collect();
         others.sort_unstable();
-        others.into_iter().flat_map(|other| joined(ties.remove(&other).unwrap_or_default(), [robot, other])).collect()
+        others
+            .into_iter()
+            .flat_map(|other| {
+                joined(ties.remove(&other).unwrap_or_default(), [robot, other], [way, &robots[other].way])
+            })
+            .collect()
     }
 }
 
@@ -210,8 +216,13 @@ fn needed(needs: f64, way: &Way, place: usize) -> f64 {
     }
 }
 
+fn timed(gate: Gate, first: &Way, second: &Way) -> Timed {
+    let opens = if gate.needs <= first.length() { first.time(gate.needs) } else { f64::INFINITY };
+    Timed { gate, comes: second.time(gate.at.clamp(0.0, second.length())), opens }
+}
+
 /// The regions that ties of two robots make: those of atoms that follow one another belong together where they meet.
-fn joined(mut ties: Vec<Tie>, robots: [usize; 2]) -> Vec<Region> {
+fn joined(mut ties: Vec<Tie>, robots: [usize; 2], ways: [&Way; 2]) -> Vec<Region> {
     /// Lengths as near are the same \[m\].
     const NEAR: f64 = 1e-5;
     let places: HashMap<[usize; 2], usize> = ties.iter().enumerate().map(|(k, tie)| (tie.places, k)).collect();
@@ -223,21 +234,21 @@ fn joined(mut ties: Vec<Tie>, robots: [usize; 2]) -> Vec<Region> {
         }
         k
     }
-    for k in 0..ties.len() {
+    for (k, tie) in ties.iter().enumerate() {
         for side in 0..2 {
-            let mut next = ties[k].places;
+            let mut next = tie.places;
             next[side] += 1;
             let Some(&next) = places.get(&next) else { continue };
             let across = 1 - side;
-            let [a, b] = [ties[k].hull, ties[next].hull];
+            let [a, b] = [tie.hull, ties[next].hull];
             if a[side].hi + NEAR >= b[side].lo && a[across].widened(NEAR).meets(b[across]) {
                 let (a, b) = (root(&mut parents, k), root(&mut parents, next));
                 parents[a] = b;
             }
         }
     }
-    for k in 0..ties.len() {
-        ties[k].group = root(&mut parents, k);
+    for (k, tie) in ties.iter_mut().enumerate() {
+        tie.group = root(&mut parents, k);
     }
     ties.sort_by_key(|tie| tie.group);
     let groups = ties.chunk_by(|a, b| a.group == b.group);
@@ -245,7 +256,7 @@ fn joined(mut ties: Vec<Tie>, robots: [usize; 2]) -> Vec<Region> {
         let hull = [0, 1].map(|side| group.iter().map(|tie| tie.hull[side]).reduce(Interval::hull).unwrap_or_default());
         let gates = [0, 1].map(|side| {
             let all = group.iter().flat_map(|tie| tie.gates[side].iter().copied()).collect();
-            Rc::from(pruned(all))
+            pruned(all).into_iter().map(|gate| timed(gate, ways[1 - side], ways[side])).collect()
         });
         Region { robots, hull, gates, first: 1 }
     };

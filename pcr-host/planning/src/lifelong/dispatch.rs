@@ -4,9 +4,9 @@
 use super::Method;
 use super::abilities::Abilities;
 use super::book::{Book, Region};
-use super::forecast::{Forecast, Stuck, Trial};
+use super::forecast::{Forecast, Stuck, Trial, Waits};
 use super::robot::Robot;
-use super::routes::routes;
+use super::routes::{From, routes};
 use super::site::Site;
 use super::way::{Kept, Way};
 use std::cell::Cell;
@@ -15,13 +15,15 @@ use std::cell::Cell;
 const TOLLS: [[f64; 2]; 4] = [[f64::INFINITY, 0.0], [f64::INFINITY, 4.0], [f64::INFINITY, 15.0], [20.0, 4.0]];
 
 /// Ends that are tried for each route.
-const ENDS: usize = 2;
+const ENDS: usize = 3;
 
-/// Orders that are turned round in search of better ones.
-const TURNS: usize = 8;
+/// Orders that are turned round in search of better ones, at most, and even if a decision has taken long already.
+const TURNS: usize = 16;
+const LEAST_TURNS: usize = 4;
 
-/// Forecasts that a decision may make for orders that are mended.
-const FORECASTS: usize = 32;
+/// Gates that a decision may go through in all its forecasts, about; and the least and the largest number of forecasts that it may make.
+const WORK: usize = 60_000;
+const FORECASTS: [usize; 2] = [12, 96];
 
 /// Orders that are turned round where somebody would wait for ever.
 const REPAIRS: usize = 12;
@@ -100,10 +102,15 @@ impl Scene<'_> {
 
     /// Another way and other orders for a robot that has a mission, with which all are expected to arrive sooner by `gain` \[s\].
     pub(super) fn better(&self, robot: usize, goal: usize, gain: f64) -> Option<Admitted> {
-        let now =
-            Trial { robots: self.robots, book: self.book, abilities: self.abilities, time: self.time, changed: None };
-        let cost = now.forecast().ok()?.cost;
+        let cost = self.base().ok()?.cost;
         self.dispatch(robot, goal).ok().filter(|found| found.cost + gain < cost)
+    }
+
+    /// When all are where with the ways and orders that they have.
+    fn base(&self) -> Result<Forecast, Vec<Stuck>> {
+        let Scene { robots, abilities, time, .. } = *self;
+        let waits = &Waits::of(robots, self.book, None);
+        Trial { robots, waits, abilities, time, changed: None }.forecast()
     }
 
     fn kept(&self, robot: usize) -> Kept {
@@ -129,14 +136,13 @@ impl Scene<'_> {
         count: usize,
     ) -> Vec<Vec<usize>> {
         let heading = kept.atoms.last().and_then(|&last| self.site.atoms[last].headings).map(|headings| headings[1]);
-        self.onward(robot, kept.node, heading, [standing, coming], asked, towards, count)
+        self.onward(robot, From { node: kept.node, heading }, [standing, coming], asked, towards, count)
     }
 
     fn onward(
         &self,
         robot: usize,
-        from: usize,
-        heading: Option<f64>,
+        from: From,
         [standing, coming]: [f64; 2],
         asked: impl Fn(usize) -> bool,
         towards: Option<usize>,
@@ -154,7 +160,7 @@ impl Scene<'_> {
             }
             toll
         };
-        routes(self.site, self.abilities, from, heading, toll, asked, towards, count)
+        routes((self.site, self.abilities), from, toll, asked, towards, count)
     }
 
     /// Routes to a goal and on to an end.
@@ -167,10 +173,17 @@ impl Scene<'_> {
             let heading = there.last().or(kept.atoms.last()).and_then(|&last| self.site.atoms[last].headings);
             let heading = heading.map(|headings| headings[1]);
             let safe = |node: usize| self.is_free(robot, node) && self.ends.contains(&node);
-            let mut onward = self.onward(robot, goal, heading, tolls, safe, None, ENDS);
+            let mut onward = self.onward(robot, From { node: goal, heading }, tolls, safe, None, ENDS);
             if onward.is_empty() {
                 // More robots than ends: wherever nobody stands.
-                onward = self.onward(robot, goal, heading, tolls, |node| self.is_free(robot, node), None, ENDS);
+                onward = self.onward(
+                    robot,
+                    From { node: goal, heading },
+                    tolls,
+                    |node| self.is_free(robot, node),
+                    None,
+                    ENDS,
+                );
             }
             for end in onward {
                 let steps = there.len();
@@ -186,11 +199,11 @@ impl Scene<'_> {
     /// The way and orders with which all are expected to arrive soonest, of those that are admitted.
     fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Result<Admitted, Refused> {
         let it = &self.robots[robot];
-        let base =
-            Trial { robots: self.robots, book: self.book, abilities: self.abilities, time: self.time, changed: None };
         // The orders of all are sound before.
-        let base = base.forecast().unwrap_or_default();
-        let budget = &Cell::new(FORECASTS);
+        let base = self.base().unwrap_or_default();
+        let waits = Waits::of(self.robots, self.book, Some(robot));
+        let [least, most] = FORECASTS;
+        let budget = &Cell::new((WORK / waits.len().max(1)).clamp(least, most));
         let mut refused = Refused::default();
         let mut best: Option<Admitted> = None;
         let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
@@ -199,7 +212,7 @@ impl Scene<'_> {
             let goal = goal.map(|goal| kept.atoms.len() + goal);
             let way = Way::new(self.site, kept.from, &atoms, goal, self.abilities);
             let regions = self.book.regions(self.site, self.robots, robot, &way, at);
-            let case = Case { scene: self, base: &base, robot, way: &way, at, stop, budget };
+            let case = Case { scene: self, base: &base, waits: &waits, robot, way: &way, at, stop, budget };
             match case.solve(regions) {
                 Ok((regions, departs, cost)) => {
                     if best.as_ref().is_none_or(|best| cost < best.cost) {
@@ -212,7 +225,7 @@ impl Scene<'_> {
         }
         let mut best = best.ok_or(refused)?;
         if self.method == Method::Orders {
-            let case = Case { scene: self, base: &base, robot, way: &best.way, at, stop, budget };
+            let case = Case { scene: self, base: &base, waits: &waits, robot, way: &best.way, at, stop, budget };
             (best.regions, best.cost) = case.improved(std::mem::take(&mut best.regions), best.cost);
         }
         Ok(best)
@@ -223,6 +236,7 @@ impl Scene<'_> {
 struct Case<'c> {
     scene: &'c Scene<'c>,
     base: &'c Forecast,
+    waits: &'c Waits,
     robot: usize,
     way: &'c Way,
     at: f64,
@@ -239,15 +253,30 @@ impl Case<'_> {
                 None => Ok((regions, self.scene.time, self.way.time(self.way.length()))),
                 Some(region) => Err(Refused { by: Some(region.robots[1]) }),
             },
-            Method::EdgeLocks => Ok((Vec::new(), self.scene.time, self.way.time(self.way.length()))),
+            Method::EdgeLocks => self.clear_of_ends(),
             Method::StartDelays => self.delayed(regions),
         }
     }
 
+    /// A banker needs that nobody ends on the way of another one, or those who could finish first stand in the way for good.
+    fn clear_of_ends(&self) -> Result<(Vec<Region>, f64, f64), Refused> {
+        let Scene { site, book, robots, parked, time, .. } = *self.scene;
+        let own = site.covers(robots[self.robot].way.end());
+        if self.way.atoms.iter().any(|atom| parked[*atom] > u16::from(own.contains(atom))) {
+            return Err(Refused::default());
+        }
+        let end = site.covers(self.way.end());
+        let passing = end.iter().find_map(|&atom| book.others_on(atom, self.robot, robots).next());
+        match passing {
+            Some((by, _)) => Err(Refused { by: Some(by) }),
+            None => Ok((Vec::new(), time, self.way.time(self.way.length()))),
+        }
+    }
+
     fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
-        let Scene { robots, book, abilities, time, .. } = *self.scene;
+        let Scene { robots, abilities, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
-        Trial { robots, book, abilities, time, changed }.forecast()
+        Trial { robots, waits: self.waits, abilities, time, changed }.forecast()
     }
 
     /// Which of the two can go first at a region: the robot, the other one.
@@ -287,11 +316,15 @@ impl Case<'_> {
         let mut turns = 0;
         for k in 0..regions.len() {
             let (ahead, behind) = self.waits(&regions[k], 0.0);
+            if turns >= LEAST_TURNS && self.budget.get() == 0 {
+                break;
+            }
             let free = if regions[k].first == 0 { ahead == 0.0 } else { behind == 0.0 };
             if turns >= TURNS || free || self.sides(&regions[k]) != [true; 2] {
                 continue;
             }
             turns += 1;
+            self.budget.set(self.budget.get().saturating_sub(1));
             regions[k].first = 1 - regions[k].first;
             match self.forecast(&regions, self.scene.time) {
                 Ok(other) if other.cost < cost => cost = other.cost,
@@ -303,22 +336,18 @@ impl Case<'_> {
 
     /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
     fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
-        let own =
-            |length: f64| (self.way.time(length.clamp(self.at, self.way.length())) - self.way.time(self.at)) + late;
+        let now = self.way.time(self.at) - late;
         let other = region.robots[1];
-        let way = &self.scene.robots[other].way;
-        let their = |length: f64| self.base.time(other, way, length.max(0.0));
-        let first = Cell::new(0.0_f64);
-        let second = Cell::new(0.0_f64);
-        for gate in region.gates_of(1) {
-            let opens = if gate.needs <= self.way.length() { own(gate.needs) } else { f64::INFINITY };
-            first.set(first.get().max(opens - their(gate.at)));
+        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        for timed in region.gates_of(1) {
+            let comes = self.base.from(other, timed.comes, timed.gate.at);
+            first = first.max(timed.opens - now - comes);
         }
-        for gate in region.gates_of(0) {
-            let opens = if gate.needs <= way.length() { their(gate.needs) } else { f64::INFINITY };
-            second.set(second.get().max(opens - own(gate.at)));
+        for timed in region.gates_of(0) {
+            let opens = self.base.from(other, timed.opens, timed.gate.needs);
+            second = second.max(opens - (timed.comes - now).max(late));
         }
-        (first.get(), second.get())
+        (first, second)
     }
 
     /// Turns orders round until nobody waits for ever; last of all everybody else goes first.

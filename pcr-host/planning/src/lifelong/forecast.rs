@@ -3,7 +3,7 @@
 
 use super::abilities::Abilities;
 use super::book::{Book, Region};
-use super::gates::Gate;
+use super::gates::Timed;
 use super::robot::{Robot, SHORT};
 use super::way::Way;
 
@@ -11,7 +11,8 @@ use super::way::Way;
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'t> {
     pub(super) robots: &'t [Robot],
-    pub(super) book: &'t Book,
+    /// Without those of the robot that has another way.
+    pub(super) waits: &'t Waits,
     pub(super) abilities: &'t Abilities,
     pub(super) time: f64,
     /// The robot, its way, where it is on it, when it sets off, and its regions.
@@ -28,12 +29,51 @@ struct Timeline {
 }
 
 /// A gate on a way, and whom it is about.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Wait {
-    gate: Gate,
+    timed: Timed,
     first: usize,
     /// Its place among the regions of the robot that has another way.
     region: Option<usize>,
+}
+
+/// The gates that robots have still to pass, the nearest first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Waits(Vec<Vec<Wait>>);
+
+impl Waits {
+    /// By the orders of the fleet, those of one robot left out.
+    pub(super) fn of(robots: &[Robot], book: &Book, without: Option<usize>) -> Self {
+        let all = (0..robots.len()).map(|robot| {
+            let mut waits = Vec::new();
+            let kept = |region: &&Region| without.is_none_or(|without| !region.robots.contains(&without));
+            for region in book.row(robot).filter(|region| region.second() == robot).filter(kept) {
+                add(region, None, region.robots.map(|robot| robots[robot].at), &mut waits);
+            }
+            sort(&mut waits);
+            waits
+        });
+        Self(all.collect())
+    }
+
+    /// How many there are: what a forecast costs.
+    pub(super) fn len(&self) -> usize {
+        self.0.iter().map(Vec::len).sum()
+    }
+}
+
+/// The gates of a region that the second has still to pass.
+fn add(region: &Region, place: Option<usize>, at: [f64; 2], into: &mut Vec<Wait>) {
+    if region.is_over(at) {
+        return;
+    }
+    let (gates, first) = (region.gates(), region.robots[region.first]);
+    let passed = gates.partition_point(|timed| timed.gate.needs <= at[region.first]);
+    into.extend(gates[passed..].iter().map(|&timed| Wait { timed, first, region: place }));
+}
+
+fn sort(waits: &mut [Wait]) {
+    waits.sort_unstable_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
 }
 
 /// When robots would be where.
@@ -64,32 +104,18 @@ impl<'t> Trial<'t> {
         }
     }
 
-    /// The gates that a robot has still to pass, the nearest first.
-    fn waits(&self, robot: usize, into: &mut Vec<Wait>) {
-        let (_, at) = self.way(robot);
-        let mut add = |region: &Region, place: Option<usize>| {
-            if region.second() != robot {
-                return;
-            }
-            let first = region.robots[region.first];
-            let (_, there) = self.way(first);
-            let sides = if region.first == 0 { [there, at] } else { [at, there] };
-            if region.is_over(sides) {
-                return;
-            }
-            let gates = region.gates();
-            let passed = gates.partition_point(|gate| gate.needs <= there);
-            into.extend(gates[passed..].iter().map(|&gate| Wait { gate, first, region: place }));
-        };
-        let changed = self.changed.map(|(changed, ..)| changed);
-        if changed != Some(robot) {
-            let kept = |region: &&Region| changed.is_none_or(|changed| !region.robots.contains(&changed));
-            self.book.row(robot).filter(kept).for_each(|region| add(region, None));
+    /// Adds the gates of a robot.
+    fn gates(&self, robot: usize, into: &mut Vec<Wait>) {
+        let from = into.len();
+        let known = self.waits.0.get(robot).map_or(&[][..], Vec::as_slice);
+        into.extend_from_slice(known);
+        let regions = self.changed.iter().flat_map(|(.., regions)| regions.iter().enumerate());
+        for (place, region) in regions.filter(|(_, region)| region.second() == robot) {
+            add(region, Some(place), region.robots.map(|robot| self.way(robot).1), into);
         }
-        for (place, region) in self.changed.iter().flat_map(|(.., regions)| regions.iter().enumerate()) {
-            add(region, Some(place));
+        if into.len() > from + known.len() {
+            sort(&mut into[from..]);
         }
-        into.sort_unstable_by(|a, b| a.gate.at.total_cmp(&b.gate.at));
     }
 
     /// When all would be where, or those that would wait for ever.
@@ -98,7 +124,6 @@ impl<'t> Trial<'t> {
         let mut lines: Vec<Timeline> = Vec::with_capacity(count);
         let mut waits: Vec<Wait> = Vec::new();
         let mut ranges = Vec::with_capacity(count);
-        let mut own = Vec::new();
         for robot in 0..count {
             let (way, at) = self.way(robot);
             let it = &self.robots[robot];
@@ -108,9 +133,9 @@ impl<'t> Trial<'t> {
             };
             let late = (departs - self.time).max(it.stopped_until - self.time).max(0.0);
             lines.push(Timeline { start: way.time(at) - late, delays: Vec::new() });
-            self.waits(robot, &mut own);
-            ranges.push((waits.len(), waits.len() + own.len()));
-            waits.append(&mut own);
+            let from = waits.len();
+            self.gates(robot, &mut waits);
+            ranges.push((from, waits.len()));
         }
         // The next gate of each robot, and who waits for it to go on.
         let mut next: Vec<usize> = ranges.iter().map(|range| range.0).collect();
@@ -121,24 +146,24 @@ impl<'t> Trial<'t> {
             let (way, _) = self.way(robot);
             let before = next[robot];
             while next[robot] < ranges[robot].1 {
-                let Wait { gate, first, .. } = waits[next[robot]];
+                let Wait { timed: Timed { gate, comes, opens }, first, .. } = waits[next[robot]];
                 if gate.at >= way.length() {
                     next[robot] = ranges[robot].1;
                     break;
                 }
                 let there = self.way(first).0;
                 let known = match waits[next[first]..ranges[first].1].first() {
-                    Some(wait) => wait.gate.at.min(there.length()) - 2.0 * SHORT,
+                    Some(wait) => wait.timed.gate.at.min(there.length()) - 2.0 * SHORT,
                     None => there.length(),
                 };
                 if gate.needs > known {
                     waiting[first].push(robot);
                     break;
                 }
-                let opens = lines[first].time(there, gate.needs);
-                let comes = lines[robot].time(way, gate.at.max(0.0));
+                let so_far = lines[robot].delays.last().map_or(0.0, |delay| delay.1);
+                let comes = (comes - lines[robot].start).max(0.0) + so_far;
+                let opens = (opens - lines[first].start).max(0.0) + lines[first].late(gate.needs);
                 if opens > comes {
-                    let so_far = lines[robot].delays.last().map_or(0.0, |delay| delay.1);
                     let wait = opens - comes;
                     lines[robot].delays.push((gate.at, so_far + wait + 0.5 * lost.min(wait)));
                 }
@@ -170,14 +195,20 @@ impl<'t> Trial<'t> {
 
 impl Timeline {
     fn time(&self, way: &Way, length: f64) -> f64 {
-        let late = self.delays.partition_point(|delay| delay.0 < length).checked_sub(1);
-        (way.time(length) - self.start).max(0.0) + late.map_or(0.0, |k| self.delays[k].1)
+        (way.time(length) - self.start).max(0.0) + self.late(length)
+    }
+
+    /// By how much it is later at a length \[s\].
+    fn late(&self, length: f64) -> f64 {
+        let last = self.delays.partition_point(|delay| delay.0 < length).checked_sub(1);
+        last.map_or(0.0, |last| self.delays[last].1)
     }
 }
 
 impl Forecast {
-    /// When a robot is at a length of its way, from now \[s\].
-    pub(super) fn time(&self, robot: usize, way: &Way, length: f64) -> f64 {
-        self.lines[robot].time(way, length.min(way.length()))
+    /// When a robot is at a length of its way, which it would be at at this time of its way, from now \[s\].
+    pub(super) fn from(&self, robot: usize, time: f64, length: f64) -> f64 {
+        let line = &self.lines[robot];
+        (time - line.start).max(0.0) + line.late(length)
     }
 }

@@ -11,6 +11,16 @@ pub(super) struct Gate {
     pub(super) needs: f64,
 }
 
+/// A gate of two ways, and when both would be there with nobody in their way, from the starts of their ways \[s\].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timed {
+    pub(super) gate: Gate,
+    /// The second at the gate.
+    pub(super) comes: f64,
+    /// The first where it has to be; infinite if it never is.
+    pub(super) opens: f64,
+}
+
 /// Beyond the last touch a region is left \[m\].
 const LEFT: f64 = 1e-6;
 
@@ -82,7 +92,7 @@ pub(super) fn pruned(mut gates: Vec<Gate>) -> Vec<Gate> {
 }
 
 /// How far the second may go when the first is at `first` \[m\].
-pub(super) fn hold(gates: &[Gate], first: f64) -> f64 {
-    let next = gates.partition_point(|gate| gate.needs <= first);
-    gates.get(next).map_or(f64::INFINITY, |gate| gate.at)
+pub(super) fn hold(gates: &[Timed], first: f64) -> f64 {
+    let next = gates.partition_point(|timed| timed.gate.needs <= first);
+    gates.get(next).map_or(f64::INFINITY, |timed| timed.gate.at)
 }

@@ -27,13 +27,19 @@ impl PartialOrd for Reached {
     }
 }
 
-/// The quickest routes from a node to different nodes that are asked for, the quickest first, at most `count`. `heading` is the
-/// direction in which a robot comes to the first node; `toll` what an atom costs beside its time \[s\]; `towards` the only node that is asked for.
+/// Where a route begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct From {
+    pub(super) node: usize,
+    /// The direction in which a robot comes there, if it comes from anywhere \[rad\].
+    pub(super) heading: Option<f64>,
+}
+
+/// The quickest routes from a node to different nodes that are asked for, the quickest first, at most `count`. `toll` is what an atom
+/// costs beside its time \[s\]; `towards` the only node that is asked for.
 pub(super) fn routes(
-    site: &Site,
-    abilities: &Abilities,
-    from: usize,
-    heading: Option<f64>,
+    (site, abilities): (&Site, &Abilities),
+    From { node: from, heading }: From,
     toll: impl Fn(usize) -> f64,
     asked: impl Fn(usize) -> bool,
     towards: Option<usize>,

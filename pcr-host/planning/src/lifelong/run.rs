@@ -7,7 +7,7 @@ use super::edges::EdgeLocks;
 use super::ends::{Ends, WellFormedness};
 use super::record::{Certificate, Window};
 use super::robot::Robot;
-use super::routes::routes;
+use super::routes::{From, routes};
 use super::site::Site;
 use super::way::Way;
 use super::{Method, Request};
@@ -20,13 +20,13 @@ use std::time::{Duration, Instant};
 const STEP: f64 = 0.1;
 
 /// Between two tries for the same mission \[s\].
-const AGAIN: f64 = 2.0;
+const AGAIN: f64 = 1.0;
 
 /// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
-const PATIENCE: f64 = 4.0;
+const PATIENCE: f64 = 2.0;
 
 /// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\].
-const REVIEW: [f64; 2] = [1.0, 4.0];
+const REVIEW: [f64; 2] = [0.3, 2.0];
 
 /// Decisions between two controls.
 const TRIES: usize = 4;
@@ -110,7 +110,7 @@ struct Mission {
     next_try: f64,
 }
 
-struct Run<'a> {
+struct Run {
     site: Site,
     ends: Ends,
     abilities: Abilities,
@@ -128,7 +128,6 @@ struct Run<'a> {
     decisions: Vec<Duration>,
     travel: (f64, f64),
     steady: usize,
-    imported: &'a Imported,
 }
 
 /// Runs a fleet on a layout.
@@ -169,8 +168,8 @@ pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
     Ok(Report { outcome: run.finished(), layout, decisions: run.decisions, time })
 }
 
-impl<'a> Run<'a> {
-    fn new(imported: &'a Imported, request: Request) -> Result<Self, String> {
+impl Run {
+    fn new(imported: &Imported, request: Request) -> Result<Self, String> {
         let site = Site::new(imported)?;
         // Tests do without, as it takes a while where nothing is optimized.
         if !cfg!(debug_assertions) {
@@ -219,7 +218,6 @@ impl<'a> Run<'a> {
             decisions: Vec::new(),
             travel: (0.0, 0.0),
             steady: 0,
-            imported,
         })
     }
 
@@ -233,7 +231,8 @@ impl<'a> Run<'a> {
             let place = self.site.atoms[it.way.atoms[it.way.atom(it.at)]].ends[1];
             let goal = goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], place);
             self.given[robot] += 1;
-            let way = routes(&self.site, &self.abilities, place, None, |_| 0.0, |node| node == goal, Some(goal), 1);
+            let from = From { node: place, heading: None };
+            let way = routes((&self.site, &self.abilities), from, |_| 0.0, |node| node == goal, Some(goal), 1);
             let alone = way.first().map_or(0.0, |atoms| {
                 let way = Way::new(&self.site, place, atoms, None, &self.abilities);
                 way.time(way.length()) + self.abilities.stop()
@@ -383,7 +382,6 @@ impl<'a> Run<'a> {
         outcome.stuck = self.robots.iter().filter(|robot| !robot.has_arrived()).count();
         outcome.missions_per_hour = self.steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
         outcome.travel_over_unimpeded = (self.travel.1 > 0.0).then(|| self.travel.0 / self.travel.1);
-        let _ = self.imported;
         outcome
     }
 }

@@ -16,8 +16,9 @@
 use super::delays::{NEVER, Objective, Pair, Problem, Ticks};
 use super::grown;
 use crate::bodies::Bodies;
+use crate::fleet::{HostEcm, build_ecm};
 use crate::regions::{self, Failure};
-use pcr_core::Scalar;
+use pcr_core::{Motion, Scalar};
 use pcr_formats::scenario::{Agent, Scenario};
 
 /// For each agent and each other one the differences of their delays, own less other, at which they meet.
@@ -68,15 +69,28 @@ impl Forbidden {
         let bodies = Bodies::<f64>::new(&without_loads(scenario))?;
         let motions = grown(&bodies.fleet);
         let ecm = regions::table(&bodies.scenario, &motions)?;
-        let owner = |disc: usize| bodies.discs.get(disc).map(|disc| disc.agent);
-        let count = scenario.agents.len();
+        let owners: Vec<usize> = bodies.discs.iter().map(|disc| disc.agent).collect();
+        Ok(Self::between(&motions, &ecm, &owners, scenario.agents.len()))
+    }
+
+    /// What some motions forbid one another, each with its own delay.
+    ///
+    /// # Errors
+    /// [`Failure`] where the table cannot hold them.
+    pub(crate) fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
+        let ecm = build_ecm(motions).map_err(Failure::Full)?;
+        let owners: Vec<usize> = (0..motions.len()).collect();
+        Ok(Self::between(motions, &ecm, &owners, motions.len()))
+    }
+
+    /// The discs of so many agents, and whose they are.
+    fn between(motions: &[Motion<'_, f64>], ecm: &HostEcm<f64>, owners: &[usize], count: usize) -> Self {
         let mut found = Vec::new();
-        let regions = (0..motions.len()).flat_map(|disc| {
-            ecm.row(&motions, disc).expect("the table of the fleet").map(move |region| (disc, region))
-        });
+        let regions = (0..motions.len())
+            .flat_map(|disc| ecm.row(motions, disc).expect("the table of the fleet").map(move |region| (disc, region)));
         // The other direction of a pair is the same, with the sign turned round.
         for (disc, region) in regions.filter(|(disc, region)| region.other() > *disc) {
-            let (Some(agent), Some(other)) = (owner(disc), owner(region.other())) else { continue };
+            let (Some(&agent), Some(&other)) = (owners.get(disc), owners.get(region.other())) else { continue };
             if agent != other {
                 let delays = region.forbidden_delays();
                 found.push(([agent, other], [delays.lo, delays.hi]));
@@ -85,7 +99,7 @@ impl Forbidden {
         let limit = <f64 as Scalar>::LIMIT;
         let mut ends = vec![f64::NEG_INFINITY; count];
         for (disc, motion) in motions.iter().enumerate() {
-            if let Some(end) = owner(disc).and_then(|agent| ends.get_mut(agent)) {
+            if let Some(end) = owners.get(disc).and_then(|&agent| ends.get_mut(agent)) {
                 *end = end.max(motion.time().hi);
             }
         }
@@ -104,7 +118,7 @@ impl Forbidden {
             intervals.any(|&[lo, hi]: &[i64; 2]| lo <= -NEVER && hi < NEVER)
         };
         let first = (0..count).map(|agent| (0..count).filter(|&other| goes_first(agent, other)).collect()).collect();
-        Ok(Self { intervals, ticks, ends, first })
+        Self { intervals, ticks, ends, first }
     }
 
     /// The delays to be found for all agents.

@@ -80,14 +80,15 @@ impl Guard {
         Some(())
     }
 
-    /// The length \[m\] at which each agent is held, infinite where it is not, with the agents in these intervals.
-    pub(super) fn holds(&self, now: &[Interval<f64>]) -> Vec<f64> {
+    /// The length \[m\] at which each agent is held, infinite where it is not up to its `horizon`, with the agents in these
+    /// intervals.
+    pub(super) fn holds(&self, now: &[Interval<f64>], horizon: impl Fn(usize) -> f64) -> Vec<f64> {
         let motions = motions(&self.drives, &self.radii);
         let mut holds = vec![f64::INFINITY; motions.len()];
         for order in &self.orders {
             let (Some(first), Some(second)) = (motions.get(order.first), motions.get(order.second)) else { continue };
             let Some(at) = now.get(order.first).map(|at| at.lo.max(order.first_part.lo)) else { continue };
-            if at > order.first_part.hi {
+            if at > order.first_part.hi || order.second_part.lo > horizon(order.second) {
                 continue;
             }
             let rest = Interval::new(at, order.first_part.hi);

@@ -8,6 +8,8 @@
 use super::braking::to_rest;
 use super::course::{Course, Drive};
 use crate::fleet::{HostEcm, build_ecm_of};
+use crate::plan::Schedule;
+use crate::traffic;
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
 
 /// What a robot keeps from a region before which it waits, along its path \[m\].
@@ -15,6 +17,10 @@ const BEFORE: f64 = 1e-4;
 
 /// Orders of priority in which everybody comes first once are tried for so many robots.
 const FIRST: usize = 8;
+
+/// For more robots than this only start delays are looked for, which takes a second or two; to plan all of them anew by priority on the
+/// way would take longer than a period, and orders are kept without.
+pub(super) const SEARCHED: usize = 15;
 
 /// A robot as it is now.
 #[derive(Clone, Debug)]
@@ -49,8 +55,36 @@ pub(super) struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Plans for several orders of priority, the best first; none where none was found.
+    /// Plans for several orders of priority, the best first, or where there is none start delays; none where none was found.
     pub(super) fn plans(&self, last_order: &[usize]) -> Vec<Plan> {
+        let searched = if self.robots.len() > SEARCHED { Vec::new() } else { self.by_priority(last_order) };
+        if searched.is_empty() { self.delayed().into_iter().collect() } else { searched }
+    }
+
+    /// Robots that all stand set off one after the other, and wait nowhere else.
+    fn delayed(&self) -> Option<Plan> {
+        if self.robots.iter().any(|robot| robot.speed > 0.0) {
+            return None;
+        }
+        let through: Vec<Drive> = self.robots.iter().map(|robot| self.through(robot)).collect::<Option<_>>()?;
+        let motions = through.iter().zip(self.robots).map(|(drive, robot)| drive.motion(robot.radius));
+        let motions: Vec<Motion<'_, f64>> = motions.collect::<Option<_>>()?;
+        let standing: Vec<Motion<'_, f64>> =
+            self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect::<Option<_>>()?;
+        if !motions.iter().all(|motion| is_clear(motion, &standing)) {
+            return None;
+        }
+        let Schedule { delays, order, .. } = traffic::delays(&motions)?;
+        let later = |(robot, delay): (&State, &Option<f64>)| {
+            let start = self.now + delay.as_ref()?;
+            Problem { now: start, ..*self }.through(robot)
+        };
+        let drives: Vec<Drive> = self.robots.iter().zip(&delays).map(later).collect::<Option<_>>()?;
+        let cost = delays.iter().flatten().zip(&motions).map(|(delay, motion)| delay + motion.time().length()).sum();
+        Some(Plan { drives, order, cost })
+    }
+
+    fn by_priority(&self, last_order: &[usize]) -> Vec<Plan> {
         let alone = |robot: &State| self.through(robot).and_then(|drive| Some(drive.motion(1.0)?.time().length()));
         let times: Vec<f64> = self.robots.iter().map(|robot| alone(robot).unwrap_or(0.0)).collect();
         let least: f64 = times.iter().sum();

@@ -12,7 +12,7 @@ use super::braking::{speed_within, stopping_length};
 use super::course::{Course, Drive};
 use super::guard::Guard;
 use super::observer::narrowed;
-use super::replan::{Plan, Problem, State};
+use super::replan::{Plan, Problem, SEARCHED, State};
 use super::task::{Obstacle, Robot, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
 use crate::regions::Failure;
@@ -174,6 +174,10 @@ impl Supervisor {
 
     /// Looks for a better plan, and keeps the old one where there is none.
     fn replan(&mut self, now: f64) {
+        let taken_up = self.plan.is_some() && self.agents.iter().all(|agent| agent.next.is_none());
+        if taken_up && self.agents.len() > SEARCHED {
+            return;
+        }
         let begin = Instant::now();
         let last: Vec<usize> = match &self.plan {
             Some(current) => current.plan.order.clone(),
@@ -223,7 +227,7 @@ impl Supervisor {
             |agent, length| current.reached(agent, length),
             |agent, time| current.length_at(agent, time),
         )?;
-        let holds = guard.holds(&places);
+        let holds = guard.holds(&places, |_| f64::INFINITY);
         let can_stop = self.agents.iter().zip(holds).all(|(agent, hold)| {
             let (_, at, speed) = agent.to_plan();
             let slower = (speed - agent.limits.acceleration * FRAME).max(0.0);
@@ -254,6 +258,12 @@ impl Supervisor {
 }
 
 impl Agent {
+    /// At its top speed it can stop before this in the next frame as well \[m\]: what holds it beyond does not matter yet.
+    fn horizon(&self) -> f64 {
+        let Limits { speed, acceleration } = self.limits;
+        self.at.hi + 2.0 * speed * FRAME + stopping_length(speed, acceleration, FRAME)
+    }
+
     /// As a plan takes it, with one of its margins.
     fn state(&self, margin: usize) -> Option<State> {
         let (course, at, speed) = self.to_plan();
@@ -288,7 +298,7 @@ impl Control for Supervisor {
             self.next_plan = frame.time + self.period;
         }
         let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.at).collect();
-        let holds = self.guard.holds(&places);
+        let holds = self.guard.holds(&places, |place| self.agents.get(place).map_or(f64::INFINITY, Agent::horizon));
         holds.iter().enumerate().map(|(place, &hold)| Command::Along(self.speed(place, frame.time, hold))).collect()
     }
 

@@ -248,8 +248,8 @@ impl<'a> Search<'a> {
             let mut clique = pair.agents.to_vec();
             let meets =
                 |agent: usize, clique: &[usize]| clique.iter().all(|&other| raises[agent * count + other].is_some());
-            for agent in 0..count {
-                if !used[agent] && meets(agent, &clique) {
+            for (agent, used) in used.iter().enumerate() {
+                if !used && meets(agent, &clique) {
                     clique.push(agent);
                 }
             }

@@ -1,0 +1,64 @@
+//! Fleets that run for an hour on a real warehouse, under orders, locks and start delays: same missions, same delays.
+
+use super::{Extent, Fleets, Problem, Section};
+use pcr_formats::import::Imported;
+use pcr_planning::lifelong::{Delays, Driven, Lifelong, Method, Request};
+use pcr_planning::report::figures::digits;
+use std::fmt::Write as _;
+
+/// Radius of the discs \[m\].
+const RADIUS: f64 = 0.4;
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let (sizes, hours): (&[usize], f64) = match extent {
+        Extent::Full => (&[5, 10, 20, 30, 50], 1.0),
+        Extent::Quick => (&[3], 0.02),
+    };
+    let imported = fleets.warehouse(RADIUS)?;
+    let usual = Delays::default();
+    let mut text = format!(
+        "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; every robot gets a random mission whenever one is done, for {hours} h \
+        (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up to {} % slower than asked. Missions are \
+        drawn once and never exchanged; all methods have the same ones and the same delays. *An hour*: missions after the first tenth of the time; *travel*: mean time \
+        of a mission over that of a robot alone; *starved*: missions that have waited for more than ten minutes in the end; *decision*: a way and orders, 99 of 100 within; \
+        *contact*: what the independent checker says of the recorded motions.\n\n\
+        | robots | method | missions | an hour | travel | starved | stuck | decision | contact |\n|---:|---|---:|---:|---:|---:|---:|---:|---|\n",
+        100.0 * usual.stopped,
+        usual.stop,
+        100.0 * usual.slip
+    );
+    let mut safe = 0;
+    for &agents in sizes {
+        let answer = driven(&imported, agents, hours)?;
+        safe = answer.well_formedness.safe_ends.len();
+        answer.runs.iter().for_each(|run| text.push_str(&row(agents, run)));
+    }
+    let _ = writeln!(
+        text,
+        "\nThe graph has {safe} safe ends: with more robots somebody always stands in the way of somebody else, and missions may wait for ever."
+    );
+    Ok(Section { text, pictures: Vec::new() })
+}
+
+fn driven(imported: &Imported, agents: usize, hours: f64) -> Result<Lifelong, Problem> {
+    let (duration, delays) = (3600.0 * hours, Delays::default());
+    let request = Request { agents, duration, delays, seed: 1, method: Method::Orders };
+    let refused = |problem| Problem::Method(format!("{agents} robots"), problem);
+    Lifelong::of(imported, request, &Method::ALL).map_err(refused)
+}
+
+fn row(agents: usize, run: &Driven) -> String {
+    let it = &run.outcome;
+    let count = if it.robots < agents { format!("{} of {agents}", it.robots) } else { agents.to_string() };
+    let contact = if it.certificate.verdict == "proved" { "none, proved" } else { it.certificate.verdict };
+    format!(
+        "| {count} | {} | {} | {} | {} | {} | {} | {} ms | {contact} |\n",
+        it.method.name(),
+        it.missions,
+        digits(it.missions_per_hour),
+        it.travel_over_unimpeded.map_or_else(|| "–".to_owned(), digits),
+        it.starved,
+        it.stuck,
+        digits(1e3 * run.decision_p99)
+    )
+}
