@@ -29,6 +29,7 @@ pub mod certify;
 pub mod check;
 pub mod compare;
 pub mod evaluate;
+pub mod exclusion;
 pub mod fleet;
 pub mod footprint;
 pub mod import;

@@ -17,6 +17,7 @@
 //! raster      SVG to PNG (feature `png`)
 //! ```
 
+mod audit;
 mod axis;
 pub(crate) mod contour;
 mod labels;
@@ -35,6 +36,7 @@ mod svg;
 pub(crate) mod template;
 mod workspace;
 
+use crate::exclusion::{Audit, Rules};
 use crate::fleet::{Fleet, build_ecm};
 use crate::import::Imported;
 use crate::locks::Locks;
@@ -102,6 +104,33 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
     for level in 0..imported.layout.levels.len() {
         let svg = Ground { imported, level }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
+        files.extend(formats.files(&name, svg)?);
+    }
+    output::folder(directory)?;
+    let write = |(name, content): (String, Vec<u8>)| {
+        let file = directory.join(name);
+        output::write(&file, content).map(|()| file)
+    };
+    files.into_iter().map(write).collect()
+}
+
+/// Writes the audit of a layout: a page with groups and gaps as layers, and a picture of each level. Returns the files.
+///
+/// # Errors
+/// Those of writing files.
+pub fn write_audit(
+    imported: &Imported,
+    locks: &Locks,
+    rules: &Rules,
+    audit: &Audit,
+    directory: &Path,
+) -> io::Result<Vec<PathBuf>> {
+    let page = locks::page_of_audit(imported, locks, rules, audit);
+    let mut files = vec![("audit.html".to_owned(), page.into_bytes())];
+    let formats = Formats::new();
+    for level in 0..imported.layout.levels.len() {
+        let svg = audit::picture(Ground { imported, level }, rules, audit);
+        let name = if level > 0 { format!("audit-{}", level + 1) } else { "audit".to_owned() };
         files.extend(formats.files(&name, svg)?);
     }
     output::folder(directory)?;

@@ -4,6 +4,7 @@ mod certified;
 mod columns;
 mod comparison;
 mod conflicts;
+mod exclusions;
 pub(crate) mod figures;
 mod locks;
 mod nodes;
@@ -16,6 +17,7 @@ mod traffic;
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use comparison::{COMPARISON_CSV_HEADER, comparison_csv, comparison_table};
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
+pub use exclusions::{AUDIT_HEADER, audit_csv, audit_table, written_table};
 pub use locks::{LOCKS_HEADER, locks_csv, locks_table};
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
@@ -27,6 +29,7 @@ pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 use crate::certify::Certified;
 use crate::check::Verdict;
 use crate::compare::Comparison;
+use crate::exclusion::{Audit, Written};
 use crate::locks::Locks;
 use crate::nodes::Listing;
 use crate::plan::Plan;
@@ -67,6 +70,12 @@ impl Document for Comparison {
 }
 impl Document for Locks {
     const FORMAT: &'static str = "pcr-locks";
+}
+impl Document for Written {
+    const FORMAT: &'static str = "pcr-written";
+}
+impl Document for Audit {
+    const FORMAT: &'static str = "pcr-audit";
 }
 impl Document for Traffic {
     const FORMAT: &'static str = "pcr-traffic";

@@ -1,7 +1,8 @@
 //! `pcr locks`.
 
+use super::exclusions::Asked;
 use super::sources::{layout, source};
-use super::{Form, Printed, STATUSES, Stop};
+use super::{Form, Printed, Stop};
 use clap::Args;
 use pcr_host::import::Options;
 use pcr_host::locks::Locks;
@@ -10,11 +11,20 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+const STATUSES: &str = "\
+Exit status:
+  0  done; with --audit nothing can touch
+  1  with --audit: something can touch
+  2  wrong arguments, or a layout that cannot be read or was refused
+  3  the output could not be written";
+
 const EXAMPLES: &str = "\
 Examples:
   pcr locks warehouse.geojson --radius 0.4                      the table of locks of a nav2 route graph
   pcr locks warehouse.geojson --radius 0.4 -o locks             and a page in which an edge shows what it blocks
-  pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv";
+  pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
+  pcr locks warehouse.geojson --radius 0.4 --write nav2 -o guarded.geojson     and edges to be closed, into the file
+  pcr locks plant.xml --radius 0.5 --audit -o audit             what the blocks of the file do not keep apart";
 
 /// Print which edges of a layout may not be used at the same time, and on which lengths
 #[derive(Args)]
@@ -27,9 +37,11 @@ pub(super) struct Arguments {
     /// Add what a vehicle blocks that stands at a node
     #[arg(long)]
     nodes: bool,
-    /// Draw the layout with its locks to this directory as well
+    /// Draw the layout with its locks to this directory as well; with --write the file to be written
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    asked: Asked,
     #[command(flatten)]
     import: Options,
 }
@@ -37,6 +49,9 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let file = &source(self.layout)?;
+        if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref()) {
+            return done;
+        }
         let imported = layout(file, &self.import, "locks", false)?;
         let locks = Locks::of(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
         if let Some(directory) = &self.output {

@@ -2,6 +2,7 @@
 
 use super::layout::{STEPS, bounds, line};
 use super::template::Page;
+use crate::exclusion::{Audit, Rules};
 use crate::import::{Id, Imported, Placed};
 use crate::locks::{Locks, Rides, corridor};
 use serde_json::{Value, json};
@@ -18,6 +19,14 @@ const PAGE: Page = Page {
 pub(super) fn page(imported: &Imported, locks: &Locks) -> String {
     let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
     PAGE.fill(name, &data(imported, locks))
+}
+
+/// The page with what an audit has found, as layers: groups as written, what they leave out, and what they exclude in vain.
+pub(super) fn page_of_audit(imported: &Imported, locks: &Locks, rules: &Rules, audit: &Audit) -> String {
+    let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
+    let mut all = data(imported, locks);
+    all["audit"] = super::audit::layers(imported, rules, audit);
+    PAGE.fill(name, &all)
 }
 
 /// Numbers of the page: lengths in metres, coordinates and path data in steps of a millimetre, y up.
