@@ -25,7 +25,7 @@ style() {
 quick() {
   style
   step "unit tests"
-  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-host --lib --locked
+  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-drawing -p pcr-comparing --lib --features pcr-drawing/png --locked
 }
 
 docs() {
@@ -41,6 +41,9 @@ tests() {
   step "plans of 100000 random fleets by either method, checked by the oracle"
   # Built with the tests; `cargo run` would build what it depends on with other features.
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
+  step "the examples of the libraries"
+  local example
+  for example in fleet_server late_robots no_fpu; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
   step "benchmarks, one pass each, as the tests are built"
   cargo bench --workspace --bench '*' --profile checked --features pcr-tests/peers --locked -- --test
 }
@@ -76,6 +79,7 @@ sets_of() {
 }
 
 features() {
+  peer_libraries
   local crate set
   for crate in pcr-core pcr-fixed; do
     step "$crate with each set of features, and without any"
@@ -85,8 +89,12 @@ features() {
     done
     cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
   done
-  step "pcr-host without pictures as PNG"
-  cargo clippy -q -p pcr-host --locked --no-default-features -- -D warnings
+  step "each part of the host alone, without features and with all of them"
+  for crate in pcr-formats pcr-planning pcr-drawing pcr-comparing pcr-host; do
+    echo "$crate"
+    cargo clippy -q -p $crate --locked --no-default-features -- -D warnings
+    cargo clippy -q -p $crate --locked --all-features -- -D warnings
+  done
   step "defmt::Format on all public types"
   local source name missing=""
   for source in pcr-core/src pcr-fixed/src; do
@@ -150,7 +158,7 @@ print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["doc
 
 c() {
   step "the C interface, on the host and in QEMU"
-  pcr-ffi/c/run.sh
+  bindings/c/c/run.sh
 }
 
 firmware() {

@@ -5,7 +5,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{Storage, fleet, scattered};
-use pcr_host::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, Format};
 use std::hint::black_box;
 
 /// Twice the pieces that are stored: each serves both directions.

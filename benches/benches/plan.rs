@@ -8,7 +8,7 @@ use pcr_benches::{Storage, fleet, lanes};
 use pcr_core::{
     Drive, Interval, Motion, Profile, Station, earliest_start, first_conflict, plan_delays, plan_speed, plan_speeds,
 };
-use pcr_host::fleet::Fleet;
+use pcr_planning::fleet::Fleet;
 use std::hint::black_box;
 
 /// Phases of a profile, and stations along a path.

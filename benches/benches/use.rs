@@ -5,7 +5,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{boxes, fleet, scattered};
 use pcr_core::{BroadPhase, Encounter, Interval, Motion};
-use pcr_host::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, Format};
 use std::hint::black_box;
 
 /// From the first start to the last arrival.

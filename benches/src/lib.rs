@@ -1,8 +1,8 @@
 //! Fleets and tables that the benchmarks share.
 
 use pcr_core::{Bounds, Ecm, Motion, Piece, Region, Scalar};
-use pcr_host::fleet::{Fleet, Format, build_ecm};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format, build_ecm};
 use std::path::Path;
 
 /// A fleet of the test data, by the name of its file.

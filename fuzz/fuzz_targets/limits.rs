@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::limits::{GARBAGE, NUMBERS, number, survives};
 
 /// Three bytes a number: which kind, and two for its value.

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use pcr_fixed::Q16;
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::audit::{Audit, Seen};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, FACES, pair};

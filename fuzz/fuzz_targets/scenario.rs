@@ -3,9 +3,9 @@
 
 use libfuzzer_sys::fuzz_target;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
-use pcr_host::regions::{Answer, Request};
-use pcr_host::scenario::{Agent, MotionSpec, Scenario};
+use pcr_planning::fleet::Format;
+use pcr_planning::regions::{Answer, Request};
+use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
 
 fn answer<S: Format>(scenario: &Scenario) {
     match Answer::of::<S>(scenario, Request { slices: Some(3), ..Request::default() }) {

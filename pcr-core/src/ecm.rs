@@ -1,5 +1,8 @@
 //! The extended collision map: all collision regions of a fleet, both directions of every pair.
 
+#[cfg(feature = "std")]
+mod grow;
+
 use crate::bits::{self, Ones};
 use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
@@ -48,7 +51,8 @@ impl Default for Region {
 ///
 /// The fleet itself is handed to each method, always the same one: another one is refused, by a checksum of the number of
 /// agents, their paths and radii. Start times, profiles, margins and lateness may change. [`Ecm::replace`] exchanges one agent,
-/// [`Ecm::insert`] and [`Ecm::remove`] are for fleets that grow or shrink at their end.
+/// [`Ecm::insert`] and [`Ecm::remove`] are for fleets that grow or shrink at their end. On a host, with the feature `std`, a table
+/// over vectors makes room for itself: `Ecm::grown`.
 ///
 /// ```
 /// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
@@ -89,8 +93,8 @@ struct Known {
 impl Known {
     const NOBODY: Self = Self { agents: 0, sum: 0 };
 
-    fn all<S: Scalar>(fleet: &[Motion<'_, S>]) -> Self {
-        (0..fleet.len()).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
+    fn all<'m, S: Scalar + 'm>(fleet: impl IntoIterator<Item = &'m Motion<'m, S>>) -> Self {
+        (0_usize..).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
     }
 
     fn with<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
@@ -299,6 +303,21 @@ where
         Ok(())
     }
 
+    /// Removes one agent for good, with its regions: those behind it move up by one number, and the table is that of the fleet
+    /// without it. O(agents + regions).
+    ///
+    /// # Errors
+    /// As [`Ecm::remove`].
+    pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        self.remove(fleet, agent)?;
+        for region in self.regions.as_mut().iter_mut().take(self.len) {
+            region.agents = region.agents.map(|other| other.wrapping_sub(u16::from(usize::from(other) > agent)));
+        }
+        let rest = (0..).zip(fleet).filter(|&(place, _): &(usize, _)| place != agent);
+        self.fleet = Known::all(rest.map(|(_, motion)| motion));
+        Ok(())
+    }
+
     /// Exchanges the motion of one agent and computes its regions anew; those of the others are not touched.
     ///
     /// # Errors
@@ -323,7 +342,7 @@ where
             *place = before;
             self.add_row(fleet, agent)?;
         }
-        self.fleet = Known::all(fleet);
+        self.fleet = Known::all(&*fleet);
         Ok(outcome?)
     }
 

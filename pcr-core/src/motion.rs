@@ -127,6 +127,23 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { time: travel_time(self.profile, self.time.lo + delay)?, ..self })
     }
 
+    /// From the first start to the last arrival of a fleet \[s\]: the time in which anything changes. From 0 to 0 for nobody.
+    ///
+    /// ```
+    /// # use pcr_core::{Interval, Motion, Path, Point, Pose, Profile, Radians};
+    /// # let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+    /// # let path = Path::<f64, 1>::starting_at(start)?.line(4.0)?;
+    /// # let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+    /// # let motion = |start| Motion::new(path.as_path(), profile.as_profile(), 0.25, start);
+    /// let fleet = [motion(1.0)?, motion(6.5)?]; // four seconds each
+    /// assert_eq!(Motion::span(&fleet), Interval::new(1.0, 10.5));
+    /// # Ok::<(), pcr_core::Invalid>(())
+    /// ```
+    pub fn span(fleet: &[Self]) -> Interval<S> {
+        let times = fleet.iter().map(Self::time);
+        times.reduce(Interval::hull).unwrap_or(Interval::new(S::ZERO, S::ZERO))
+    }
+
     /// The path.
     pub fn path(&self) -> PathRef<'a, S> {
         self.path

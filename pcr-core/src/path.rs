@@ -1,9 +1,9 @@
 //! Paths: chains of lines and arcs (Eq. 1, the map ρ from travelled length to position), G1 but for turns in place.
 
 use crate::bits::digest;
-use crate::error::Invalid;
+use crate::error::{Invalid, in_range};
 use crate::geometry::{Bounds, Point, Pose};
-use crate::scalar::{Angle, Scalar};
+use crate::scalar::{Angle, Scalar, Wide};
 use crate::segment::{Curve, Segment, Turn};
 use heapless::Vec;
 
@@ -61,6 +61,27 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     pub fn arc(self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
         let next = self.last().then_arc(radius, turn, length)?;
         self.with(next)
+    }
+
+    /// Continued by an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if it is positive, at most a full turn
+    /// either way: as files say it. Its length is radius · |sweep|, rounded once. Binary turns, which end at half a turn, are
+    /// not asked for: `sweep` is a number of the format.
+    ///
+    /// # Errors
+    /// As [`Path::arc`], [`Invalid::NonFinite`] and [`Invalid::OutOfRange`] for the sweep.
+    ///
+    /// ```
+    /// # use pcr_core::{Path, Point, Pose, Radians};
+    /// # let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+    /// let right = Path::<f64, 1>::starting_at(start)?.arc_by(2.0, -core::f64::consts::FRAC_PI_2)?;
+    /// let end = right.as_path().pose_at(4.0).position;
+    /// assert!((end.x - 2.0).abs() < 1e-15 && (end.y + 2.0).abs() < 1e-15);
+    /// # Ok::<(), pcr_core::Invalid>(())
+    /// ```
+    pub fn arc_by(self, radius: S, sweep: S) -> Result<Self, Invalid> {
+        let sweep = in_range(sweep, "sweep")?;
+        let turn = if sweep < S::ZERO { Turn::Right } else { Turn::Left };
+        self.arc(radius, turn, sweep.abs().times(radius).narrow())
     }
 
     /// Continued by a turn in place, to the left if the angle is positive. It takes no segment and no length.

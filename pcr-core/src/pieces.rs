@@ -113,6 +113,12 @@ impl<S, P> Pieces<S, P> {
         (self.fresh, self.free, self.used, self.pending) = (0, NONE, 0, Pending::NOTHING);
     }
 
+    /// What holds the slots: more of them may be added at the end.
+    #[cfg(feature = "std")]
+    pub(crate) fn storage(&mut self) -> &mut P {
+        &mut self.slots
+    }
+
     /// Number of pieces stored.
     pub(crate) const fn len(&self) -> usize {
         self.used as usize

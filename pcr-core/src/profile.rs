@@ -262,6 +262,24 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(Self { phases })
     }
 
+    /// The same profile with room for another number of phases: those of a fleet have to be of one type to be kept in one place.
+    ///
+    /// # Errors
+    /// [`Invalid::Full`] for more than `N` phases.
+    ///
+    /// ```
+    /// # use pcr_core::{Limits, Profile};
+    /// let limits = Limits { speed: 1.0, acceleration: 1.0 };
+    /// let profiles: [Profile<f64, 8>; 2] = [
+    ///     Profile::copied(Profile::rest_to_rest(4.0, limits)?.as_profile())?,
+    ///     Profile::from_pieces(0.5, [(8.0, 0.0)])?,
+    /// ];
+    /// # Ok::<(), pcr_core::Invalid>(())
+    /// ```
+    pub fn copied(profile: ProfileRef<'_, S>) -> Result<Self, Invalid> {
+        Ok(Self { phases: Vec::from_slice(profile.phases()).map_err(|_| Invalid::Full("phase"))? })
+    }
+
     /// The profile of an agent that stands: no phases.
     pub const fn standing() -> Self {
         Self { phases: Vec::new() }

@@ -21,11 +21,12 @@ mod sources;
 mod traffic;
 mod work;
 
+use crate::progress;
 use clap::{Parser, Subcommand};
-use pcr_host::import::Warnings;
-use pcr_host::input::InputError;
-use pcr_host::regions::Failure;
-use pcr_host::{output, progress};
+use pcr_formats::import::Warnings;
+use pcr_formats::input::InputError;
+use pcr_formats::output;
+use pcr_planning::regions::Failure;
 pub(crate) use printed::complain;
 use printed::{Form, Printed, quiet};
 use sources::{scenario, sources};

@@ -1,6 +1,7 @@
 //! The command `pcr`: its exit statuses, and nothing else.
 
 mod commands;
+mod progress;
 
 use commands::{Stop, complain};
 use std::process::ExitCode;

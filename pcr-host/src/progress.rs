@@ -16,14 +16,14 @@ const INTERVAL: Duration = Duration::from_millis(200);
 static SILENT: AtomicBool = AtomicBool::new(false);
 
 /// From now on nothing is told.
-pub fn silence() {
+pub(crate) fn silence() {
     SILENT.store(true, Ordering::Relaxed);
 }
 
 /// Tells what goes on, on standard error, if that is a terminal and the work takes more than a second. The line is
 /// wiped when the value is dropped.
 #[derive(Debug)]
-pub struct Progress {
+pub(crate) struct Progress {
     counts: Arc<Counts>,
     running: Option<(Sender<()>, JoinHandle<()>)>,
 }
@@ -37,7 +37,7 @@ struct Counts {
 
 impl Progress {
     /// Begins to watch over some work.
-    pub fn new(what: impl Into<String>) -> Self {
+    pub(crate) fn new(what: impl Into<String>) -> Self {
         let counts = Arc::<Counts>::default();
         let told = io::stderr().is_terminal() && !SILENT.load(Ordering::Relaxed);
         let running = if told { watch(what.into(), Arc::clone(&counts)) } else { None };
@@ -45,7 +45,7 @@ impl Progress {
     }
 
     /// So many of so many things are done; `total` is 0 where it is not known.
-    pub fn set(&self, done: usize, total: usize) {
+    pub(crate) fn set(&self, done: usize, total: usize) {
         self.counts.done.store(done, Ordering::Relaxed);
         self.counts.total.store(total, Ordering::Relaxed);
     }

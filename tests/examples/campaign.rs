@@ -4,7 +4,7 @@
 //! Prints every violation with its seed, which `pcr_tests::generators` turns into the pair again.
 
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, RELATIONS, related};

@@ -1,8 +1,8 @@
 //! Fleets that run on a layout: `cargo run --release -p pcr-tests --example lifelong -- LAYOUT RADIUS HOURS STOPPED SEED ROBOTS...`
 //! prints missions an hour, contacts and waits, and how long decisions took.
 
-use pcr_host::import::{self, Format, Options, Warnings};
-use pcr_host::lifelong::{Request, run};
+use pcr_formats::import::{self, Format, Options, Warnings};
+use pcr_planning::lifelong::{Request, run};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 

@@ -7,7 +7,7 @@
 //! Prints the worst pair of each format; the exit status is 1 if one is beyond its bounds, 2 for wrong arguments.
 
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::search::{Worst, search};
 use std::ops::Range;
 use std::process::ExitCode;

@@ -6,7 +6,7 @@
 use crate::disc::{Course, Disc};
 use crate::oracle::{Pair, line, plane};
 use pcr_core::{Interval, Motion, RegionRef, excess};
-use pcr_host::fleet::{Format, HostEcm, build_ecm};
+use pcr_planning::fleet::{Format, HostEcm, build_ecm};
 
 /// What the oracle's own positions may be off, in units in the last place of the extent in `f64`: a dozen rounded
 /// operations a segment. Contacts that are less deep prove nothing.

@@ -7,8 +7,8 @@ use pcr_certify::data::Table;
 use pcr_certify::table::{Checker, Margin};
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::certificate;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::certificate;
+use pcr_planning::fleet::{Format, build_ecm};
 use std::fmt;
 
 /// What has come of many tables.

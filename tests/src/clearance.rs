@@ -7,7 +7,7 @@ use crate::disc::{Course, Disc};
 use crate::exact::{Route, Twofold};
 use crate::generators::Pair;
 use pcr_core::{Interval, Motion, RegionRef, excess};
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 
 /// The least and the largest clearance of ends of pieces inside segments, as parts of the excess. None where the format does
 /// not hold the pair, or no piece ends inside a segment.

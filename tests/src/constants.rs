@@ -1,8 +1,8 @@
 //! The scenario of the firmware, as Rust source.
 
 use pcr_core::Turn;
-use pcr_host::paper;
-use pcr_host::scenario::{Agent, MotionSpec, PathSegment, Scenario};
+use pcr_formats::paper;
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use std::fmt::{self, Write};
 
 /// The paper's scenario as the firmware includes it, once for each number format: `number` and `angle` are functions of

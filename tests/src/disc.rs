@@ -3,8 +3,8 @@
 //! The oracle and the library are both built from this description, which is why it holds no geometry.
 
 use pcr_core::{Invalid, Limits, Motion, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
-use pcr_host::fleet::Format;
-use pcr_host::scenario::{Agent, MotionSpec, PathSegment};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment};
+use pcr_planning::fleet::Format;
 use std::f64::consts::TAU;
 
 /// A line or an arc of a path, by its length \[m\].

@@ -8,7 +8,7 @@ use pcr_core::{
     Brakes, Full, Hold, Interval, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
     Tolerances,
 };
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Time between two controls \[s\].

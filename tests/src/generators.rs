@@ -15,7 +15,7 @@ pub use tangent::inner_tangent;
 
 use crate::disc::{Disc, Drive, Leg};
 use crate::outward::neighbour;
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 

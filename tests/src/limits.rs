@@ -6,7 +6,7 @@ use pcr_core::{
     least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths,
 };
 use pcr_core::{Ecm, Piece, RegionRef};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 /// Numbers that are no numbers, or hardly.
 pub const GARBAGE: [f64; 22] = [

@@ -4,7 +4,7 @@ use crate::disc::{Course, Disc, Drive, Driven};
 use crate::generators::{Dice, drive, leg};
 use crate::oracle::contact::Meeting;
 use pcr_core::{Encounter, Interval, Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use std::f64::consts::PI;
 
 /// How a fleet is planned.

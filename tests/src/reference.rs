@@ -1,6 +1,6 @@
 //! The reference regions of `data/golden-public.json`, decoded. Where they come from: `data/README.md`.
 
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
 use serde_json::{Value, json};
 
 /// A region of the reference.

@@ -7,7 +7,7 @@
 use crate::clearance::of_ends;
 use crate::disc::{Disc, Leg};
 use crate::generators::{Dice, Pair, RELATIONS, inner_tangent, related};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 /// What a search has come to.
 #[derive(Clone, Debug)]

@@ -4,8 +4,8 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Bounds, BroadPhase, Encounter, Full, Interval, Mismatch, Motion};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Fleet, Format};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format};
 use pcr_tests::disc::Course;
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;

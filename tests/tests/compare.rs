@@ -2,11 +2,11 @@
 //! measure of errors sees a wrong answer.
 
 #[cfg(feature = "peers")]
-use pcr_host::compare::Absent;
-use pcr_host::compare::{Comparison, Effort, Errors, Question, Row, Track, crowd, reference};
-use pcr_host::fleet::{Fleet, build_ecm};
-use pcr_host::rows::{Row as FleetRow, Walk, each, grid, rows};
-use pcr_host::scenario::Scenario;
+use pcr_comparing::compare::Absent;
+use pcr_comparing::compare::{Comparison, Effort, Errors, Question, Row, Track, crowd, reference};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, build_ecm};
+use pcr_planning::rows::{Row as FleetRow, Walk, each, grid, rows};
 use pcr_tests::disc::{Disc, Drive};
 use pcr_tests::oracle::contact::Meeting;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -165,7 +165,7 @@ fn the_grid_finds_the_boxes_that_meet() {
         let scenario = crowd(300, seed);
         let fleet = Fleet::<f64>::new(&scenario).expect("it fits");
         let motions = fleet.motions();
-        let areas: Vec<[f64; 4]> = motions.iter().map(pcr_host::rows::area).collect();
+        let areas: Vec<[f64; 4]> = motions.iter().map(pcr_planning::rows::area).collect();
         let grid = grid(&motions);
         let meet = |a: &[f64; 4], b: &[f64; 4]| a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
         let mut order = grid.order();

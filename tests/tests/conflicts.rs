@@ -2,7 +2,7 @@
 
 use pcr_core::{Approach, Bounds, BroadPhase, Conflict, Encounter, Interval};
 use pcr_fixed::Q16;
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::contact::Meeting;

@@ -2,7 +2,7 @@
 
 use pcr_core::{Encounter, Interval, Motion, first_conflict};
 use pcr_fixed::Q16;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Driven};
 use pcr_tests::generators::{Dice, drive, leg};
 use pcr_tests::oracle::contact::Meeting;

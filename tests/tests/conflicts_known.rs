@@ -1,7 +1,7 @@
 //! Conflicts of given motions whose answers are known.
 
 use pcr_core::{Conflict, Encounter, Interval, Motion, first_conflict};
-use pcr_host::fleet::build_ecm;
+use pcr_planning::fleet::build_ecm;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

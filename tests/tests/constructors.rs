@@ -1,7 +1,7 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
 use pcr_core::{Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 fn at<S: Format>(x: f64, y: f64, heading: f64) -> Pose<S> {
     Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading) }

@@ -2,7 +2,7 @@
 
 use pcr_core::{Encounter, Interval, RegionRef, earliest_start, union};
 use pcr_fixed::Q16;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::Pair;

@@ -6,7 +6,7 @@ use pcr_core::{
     earliest_start, least_duration, safe_intervals,
 };
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::generators::Dice;
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -3,10 +3,10 @@
 
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::check::Verdict;
-use pcr_host::fleet::{Fleet, Format};
-use pcr_host::regions::{Answer, Region, Request};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::check::Verdict;
+use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::regions::{Answer, Region, Request};
 use pcr_tests::generators::Dice;
 use pcr_tests::polygons::{self, Point, Polygon, apart};
 use serde_json::{Value, json};

@@ -5,7 +5,7 @@
 
 use pcr_core::{Interval, RegionRef, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::audit::{Audit, Seen};
 use pcr_tests::disc::{Disc, Leg};
 use pcr_tests::oracle::plane::Effort;

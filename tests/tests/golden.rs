@@ -1,8 +1,8 @@
 //! The reference regions (`data/README.md`): every one is found, none is invented, in `f64`.
 
 use pcr_core::{Motion, RegionRef};
-use pcr_host::fleet::{Fleet, HostEcm, build_ecm};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, HostEcm, build_ecm};
 use pcr_tests::disc::{Disc, Drive};
 use pcr_tests::oracle::{Pair, Travel};
 use pcr_tests::reference::{Component, Regions, cases, fleets};

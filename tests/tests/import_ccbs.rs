@@ -1,8 +1,9 @@
 //! Continuous-CBS: plans of others, checked against separations that are computed here from their sections.
 
-use pcr_host::check::Verdict;
-use pcr_host::import::{Format, Options, Warnings, layout, scenario};
-use pcr_host::scenario::Scenario;
+use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::check::Verdict;
+use pcr_planning::fleet::Fleet;
 
 const GRID: &str = include_str!("../data/real/ccbs/example_grid_task_log.xml");
 const PUBLISHED: &str = include_str!("../data/real/ccbs/example_roadmap_task_log.xml");
@@ -140,7 +141,7 @@ fn a_roadmap_is_a_layout() {
     let options = Options { radius: Some(RADIUS), ..Options::default() };
     let imported = layout(Format::Ccbs, MAP, &options, &mut Warnings::default()).unwrap();
     assert_eq!((imported.layout.nodes.len(), imported.layout.edges.len()), (170, 698));
-    let locks = pcr_host::locks::Locks::of(&imported, false).unwrap();
+    let locks = pcr_planning::locks::Locks::of(&imported, false).unwrap();
     assert!(locks.locks.len() > 698 / 2, "at least every edge with the one back");
 }
 
@@ -196,7 +197,7 @@ fn a_roadmap_is_read_whole_or_refused() {
     let imported = read(&twice, false).unwrap();
     let ids: Vec<String> = imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
     assert_eq!(ids, ["e", "e#2"]);
-    assert_eq!(pcr_host::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    assert_eq!(pcr_planning::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
     let lost = graph("", &[square.concat(), edge("e", "a", "b"), edge("f", "a", "z"), node("g", "x")]);
     let error = read(&lost, false).unwrap_err();
     assert_eq!(
@@ -227,4 +228,40 @@ fn a_roadmap_is_read_whole_or_refused() {
     assert!(!still.warnings.iter().any(|line| line.starts_with("edge f")), "{:?}", still.warnings);
     let two = format!("<graphml>{}</graphml>", "<graph/>".repeat(2));
     assert_eq!(read(&two, false).unwrap_err(), "graphml, graph: there are several; one is expected");
+}
+
+#[test]
+fn every_point_is_reached_when_it_has_to_be() {
+    let stops = [
+        ([0.0, 0.0], 0.0),
+        ([0.0, 0.0], 5.0),
+        ([3.0, 0.0], 8.0),
+        ([3.0, 0.0], 10.0),
+        ([3.0, 4.0], 12.0),
+        ([0.0, 4.0], 12.5),
+        ([0.0, 4.0], 12.5),
+        ([-1.0, 4.0], 20.0),
+    ];
+    let sections: String = stops
+        .windows(2)
+        .map(|pair| {
+            let [([x, y], begin), ([u, v], end)] = [pair[0], pair[1]];
+            let duration = end - begin;
+            format!(r#"<section start_i="{x}" start_j="{y}" goal_i="{u}" goal_j="{v}" duration="{duration}"/>"#)
+        })
+        .collect();
+    let log = format!(r#"<root><log><agent number="0"><path>{sections}</path></agent></log></root>"#);
+    let fleet = Fleet::<f64>::new(&read(&log, 0.5)).unwrap();
+    let motion = fleet.motions()[0];
+    assert!((motion.time().hi - 20.0).abs() < 1e-9);
+    for pair in stops.windows(2) {
+        let [(from, begin), (to, end)] = [pair[0], pair[1]];
+        for k in 0..=20 {
+            let share = f64::from(k) / 20.0;
+            let at = motion.position_at(begin + (end - begin) * share);
+            let expected = [0, 1].map(|k| from[k] + (to[k] - from[k]) * if end > begin { share } else { 1.0 });
+            let off = (at.x - expected[0]).hypot(at.y - expected[1]);
+            assert!(off < 2e-8, "{off} at {begin} + {share}");
+        }
+    }
 }

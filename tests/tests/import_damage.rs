@@ -1,8 +1,8 @@
 //! Damaged files: every importer gives an error or a result, and never panics or hangs.
 
-use pcr_host::fleet::Fleet;
-use pcr_host::import::{Format, Options, Warnings, layout, scenario};
-use pcr_host::locks::Locks;
+use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
+use pcr_planning::fleet::Fleet;
+use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 
 /// One file of every kind.

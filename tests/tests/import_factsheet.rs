@@ -1,7 +1,7 @@
 //! Factsheets of VDA 5050: contours and limits, and what they become on layouts.
 
-use pcr_host::import::{Format, Options, Warnings, scenario, vehicle};
-use pcr_host::regions::{Answer, Request};
+use pcr_formats::import::{Format, Options, Warnings, scenario, vehicle};
+use pcr_planning::regions::{Answer, Request};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ fn options(routes: &[&str]) -> Options {
     }
 }
 
-fn lines(sheet: &Value) -> (Result<pcr_host::import::Vehicle, String>, String) {
+fn lines(sheet: &Value) -> (Result<pcr_formats::import::Vehicle, String>, String) {
     let mut warnings = Warnings::default();
     let read = vehicle(&sheet.to_string(), &Options::default(), &mut warnings);
     (read.map_err(|error| error.to_string()), warnings.lines().join("\n"))

@@ -1,7 +1,7 @@
 //! Layouts of the VDMA: the published examples, trajectories within their tolerance, vehicle types, levels.
 
-use pcr_host::import::{Format, Id, Layout, Options, Warnings, layout, scenario};
-use pcr_host::scenario::PathSegment;
+use pcr_formats::import::{Format, Id, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::PathSegment;
 use serde_json::{Value, json};
 
 const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");

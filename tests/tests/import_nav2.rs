@@ -1,10 +1,11 @@
 //! Route graphs of nav2: routes against an independent shortest path, the paths against the polygons they round.
 
 use pcr_core::{Curve, Motion};
-use pcr_host::fleet::Fleet;
-use pcr_host::import::{Format, Imported, Layout, Options, TURN, Warnings, layout, scenario};
-use pcr_host::locks::Locks;
-use pcr_host::scenario::{MotionSpec, Scenario};
+use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::TURN;
+use pcr_formats::scenario::{MotionSpec, Scenario};
+use pcr_planning::fleet::Fleet;
+use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
@@ -132,7 +133,7 @@ fn a_route_cuts_its_corners_by_what_the_radius_allows() {
             // No point of it is farther from the edges than the middle of the arc in a right angle, the sharpest corner.
             for k in 0..=1000 {
                 let point = path.point_at(path.length() * f64::from(k) / 1000.0);
-                let distance = |edge: &pcr_host::import::Edge| {
+                let distance = |edge: &pcr_formats::import::Edge| {
                     let [a, b] = edge.ends.map(|node| layout.nodes[node].at);
                     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
                     let along = ((point.x - a[0]) * dx + (point.y - a[1]) * dy) / (dx * dx + dy * dy).max(1e-300);

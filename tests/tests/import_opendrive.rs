@@ -1,8 +1,8 @@
 //! OpenDRIVE: lines and arcs as they are, joints closed, roads joined at shared nodes.
 
-use pcr_host::import::{Edge, Format, Layout, Options, Warnings, layout, scenario};
-use pcr_host::locks::Locks;
-use pcr_host::scenario::PathSegment;
+use pcr_formats::import::{Edge, Format, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::PathSegment;
+use pcr_planning::locks::Locks;
 
 const TOWN_1: &str = include_str!("../data/real/opendrive/Town01.planview.xodr");
 const TOWN_2: &str = include_str!("../data/real/opendrive/Town02.planview.xodr");
@@ -80,7 +80,7 @@ fn paths_keep_to_the_records() {
 fn roads_that_start_together_lock_each_other() {
     let (layout, _) = read(TOWN_1);
     let options = Options { radius: Some(0.9), ..Options::default() };
-    let imported = pcr_host::import::layout(Format::OpenDrive, TOWN_1, &options, &mut Warnings::default()).unwrap();
+    let imported = pcr_formats::import::layout(Format::OpenDrive, TOWN_1, &options, &mut Warnings::default()).unwrap();
     let table = Locks::of(&imported, false).unwrap();
     for (k, a) in layout.edges.iter().enumerate() {
         for b in layout.edges.iter().skip(k + 1).filter(|b| b.ends[0] == a.ends[0]) {

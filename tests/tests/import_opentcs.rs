@@ -1,7 +1,7 @@
 //! The demo plant of openTCS: its Bézier paths become arcs, and its lengths are warned about.
 
-use pcr_host::import::{Edge, Format, Options, Warnings, layout, scenario};
-use pcr_host::scenario::PathSegment;
+use pcr_formats::import::{Edge, Format, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::PathSegment;
 
 const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
 
@@ -45,7 +45,7 @@ fn a_curve_is_the_cubic_of_its_control_points() {
             PathSegment::Line { length } => PathSegment::Line { length: length / 2.0 },
             PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep / 2.0 },
         };
-        let middle = pcr_host::import::Placed { shape: half, ..*piece }.end();
+        let middle = pcr_formats::scenario::Placed { shape: half, ..*piece }.end();
         let distance = |k: u32| {
             let t = f64::from(k) / 20_000.0;
             let weights = [(1.0 - t).powi(3), 3.0 * t * (1.0 - t).powi(2), 3.0 * t * t * (1.0 - t), t.powi(3)];
@@ -82,7 +82,7 @@ fn a_plant_is_read_whole_or_refused() {
     let twice = [path("p", "a", "b", ""), path("p", "c", "d", ""), path("p", "c", "d", "")].concat();
     let imported = read(&twice, false).unwrap();
     assert_eq!(imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["p", "p#2"]);
-    assert_eq!(pcr_host::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    assert_eq!(pcr_planning::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
     let curved = "<path name=\"q\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"1\"><pathLayout connectionType=\"BEZIER\"/></path>";
     let lost = [path("p", "a", "z", ""), curved.to_owned(), path("r", "a", "b", "maxVelocity=\"fast\"")].concat();
     let expected = "path p, destinationPoint: there is no node z; path q: BEZIER with 0 control points is not read; \

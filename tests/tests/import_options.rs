@@ -1,6 +1,6 @@
 //! What readers have in common: formats by names, options, and what is assumed where nothing is given.
 
-use pcr_host::import::{Format, Options, Warnings, layout, scenario};
+use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
 
 const ONE_ID: &str = include_str!("../data/cases/one-id-two-edges.geojson");
 

@@ -1,8 +1,9 @@
 //! Buildings of Open-RMF: scales, levels, lanes and the limits of the fleets.
 
-use pcr_host::import::{Format, Imported, Layout, Options, TURN, Warnings, layout, scenario};
-use pcr_host::locks::Locks;
-use pcr_host::scenario::{MotionSpec, Scenario};
+use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::TURN;
+use pcr_formats::scenario::{MotionSpec, Scenario};
+use pcr_planning::locks::Locks;
 use std::path::PathBuf;
 
 const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
@@ -126,7 +127,7 @@ fn levels_are_apart_and_lifts_are_not_read() {
     let (one, _) = read(HOTEL, &Options { graph: Some(1), ..tiny(&[]) });
     assert!(one.layout.edges.len() < 122 && !one.layout.edges.is_empty());
     let table = Locks::of(&imported, false).unwrap();
-    let level = |id: &pcr_host::import::Id| id.to_string().split('/').next().map(str::to_owned);
+    let level = |id: &pcr_formats::import::Id| id.to_string().split('/').next().map(str::to_owned);
     assert!(!table.locks.is_empty() && table.locks.iter().all(|lock| level(&lock.a) == level(&lock.b)));
 }
 
@@ -197,7 +198,7 @@ fn lanes_have_the_parameters_of_the_file() {
 fn limits_of_a_fleet_are_two_numbers_above_zero() {
     let read = |linear: &str| {
         let text = format!("rmf_fleet:\n  name: f\n  limits: {{linear: {linear}, angular: [1, 2]}}\n");
-        pcr_host::import::vehicle(&text, &Options::default(), &mut Warnings::default())
+        pcr_formats::import::vehicle(&text, &Options::default(), &mut Warnings::default())
     };
     assert_eq!(read("[0.5, 0.75]").map(|vehicle| [vehicle.speed, vehicle.acceleration]), Ok([0.5, 0.75]));
     for wrong in ["[0, 1]", "[1, 0]", "[-1, 1]", "[1]", "[1, 2, 3]", "[2e6, 1]", "[1, 2e6]", "[x, 1]"] {

@@ -1,8 +1,8 @@
 //! Orders and states of VDA 5050: published ones, and what the specification allows.
 
-use pcr_host::fleet::Fleet;
-use pcr_host::import::{Format, Options, Warnings, scenario};
-use pcr_host::scenario::{MotionSpec, Scenario};
+use pcr_formats::import::{Format, Options, Warnings, scenario};
+use pcr_formats::scenario::{MotionSpec, Scenario};
+use pcr_planning::fleet::Fleet;
 use serde_json::{Value, json};
 
 const FLYWEI: &str = include_str!("../data/real/vda5050/order_v2_flywei.json");

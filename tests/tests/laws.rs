@@ -4,7 +4,7 @@
 
 use pcr_core::scalar::{Angle, Micro, Ramp, Sector, Unit, Wide};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::generators::Dice;
 use std::f64::consts::{PI, TAU};
 

@@ -1,7 +1,7 @@
 //! Fleets that run for a while on a real layout: no contact, nobody beyond its hold, everybody arrives in the end.
 
-use pcr_host::import::{self, Format, Options, Warnings};
-use pcr_host::lifelong::{Outcome, Request, run};
+use pcr_formats::import::{self, Format, Options, Warnings};
+use pcr_planning::lifelong::{Outcome, Request, run};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 

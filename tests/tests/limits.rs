@@ -4,8 +4,8 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Encounter, Interval, Invalid, Limits, Motion, Path, Point, Pose, Profile, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Fleet, Format};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format};
 use pcr_tests::limits::{GARBAGE, NUMBERS, number, survives};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};

@@ -2,10 +2,10 @@
 
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::check::Verdict;
-use pcr_host::fleet::{Fleet, Format};
-use pcr_host::regions::{Answer, Request};
-use pcr_host::scenario::{Agent, Scenario};
+use pcr_formats::scenario::{Agent, Scenario};
+use pcr_planning::check::Verdict;
+use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::regions::{Answer, Request};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -228,7 +228,7 @@ fn corners_are_passed_in_every_format() {
     let scenario = read(&agents);
     assert!(compare(&scenario) > 100);
     let exact = Answer::of::<f64>(&scenario, Request::default()).unwrap().regions;
-    fn check<S: Format>(scenario: &Scenario, exact: &[pcr_host::regions::Region], slack: f64) {
+    fn check<S: Format>(scenario: &Scenario, exact: &[pcr_planning::regions::Region], slack: f64) {
         let regions = Answer::of::<S>(scenario, Request::default()).unwrap().regions;
         assert_eq!(regions.len(), exact.len(), "{}", S::NAME);
         for (own, exact) in regions.iter().zip(exact) {

@@ -1,8 +1,8 @@
 //! Tables of locks against geometry that is written out here: distances of segments, sampled curves.
 
-use pcr_host::import::{Edge, Format, Id, Imported, Layout, Options, Warnings, layout};
-use pcr_host::locks::Locks;
-use pcr_host::scenario::PathSegment;
+use pcr_formats::import::{Edge, Format, Id, Imported, Layout, Options, Warnings, layout};
+use pcr_formats::scenario::PathSegment;
+use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");

@@ -1,9 +1,10 @@
 //! Locks of vehicles with outlines, against their polygons in many poses on the edges and in the turns at their ends.
 
-use pcr_host::footprint::Footprint;
-use pcr_host::import::{Edge, Format, Imported, KINK, Layout, Options, Warnings, layout};
-use pcr_host::locks::{Lock, Locks};
-use pcr_host::scenario::PathSegment;
+use pcr_formats::footprint::Footprint;
+use pcr_formats::import::{Edge, Format, Imported, Layout, Options, Warnings, layout};
+use pcr_formats::scenario::KINK;
+use pcr_formats::scenario::PathSegment;
+use pcr_planning::locks::{Lock, Locks};
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 //! Properties of what depends on time: profiles and their inverses, strips of standing agents, delays.
 
 use pcr_core::{Motion, RegionRef, excess};
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::{Pair, Travel};

@@ -4,7 +4,7 @@
 use pcr_core::{
     Full, Hold, Limits, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances, plan_delays,
 };
-use pcr_host::fleet::build_ecm;
+use pcr_planning::fleet::build_ecm;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::execution::Table;
 use pcr_tests::generators::{Dice, pair};

@@ -154,3 +154,60 @@ fn who_comes_and_goes_leaves_the_orders_of_the_others() {
     roomy.remove(&fleet, 3).expect("the table of the fleet");
     assert_eq!(trace(&roomy, &fleet[..3]), before);
 }
+
+#[test]
+fn who_leaves_for_good_moves_the_others_up_with_their_orders() {
+    let lanes = lanes(0.3);
+    let fleet = lanes.each_ref().map(Course::motion);
+    for gone in 0..4 {
+        let (mut orders, mut fresh) = (table(&fleet, 8), empty(8));
+        let rest: Vec<_> = (0..4).filter(|&agent| agent != gone).map(|agent| fleet[agent]).collect();
+        fresh.fill(&rest).expect("room");
+        let number = |agent: usize| agent - usize::from(agent > gone);
+        for [agent, other] in [[0, 1], [1, 2], [3, 2], [3, 0]] {
+            orders.decide(&fleet, agent, other, Pass::First, 0.0).expect("the table of the fleet");
+            if ![agent, other].contains(&gone) {
+                fresh.decide(&rest, number(agent), number(other), Pass::First, 0.0).expect("the table of the fleet");
+            }
+        }
+        assert_eq!(orders.erase(&rest, 0), Err(Mismatch::OtherFleet));
+        assert_eq!(orders.erase(&fleet, 4), Err(Mismatch::NoSuchAgent(4)));
+        orders.erase(&fleet, gone).expect("the table of the fleet");
+        assert_eq!(trace(&orders, &rest), trace(&fresh, &rest), "without {gone}");
+        assert_eq!(orders.hold(&fleet, 0, &[]), Err(Mismatch::OtherFleet));
+        orders.insert(&[&rest[..], &[fleet[gone]]].concat(), 3).expect("room for one more");
+    }
+    let mut none = table(&fleet, 4);
+    none.clear();
+    assert_eq!(none.hold(&fleet, 0, &[]), Err(Mismatch::OtherFleet));
+    assert_eq!(empty(3).fill(&fleet), Err(Full::Orders));
+}
+
+#[test]
+fn a_path_that_is_exchanged_is_decided_anew_and_those_of_the_others_are_not() {
+    let lanes = lanes(0.3);
+    let mut fleet = lanes.each_ref().map(Course::motion);
+    let mut orders = table(&fleet, 6);
+    for [agent, other] in [[0, 1], [1, 2], [2, 3]] {
+        orders.decide(&fleet, agent, other, Pass::First, 0.0).expect("the table of the fleet");
+    }
+    let (before, other) = (trace(&orders, &fleet), fleet[0]);
+    let passes = |orders: &Table<f64>, fleet: &[Motion<'_, f64>]| {
+        let row = orders.row(fleet, 1).expect("the table of the fleet");
+        row.map(|(_, region, pass)| (region.other(), pass)).collect::<Vec<_>>()
+    };
+    assert_eq!(passes(&orders, &fleet), [(0, Pass::Second), (2, Pass::First)]);
+    orders.replace(&mut fleet, 1, other).expect("room");
+    assert!(passes(&orders, &fleet).iter().all(|&(_, pass)| pass == Pass::Undecided));
+    let row = orders.row(&fleet, 2).expect("the table of the fleet");
+    assert_eq!(row.map(|(_, region, pass)| (region.other(), pass)).collect::<Vec<_>>(), [(3, Pass::First)]);
+    // Without room for what there was meanwhile, nothing changes.
+    let mut fleet = lanes.each_ref().map(Course::motion);
+    let mut narrow = table(&fleet, 5);
+    for [agent, other] in [[0, 1], [1, 2], [2, 3]] {
+        narrow.decide(&fleet, agent, other, Pass::First, 0.0).expect("the table of the fleet");
+    }
+    assert_eq!(narrow.replace(&mut fleet, 1, other), Err(Unchanged::Full(Full::Orders)));
+    assert_eq!(trace(&narrow, &fleet), before);
+    assert_eq!(narrow.replace(&mut fleet, 9, other), Err(Mismatch::NoSuchAgent(9).into()));
+}

@@ -4,7 +4,7 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Hold, Interval, RegionRef};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::generators::pairs;
 use pcr_tests::oracle::Pair;

@@ -1,7 +1,7 @@
 //! Fleets that keep passing orders, whatever the delays: nobody touches anybody, and everybody arrives.
 
 use pcr_fixed::Q16;
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::execution::{Tally, run};
 
 /// Random fleets of 2 to 9 robots.

@@ -7,7 +7,7 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Motion, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::exact::{Route, Twofold};
 use pcr_tests::generators::{Dice, RELATIONS, drive, related};

@@ -3,8 +3,8 @@
 //! A cell of the grid collides if the discs overlap at its corner; cells that touch are one region. The paths come
 //! from the scenario; nothing else does.
 
-use pcr_host::fleet::{Fleet, build_ecm};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, build_ecm};
 
 /// Width of a cell \[m\]: no two regions of these fleets are as near to one another, and no neck is as narrow.
 const CELL: f64 = 0.01;

@@ -6,8 +6,8 @@
 //! path is tried: with a counter-clockwise first arc none comes near the place of row 1.
 
 use pcr_core::{Path, Point, Pose, Radians, Turn};
-use pcr_host::fleet::Fleet;
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::Fleet;
 
 /// Half of the last digit of the table.
 const HALF_DIGIT: f64 = 0.05;

@@ -8,8 +8,8 @@
 //! that only come near each other have one as well (paper Fig. 14a), and two crossings may share one (Fig. 14b).
 
 use pcr_core::{Crossing, Curve, Motion, PieceType, Radians, Turn, crossings};
-use pcr_host::fleet::{Fleet, build_ecm};
-use pcr_host::scenario::{MotionSpec, Scenario};
+use pcr_formats::scenario::{MotionSpec, Scenario};
+use pcr_planning::fleet::{Fleet, build_ecm};
 
 /// Sums of radii such as 0.13 + 0.22 are ties of the decimal rounding but not of the binary one \[1e-1 units\].
 const TIE: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use pcr_core::{Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
 use pcr_fixed::Q16;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;

@@ -1,7 +1,7 @@
 //! No plan costs less than its lower bound.
 
-use pcr_host::plan::{Method, Plan, Priority};
-use pcr_host::scenario::{Agent, MotionSpec, PathSegment, Scenario};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
+use pcr_planning::plan::{Method, Plan, Priority};
 use pcr_tests::generators::Dice;
 
 const OPEN: &str = include_str!("../data/cases/lower-bound-open-2.json");

@@ -1,10 +1,10 @@
 //! Start delays of vehicles with outlines: as polygons they keep clear, and they do not wait for what only the discs around them
 //! would touch.
 
-use pcr_host::check::Verdict;
-use pcr_host::fleet::Fleet;
-use pcr_host::plan::{Method, Plan, Priority};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::check::Verdict;
+use pcr_planning::fleet::Fleet;
+use pcr_planning::plan::{Method, Plan, Priority};
 use pcr_tests::polygons::{Point, apart, placed};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -4,7 +4,7 @@
 //! by `cargo run --release -p pcr-tests --example campaign`.
 
 use pcr_core::{Motion, RegionRef};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, moved, pairs, reversed, split};

@@ -5,8 +5,8 @@
 
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Fleet, Format};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format};
 use pcr_tests::audit::Audit;
 use pcr_tests::clearance::of_ends;
 use pcr_tests::disc::Disc;

@@ -3,7 +3,7 @@
 
 use pcr_core::{Point, Pose, Scalar, Segment, Turn, internals};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 use pcr_tests::disc::{Disc, Leg};
 use pcr_tests::generators::{Dice, Pair, inner_tangent};
 use pcr_tests::shadow::{Enclosure, Number, Shadowed, Turned};

@@ -1,8 +1,8 @@
 //! Simulated runs: no collision under the supervisor, by an oracle on the true positions; the figures of a run follow from
 //! its record; the same seed gives the same run.
 
-use pcr_host::scenario::Scenario;
-use pcr_host::simulate::{
+use pcr_formats::scenario::Scenario;
+use pcr_planning::simulate::{
     Controller, Disturbance, FRAME, Outcome, Run, Settings, Simulation, Task, Trace, forage, run,
 };
 use std::f64::consts::{PI, TAU};

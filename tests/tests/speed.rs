@@ -2,7 +2,7 @@
 
 use pcr_core::{Drive as Speeds, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed};
 use pcr_fixed::Q16;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, leg};
 use pcr_tests::oracle::contact::Meeting;
@@ -90,7 +90,7 @@ fn plans_arrive_when_a_fine_dynamic_program_does_and_meet_nobody() {
     }
     println!("{both} planned by both, of them late by {late:.1?} s; {lost} by the program only, {neither} by neither");
     assert!(both > 2 * neither && neither > 0, "{both} planned");
-    // docs/using.md states both shares.
+    // docs/theory.md states both shares.
     assert!(
         late.len() as u64 * 200 <= CASES && u64::from(lost) * 200 <= CASES,
         "{late:?} late, {lost} lost of {CASES}"

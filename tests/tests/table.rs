@@ -4,8 +4,8 @@ use pcr_core::{
     Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef, Turn,
     Unchanged, Unsolved, plan_delays,
 };
-use pcr_host::fleet::{Fleet, HostEcm, build_ecm};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, HostEcm, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::Dice;
 
@@ -365,4 +365,22 @@ fn storage_may_be_arrays_slices_or_vectors() {
     let borrowed = Ecm::build(&mut regions[..], &mut pieces[..], motions).expect("enough room");
     assert_eq!(entries(&on_heap, motions), entries(&in_arrays, motions));
     assert_eq!(entries(&on_heap, motions), entries(&borrowed, motions));
+}
+
+#[test]
+fn a_table_that_grows_agent_by_agent_is_that_of_the_fleet() {
+    let fleet = twelve();
+    let motions = fleet.motions();
+    let mut table: HostEcm<f64> = Ecm::new(Vec::new(), Vec::new());
+    for agent in 0..motions.len() {
+        let known = &motions[..=agent];
+        while let Err(unchanged) = table.insert(known, agent) {
+            let Unchanged::Full(full) = unchanged else { panic!("{unchanged}") };
+            table.grow(full).expect("more room helps");
+        }
+    }
+    assert_eq!(entries(&table, &motions), entries(&build_ecm(&motions).expect("a small fleet"), &motions));
+    // What no storage helps comes back as it was.
+    assert_eq!(table.grow(Full::Pair([3, 4])), Err(Full::Pair([3, 4])));
+    assert_eq!(entries(&table, &motions).len(), 2 * table.len());
 }

@@ -4,8 +4,8 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Conflict, Encounter, Interval, Motion, earliest_start, first_conflict, first_overlap};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::{Fleet, Format, build_ecm};
-use pcr_host::scenario::Scenario;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Driven};
 use pcr_tests::generators::{Dice, drive, leg};
 use std::f64::consts::PI;

@@ -1,11 +1,11 @@
 //! Random traffic: missions are what they say, and no two agents of a plan come nearer than their radii, by positions
 //! at many times.
 
-use pcr_host::fleet::Fleet;
-use pcr_host::footprint::Footprint;
-use pcr_host::import::{Format, Imported, Options, Warnings, roads};
-use pcr_host::scenario::Scenario;
-use pcr_host::traffic::{Request, Traffic};
+use pcr_formats::footprint::Footprint;
+use pcr_formats::import::{Format, Imported, Options, Warnings, roads};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::Fleet;
+use pcr_planning::traffic::{Request, Traffic};
 use pcr_tests::polygons::{apart, placed};
 use std::collections::HashSet;
 
@@ -159,7 +159,7 @@ fn missions_that_are_passed_over_are_told_with_their_reasons() {
     let mut reasons = traffic.passed_over_because.iter();
     assert!(reasons.all(|reason| reason.why.starts_with("the way is no path: edge N") && reason.missions == 4));
     let mut text = Vec::new();
-    pcr_host::report::traffic_table(&traffic, &mut text).unwrap();
+    pcr_planning::report::traffic_table(&traffic, &mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
     assert!(
         text.contains("4 missions passed over: the way is no path: edge N1-N2: its curve begins 5.000 m"),

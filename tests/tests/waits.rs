@@ -5,7 +5,7 @@ use pcr_core::{
     safe_intervals,
 };
 use pcr_fixed::Q16;
-use pcr_host::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, drive, leg};
 use pcr_tests::oracle::contact::Meeting;

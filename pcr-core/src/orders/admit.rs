@@ -6,7 +6,7 @@
 //! admitted is safe and free of deadlock.
 
 use crate::ecm::Region;
-use crate::error::{Full, Mismatch};
+use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
 use crate::orders::check::{Reach, Refused, Tolerances};
 use crate::orders::order::{Order, Pass, Progress};
@@ -95,7 +95,7 @@ where
             return Err(Mismatch::NoSuchAgent(agent).into());
         };
         let stood = core::mem::replace(place, own);
-        let replaced = self.exchange(fleet, agent, motion);
+        let replaced = self.exchange(fleet, agent, motion).map_err(Refused::from);
         let admitted = replaced.and_then(|saved| {
             let chosen = self.choose(fleet, progress, agent, tolerances.width, prefer);
             let found = chosen.and_then(|()| self.repair(fleet, progress, agent, tolerances, reaches));
@@ -112,6 +112,21 @@ where
         admitted
     }
 
+    /// Exchanges the path of an agent, with nothing decided about any of its regions; the orders that the others have with one
+    /// another stay as they are. As [`Orders::admit`], it needs as many places more as the agent has regions.
+    ///
+    /// # Errors
+    /// [`Full`] and [`Mismatch`]; everything is then as it was.
+    pub fn replace<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<(), Unchanged> {
+        self.ecm.holds_all(fleet)?;
+        self.exchange(fleet, agent, motion).map(drop)
+    }
+
     /// Exchanges the path; the old orders of the agent are kept at the end of the storage, the last one first. Returns how many
     /// they are.
     fn exchange<'m>(
@@ -119,7 +134,7 @@ where
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<usize, Refused> {
+    ) -> Result<usize, Unchanged> {
         let saved = self.places(agent).fold(0_usize, |count, _| count.saturating_add(1));
         let room = self.orders.as_ref().len().saturating_sub(saved);
         let Some(&before) = fleet.get(agent) else { return Err(Mismatch::NoSuchAgent(agent).into()) };

@@ -165,6 +165,15 @@ where
         table.undecide().map(|()| table)
     }
 
+    /// Becomes the table of a whole fleet, as [`Orders::build`], in the storage that it has.
+    ///
+    /// # Errors
+    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
+        self.ecm.fill(fleet)?;
+        self.undecide()
+    }
+
     /// Becomes the table of one agent's row only, nothing decided, in the storage that it has: that agent asks it for its holds.
     /// Cost: that of [`Ecm::fill_row`].
     ///
@@ -173,6 +182,11 @@ where
     pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
         self.ecm.fill_row(fleet, agent)?;
         self.undecide()
+    }
+
+    /// Forgets all regions, orders and agents.
+    pub fn clear(&mut self) {
+        self.ecm.clear();
     }
 
     /// No order for any region.
@@ -210,6 +224,19 @@ where
             self.gather(agent, |_, _| {});
         }
         self.ecm.remove(fleet, agent)
+    }
+
+    /// Removes one agent for good, its regions and their orders: those behind it move up by one number, as [`Ecm::erase`].
+    /// O(agents + regions).
+    ///
+    /// # Errors
+    /// [`Mismatch`]; the table is then as it was.
+    pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        self.ecm.holds_all(fleet)?;
+        if agent < fleet.len() {
+            self.gather(agent, |_, _| {});
+        }
+        self.ecm.erase(fleet, agent)
     }
 
     /// Decides about all regions that `ego` and `other` have and that are not decided yet: whether the ego passes them first or

@@ -132,7 +132,7 @@ impl<S: core::fmt::Debug> core::error::Error for NoSpeedPlan<S> {}
 ///
 /// Among the motions that stop and change their speed at borders of cells only (at most as many cells as there
 /// are stations less one, at least 8) and for which a quarter of a cell is blocked as a whole, the plan is the one that
-/// arrives first; what can be gained by leaving earlier after a wait is gained. `docs/using.md` compares with a fine
+/// arrives first; what can be gained by leaving earlier after a wait is gained. `docs/theory.md` compares with a fine
 /// dynamic program over length, speed and time. A set of more than 8 separate intervals of times at one
 /// border and speed loses the last but one.
 ///

@@ -14,6 +14,7 @@
 //! distance of R within the tolerance for a time T: every step there is at least h = √(2 ε / c) long, c = Σ |a| + v²/ϱ, as
 //! e <= ε / 4 always decides; hence at most a few T / h + 1 steps a leg. `Contacts::steps` counts them.
 
+use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::query::chord::{Chord, clears, keeps};
@@ -96,6 +97,30 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         let apart = !self.ego.bounds().expanded(reach).meets(self.other.bounds());
         let windows = (!apart).then(|| Windows::new([self.ego, self.other], during.limited(), self.pad));
         Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
+    }
+}
+
+impl<S: Scalar> Motion<'_, S> {
+    /// The motion to plan with: of a disc that is larger by its margin and by its [`Encounter::tolerance`] with itself. Two such
+    /// discs grow by more than the tolerance of their pair together, so that those of the true radii do not even touch where
+    /// these are told to touch.
+    ///
+    /// # Errors
+    /// [`Invalid::OutOfRange`].
+    ///
+    /// ```
+    /// # use pcr_core::{Encounter, Interval, Motion, Path, Point, Pose, Profile, Radians};
+    /// # let pose = |x, y, heading| Pose { position: Point::new(x, y), heading: Radians(heading) };
+    /// # let east = Path::<f64, 1>::starting_at(pose(-2.0, 0.0, 0.0))?.line(4.0)?;
+    /// # let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+    /// let motion = Motion::new(east.as_path(), profile.as_profile(), 0.25, 0.0)?.with_margin(0.05)?;
+    /// let planned = motion.for_plan()?;
+    /// assert!(planned.radius() > 0.3 && planned.radius() < 0.3 + 1e-8 && planned.margin() == 0.0);
+    /// # Ok::<(), pcr_core::Invalid>(())
+    /// ```
+    pub fn for_plan(self) -> Result<Self, Invalid> {
+        let tolerance = Encounter::new(&self, &self).tolerance();
+        Ok(self.with_margin(self.margin() + tolerance)?.inflated())
     }
 }
 

@@ -1,13 +1,14 @@
 //! `pcr compare`.
 
 use super::{STATUSES, Stop, quiet, scenario, sources};
+use crate::progress::Progress;
 use clap::{Args, ValueEnum};
-use pcr_host::compare::{Comparison, Effort, Question};
-use pcr_host::import::Options;
-use pcr_host::output;
-use pcr_host::progress::Progress;
-use pcr_host::regions::Failure;
-use pcr_host::report;
+use pcr_comparing::compare::{Comparison, Effort, Question};
+use pcr_comparing::report;
+use pcr_formats::import::Options;
+use pcr_formats::output;
+use pcr_planning::regions::Failure;
+use pcr_planning::report::json;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -86,7 +87,7 @@ impl Arguments {
             match format {
                 Output::Table => report::comparison_table(&comparison, false, &mut out)?,
                 Output::Markdown => report::comparison_table(&comparison, true, &mut out)?,
-                Output::Json => report::json(&comparison, &mut out)?,
+                Output::Json => json(&comparison, &mut out)?,
                 Output::Csv => report::comparison_csv(&comparison, &mut out)?,
             }
             out.flush()?;

@@ -1,10 +1,10 @@
 //! `pcr evaluate`.
 
 use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, quiet};
+use crate::progress::Progress;
 use clap::Args;
-use pcr_host::evaluate::{self, Extent, Problem};
-use pcr_host::output;
-use pcr_host::progress::Progress;
+use pcr_comparing::evaluate::{self, Extent, Problem};
+use pcr_formats::output;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;

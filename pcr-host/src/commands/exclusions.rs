@@ -3,10 +3,12 @@
 use super::sources::layout;
 use super::{CONFLICTS, Form, Printed, Stop, is_standard, write_to};
 use clap::Args;
-use pcr_host::exclusion::{self, Audit, Settings, Target};
-use pcr_host::import::{Format, Imported, Options};
-use pcr_host::locks::Locks;
-use pcr_host::{input, picture, report};
+use pcr_drawing as picture;
+use pcr_exclusions::{Audit, Settings, Target, report};
+use pcr_formats::import::{Format, Imported, Options};
+use pcr_formats::input;
+use pcr_planning::locks::Locks;
+use pcr_planning::report::json;
 use std::fs;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -78,12 +80,12 @@ impl Asked {
         let (format, content) = read(file, import)?;
         let settings = Settings { target, split: self.split, envelopes: self.envelopes.clone() };
         let name = input::stem(file);
-        let (written, report, _) =
-            exclusion::write(format, &content, import, &name, &settings).map_err(|error| Stop::wrong(file, error))?;
+        let (written, report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
+            .map_err(|error| Stop::wrong(file, error))?;
         write_to(output, &written)?;
         let mut out = printed.out(standard);
         match printed.form() {
-            Form::Json => report::json(&report, &mut out)?,
+            Form::Json => json(&report, &mut out)?,
             _ => report::written_table(&report, &mut out)?,
         }
         out.flush()?;
@@ -128,7 +130,7 @@ fn audit(
         None => Stop::wrong(source, "files of this format hold no exclusions; name the file that does: --audit=FILE"),
     })?;
     let wrong = |error| Stop::wrong(source, error);
-    let rules = exclusion::read(target, &content, &imported).map_err(wrong)?;
+    let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
     let locks = Locks::of(&imported, true).map_err(wrong)?;
     let audit = Audit::of(&imported, &locks, &rules, target);
     if let Some(directory) = output {
@@ -138,7 +140,7 @@ fn audit(
     let mut out = printed.out(false);
     match printed.form() {
         Form::Table => report::audit_table(&audit, &mut out)?,
-        Form::Json => report::json(&audit, &mut out)?,
+        Form::Json => json(&audit, &mut out)?,
         Form::Csv => report::audit_csv(&audit, &mut out)?,
     }
     out.flush()?;

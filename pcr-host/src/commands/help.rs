@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
 
 /// Heading of the options for files that are not scenarios.
-pub(super) const LAYOUTS: &str = pcr_host::import::HEADING;
+pub(super) const LAYOUTS: &str = pcr_formats::import::HEADING;
 
 /// What is asked for; nothing where it was help or the version, which are printed.
 pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop> {

@@ -3,7 +3,7 @@
 use super::sources::together;
 use super::{STATUSES, Stop, scenario, sources, write_to};
 use clap::Args;
-use pcr_host::import::{Format, Options};
+use pcr_formats::import::{Format, Options};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

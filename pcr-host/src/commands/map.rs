@@ -2,13 +2,13 @@
 
 use super::sources::source;
 use super::{STATUSES, Stop, quiet, scenario};
+use crate::progress::Progress;
 use clap::Args;
-use pcr_host::fleet::Fleet;
-use pcr_host::import::Options;
-use pcr_host::picture::{self, Ground};
-use pcr_host::progress::Progress;
-use pcr_host::regions::{self, Failure};
-use pcr_host::scenario::Scenario;
+use pcr_drawing::{self as picture, Ground};
+use pcr_formats::import::Options;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::Fleet;
+use pcr_planning::regions::{self, Failure};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

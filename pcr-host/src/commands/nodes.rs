@@ -3,9 +3,9 @@
 use super::sources::{layout, source};
 use super::{Form, Printed, STATUSES, Stop};
 use clap::Args;
-use pcr_host::import::Options;
-use pcr_host::nodes::Listing;
-use pcr_host::report;
+use pcr_formats::import::Options;
+use pcr_planning::nodes::Listing;
+use pcr_planning::report;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;

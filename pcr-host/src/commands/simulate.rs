@@ -2,12 +2,13 @@
 
 use super::sources::source;
 use super::{CONFLICTS, Form, Printed, Stop, is_standard, scenario, write_to};
+use crate::progress::Progress;
 use clap::{Args, ValueEnum};
-use pcr_host::import::Options;
-use pcr_host::progress::Progress;
-use pcr_host::regions::Failure;
-use pcr_host::report;
-use pcr_host::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
+use pcr_drawing::replay;
+use pcr_formats::import::Options;
+use pcr_planning::regions::Failure;
+use pcr_planning::report;
+use pcr_planning::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -123,7 +124,7 @@ impl Arguments {
         }
         drop(progress);
         if let Some(output) = &self.output {
-            write_to(output, &simulate::page(&task, &outcomes))?;
+            write_to(output, &replay::page(&task, &outcomes))?;
         }
         let simulation = Simulation::of(&task, settings, &outcomes);
         let mut out = self.printed.out(is_standard(self.output.as_ref()));

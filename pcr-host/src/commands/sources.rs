@@ -2,9 +2,9 @@
 
 use super::help::useless;
 use super::{Stop, warn};
-use pcr_host::import::{Imported, Options};
-use pcr_host::input;
-use pcr_host::scenario::Scenario;
+use pcr_formats::import::{Imported, Options};
+use pcr_formats::input;
+use pcr_formats::scenario::Scenario;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 

@@ -2,11 +2,11 @@
 
 use super::sources::{Source, gathered};
 use super::{Form, Printed, Stop, WRONG_INPUT, complain};
-use pcr_host::import::Options;
-use pcr_host::input::Lines;
-use pcr_host::progress::Progress;
-use pcr_host::regions::Failure;
-use pcr_host::scenario::Scenario;
+use crate::progress::Progress;
+use pcr_formats::import::Options;
+use pcr_formats::input::Lines;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::regions::Failure;
 use std::io::{self, BufReader, IsTerminal, Write};
 use std::path::PathBuf;
 

@@ -104,6 +104,12 @@ fn the_readme_shows_what_the_tool_prints() {
 }
 
 #[test]
+fn the_guide_and_the_cookbook_show_what_the_tool_prints() {
+    assert!(follow("docs/using.md") >= 1);
+    assert!(follow("docs/cookbook.md") >= 5);
+}
+
+#[test]
 fn any_number_of_lines_may_be_left_out() {
     assert!(matches(&["a", "...", "c"], &["a", "b", "b", "c"]));
     assert!(matches(&["a", "..."], &["a"]));

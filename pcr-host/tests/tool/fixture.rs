@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// The paper's 12 agents.
-pub(crate) const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios/paper12.json");
+pub(crate) const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/formats/scenarios/paper12.json");
 
 /// What a run left behind.
 pub(crate) struct Run {

@@ -2,9 +2,9 @@
 
 use crate::fixture::{PAPER, crossing, directory, file, run, straight};
 use pcr_core::{Motion, RegionRef};
-use pcr_host::fleet::{Fleet, Format, build_ecm};
-use pcr_host::paper;
-use pcr_host::scenario::Scenario;
+use pcr_formats::paper;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format, build_ecm};
 use serde_json::{Value, json};
 
 /// The text with every number replaced by `N`.

@@ -4,7 +4,7 @@
 
 use super::Twofold;
 use crate::disc::{Disc, Leg};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 /// Abscissa and ordinate \[m\].
 pub type Place = [Twofold; 2];

@@ -6,7 +6,7 @@
 
 use super::Twofold;
 use pcr_core::Motion;
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 /// A motion along a path.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Looking for points worth checking: nothing is decided here.
 
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 /// Next number of the format above `x`, or below it.
 pub fn neighbour<S: Format>(x: S, above: bool) -> S {

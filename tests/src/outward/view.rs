@@ -6,7 +6,7 @@ use crate::exact::{Route, Travel, Twofold};
 use crate::generators::Dice;
 use crate::oracle::line;
 use pcr_core::{Interval, Motion, RegionRef};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {

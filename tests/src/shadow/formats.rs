@@ -3,7 +3,7 @@
 use super::Shadowed;
 use pcr_core::Scalar;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_host::fleet::Format;
+use pcr_planning::fleet::Format;
 
 macro_rules! impl_shadowed {
     ($t:ty) => {

@@ -155,6 +155,7 @@ fn constructors<S: Scalar>() -> Result<(), Invalid> {
     let path = Path::<S, 2>::starting_at(any(pose))?;
     let path = Path::line(path, number())?;
     let path = Path::arc(path, number(), any(Turn::Left), number())?;
+    let path = Path::arc_by(path, number(), number())?;
     let path = Path::turn(any(path), angle::<S>())?;
     any(Path::as_path(&path));
     any(PathRef::<S>::new(any(&[])).is_ok());
@@ -174,6 +175,7 @@ fn constructors<S: Scalar>() -> Result<(), Invalid> {
     let pieces: &[(S, S)] = any(&[]);
     let profile = any(Profile::<S, 4>::from_pieces(number(), pieces.iter().copied())?);
     any(Profile::as_profile(&profile));
+    any(Profile::<S, 4>::copied(Profile::as_profile(&profile)).is_ok());
     any((Phase::acceleration(&phase), ProfileRef::top_speed(profile.as_profile())));
     any(ProfileRef::<S>::new(any(&[])).is_ok());
     any(Profile::<S, 1>::standing());
@@ -201,6 +203,7 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any((Motion::length_at(motion, number()), Motion::speed_at(motion, number())));
         any((Motion::position_at(motion, number()), Motion::time_in(motion, interval())));
         any((Motion::with_margin(*motion, number()).is_ok(), Motion::inflated(*motion), Motion::margin(motion)));
+        any((Motion::for_plan(*motion).is_ok(), Motion::span(fleet)));
         for other in fleet {
             let found: Option<Crossing<S>> = crossings(motion, other).last();
             any(found);
@@ -245,6 +248,7 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
     for &agent in agents {
         any(Ecm::insert(&mut ecm, fleet, agent).is_ok());
         any(Ecm::remove(&mut ecm, fleet, agent).is_ok());
+        any(Ecm::erase(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill_row(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill(&mut ecm, fleet).is_ok());
         Ecm::clear(any(&mut ecm));
@@ -323,6 +327,12 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     any(Orders::ecm(&orders).len());
     any(Orders::passed(&mut orders, progress));
     any(Orders::remove(&mut orders, fleet, agent).is_ok());
+    any(Orders::erase(&mut orders, fleet, agent).is_ok());
+    any(Orders::fill(&mut orders, fleet).is_ok());
+    if let Some(&motion) = any(fleet.first()) {
+        any(Orders::replace(&mut orders, fleet, agent, motion).is_ok());
+    }
+    Orders::clear(any(&mut orders));
 }
 
 #[inline(never)]

@@ -1,0 +1,58 @@
+//! What a controller without an FPU does: all memory is there from the beginning, and every number is fixed-point. The same
+//! program runs on a desktop:
+//!
+//! ```text
+//! cargo run -p pcr-fixed --example no_fpu
+//! ```
+
+use pcr_core::{Ecm, Invalid, Limits, Motion, Path, Piece, Point, Pose, Profile, Region, Turn, earliest_start};
+use pcr_fixed::{Q16, Turns};
+
+/// What the controller decided: all that it has to say.
+#[derive(Debug)]
+enum Decision {
+    /// Set off so many seconds later.
+    Start(Q16),
+    /// No start is late enough.
+    Never,
+    /// The table is too small, or a path is not what it should be: stop, and say so.
+    Fault,
+}
+
+/// The numbers of a format come from `f64` in tests and tables only; a controller is sent the bits.
+fn q(metres: f64) -> Q16 {
+    Q16::from_f64(metres).expect("within 32768 m")
+}
+
+fn path(x: f64, y: f64, heading: Turns) -> Result<Path<Q16, 2>, Invalid> {
+    let start = Pose { position: Point::new(q(x), q(y)), heading };
+    Path::starting_at(start)?.line(q(3.0))?.arc(q(2.0), Turn::Right, q(2.5))
+}
+
+fn decide(table: &mut Ecm<Q16, [Region; 8], [Piece<Q16>; 16]>) -> Result<Decision, Invalid> {
+    let quarter = Turns::from_bits(1 << 30);
+    let paths = [path(-4.0, 0.0, Turns::from_bits(0))?, path(0.0, -4.0, quarter)?];
+    let limits = Limits { speed: q(1.0), acceleration: q(0.5) };
+    let profile = Profile::rest_to_rest(paths[0].as_path().length(), limits)?;
+    let motion = |path| Motion::new(path, profile.as_profile(), q(0.4), q(0.0));
+    let fleet = [motion(paths[0].as_path())?.for_plan()?, motion(paths[1].as_path())?.for_plan()?];
+    // A table that is full, or that of another fleet, is a fault, never an empty answer.
+    if table.fill(&fleet).is_err() {
+        return Ok(Decision::Fault);
+    }
+    let Ok(row) = table.row(&fleet, 1) else {
+        return Ok(Decision::Fault);
+    };
+    Ok(earliest_start(row, q(0.0)).map_or(Decision::Never, Decision::Start))
+}
+
+fn main() {
+    // On a controller: a `static`, as it should not be on the stack.
+    let mut table = Ecm::new([Region::EMPTY; 8], [Piece::EMPTY; 16]);
+    match decide(&mut table).unwrap_or(Decision::Fault) {
+        Decision::Start(delay) => {
+            println!("set off {:.3} s later ({} bytes of table)", delay.to_f64(), size_of_val(&table))
+        }
+        other => println!("{other:?}"),
+    }
+}

@@ -1,0 +1,224 @@
+//! Ways to find collisions, side by side: what each of them answers, how long it takes, how much it keeps, and how far it
+//! is off.
+//!
+//! ```text
+//! track      discs in motion as plain numbers             Track
+//! reference  the definition, by halving: what errors are measured by
+//! pcr        this library, in every format, on one core and all
+//! sampled    the sampled collision map of the paper's reference [34]
+//! polyline   flattened paths, closed-form discs piece by piece
+//! casts      generic continuous collision detection     (feature `peers`)
+//! mesh       proximity of meshes, sample by sample      (feature `peers`)
+//! program    libraries in C++, as programs beside this  (feature `peers`)
+//! fcl        proximity of meshes by FCL                 (feature `peers`)
+//! box2d      the time of impact of Box2D                (feature `peers`)
+//! crowd      random fleets of any size
+//! errors     an answer against the reference
+//! measure    times, in rounds                               Comparison
+//! chart      time against error
+//! stopwatch  one core's time, also while others are at work
+//! ```
+//!
+//! All methods start from the same paths and motions, already placed; sampling, flattening and meshes are part of a
+//! method, and of its time.
+
+#[cfg(feature = "peers")]
+mod box2d;
+#[cfg(feature = "peers")]
+mod casts;
+mod chart;
+mod crowd;
+mod errors;
+#[cfg(feature = "peers")]
+mod fcl;
+pub(crate) mod measure;
+#[cfg(feature = "peers")]
+mod mesh;
+mod pcr;
+mod polyline;
+#[cfg(feature = "peers")]
+mod program;
+pub mod reference;
+pub(crate) mod sampled;
+pub(crate) mod stopwatch;
+mod track;
+
+pub use crowd::crowd;
+pub use errors::Errors;
+pub use measure::{Absent, Comparison, Effort, Row};
+pub use track::Track;
+
+use pcr_core::{Interval, Motion};
+use pcr_fixed::Q16;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, Format, Refused};
+use serde::Serialize;
+use std::hint::black_box;
+use stopwatch::{Stopwatch, steady};
+
+/// A fleet, in every form that a method starts from.
+#[derive(Debug)]
+pub struct Input {
+    tracks: Vec<Track>,
+    double: Fleet<f64>,
+    single: Fleet<f32>,
+    fixed: Result<Fleet<Q16>, Refused>,
+}
+
+/// The same, ready to use.
+#[derive(Debug)]
+pub struct Field<'a> {
+    /// As plain numbers.
+    pub(crate) tracks: &'a [Track],
+    double: Vec<Motion<'a, f64>>,
+    single: Vec<Motion<'a, f32>>,
+    /// None where the fleet is beyond the format.
+    fixed: Option<Vec<Motion<'a, Q16>>>,
+    /// From the first start to the last arrival \[s\].
+    pub(crate) horizon: [f64; 2],
+}
+
+impl Input {
+    /// The agents of a scenario.
+    ///
+    /// # Errors
+    /// [`Refused`] where a value does not fit floating point.
+    pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
+        Ok(Self {
+            tracks: scenario.agents.iter().map(Track::new).collect(),
+            double: Fleet::new(scenario)?,
+            single: Fleet::new(scenario)?,
+            fixed: Fleet::new(scenario),
+        })
+    }
+
+    /// Ready to use.
+    pub fn field(&self) -> Field<'_> {
+        let double = self.double.motions();
+        let time = double.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        Field {
+            tracks: &self.tracks,
+            double,
+            single: self.single.motions(),
+            fixed: self.fixed.as_ref().ok().map(Fleet::motions),
+            horizon: [time.lo, time.hi],
+        }
+    }
+}
+
+/// What a method is asked for, and what it can answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Question {
+    /// All collision regions: where an agent must not be at what time, whatever its motion.
+    Regions,
+    /// Whether agents collide in the given motions.
+    Conflicts,
+}
+
+/// A contact that a method found: two agents, the lower one first, and when \[s\]; no end where it tells none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Found {
+    pub(crate) agents: [usize; 2],
+    pub(crate) begin: f64,
+    pub(crate) end: Option<f64>,
+}
+
+/// The collision regions that a method found.
+pub(crate) trait Regions {
+    /// Both directions of every pair.
+    fn count(&self) -> usize;
+    /// What is kept of them.
+    fn bytes(&self) -> usize;
+    /// Lengths of the path of `ego` that `other` blocks at a time \[m\]; disjoint, increasing.
+    fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]>;
+}
+
+pub(crate) enum Answer<'a> {
+    Regions(Box<dyn Regions + 'a>),
+    /// By the agents, then by the begin.
+    Conflicts(Vec<Found>),
+}
+
+/// An answer, or why there is none.
+pub(crate) type Outcome<'f> = Result<Answer<'f>, String>;
+
+/// Why a method has no answer that can have one for other fleets.
+const BEYOND: &str = "this fleet is beyond what it can hold";
+
+/// A way to find collisions.
+pub(crate) trait Method: Sync {
+    /// With resolution or format.
+    fn name(&self) -> String;
+    /// What it is asked for.
+    fn question(&self) -> Question;
+    /// What it tells, in words.
+    fn tells(&self) -> &'static str;
+    /// Whether it works on all cores.
+    fn is_parallel(&self) -> bool {
+        false
+    }
+    /// What it needs and is not there.
+    fn missing(&self) -> Option<&'static str> {
+        None
+    }
+    /// The answer, or why there is none: a fleet beyond its limits, or a program that failed.
+    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f>;
+    /// The time that the answer takes \[s\], and the answer.
+    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Outcome<'f>) {
+        let clock = if self.is_parallel() { Stopwatch::wall } else { Stopwatch::elapsed };
+        steady(clock, || self.answer(black_box(field)))
+    }
+}
+
+/// All methods, those that lack something too; pcr on one core first for each question: what the others are compared with.
+pub(crate) fn methods() -> Vec<Box<dyn Method>> {
+    let mut methods = pcr::regions();
+    methods.extend(sampled::methods());
+    methods.extend(pcr::conflicts());
+    methods.extend(polyline::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(casts::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(box2d::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(mesh::methods());
+    #[cfg(feature = "peers")]
+    methods.extend(fcl::methods());
+    methods
+}
+
+/// Libraries in C++ that methods use, with their versions, or that they are left out.
+#[cfg(feature = "peers")]
+pub(crate) fn libraries() -> Vec<String> {
+    [program::Program::FCL, program::Program::BOX2D].map(program::Program::library).into()
+}
+
+/// The same: none.
+#[cfg(not(feature = "peers"))]
+pub(crate) fn libraries() -> Vec<String> {
+    vec!["built without the feature `peers`".into()]
+}
+
+/// A number format with a fleet in it.
+trait Number: Format {
+    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]>;
+}
+
+impl Number for f64 {
+    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]> {
+        Some(&field.double)
+    }
+}
+
+impl Number for f32 {
+    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]> {
+        Some(&field.single)
+    }
+}
+
+impl Number for Q16 {
+    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]> {
+        field.fixed.as_deref()
+    }
+}

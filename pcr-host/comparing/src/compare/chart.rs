@@ -1,0 +1,39 @@
+//! Comparisons as charts: time against error.
+
+use super::{Comparison, Errors, Question};
+use pcr_drawing::plot::{Chart, Series};
+
+/// Errors below this are drawn as large as this.
+const LEAST: f64 = 1e-10;
+
+impl Question {
+    /// What its chart shows.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Regions => "time and error of all regions",
+            Self::Conflicts => "time and error of all conflicts",
+        }
+    }
+}
+
+impl Comparison {
+    /// The time of each method and how far it is off, as SVG.
+    pub fn chart(&self, question: Question) -> String {
+        let rows = self.rows.iter().filter(|row| row.question == question);
+        let series = rows.map(|row| {
+            let error = match row.errors {
+                Errors::Conflicts { time, .. } => time,
+                Errors::Regions { area, difference } => difference / area,
+            };
+            // Without any area there is no share of it.
+            let error = if error.is_finite() { error.max(LEAST) } else { LEAST };
+            Series { name: row.method.clone(), points: vec![[row.ms, error]], line: false }
+        });
+        let error = match question {
+            Question::Regions => "area off, as a part of all",
+            Question::Conflicts => "largest error of a begin or end [s]",
+        };
+        let title = format!("{} agents: {}", self.agents, question.title());
+        Chart { title: &title, axes: ["time [ms]", error], series: series.collect() }.draw()
+    }
+}

@@ -1,0 +1,179 @@
+//! Times, in rounds: in each round all methods run, one after the other, so that what slows the machine down
+//! for a while slows all of them down. A ratio is the median of the ratios of the rounds.
+
+use super::errors::{Errors, Truth, errors};
+use super::{Answer, Field, Input, Method, Question, methods};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::Refused;
+use serde::Serialize;
+
+/// How much time a comparison may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Rounds at most.
+    pub rounds: usize,
+    /// Time of a method in all its rounds, about \[s\]; there is always one round.
+    pub budget: f64,
+    /// Slices of regions, about, by which they are compared with the reference.
+    pub slices: usize,
+}
+
+/// All methods on a scenario.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Name of the scenario.
+    pub name: String,
+    /// Their number.
+    pub agents: usize,
+    /// By the question, pcr first.
+    pub rows: Vec<Row>,
+    /// Methods that were asked for and have no row.
+    pub absent: Vec<Absent>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// A method without an answer.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Absent {
+    /// With resolution or format.
+    pub method: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// A method on a scenario.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// With resolution or format.
+    pub method: String,
+    /// What it was asked.
+    pub question: Question,
+    /// What it tells.
+    pub tells: &'static str,
+    /// Median of the rounds \[ms\].
+    pub ms: f64,
+    /// Median of the ratios to the first method of the same question in the same round.
+    pub ratio: f64,
+    /// Rounds.
+    pub rounds: usize,
+    /// Regions, for sampled maps pairs that have any, or conflicts.
+    pub count: usize,
+    /// What is kept of the answer.
+    pub bytes: usize,
+    /// How far it is off.
+    pub errors: Errors,
+}
+
+impl Comparison {
+    /// Runs all methods whose name holds one of `filters`, and the first one of each question; all of them without filters.
+    /// `progress` is told how many methods are done, and of how many.
+    ///
+    /// # Errors
+    /// [`Refused`] where a value does not fit floating point.
+    pub fn new(
+        scenario: &Scenario,
+        effort: Effort,
+        filters: &[String],
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self, Refused> {
+        let input = Input::new(scenario)?;
+        let field = input.field();
+        let mut methods = methods();
+        if !filters.is_empty() {
+            methods.retain(|method| {
+                let name = method.name();
+                name == "pcr f64" || filters.iter().any(|filter| name.contains(filter))
+            });
+        }
+        let (rows, absent) = compare(&field, &methods, effort, progress);
+        let warnings = scenario.warnings.clone();
+        Ok(Self { name: scenario.name.clone(), agents: scenario.agents.len(), rows, absent, warnings })
+    }
+}
+
+/// A method while it is measured.
+struct Course<'m> {
+    method: &'m dyn Method,
+    /// Of each round \[s\], and of the baseline in the same round.
+    times: Vec<[f64; 2]>,
+    rounds: usize,
+    row: Row,
+}
+
+fn compare(
+    field: &Field<'_>,
+    methods: &[Box<dyn Method>],
+    effort: Effort,
+    progress: &mut dyn FnMut(usize, usize),
+) -> (Vec<Row>, Vec<Absent>) {
+    let truth = Truth::new(field, effort.slices);
+    let total = methods.len();
+    progress(0, total);
+    // The first round tells how many more there is time for, and how good the answers are.
+    let mut courses: Vec<Course<'_>> = Vec::new();
+    let mut absent = Vec::new();
+    let mut baseline = None;
+    for (done, method) in methods.iter().enumerate() {
+        let method = method.as_ref();
+        let mut leave_out = |reason: String| absent.push(Absent { method: method.name(), reason });
+        if let Some(reason) = method.missing() {
+            leave_out(reason.to_owned());
+            continue;
+        }
+        if baseline.is_none_or(|of: &dyn Method| of.question() != method.question()) {
+            baseline = Some(method);
+        }
+        let base = baseline.map_or(f64::NAN, |baseline| baseline.timed(field).0);
+        let (took, answer) = method.timed(field);
+        let rounds = ((effort.budget / took) as usize).clamp(1, effort.rounds);
+        match answer {
+            Ok(answer) => {
+                let row = row(&truth, method, &answer);
+                courses.push(Course { method, times: vec![[took, base]], rounds, row });
+            }
+            Err(reason) => leave_out(reason),
+        }
+        progress(done + 1, total);
+    }
+    let rounds = courses.iter().map(|course| course.rounds).max().unwrap_or(0);
+    for round in 1..rounds {
+        let mut baseline: Option<(Question, f64)> = None;
+        for course in &mut courses {
+            let question = course.method.question();
+            let known = baseline.filter(|(of, _)| *of == question);
+            if known.is_some() && round >= course.rounds {
+                continue;
+            }
+            let took = course.method.timed(field).0;
+            let base = known.map_or(took, |(_, base)| base);
+            baseline = Some((question, base));
+            course.times.push([took, base]);
+        }
+    }
+    (courses.into_iter().map(Course::finish).collect(), absent)
+}
+
+impl Course<'_> {
+    fn finish(self) -> Row {
+        let ms = 1e3 * median(self.times.iter().map(|[took, _]| *took).collect());
+        let ratio = median(self.times.iter().map(|[took, base]| took / base).collect());
+        Row { ms, ratio, rounds: self.times.len(), ..self.row }
+    }
+}
+
+fn row(truth: &Truth, method: &dyn Method, answer: &Answer<'_>) -> Row {
+    let (count, bytes) = match answer {
+        Answer::Regions(regions) => (regions.count(), regions.bytes()),
+        Answer::Conflicts(found) => (found.len(), size_of_val(&found[..])),
+    };
+    let (method_name, question, tells) = (method.name(), method.question(), method.tells());
+    let errors = errors(truth, answer);
+    Row { method: method_name, question, tells, ms: 0.0, ratio: 1.0, rounds: 0, count, bytes, errors }
+}
+
+/// The middle one, the lower one of two.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
+}

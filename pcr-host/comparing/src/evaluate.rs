@@ -1,0 +1,203 @@
+//! The paper's evaluation and more, as a document with pictures: everything in it is measured or computed when it is written.
+//!
+//! ```text
+//! machine     what it runs on
+//! fleets      Table VI, and all methods on the same fleets
+//! shares      Fig. 12: finding pairs, and making regions
+//! figures     Fig. 13 and 14
+//! grazing     contacts and near misses down to a ten-millionth of a metre
+//! memory      what is kept of a collision, and what goes over a wire
+//! traffic     random missions in a real warehouse
+//! scale       fleets of up to 100,000 agents
+//! ```
+
+mod figures;
+mod fleets;
+mod grazing;
+mod machine;
+mod memory;
+mod scale;
+mod shares;
+mod traffic;
+
+use crate::compare::Effort;
+use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_formats::output;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::regions::Failure;
+use std::path::{Path, PathBuf};
+use std::{fmt, fs, io};
+
+/// How thoroughly to measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Everything.
+    Full,
+    /// Small fleets only, without the slowest methods: to see that it works.
+    Quick,
+}
+
+impl Extent {
+    /// Words of which the names of methods hold one; none for all methods.
+    fn filters(self) -> &'static [&'static str] {
+        match self {
+            Self::Full => &[],
+            Self::Quick => &["pcr", "polyline", "parry2d", "map 0.1 s"],
+        }
+    }
+
+    fn effort(self) -> Effort {
+        match self {
+            Self::Full => Effort { rounds: 31, budget: 0.4, slices: 20_000 },
+            Self::Quick => Effort { rounds: 2, budget: 0.01, slices: 500 },
+        }
+    }
+}
+
+/// Why there is no document.
+#[derive(Debug)]
+pub enum Problem {
+    /// Of a file or directory.
+    File(PathBuf, String),
+    /// Of a fleet.
+    Fleet(Failure),
+    /// Of a method that has no answer, by its name.
+    Method(String, String),
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path, problem) => write!(f, "{}: {problem}", path.display()),
+            Self::Fleet(failure) => failure.fmt(f),
+            Self::Method(name, reason) => write!(f, "{name}: {reason}"),
+        }
+    }
+}
+
+impl<F: Into<Failure>> From<F> for Problem {
+    fn from(failure: F) -> Self {
+        Self::Fleet(failure.into())
+    }
+}
+
+/// A part of the document: Markdown, and SVG pictures with their names.
+struct Section {
+    text: String,
+    pictures: Vec<(&'static str, String)>,
+}
+
+/// Directory of the pictures, below that of the document.
+const PICTURES: &str = "pictures/evaluation";
+
+/// A picture in the text.
+fn picture(name: &str, what: &str) -> String {
+    format!("![{what}]({PICTURES}/{name}.svg)\n")
+}
+
+/// Writes `evaluation.md` and its pictures into a directory; `data` is the directory with the fleets of the paper's Table VI and
+/// the layouts.
+/// `progress` is told how many sections are done, and of how many. Returns the files.
+///
+/// # Errors
+/// [`Problem`] where a fleet cannot be read, or a file cannot be written.
+pub fn write(
+    data: &Path,
+    directory: &Path,
+    extent: Extent,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Vec<PathBuf>, Problem> {
+    /// One after the other: they take the time of one another otherwise.
+    type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
+    const PARTS: [Part; 7] = [
+        fleets::section,
+        shares::section,
+        figures::section,
+        grazing::section,
+        memory::section,
+        traffic::section,
+        scale::section,
+    ];
+    let mut text = machine::preamble(extent);
+    let fleets = Fleets::read(data, extent)?;
+    let mut files = Vec::new();
+    for (done, part) in PARTS.iter().enumerate() {
+        progress(done, PARTS.len());
+        let section = part(&fleets, extent)?;
+        text.push('\n');
+        text.push_str(&section.text);
+        let pictures = section.pictures.into_iter();
+        files.extend(pictures.map(|(name, svg)| (directory.join(PICTURES).join(name).with_extension("svg"), svg)));
+    }
+    files.insert(0, (directory.join("evaluation.md"), text));
+    let written = files.into_iter().map(|(path, content)| {
+        let write = || {
+            output::folder(path.parent().unwrap_or(directory))?;
+            output::write(&path, content)
+        };
+        write().map_err(|error: io::Error| Problem::File(path.clone(), format!("cannot be written: {error}")))?;
+        Ok(path)
+    });
+    written.collect()
+}
+
+/// A row of the paper's Table VI, and our fleet for it.
+struct Fleet {
+    scenario: Scenario,
+    /// Agents and collision regions.
+    size: [usize; 2],
+    /// Of the analytic method, the computational one and PQP, as printed \[ms\].
+    paper: [f64; 3],
+    /// Memory of the first two, as printed.
+    memory: &'static str,
+}
+
+/// All of them.
+struct Fleets {
+    all: Vec<Fleet>,
+    /// The directory with the data.
+    data: PathBuf,
+}
+
+/// File; agents and regions, times \[ms\], and memory as the paper prints them.
+const TABLE_VI: [(&str, [usize; 2], [f64; 3], &str); 6] = [
+    ("table6-5.json", [5, 16], [1.4, 7_750.0, 97.0], "1 KB / 3 MB"),
+    ("table6-12.json", [12, 16], [1.5, 48_125.0, 1_220.0], "1 KB / 3 MB"),
+    ("paper12.json", [12, 126], [14.3, 51_110.0, 1_220.0], "4 KB / 10 MB"),
+    ("table6-30.json", [30, 218], [18.6, 193_763.0, 3_791.0], "14 KB / 17 MB"),
+    ("table6-50.json", [50, 718], [66.3, 553_279.0, 10_755.0], "46 KB / 54 MB"),
+    ("table6-100.json", [100, 2_478], [255.7, 2_032_841.0, 53_619.0], "159 KB / 202 MB"),
+];
+
+impl Fleets {
+    fn read(data: &Path, extent: Extent) -> Result<Self, Problem> {
+        let rows = match extent {
+            Extent::Full => &TABLE_VI[..],
+            Extent::Quick => &TABLE_VI[2..3],
+        };
+        let fleet = |&(name, size, paper, memory): &(&str, _, _, _)| {
+            let path = data.join(name);
+            let text = fs::read_to_string(&path)
+                .map_err(|error| Problem::File(path.clone(), format!("cannot be read: {error}")))?;
+            let scenario = Scenario::from_json(&text).map_err(|error| Problem::File(path, error.to_string()))?;
+            Ok(Fleet { scenario, size, paper, memory })
+        };
+        Ok(Self { all: rows.iter().map(fleet).collect::<Result<_, Problem>>()?, data: data.to_owned() })
+    }
+
+    /// The route graph of nav2's warehouse, with discs of this radius \[m\].
+    fn warehouse(&self, radius: f64) -> Result<Imported, Problem> {
+        let path = self.data.join("real/nav2/warehouse_graph.geojson");
+        let problem = |problem: String| Problem::File(path.clone(), problem);
+        let text = fs::read_to_string(&path).map_err(|error| problem(format!("cannot be read: {error}")))?;
+        let options = Options { radius: Some(radius), ..Options::default() };
+        // What it assumes about speeds goes for all agents alike.
+        let imported = import::roads(Format::Nav2, &text, &options, &mut Warnings::default());
+        imported.map_err(|error| problem(error.to_string()))
+    }
+
+    /// The paper's 12 agents.
+    fn paper12(&self) -> Option<&Fleet> {
+        self.all.iter().find(|fleet| fleet.size == [12, 126])
+    }
+}

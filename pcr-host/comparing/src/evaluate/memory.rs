@@ -1,0 +1,42 @@
+//! What is kept of a collision, and what goes over a wire.
+
+use super::{Extent, Fleets, Problem, Section};
+use crate::compare::Answer;
+use crate::compare::{Input, Question, methods};
+use pcr_planning::regions::{self, Request};
+use pcr_planning::report::figures::bytes;
+use std::fmt::Write as _;
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let mut text = String::from("## Memory, and bytes on the wire\n\nThe paper's 12 agents.\n\n");
+    let Some(fleet) = fleets.paper12() else { return Ok(Section { text, pictures: Vec::new() }) };
+    text.push_str("| what | all of it | a region |\n|---|---:|---:|\n");
+    let answer = regions::Answer::of::<f64>(&fleet.scenario, Request::default())?;
+    let count = answer.regions.len() as f64;
+    let mut row = |what: &str, size: usize| {
+        let _ = writeln!(text, "| {what} | {} | {} |", bytes(size), bytes((size as f64 / count).round() as usize));
+    };
+    let input = Input::new(&fleet.scenario)?;
+    let field = input.field();
+    let kept = match extent {
+        Extent::Full => &["pcr f64", "pcr f32", "pcr q16", "sampled map 0.1 s, boxes", "sampled map 0.01 s, boxes"][..],
+        Extent::Quick => &["pcr f64", "sampled map 0.1 s, boxes"],
+    };
+    for method in methods().iter().filter(|method| method.question() == Question::Regions) {
+        if let (true, Ok(Answer::Regions(regions))) = (kept.contains(&&*method.name()), method.answer(&field)) {
+            row(&format!("{}, as kept", method.name()), regions.bytes());
+        }
+    }
+    // Nine numbers: the paper's table says seven, but an arc against an arc needs nine.
+    let crossings: usize =
+        answer.regions.iter().flat_map(|region| &region.pieces).map(|piece| piece.crossings.len()).sum();
+    row("the paper's descriptors, nine `f32` a crossing", crossings * 9 * size_of::<f32>());
+    let json = |value: Result<String, serde_json::Error>| value.map_or(0, |text| text.len());
+    row("`pcr regions --format json`", json(serde_json::to_string(&answer)));
+    row("the scenario, from which any receiver computes them", fleet.scenario.to_json().len());
+    text.push_str(
+        "\nA region serves both directions of a pair: it is kept once and counts twice here. docs/firmware.md has the bytes of single regions \
+        and pieces in the protocol of the firmware.\n",
+    );
+    Ok(Section { text, pictures: Vec::new() })
+}

@@ -1,0 +1,199 @@
+//! Fleets of up to 100,000 agents.
+
+mod copies;
+mod course;
+
+use super::{Extent, Fleets, Problem, Section, picture};
+use crate::compare::crowd;
+use crate::compare::measure::median;
+use crate::compare::stopwatch::Stopwatch;
+use copies::Copies;
+use course::{Course, TABLE};
+use pcr_drawing::plot::{Chart, Series};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, build_ecm};
+use pcr_planning::report::figures::{digits, time};
+use std::fmt::Write as _;
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let copies = Copies::new(fleets.warehouse(copies::RADIUS)?);
+    let copies = copies.map_err(|error| Problem::File(fleets.data.clone(), error.to_string()))?;
+    let floor = Kind::run("floor", &|agents, seed| crowd(agents, seed), extent)?;
+    let warehouse = Kind::run("warehouse", &|agents, seed| copies.fleet(agents, seed), extent)?;
+    let kinds = [floor, warehouse];
+    let ([width, depth], [nodes, edges]) = copies.size();
+    let words = [
+        "Random agents on a floor as dense as the paper's, 12 agents on 7 m by 7 m, with paths of three to six segments that stay \
+        on it."
+            .to_owned(),
+        format!(
+            "The warehouse graph of nav2 ({nodes} nodes, {edges} edges, {} m by {} m) in copies side by side, with {} agents a copy of {} m \
+            radius, each on the shortest way from a random node to another one, corners rounded.",
+            digits(width),
+            digits(depth),
+            copies::AGENTS,
+            copies::RADIUS
+        ),
+    ];
+    let mut text = String::from(
+        "## Scale\n\n`rows` finds the agents that come near by a grid, and works through the fleet an agent at a time along a curve that \
+        fills the plane, without keeping anything, as a server would that streams; `table` is the table of the library, which compares the \
+        boxes of all pairs. Small fleets are many different ones, so that none is known to the processor from before. Regions in \
+        both directions.\n",
+    );
+    for (kind, words) in kinds.iter().zip(words) {
+        let _ = write!(text, "\n{words}\n\n{}", kind.table());
+    }
+    text.push_str("\nTime grows with these powers of the agents and of the regions, fitted to the sizes above:\n\n");
+    text.push_str(
+        "| | rows, agents | rows, regions | all cores, agents | table, agents | time an agent varies by | time a region varies by |\n\
+        |---|---:|---:|---:|---:|---:|---:|\n",
+    );
+    kinds.iter().for_each(|kind| text.push_str(&kind.fitted()));
+    let _ = write!(text, "\n{}", exchange(if extent == Extent::Full { TABLE } else { 300 })?);
+    let _ =
+        write!(text, "\n{}{}", picture("scale-agents", "Time by agents"), picture("scale-regions", "Time by regions"));
+    let by_agents = kinds.iter().flat_map(|kind| {
+        [
+            kind.series("rows", |course| course.agents as f64, |course| Some(course.rows)),
+            kind.series("all cores", |course| course.agents as f64, |course| Some(course.all_cores)),
+            kind.series("table", |course| course.agents as f64, |course| course.table),
+        ]
+    });
+    let by_regions = kinds.iter().map(|kind| kind.series("rows", |course| course.regions, |course| Some(course.rows)));
+    let chart = |axis, series| Chart { title: "All regions of a fleet", axes: [axis, "time [ms]"], series }.draw();
+    let pictures = vec![
+        ("scale-agents", chart("agents", by_agents.collect())),
+        ("scale-regions", chart("regions", by_regions.collect())),
+    ];
+    Ok(Section { text, pictures })
+}
+
+/// Fleets of a kind, in growing sizes.
+struct Kind {
+    name: &'static str,
+    courses: Vec<Course>,
+    /// Of the process with the largest one \[MB\].
+    memory: Option<f64>,
+}
+
+impl Kind {
+    fn run(name: &'static str, make: &dyn Fn(usize, u64) -> Scenario, extent: Extent) -> Result<Self, Problem> {
+        let sizes: &[usize] = match extent {
+            Extent::Full => &[100, 1_000, 10_000, 100_000],
+            Extent::Quick => &[100, 300],
+        };
+        let memory = course::memory(make, sizes.last().copied().unwrap_or(0))?;
+        let courses = sizes.iter().map(|&agents| Course::run(make, agents, extent));
+        Ok(Self { name, courses: courses.collect::<Result<_, _>>()?, memory })
+    }
+
+    fn table(&self) -> String {
+        let mut text = String::from(
+            "| agents | regions an agent | rows, an agent | rows, a region | all cores, an agent | table, an agent |\n\
+            |---:|---:|---:|---:|---:|---:|\n",
+        );
+        for Course { agents, regions, rows, all_cores, table } in &self.courses {
+            let share = |ms: f64| time(ms / *agents as f64);
+            let _ = writeln!(
+                text,
+                "| {agents} | {} | {} | {} | {} | {} |",
+                digits(regions / *agents as f64),
+                share(*rows),
+                time(rows / regions),
+                share(*all_cores),
+                table.map_or("–".into(), share)
+            );
+        }
+        if let (Some(memory), Some(largest)) = (self.memory, self.courses.last()) {
+            let _ = writeln!(
+                text,
+                "\nMaking and streaming the fleet of {} takes the process to {} MB at most.",
+                largest.agents,
+                digits(memory)
+            );
+        }
+        text
+    }
+
+    fn series(&self, what: &str, x: fn(&Course) -> f64, y: fn(&Course) -> Option<f64>) -> Series {
+        let points = self.courses.iter().filter_map(|course| Some([x(course), y(course)?])).collect();
+        Series { name: format!("{}, {what}", self.name), points, line: true }
+    }
+
+    /// A row of the table of exponents.
+    fn fitted(&self) -> String {
+        let of = |x: fn(&Course) -> f64, y: fn(&Course) -> Option<f64>| exponent(&self.series("", x, y).points);
+        let agents = |course: &Course| course.agents as f64;
+        let varies = |each: &dyn Fn(&Course) -> f64| {
+            let each = self.courses.iter().map(each);
+            let (least, most) =
+                each.fold((f64::INFINITY, 0.0_f64), |(least, most), each| (least.min(each), most.max(each)));
+            digits(most / least)
+        };
+        format!(
+            "| {} | {:.2} | {:.2} | {:.2} | {:.2} | {} × | {} × |\n",
+            self.name,
+            of(agents, |course| Some(course.rows)),
+            of(|course| course.regions, |course| Some(course.rows)),
+            of(agents, |course| Some(course.all_cores)),
+            of(agents, |course| course.table),
+            varies(&|course| course.rows / course.agents as f64),
+            varies(&|course| course.rows / course.regions)
+        )
+    }
+}
+
+/// One agent of a large fleet gets another path, in the table of all.
+fn exchange(agents: usize) -> Result<String, Problem> {
+    const EXCHANGES: usize = 51;
+    let fleets = [1, 2].map(|seed| Fleet::<f64>::new(&crowd(agents, seed)));
+    let [first, second] = fleets;
+    let (first, second) = (first?, second?);
+    let (mut motions, others) = (first.motions(), second.motions());
+    let mut table = build_ecm(&motions)?;
+    let mut times = Vec::new();
+    for k in 0..EXCHANGES {
+        let agent = k * agents / EXCHANGES;
+        let (before, after) = (motions[agent], others[agent]);
+        // There and back: the table does not grow.
+        for motion in [after, before] {
+            let clock = Stopwatch::start();
+            let outcome = table.replace(&mut motions, agent, motion);
+            times.push(1e3 * clock.wall());
+            outcome.expect("the table of the fleet, which does not grow");
+        }
+    }
+    let longest = times.iter().copied().fold(0.0, f64::max);
+    Ok(format!(
+        "One of {agents} agents on the floor gets another path, and its regions with all others are computed anew in the table of {} \
+        regions: {} (median of {}), at most {}.\n",
+        2 * table.len(),
+        time(median(times.clone())),
+        times.len(),
+        time(longest)
+    ))
+}
+
+/// Slope of the best line through the logarithms.
+fn exponent(points: &[[f64; 2]]) -> f64 {
+    let logs: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::ln)).collect();
+    let count = logs.len() as f64;
+    let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
+    let (x, y) = (mean(0), mean(1));
+    let (top, bottom) = logs.iter().fold((0.0, 0.0), |(top, bottom), log| {
+        (top + (log[0] - x) * (log[1] - y), bottom + (log[0] - x) * (log[0] - x))
+    });
+    top / bottom
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exponent;
+
+    #[test]
+    fn exponents_of_powers_are_found() {
+        let points = [1.0, 3.0, 50.0].map(|x: f64| [x, 7.0 * x.powf(1.3)]);
+        assert!((exponent(&points) - 1.3).abs() < 1e-12);
+    }
+}

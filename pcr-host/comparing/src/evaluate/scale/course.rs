@@ -1,0 +1,80 @@
+//! All regions of fleets of one size: time and memory.
+
+use super::super::machine::line;
+use super::super::{Extent, Problem};
+use crate::compare::stopwatch::Stopwatch;
+use pcr_core::{Full, Motion};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, build_ecm};
+use pcr_planning::rows::{self, Walk};
+use std::fs;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What is done with a fleet.
+type Work<'w> = dyn Fn(&[Motion<'_, f64>]) -> Result<(), Full> + 'w;
+
+/// The largest fleet of which one table is made.
+pub(super) const TABLE: usize = 10_000;
+
+/// Fleets of one size; all numbers are for one of them.
+pub(super) struct Course {
+    pub(super) agents: usize,
+    pub(super) regions: f64,
+    /// On one core, on all, and of the table of all pairs \[ms\].
+    pub(super) rows: f64,
+    pub(super) all_cores: f64,
+    pub(super) table: Option<f64>,
+}
+
+impl Course {
+    /// Of the fleets that `make` makes by their size and a seed. Small ones are as many different ones as the extent wants agents:
+    /// of one that is repeated the processor would know all branches by heart.
+    pub(super) fn run(make: &dyn Fn(usize, u64) -> Scenario, agents: usize, extent: Extent) -> Result<Self, Problem> {
+        let together = match extent {
+            Extent::Full => 10_000,
+            Extent::Quick => 300,
+        };
+        let count = (together / agents).max(1);
+        let fleets = (0..count as u64).map(|seed| Fleet::<f64>::new(&make(agents, seed)));
+        let fleets = fleets.collect::<Result<Vec<_>, _>>()?;
+        let fleets: Vec<Vec<Motion<'_, f64>>> = fleets.iter().map(Fleet::motions).collect();
+        let regions = AtomicUsize::new(0);
+        let each = |motions: &[Motion<'_, f64>]| {
+            rows::each(motions, |row| {
+                regions.fetch_add(2 * row.table().len(), Ordering::Relaxed);
+            })
+        };
+        let table = |motions: &[Motion<'_, f64>]| build_ecm(motions).map(drop);
+        let time = |clock: fn(&Stopwatch) -> f64, work: &Work<'_>| {
+            let watch = Stopwatch::start();
+            fleets.iter().try_for_each(|motions| work(motions))?;
+            Ok::<f64, Full>(1e3 * clock(&watch) / count as f64)
+        };
+        let all_cores = time(Stopwatch::wall, &each)?;
+        Ok(Self {
+            agents,
+            regions: regions.into_inner() as f64 / count as f64,
+            rows: time(Stopwatch::elapsed, &in_turn)?,
+            all_cores,
+            table: (agents <= TABLE).then(|| time(Stopwatch::elapsed, &table)).transpose()?,
+        })
+    }
+}
+
+/// All rows on one core.
+fn in_turn(motions: &[Motion<'_, f64>]) -> Result<(), Full> {
+    let grid = rows::grid(motions);
+    let mut walk = Walk::new(motions, &grid);
+    grid.order().into_iter().try_for_each(|ego| walk.row(ego as usize).map(drop))
+}
+
+/// Most memory that the process has from here on while it makes and streams a fleet \[MB\], where the system tells: all that it
+/// has kept from before included.
+pub(super) fn memory(make: &dyn Fn(usize, u64) -> Scenario, agents: usize) -> Result<Option<f64>, Problem> {
+    // From here on the peak counts anew.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+    let fleet = Fleet::<f64>::new(&make(agents, 0))?;
+    rows::each(&fleet.motions(), |_| {})?;
+    let peak = || line("/proc/self/status", "VmHWM")?.split(' ').next()?.parse::<f64>().ok();
+    Ok(peak().map(|kilobytes| kilobytes / 1e3))
+}

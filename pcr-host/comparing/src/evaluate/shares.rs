@@ -1,0 +1,86 @@
+//! Fig. 12: time to find the pairs that come near, and to make their regions.
+
+use super::{Extent, Fleets, Problem, Section, picture};
+use crate::compare::measure::median;
+use crate::compare::stopwatch::{Stopwatch, steady};
+use pcr_core::{Motion, Scalar as _};
+use pcr_drawing::plot::{Chart, Series};
+use pcr_planning::fleet::{Fleet, build_ecm};
+use pcr_planning::report::figures::{share, time};
+use std::fmt::Write as _;
+use std::hint::black_box;
+
+/// A fleet: agents, regions, and times to find pairs and for all \[ms\].
+struct Point {
+    agents: usize,
+    regions: usize,
+    finding: f64,
+    all: f64,
+}
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let rounds = extent.effort().rounds;
+    let mut points = Vec::new();
+    for fleet in &fleets.all {
+        let parts = Fleet::<f64>::new(&fleet.scenario)?;
+        let motions = parts.motions();
+        let regions = 2 * pcr_planning::regions::table(&fleet.scenario, &motions)?.len();
+        let [finding, all] = [find as fn(&[Motion<'_, f64>]) -> usize, build]
+            .map(|work| median((0..rounds).map(|_| timed(|| work(black_box(&motions)))).collect()));
+        points.push(Point { agents: motions.len(), regions, finding, all });
+    }
+    let mut text = String::from(
+        "## Fig. 12: finding pairs, making regions\n\nThe table compares the boxes of all pairs of agents before anything else, which is what \
+        grows with the square of the agents; the rest grows with the regions. Both directions of a pair count as regions.\n\n\
+        | agents | regions | finding pairs | regions | share of finding |\n|---:|---:|---:|---:|---:|\n",
+    );
+    for point in &points {
+        let Point { agents, regions, finding, all } = *point;
+        let rest = time((all - finding).max(0.0));
+        let _ = writeln!(text, "| {agents} | {regions} | {} | {rest} | {} |", time(finding), share(finding / all));
+    }
+    let _ = write!(text, "\n{}{}", picture("fig12a", "Time by agents"), picture("fig12b", "Time by regions"));
+    text.push_str(&picture("fig12c", "Shares by agents"));
+    let series = |name: &str, x: fn(&Point) -> f64, y: fn(&Point) -> f64| {
+        let mut line: Vec<[f64; 2]> = points.iter().map(|point| [x(point), y(point)]).collect();
+        line.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Series { name: name.into(), points: line, line: true }
+    };
+    let times = |title, axis, x: fn(&Point) -> f64| {
+        let series = vec![series("finding pairs", x, |p| p.finding), series("all", x, |p| p.all)];
+        Chart { title, axes: [axis, "time [ms]"], series }.draw()
+    };
+    let agents = |point: &Point| point.agents as f64;
+    let shares = vec![
+        series("finding pairs", agents, |p| 100.0 * p.finding / p.all),
+        series("regions", agents, |p| 100.0 * (1.0 - p.finding / p.all)),
+    ];
+    let shares = Chart { title: "Shares of the time", axes: ["agents", "share [%]"], series: shares };
+    let pictures = vec![
+        ("fig12a", times("Time by the number of agents", "agents", agents)),
+        ("fig12b", times("Time by the number of regions", "regions", |point| point.regions as f64)),
+        ("fig12c", shares.draw()),
+    ];
+    Ok(Section { text, pictures })
+}
+
+/// \[ms\]
+fn timed(work: impl FnMut() -> usize) -> f64 {
+    1e3 * steady(Stopwatch::elapsed, work).0
+}
+
+/// Pairs whose boxes come within the sum of their radii: what the table does first.
+fn find(motions: &[Motion<'_, f64>]) -> usize {
+    let mut found = 0;
+    for (place, first) in motions.iter().enumerate() {
+        for second in &motions[place + 1..] {
+            let reach = first.radius() + second.radius() + f64::slack(first.extent().max(second.extent()));
+            found += usize::from(first.bounds().expanded(reach).meets(second.bounds()));
+        }
+    }
+    found
+}
+
+fn build(motions: &[Motion<'_, f64>]) -> usize {
+    build_ecm(motions).map_or(0, |table| table.len())
+}

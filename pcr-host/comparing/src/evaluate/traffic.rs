@@ -1,0 +1,104 @@
+//! Random missions on the route graph of a real warehouse: regions, start delays and their check.
+
+use super::{Extent, Fleets, Problem, Section, picture};
+use crate::compare::stopwatch::{Stopwatch, steady};
+use pcr_drawing::{Ground, overview};
+use pcr_formats::footprint::Footprint;
+use pcr_formats::import::Imported;
+use pcr_planning::check::Verdict;
+use pcr_planning::fleet::build_ecm;
+use pcr_planning::report::figures::{digits, time};
+use pcr_planning::traffic::{Request, Traffic, schedule};
+use std::fmt::Write as _;
+
+/// Radius of the discs \[m\].
+const RADIUS: f64 = 0.4;
+
+/// Length and width of the vehicle with an outline \[m\].
+const SIZE: [f64; 2] = [0.9, 0.6];
+
+/// Largest fleet of these.
+const OUTLINED: usize = 25;
+
+/// The fleet of the picture.
+const DRAWN: usize = 50;
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let sizes: &[usize] = match extent {
+        Extent::Full => &[10, 25, 50, 100],
+        Extent::Quick => &[10],
+    };
+    let refused = |problem: &dyn ToString| Problem::File(fleets.data.clone(), problem.to_string());
+    let disc = fleets.warehouse(RADIUS)?;
+    let [nodes, edges] = [disc.layout.nodes.len(), disc.layout.edges.len()];
+    let [length, width] = SIZE;
+    let mut text = format!(
+        "## Traffic in a warehouse\n\nThe route graph of nav2's warehouse, {nodes} nodes and {edges} edges, and random missions on it (`pcr traffic`, seed 1): \
+        shortest ways between nodes, corners rounded with 1 m. Missions that no order of starts lets through together with those before them are \
+        passed over. *Regions*: the table of all pairs, both directions; *plan*: the delays that every pair forbids, and 2000 orders \
+        of priority; *check*: all conflicts of the plan.\n\n\
+        | vehicle | agents | passed over | regions | in | plan in | check in | conflicts if all set off at once | planned | conflicts then | \
+        makespan | missions an hour |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    let mut pictures = Vec::new();
+    let outlined = with_outline(&disc).map_err(|problem| refused(&problem))?;
+    let vehicles = [(&disc, format!("disc of {RADIUS} m")), (&outlined, format!("{length} m by {width} m"))];
+    for (imported, name) in vehicles {
+        let most = if imported.vehicle.footprint.is_some() { OUTLINED } else { usize::MAX };
+        for &agents in sizes.iter().filter(|agents| **agents <= most) {
+            let (row, [_, plan]) = row(imported, &name, agents)?;
+            text.push_str(&row);
+            if agents == DRAWN && imported.vehicle.footprint.is_none() {
+                let ground = Ground { imported, level: imported.layout.largest_level() };
+                let svg = overview(&plan, Some(ground)).map_err(|error| refused(&error))?;
+                pictures.push(("warehouse", svg));
+            }
+        }
+    }
+    if !pictures.is_empty() {
+        let _ = write!(text, "\n{}", picture("warehouse", "50 planned agents on the warehouse graph"));
+    }
+    Ok(Section { text, pictures })
+}
+
+/// The same layout with vehicles that are no discs.
+fn with_outline(disc: &Imported) -> Result<Imported, String> {
+    let [ahead, left] = SIZE.map(|side| 0.5 * side);
+    let footprint = Footprint::new(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]], None)?;
+    let mut outlined = disc.clone();
+    (outlined.vehicle.radius, outlined.vehicle.footprint) = (footprint.reach(), Some(footprint));
+    Ok(outlined)
+}
+
+fn row(
+    imported: &Imported,
+    name: &str,
+    agents: usize,
+) -> Result<(String, [pcr_formats::scenario::Scenario; 2]), Problem> {
+    let request = Request { agents, seed: 1 };
+    let (traffic, scenarios) = Traffic::of(imported, request)?;
+    let [missions, plan] = &scenarios;
+    let bodies = pcr_planning::bodies::Bodies::<f64>::new(missions)?;
+    let motions = bodies.fleet.motions();
+    let table = timed(|| build_ecm(&motions).map(drop))?;
+    let planned = timed(|| schedule(missions, request.seed).map(drop))?;
+    let check = timed(|| Verdict::of::<f64>(plan, false).map(drop))?;
+    let mut row = String::new();
+    let Traffic { placed, passed_over, regions, conflicts_before, conflicts_after, .. } = traffic;
+    let count = if placed < agents { format!("{placed} of {agents}") } else { agents.to_string() };
+    let [table, planned_in, check] = [table, planned, check].map(time);
+    let _ = writeln!(
+        row,
+        "| {name} | {count} | {passed_over} | {regions} | {table} | {planned_in} | {check} | {conflicts_before} | {} | {conflicts_after} | {} s | {} |",
+        traffic.planned,
+        digits(traffic.makespan),
+        digits(traffic.missions_per_hour)
+    );
+    Ok((row, scenarios))
+}
+
+/// Time of one core \[ms\].
+fn timed<E>(work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+    let (time, outcome) = steady(Stopwatch::elapsed, work);
+    outcome.map(|()| 1e3 * time)
+}

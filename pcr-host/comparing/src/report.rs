@@ -1,0 +1,85 @@
+//! Comparisons as text.
+
+use crate::compare::{Absent, Comparison, Errors, Question, Row};
+use pcr_planning::report::columns::Columns;
+use pcr_planning::report::figures::{bytes, seconds, share, time, times};
+use pcr_planning::report::{Document, heading, quoted};
+use std::io::{self, Write};
+
+impl Document for Comparison {
+    const FORMAT: &'static str = "pcr-comparison";
+}
+
+/// The header line of [`comparison_csv`].
+pub const COMPARISON_CSV_HEADER: &str =
+    "name,agents,method,question,ms,ratio,rounds,count,bytes,conflicts,missed,invented,time,area,difference\n";
+
+/// A line a method.
+///
+/// # Errors
+/// Those of the writer.
+pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
+    let (name, agents) = (quoted(&comparison.name), comparison.agents);
+    for row in &comparison.rows {
+        let Row { method, ms, ratio, rounds, count, bytes, .. } = row;
+        let question = match row.question {
+            Question::Regions => "regions",
+            Question::Conflicts => "conflicts",
+        };
+        let errors = match row.errors {
+            Errors::Conflicts { conflicts, missed, invented, time } => {
+                format!("{conflicts},{missed},{invented},{time},,")
+            }
+            Errors::Regions { area, difference } => format!(",,,,{area},{difference}"),
+        };
+        let method = quoted(method);
+        writeln!(out, "{name},{agents},{method},{question},{ms},{ratio},{rounds},{count},{bytes},{errors}")?;
+    }
+    Ok(())
+}
+
+/// A heading and a table for each question, as text or in Markdown.
+///
+/// # Errors
+/// Those of the writer.
+pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl Write) -> io::Result<()> {
+    let Comparison { agents, rows, absent, .. } = comparison;
+    if !markdown {
+        writeln!(out, "{}: {agents} agents", heading(&comparison.name))?;
+    }
+    for question in [Question::Regions, Question::Conflicts] {
+        let titles = match question {
+            Question::Regions => ["pairs or regions", "kept", "area off"].as_slice(),
+            Question::Conflicts => &["found", "missed", "invented", "time off"],
+        };
+        let mut all = vec!["<method", "<tells", "time", "of pcr's"];
+        all.extend(titles);
+        let mut columns = Columns::new(&all);
+        for row in rows.iter().filter(|row| row.question == question) {
+            columns.row(cells(row));
+        }
+        writeln!(out)?;
+        if markdown { columns.write_markdown(out)? } else { columns.write(out)? }
+    }
+    if !absent.is_empty() {
+        let absent: Vec<_> = absent.iter().map(|Absent { method, reason }| format!("{method}: {reason}")).collect();
+        writeln!(out, "\nLeft out: {}.", absent.join("; "))?;
+    }
+    Ok(())
+}
+
+fn cells(row: &Row) -> Vec<String> {
+    let mut cells = vec![row.method.clone(), row.tells.to_owned(), time(row.ms), times(row.ratio)];
+    match row.errors {
+        Errors::Regions { area, difference } => {
+            cells.extend([row.count.to_string(), bytes(row.bytes), share(difference / area)]);
+        }
+        Errors::Conflicts { conflicts, missed, invented, time } => cells.extend([
+            format!("{} of {conflicts}", conflicts - missed),
+            missed.to_string(),
+            invented.to_string(),
+            seconds(time),
+        ]),
+    }
+    cells
+}

@@ -1,0 +1,198 @@
+//! A layout as a picture: the corridors of a vehicle on the edges of a level.
+//!
+//! The corridor that a disc sweeps is the stroke of its path with round ends, as wide as the disc: SVG draws it exactly. That of a
+//! footprint is the union of those of its discs.
+
+use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, at_least_visible, room_at_left};
+use super::map::ROOM_ABOVE;
+use super::svg::{PathData, Pixels, Svg};
+use pcr_core::Interval;
+use pcr_formats::import::{Edge, Imported, Layout, Node};
+use pcr_formats::scenario::PathSegment;
+use pcr_formats::scenario::Placed;
+use pcr_planning::locks::{Rides, corridor};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+use std::fmt::Display;
+
+/// Largest width and height of the plot \[px\].
+const SIDE: f64 = 720.0;
+
+/// Smallest ones \[px\].
+const LEAST: f64 = 160.0;
+
+/// Nodes up to which their names are written.
+const NAMED: usize = 60;
+
+/// A level of a layout that a vehicle travels.
+#[derive(Clone, Copy, Debug)]
+pub struct Ground<'a> {
+    /// The layout and the vehicle.
+    pub imported: &'a Imported,
+    /// Place of the level in [`Layout::levels`].
+    pub level: usize,
+}
+
+/// Arcs of a smaller radius than this are turns in place, of which nothing is to be seen \[m\].
+const POINT: f64 = 1e-6;
+
+/// Steps of a metre in pages: coordinates are written to a hundredth of a step.
+pub(super) const STEPS: f64 = 1000.0;
+
+/// Lines and true arcs one after the other, by a map from metres to the picture; `flipped` where its y-axis points down.
+pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
+    let mut data = PathData::default();
+    for (k, piece) in curve.iter().enumerate() {
+        if k == 0 {
+            data.move_to(at(piece.at));
+        }
+        match piece.shape {
+            PathSegment::Line { .. } => data.line_to(at(piece.end())),
+            PathSegment::Arc { radius, .. } if radius < POINT => data.line_to(at(piece.end())),
+            PathSegment::Arc { radius, sweep } => {
+                // Below half a turn two points and a radius leave no doubt which arc is meant.
+                let parts = (sweep.abs() / (0.75 * PI)).ceil().max(1.0) as usize;
+                for part in 1..=parts {
+                    let sweep = sweep * part as f64 / parts as f64;
+                    let end = Placed { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end();
+                    data.arc_to(radius * scale, (sweep > 0.0) != flipped, at(end));
+                }
+            }
+        }
+    }
+    data
+}
+
+/// The same for a page, in [`STEPS`], y up.
+pub(super) fn line(curve: &[Placed]) -> String {
+    path(curve, STEPS, false, |point| point.map(|x| x * STEPS)).to_string()
+}
+
+/// Box around what is on a level, with room for discs of this radius \[m\].
+pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Interval<f64>; 2] {
+    let on = |other: usize| level.is_none_or(|level| level == other);
+    let nodes = layout.nodes.iter().filter(|node| on(node.level)).map(|node| node.at);
+    let pieces = layout.edges.iter().filter(|edge| on(layout.level(edge))).flat_map(|edge| &edge.curve);
+    let points = pieces.flat_map(|piece| {
+        // Arcs by points of which none is farther than an eighth of a turn from the next.
+        (0..=8).map(|k| match piece.shape {
+            PathSegment::Line { .. } if k < 8 => piece.at,
+            PathSegment::Line { .. } => piece.end(),
+            PathSegment::Arc { radius, sweep } => {
+                let sweep = sweep * f64::from(k) / 8.0;
+                Placed { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end()
+            }
+        })
+    });
+    let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+    for point in nodes.chain(points) {
+        for ((lo, hi), x) in range.iter_mut().zip(point) {
+            (*lo, *hi) = (lo.min(x), hi.max(x));
+        }
+    }
+    let room = |(lo, hi): (f64, f64)| if lo <= hi { (lo - 1.5 * radius, hi + 1.5 * radius) } else { (0.0, 1.0) };
+    range.map(room).map(|(lo, hi)| at_least_visible(Interval::new(lo, hi)))
+}
+
+impl Ground<'_> {
+    /// Box around what is on the level \[m\].
+    pub(super) fn bounds(&self) -> [Interval<f64>; 2] {
+        bounds(&self.imported.layout, Some(self.level), self.reach())
+    }
+
+    /// Radius of the disc around the vehicle with its margin \[m\].
+    fn reach(&self) -> f64 {
+        self.imported.vehicle.radius + self.imported.vehicle.margin
+    }
+
+    /// Corridors and edges of the level, y up: what a page draws below the agents.
+    pub(super) fn lines(&self) -> Value {
+        let layout = &self.imported.layout;
+        let rides = Rides::new(self.imported);
+        let edges = || layout.edges.iter().filter(|edge| layout.level(edge) == self.level);
+        let corridors = edges().flat_map(|edge| corridor(&rides.on(edge)));
+        json!({
+            "steps": STEPS,
+            "corridors": corridors.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
+            "edges": edges().map(|edge| line(&edge.curve)).filter(|line| !line.is_empty()).collect::<Vec<_>>(),
+        })
+    }
+
+    /// The corridors, the edges and the nodes, these with their names if they are few.
+    pub(super) fn draw(&self, svg: &mut Svg, frame: &Frame, names: bool) {
+        let metre = 1.0 / frame.x.units_per_pixel();
+        let layout = &self.imported.layout;
+        let edges: Vec<&Edge> = layout.edges.iter().filter(|edge| layout.level(edge) == self.level).collect();
+        let round: [(&str, &dyn Display); 3] =
+            [("fill", &"none"), ("stroke-linecap", &"round"), ("stroke-linejoin", &"round")];
+        let stroke = |svg: &mut Svg, curve: &[Placed], width: f64| {
+            let data = path(curve, metre, true, |point| frame.at(point));
+            if !data.is_empty() {
+                svg.empty("path", &[("d", &data), ("stroke-width", &Pixels(width))]);
+            }
+        };
+        let rides = Rides::new(self.imported);
+        // One colour for all of them, however many lie on one another.
+        svg.start("g", &[&round[..], &[("stroke", &"#2078bf"), ("opacity", &"0.18")]].concat());
+        for (curve, radius) in edges.iter().flat_map(|edge| corridor(&rides.on(edge))) {
+            stroke(svg, &curve, 2.0 * radius * metre);
+        }
+        svg.end();
+        svg.start("g", &[&round[..], &[("stroke", &"#1d2125")]].concat());
+        edges.iter().for_each(|edge| stroke(svg, &edge.curve, 1.1));
+        svg.end();
+        let nodes: Vec<&Node> = layout.nodes.iter().filter(|node| node.level == self.level).collect();
+        let radius = Pixels(if names { 2.0 } else { 1.2 });
+        svg.start("g", &[("fill", &"#a94022"), ("font-size", &Pixels(9.0))]);
+        for node in &nodes {
+            let [x, y] = frame.at(node.at);
+            svg.empty("circle", &[("cx", &Pixels(x)), ("cy", &Pixels(y)), ("r", &radius)]);
+            if names && nodes.len() <= NAMED {
+                svg.label([x + 3.5, y - 3.5], "start", &[], &node.id.to_string());
+            }
+        }
+        svg.end();
+    }
+
+    /// The level as a picture of its own.
+    pub(super) fn picture(&self) -> String {
+        self.picture_with(&self.title(), 0.0, |_, _| {})
+    }
+
+    /// The same under another title, with more on it and room below, in pixels.
+    pub(super) fn picture_with(&self, title: &str, room: f64, more: impl FnOnce(&mut Svg, &Frame)) -> String {
+        let [x, y] = self.bounds();
+        let metre = SIDE / x.length().max(y.length());
+        let fit = |values: Interval<f64>| {
+            let pixels = (values.length() * metre).max(LEAST);
+            let half = pixels / metre / 2.0;
+            (pixels, Interval::new(values.middle() - half, values.middle() + half))
+        };
+        let ((width, x), (height, y)) = (fit(x), fit(y));
+        let left = room_at_left(y, height);
+        let frame = Frame::new(x, y, [left, ROOM_ABOVE, left + width, ROOM_ABOVE + height]);
+        let [_, _, right, bottom] = frame.edges;
+        let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW + room, title);
+        let size = Pixels(AXIS_SIZE + 0.5);
+        svg.label([(left + right) / 2.0, ROOM_ABOVE - 9.0], "middle", &[("font-size", &size)], title);
+        frame.draw(&mut svg, ["x [m]", "y [m]"]);
+        self.draw(&mut svg, &frame, true);
+        more(&mut svg, &frame);
+        frame.draw_border(&mut svg);
+        svg.finish()
+    }
+
+    pub(super) fn title(&self) -> String {
+        let Imported { layout, vehicle } = self.imported;
+        let name = if layout.name.is_empty() { "Layout" } else { &layout.name };
+        let level = match layout.levels.get(self.level).filter(|_| layout.levels.len() > 1) {
+            Some(level) => format!(", {level}"),
+            None => String::new(),
+        };
+        let of = match &vehicle.footprint {
+            Some(footprint) => format!("a footprint of {} corners", footprint.polygon().len()),
+            None => format!("a disc of {} m", self.reach()),
+        };
+        format!("{name}{level}: corridors of {of}")
+    }
+}

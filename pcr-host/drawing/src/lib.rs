@@ -1,0 +1,382 @@
+//! Pictures of a scenario and its collision regions: SVG, PNG, and a page to explore them in a browser.
+//!
+//! ```text
+//! scene       motions, regions and their outlines, shared by all pictures
+//! contour     the exact outline of a region in time and travelled length
+//! axis        metres and seconds to pixels, ticks
+//! labels      where labels go
+//! palette     colours of the agents
+//! workspace   paper Fig. 10: paths and discs
+//! map         paper Fig. 11: the extended collision map of an agent
+//! overview    both side by side
+//! page        the same in a browser, with a time slider
+//! audit       what an audit of exclusions has found
+//! layout      the corridors on the edges of a layout
+//! locks       a page in which the edges of a layout show what they block
+//! replay      a page on which to watch a simulation
+//! template    pages with everything in them
+//! svg         the writer of SVG files
+//! raster      SVG to PNG (feature `png`)
+//! ```
+
+mod audit;
+mod axis;
+mod contour;
+mod labels;
+mod layout;
+mod locks;
+mod map;
+mod overlay;
+mod overview;
+mod page;
+mod palette;
+pub mod plot;
+#[cfg(feature = "png")]
+mod raster;
+pub mod replay;
+mod scene;
+mod svg;
+mod template;
+mod workspace;
+
+pub use layout::Ground;
+pub use overlay::{Bar, Overlay};
+use pcr_exclusions::{Audit, Rules};
+use pcr_formats::import::Imported;
+use pcr_formats::output;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Fleet, build_ecm};
+use pcr_planning::locks::Locks;
+use scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::{io, thread};
+
+/// Writes all pictures of a scenario into a directory, which is created where it does not exist:
+///
+/// - `index.html`: the workspace and the map of a selected agent in a browser, in motion, without any other file;
+/// - `overview`: the workspace beside the map of the agent with the most regions,
+/// - `workspace`: the paths, with the discs at their starts and ends,
+/// - `ecm-<id>` for every agent: its extended collision map with its trajectory,
+///
+/// all but the first as `.svg`, with the feature `png` also as `.png`. The workspace is drawn on the `ground`, if there is one.
+///
+/// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
+/// in a fixed order. The same scenario gives the same bytes in every run.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidInput`] for a scenario without motion (see [`Fleet::new`]) or of more than 65535 agents, and
+/// those of writing files.
+pub fn write(
+    scenario: &Scenario,
+    ground: Option<Ground<'_>>,
+    directory: &Path,
+    progress: &mut dyn FnMut(usize, usize),
+) -> io::Result<Vec<PathBuf>> {
+    with_scene(scenario, ground, |scene| {
+        output::folder(directory)?;
+        let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
+        pictures.extend((0..scene.motions.len()).map(Picture::Map));
+        let mut files = vec![Vec::new(); pictures.len()];
+        let mut done = 0;
+        progress(done, pictures.len());
+        draw_all(scene, &pictures, &mut |place, drawn| {
+            for (name, content) in drawn? {
+                let file = directory.join(name);
+                output::write(&file, content)?;
+                files[place].push(file);
+            }
+            done += 1;
+            progress(done, pictures.len());
+            Ok(())
+        })?;
+        Ok(files.concat())
+    })
+}
+
+/// Writes the pictures of a layout and its locks into a directory, which is created where it does not exist: `locks.html`,
+/// in which an edge shows its corridor and what it blocks, and for each level `layout.svg` (and `layout.png`), from the second
+/// level on with its number. Returns the files.
+///
+/// # Errors
+/// Those of writing files.
+pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
+    let formats = Formats::new();
+    for level in 0..imported.layout.levels.len() {
+        let svg = Ground { imported, level }.picture();
+        let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
+        files.extend(formats.files(&name, svg)?);
+    }
+    output::folder(directory)?;
+    let write = |(name, content): (String, Vec<u8>)| {
+        let file = directory.join(name);
+        output::write(&file, content).map(|()| file)
+    };
+    files.into_iter().map(write).collect()
+}
+
+/// Writes the audit of a layout: a page with groups and gaps as layers, and a picture of each level. Returns the files.
+///
+/// # Errors
+/// Those of writing files.
+pub fn write_audit(
+    imported: &Imported,
+    locks: &Locks,
+    rules: &Rules,
+    audit: &Audit,
+    directory: &Path,
+) -> io::Result<Vec<PathBuf>> {
+    let page = locks::page_of_audit(imported, locks, rules, audit);
+    let mut files = vec![("audit.html".to_owned(), page.into_bytes())];
+    let formats = Formats::new();
+    for level in 0..imported.layout.levels.len() {
+        let svg = audit::picture(Ground { imported, level }, rules, audit);
+        let name = if level > 0 { format!("audit-{}", level + 1) } else { "audit".to_owned() };
+        files.extend(formats.files(&name, svg)?);
+    }
+    output::folder(directory)?;
+    let write = |(name, content): (String, Vec<u8>)| {
+        let file = directory.join(name);
+        output::write(&file, content).map(|()| file)
+    };
+    files.into_iter().map(write).collect()
+}
+
+/// The collision map of an agent over what a sampled map says, as SVG.
+///
+/// # Errors
+/// As [`write`], without the files.
+pub fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Result<String> {
+    with_scene(scenario, None, |scene| Ok(overlay::picture(scene, ego, overlay)))
+}
+
+/// The workspace, on the ground if there is one, beside the map of the agent with the most regions, as SVG.
+///
+/// # Errors
+/// As [`write`].
+pub fn overview(scenario: &Scenario, ground: Option<Ground<'_>>) -> io::Result<String> {
+    with_scene(scenario, ground, |scene| Ok(overview::picture(scene)))
+}
+
+fn with_scene<T>(
+    scenario: &Scenario,
+    ground: Option<Ground<'_>>,
+    draw: impl FnOnce(&Scene<'_>) -> io::Result<T>,
+) -> io::Result<T> {
+    let invalid = |why: String| io::Error::new(io::ErrorKind::InvalidInput, why);
+    let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
+    let motions = fleet.motions();
+    let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
+    draw(&Scene { scenario, motions: &motions, ecm: &ecm, ground })
+}
+
+/// One picture of a scenario.
+#[derive(Clone, Copy, Debug)]
+enum Picture {
+    Page,
+    Overview,
+    Workspace,
+    /// Of the agent at this place of the scenario.
+    Map(usize),
+}
+
+/// Files with their names.
+type Files = Vec<(String, Vec<u8>)>;
+
+impl Picture {
+    fn draw(self, scene: &Scene<'_>, formats: &Formats) -> io::Result<Files> {
+        let (name, svg) = match self {
+            Self::Page => return Ok(vec![("index.html".to_owned(), page::page(scene).into_bytes())]),
+            Self::Overview => ("overview".to_owned(), overview::picture(scene)),
+            Self::Workspace => ("workspace".to_owned(), workspace::picture(scene)),
+            Self::Map(ego) => (format!("ecm-{}", scene.id(ego)), map::picture(scene, ego)),
+        };
+        formats.files(&name, svg)
+    }
+}
+
+/// What a picture is written as.
+struct Formats {
+    #[cfg(feature = "png")]
+    raster: raster::Raster,
+}
+
+impl Formats {
+    fn new() -> Self {
+        Self {
+            #[cfg(feature = "png")]
+            raster: raster::Raster::new(),
+        }
+    }
+
+    /// The files of a picture.
+    fn files(&self, name: &str, svg: String) -> io::Result<Files> {
+        #[cfg(feature = "png")]
+        let png = self.raster.png(&svg)?;
+        Ok(vec![
+            (format!("{name}.svg"), svg.into_bytes()),
+            #[cfg(feature = "png")]
+            (format!("{name}.png"), png),
+        ])
+    }
+}
+
+/// Draws on all cores; hands over each picture with its place in the list, in the order in which they are done.
+fn draw_all(
+    scene: &Scene<'_>,
+    pictures: &[Picture],
+    take: &mut dyn FnMut(usize, io::Result<Files>) -> io::Result<()>,
+) -> io::Result<()> {
+    let workers = thread::available_parallelism().map_or(1, usize::from).min(pictures.len());
+    let next = AtomicUsize::new(0);
+    let formats = Formats::new();
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..workers {
+            let sender = sender.clone();
+            let (next, formats) = (&next, &formats);
+            scope.spawn(move || {
+                loop {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(picture) = pictures.get(place) else {
+                        break;
+                    };
+                    // Nobody listens any more after an error.
+                    if sender.send((place, picture.draw(scene, formats))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        receiver.into_iter().try_for_each(|(place, drawn)| take(place, drawn))
+    })
+}
+
+#[cfg(all(test, feature = "png"))]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+    use std::fs;
+
+    /// Writes the pictures into a directory of its own, checks that all files are well formed, and returns them.
+    fn pictures(test: &str, scenario: &Value) -> Vec<(String, Vec<u8>)> {
+        let scenario = Scenario::from_json(&scenario.to_string()).unwrap();
+        let directory = std::env::temp_dir().join(format!("pcr-pictures-{test}-{}", std::process::id()));
+        let mut calls = Vec::new();
+        let files = write(&scenario, None, &directory, &mut |done, total| calls.push((done, total))).unwrap();
+        let total = scenario.agents.len() + 3;
+        assert_eq!(calls, (0..=total).map(|done| (done, total)).collect::<Vec<_>>());
+        assert_eq!(files.len(), 2 * total - 1);
+        let read = files.iter().map(|file| {
+            let content = fs::read(file).unwrap();
+            match file.extension().and_then(|extension| extension.to_str()) {
+                Some("svg") => {
+                    let text = std::str::from_utf8(&content).unwrap();
+                    let document = roxmltree::Document::parse(text).unwrap();
+                    assert!(document.root_element().has_tag_name("svg"));
+                    assert!(!text.contains("NaN") && !text.contains("inf"), "{file:?}");
+                }
+                Some("png") => {
+                    let reader = png::Decoder::new(io::Cursor::new(&content)).read_info().unwrap();
+                    assert!(reader.info().width > 400 && reader.info().height > 200);
+                }
+                _ => assert!(content.starts_with(b"<!DOCTYPE html>")),
+            }
+            (file.file_name().unwrap().to_str().unwrap().to_owned(), content)
+        });
+        let read = read.collect();
+        fs::remove_dir_all(directory).unwrap();
+        read
+    }
+
+    fn agent(id: u64, start: [f64; 3], path: Value) -> Value {
+        json!({ "id": id, "radius": 0.3, "v_max": 1.0, "a_max": 0.5,
+            "start": { "x": start[0], "y": start[1], "heading": start[2] }, "path": path })
+    }
+
+    fn line(length: f64) -> Value {
+        json!({ "kind": "line", "length": length })
+    }
+
+    fn arc(radius: f64, sweep: f64) -> Value {
+        json!({ "kind": "arc", "radius": radius, "sweep": sweep })
+    }
+
+    #[test]
+    fn two_runs_give_the_same_bytes() {
+        let agents = [
+            agent(1, [0.0, 0.0, 0.0], json!([line(4.0), arc(1.0, 2.0)])),
+            agent(9, [4.0, 0.0, 3.0], json!([line(4.0)])),
+        ];
+        let scenario = json!({ "name": "a <b> & \"c\"", "agents": agents });
+        let once = pictures("once", &scenario);
+        let names: Vec<&str> = once.iter().map(|(name, _)| name.as_str()).collect();
+        let expected = ["index.html", "overview.svg", "overview.png", "workspace.svg", "workspace.png"];
+        assert_eq!(names[..5], expected);
+        assert_eq!(names[5..], ["ecm-1.svg", "ecm-1.png", "ecm-9.svg", "ecm-9.png"]);
+        assert_eq!(once, pictures("twice", &scenario));
+    }
+
+    #[test]
+    fn an_empty_fleet_has_pictures() {
+        pictures("empty", &json!({ "agents": [] }));
+    }
+
+    #[test]
+    fn an_agent_alone_has_pictures() {
+        pictures("alone", &json!({ "agents": [agent(u64::MAX, [0.0, 0.0, 0.3], json!([arc(2.0, 1.0)]))] }));
+    }
+
+    #[test]
+    fn agents_that_stand_on_one_point_have_pictures() {
+        let agents = [agent(1, [1.0, 1.0, 0.0], json!([])), agent(2, [1.0, 1.0, 0.0], json!([]))];
+        pictures("point", &json!({ "agents": agents }));
+    }
+
+    #[test]
+    fn lanes_and_full_turns_have_pictures() {
+        let agents = [
+            agent(1, [0.0, 0.0, 0.0], json!([line(6.0)])),
+            agent(2, [6.0, 0.0, std::f64::consts::PI], json!([line(6.0)])),
+            agent(3, [3.0, 0.0, 0.0], json!([arc(0.2, 13.0)])),
+        ];
+        pictures("lanes", &json!({ "agents": agents }));
+    }
+
+    #[test]
+    fn extents_may_be_huge_or_tiny() {
+        let mut far = agent(2, [0.0, -1e5, std::f64::consts::FRAC_PI_2], json!([line(9e5)]));
+        far["v_max"] = json!(1e3);
+        far["t_start"] = json!(-9e5);
+        let agents = [
+            agent(1, [-9e5, 0.0, 0.0], json!([line(9e5), arc(1e6, 0.01)])),
+            far,
+            agent(3, [1e6, 1e6, 0.0], json!([line(1e-6)])),
+        ];
+        pictures("huge", &json!({ "agents": agents }));
+    }
+
+    #[test]
+    fn paths_are_drawn_with_true_arcs() {
+        let scenario = json!({ "agents": [agent(1, [0.0, 0.0, 0.0], json!([line(4.0), arc(1.0, 6.0)]))] });
+        let files = pictures("arcs", &scenario);
+        let (_, svg) = files.iter().find(|(name, _)| name == "workspace.svg").unwrap();
+        let svg = std::str::from_utf8(svg).unwrap();
+        let document = roxmltree::Document::parse(svg).unwrap();
+        let arcs = document.descendants().filter_map(|node| node.attribute("d")).map(|d| d.matches('A').count());
+        // 6 rad in parts of at most 3/4 π.
+        assert_eq!(arcs.sum::<usize>(), 3);
+    }
+
+    #[test]
+    fn a_directory_that_cannot_be_is_an_error() {
+        let scenario = Scenario::from_json(r#"{ "agents": [] }"#).unwrap();
+        let file = std::env::temp_dir().join(format!("pcr-pictures-file-{}", std::process::id()));
+        fs::write(&file, "").unwrap();
+        assert!(write(&scenario, None, &file.join("below"), &mut |_, _| {}).is_err());
+        fs::remove_file(file).unwrap();
+    }
+}

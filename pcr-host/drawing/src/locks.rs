@@ -1,0 +1,132 @@
+//! The page of a layout and its locks, in which an edge shows what it blocks.
+
+use super::layout::{STEPS, bounds, line};
+use super::template::Page;
+use pcr_exclusions::{Audit, Rules};
+use pcr_formats::import::{Id, Imported};
+use pcr_formats::scenario::Placed;
+use pcr_planning::locks::{Locks, Rides, corridor};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+
+const PAGE: Page = Page {
+    kind: "locks",
+    body: include_str!("locks/locks.html"),
+    style: include_str!("locks/locks.css"),
+    script: include_str!("locks/locks.js"),
+};
+
+/// The page.
+pub(super) fn page(imported: &Imported, locks: &Locks) -> String {
+    let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
+    PAGE.fill(name, &data(imported, locks))
+}
+
+/// The page with what an audit has found, as layers: groups as written, what they leave out, and what they exclude in vain.
+pub(super) fn page_of_audit(imported: &Imported, locks: &Locks, rules: &Rules, audit: &Audit) -> String {
+    let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
+    let mut all = data(imported, locks);
+    all["audit"] = super::audit::layers(imported, rules, audit);
+    PAGE.fill(name, &all)
+}
+
+/// Numbers of the page: lengths in metres, coordinates and path data in steps of a millimetre, y up.
+fn data(imported: &Imported, locks: &Locks) -> Value {
+    let (layout, vehicle) = (&imported.layout, &locks.vehicle);
+    let steps = |point: [f64; 2]| point.map(|x| x * STEPS);
+    let rides = Rides::new(imported);
+    let edges = layout.edges.iter().map(|edge| {
+        let ends = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.id.to_string()).unwrap_or_default());
+        let back: Vec<Placed> = edge.curve.iter().rev().map(Placed::reversed).collect();
+        let corridor = corridor(&rides.on(edge)).into_iter();
+        json!({
+            "id": edge.id.to_string(),
+            "ends": ends,
+            "level": layout.level(edge),
+            "length": edge.length(),
+            "corridor": corridor.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
+            "path": line(&edge.curve),
+            "back": line(&back),
+        })
+    });
+    let corners =
+        imported.vehicle.footprint.iter().flat_map(|footprint| footprint.polygon()).map(|corner| steps(*corner));
+    let nodes = layout.nodes.iter().map(|node| {
+        let [x, y] = steps(node.at);
+        json!({ "id": node.id.to_string(), "level": node.level, "x": x, "y": y })
+    });
+    let places: HashMap<&Id, usize> = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
+    let locks = locks
+        .locks
+        .iter()
+        .filter_map(|lock| Some(json!([places.get(&lock.a)?, places.get(&lock.b)?, lock.a_length, lock.b_length])));
+    let [x, y] = bounds(layout, None, vehicle.radius);
+    let bounds = [x.lo, -y.hi, x.length(), y.length()].map(|length| length * STEPS);
+    json!({
+        "radius": vehicle.radius,
+        "footprint": corners.collect::<Vec<_>>(),
+        "levels": layout.levels,
+        "bounds": bounds,
+        "edges": edges.collect::<Vec<_>>(),
+        "nodes": nodes.collect::<Vec<_>>(),
+        "locks": locks.collect::<Vec<_>>(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout::Ground;
+    #[cfg(feature = "png")]
+    use super::super::write_locks;
+    use super::*;
+    use pcr_formats::import::{Format, Options, Warnings, layout};
+
+    const CURVES: &str = include_str!("../../../tests/data/real/lif/example_17.lif.json");
+
+    fn imported(format: Format, text: &str) -> Imported {
+        let options = Options { radius: Some(0.4), ..Options::default() };
+        layout(format, text, &options, &mut Warnings::default()).unwrap()
+    }
+
+    #[test]
+    fn the_page_holds_every_edge_and_lock_and_asks_for_nothing() {
+        let text = include_str!("../../../tests/data/real/nav2/warehouse_graph.geojson");
+        let imported = imported(Format::Nav2, &text.replace("warehouse_graph", "</script><script>alert(1)"));
+        let locks = Locks::of(&imported, false).unwrap();
+        let page = page(&imported, &locks);
+        assert_eq!((page.matches("</script>").count(), page.matches("<script>alert").count()), (2, 0));
+        for request in ["src=", "href=", "@import", "url(", "fetch(", "import("] {
+            assert!(!page.contains(request), "{request}");
+        }
+        let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).unwrap();
+        let data: Value = serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap();
+        assert_eq!(data["edges"].as_array().unwrap().len(), 172);
+        assert_eq!(data["locks"].as_array().unwrap().len(), locks.locks.len());
+        assert!(!locks.locks.is_empty());
+    }
+
+    #[test]
+    fn curves_are_drawn_with_true_arcs() {
+        let imported = imported(Format::Lif, CURVES);
+        let svg = Ground { imported: &imported, level: 0 }.picture();
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let arcs = document.descendants().filter_map(|node| node.attribute("d")).map(|data| data.matches('A').count());
+        // Corridor and line of each edge.
+        let pieces: usize = imported.layout.edges.iter().map(|edge| edge.curve.len()).sum();
+        assert_eq!(arcs.sum::<usize>(), 2 * pieces);
+        assert!(!svg.contains("NaN"));
+    }
+
+    #[cfg(feature = "png")]
+    #[test]
+    fn files_are_written_for_every_level() {
+        let text = include_str!("../../../tests/data/real/lif/example_05.lif.json");
+        let imported = imported(Format::Lif, text);
+        let locks = Locks::of(&imported, false).unwrap();
+        let directory = std::env::temp_dir().join(format!("pcr-locks-{}", std::process::id()));
+        let files = write_locks(&imported, &locks, &directory).unwrap();
+        let names: Vec<_> = files.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
+        assert_eq!(names, ["locks.html", "layout.svg", "layout.png", "layout-2.svg", "layout-2.png"]);
+        std::fs::remove_dir_all(directory).unwrap();
+    }
+}

@@ -1,0 +1,233 @@
+//! The page to explore a scenario: one HTML file with everything in it, no request to anywhere.
+//!
+//! It holds the paths and profiles as numbers, and evaluates the closed forms of the library itself, so that the discs
+//! are exactly where they are at every time of the slider. Outlines of regions are traced here and drawn there.
+
+use super::axis::Frame;
+use super::contour::{Outline, is_thin};
+use super::map::{THIN, places, spans};
+use super::palette::DISTINCT;
+use super::scene::{Scene, Shape};
+use super::template::Page;
+use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+
+const PAGE: Page = Page {
+    kind: "collision regions",
+    body: include_str!("page/page.html"),
+    style: include_str!("page/page.css"),
+    script: include_str!("page/page.js"),
+};
+
+/// Steps of the coordinates of outlines along each axis of a map: a twentieth of a pixel on a large screen.
+const GRID: f64 = 20_000.0;
+
+/// Size of a map as the script draws it \[px\].
+const PIXELS: f64 = 700.0;
+
+/// Size of the labels of regions there \[px\].
+const LABEL_SIZE: f64 = 14.0;
+
+/// The page.
+pub(super) fn page(scene: &Scene<'_>) -> String {
+    let name = if scene.scenario.name.is_empty() { "Collision regions" } else { &scene.scenario.name };
+    PAGE.fill(name, &data(scene))
+}
+
+fn data(scene: &Scene<'_>) -> Value {
+    let Bounds { x, y } = scene.bounds();
+    let agents = scene.motions.iter().enumerate().map(|(place, motion)| agent(scene, place, motion));
+    let maps = (0..scene.motions.len()).map(|ego| map(scene, ego));
+    json!({
+        "name": scene.scenario.name,
+        "grid": GRID,
+        "outlines": scene.has_outlines(),
+        "distinct": scene.motions.len() <= DISTINCT,
+        "horizon": interval(scene.horizon()),
+        "bounds": [x.lo, x.hi, y.lo, y.hi],
+        "ground": scene.ground.map(|ground| ground.lines()),
+        "agents": agents.collect::<Vec<_>>(),
+        "maps": maps.collect::<Vec<_>>(),
+    })
+}
+
+fn interval(interval: Interval<f64>) -> Value {
+    json!([interval.lo, interval.hi])
+}
+
+/// The closed forms of a motion: segments as \[from, length, x, y, heading, bend\] with the radius of an arc as bend,
+/// positive to the left, 0 on a line; phases as \[time, duration, length, speed before, speed after, acceleration\].
+fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
+    let segments = motion.path().segments().iter().map(|segment| {
+        let start = segment.point_at(0.0);
+        let bend = match segment.curve() {
+            Curve::Line => 0.0,
+            Curve::Arc { radius, turn: Turn::Left } => radius,
+            Curve::Arc { radius, turn: Turn::Right } => -radius,
+        };
+        json!([segment.from(), segment.length(), start.x, start.y, segment.heading_at(0.0).0, bend])
+    });
+    let phases = motion.profile().phases().iter().map(|phase| {
+        let (time, length) = (phase.time(), phase.length());
+        let speeds = [time.lo, time.hi].map(|time| phase.speed_at(time));
+        let acceleration = if time.length() > 0.0 { (speeds[1] - speeds[0]) / time.length() } else { 0.0 };
+        json!([time.lo, time.length(), length.lo, speeds[0], speeds[1], acceleration])
+    });
+    let footprint = scene.footprint(place);
+    let discs = match footprint {
+        Some(footprint) => footprint.discs().iter().map(|disc| json!([disc.ahead, disc.left, disc.radius])).collect(),
+        None => vec![json!([0.0, 0.0, motion.radius()])],
+    };
+    json!({
+        // Beyond 2⁵³ a number would lose its last digits in the browser.
+        "id": scene.id(place).to_string(),
+        "name": scene.called(place),
+        "radius": motion.radius(),
+        "discs": discs,
+        "outline": footprint.map_or(&[][..], |footprint| footprint.polygon()),
+        "colour": scene.colour(place).to_string(),
+        "time": interval(motion.time()),
+        "length": motion.path().length(),
+        "segments": segments.collect::<Vec<_>>(),
+        "phases": phases.collect::<Vec<_>>(),
+    })
+}
+
+fn map(scene: &Scene<'_>, ego: usize) -> Value {
+    let [time, length] = spans(scene, ego);
+    let frame = Frame::new(time, length, [0.0, 0.0, PIXELS, PIXELS]);
+    let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
+    let places = places(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let regions = shapes.iter().zip(places).map(|(shape, place)| region(shape, place, &frame));
+    json!({
+        "time": interval(frame.x.values()),
+        "length": interval(frame.y.values()),
+        "regions": regions.collect::<Vec<_>>(),
+    })
+}
+
+fn region(shape: &Shape, place: Option<[f64; 2]>, frame: &Frame) -> Value {
+    let strips = |strips: &[Interval<f64>]| strips.iter().copied().map(interval).collect::<Vec<_>>();
+    let thin =
+        |contour: &Vec<[f64; 2]>| is_thin(&contour.iter().map(|point| frame.at(*point)).collect::<Vec<_>>(), THIN);
+    json!({
+        "other": shape.other,
+        "thin": shape.outline.iter().all(thin),
+        "time": interval(shape.time),
+        "length": interval(shape.length),
+        "outline": path(&shape.outline, frame),
+        "before": strips(&shape.before),
+        "after": strips(&shape.after),
+        "label": place.map(|[x, y]| [frame.x.value_at(x), frame.y.value_at(y)]),
+        "types": shape.types.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "pieces": shape.pieces,
+        "crossings": shape.crossings.iter().map(crossing).collect::<Vec<_>>(),
+    })
+}
+
+/// The descriptor of the paper's Tables III and IV; radii are null on lines, positive to the left.
+fn crossing(crossing: &Crossing<f64>) -> Value {
+    let bend = |curve: Curve<f64>| match curve {
+        Curve::Line => None,
+        Curve::Arc { radius, turn: Turn::Left } => Some(radius),
+        Curve::Arc { radius, turn: Turn::Right } => Some(-radius),
+    };
+    json!({
+        "type": crossing.piece_type.to_string(),
+        "T": crossing.time,
+        "L": crossing.length,
+        "r": crossing.combined_radius,
+        "v": crossing.speed,
+        "theta": crossing.theta.0,
+        "own": bend(crossing.ego_curve),
+        "other": bend(crossing.other_curve),
+    })
+}
+
+/// SVG path data of an outline on the grid: steps from point to point, which are short numbers.
+fn path(outline: &Outline, frame: &Frame) -> String {
+    let on_grid = |pixel: f64| (pixel / PIXELS * GRID).round() as i64;
+    let mut data = String::new();
+    for contour in outline {
+        let mut before: Option<[i64; 2]> = None;
+        for point in contour {
+            let [x, y] = frame.at(*point);
+            let at = [on_grid(x), on_grid(y)];
+            // Writing to a string does not fail.
+            let _ = match before {
+                None => write!(data, "M{} {}l", at[0], at[1]),
+                Some(before) => write!(data, "{} {} ", at[0] - before[0], at[1] - before[1]),
+            };
+            before = Some(at);
+        }
+        // A point is a line of no length, which round caps make a dot.
+        data.push_str("0 0z");
+    }
+    data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::scenario::Scenario;
+    use pcr_planning::fleet::{Fleet, build_ecm};
+
+    fn page_of(text: &str) -> String {
+        let scenario = Scenario::from_json(text).unwrap();
+        let fleet = Fleet::<f64>::new(&scenario).unwrap();
+        let motions = fleet.motions();
+        let ecm = build_ecm(&motions).unwrap();
+        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm, ground: None })
+    }
+
+    fn data_of(page: &str) -> Value {
+        let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).unwrap();
+        serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+    }
+
+    #[test]
+    fn names_cannot_break_out_of_the_page() {
+        let name = r#"</script><script>alert("1")</script> {{data}} & more"#;
+        let page = page_of(&json!({ "name": name, "agents": [] }).to_string());
+        assert_eq!(page.matches("alert").count(), 3, "title, heading, data");
+        assert!(!page.contains("<script>alert") && !page.contains("</script><script>"));
+        assert_eq!(page.matches("</script>").count(), 2);
+        assert_eq!(data_of(&page)["name"], json!(name));
+    }
+
+    #[test]
+    fn the_page_asks_for_nothing() {
+        let page = page_of(include_str!("../../../tests/data/paper12.json"));
+        let namespace = "http://www.w3.org/2000/svg";
+        assert_eq!(page.matches("http").count(), page.matches(namespace).count() + page.matches("http-equiv").count());
+        for request in ["src=", "href=", "@import", "url(", "fetch(", "import("] {
+            assert!(!page.contains(request), "{request}");
+        }
+        assert!(page.contains("default-src 'none'"));
+    }
+
+    #[test]
+    fn the_page_holds_all_regions_with_descriptors() {
+        let data = data_of(&page_of(include_str!("../../../tests/data/paper12.json")));
+        let maps = data["maps"].as_array().unwrap();
+        let regions = |map: &Value| map["regions"].as_array().unwrap().len();
+        assert_eq!(maps.iter().map(regions).sum::<usize>(), 136);
+        // Row 1 of the paper's Table VII: CR 3 10 (19.3, 0.9, 0.3, 0.4, -0.9).
+        let of_ten = maps[2]["regions"].as_array().unwrap().iter().filter(|region| region["other"] == json!(9));
+        let crossing = of_ten.map(|region| &region["crossings"][0]).find(|crossing| crossing["L"].as_f64() < Some(2.0));
+        let crossing = crossing.unwrap();
+        for (key, printed) in [("T", 19.3), ("L", 0.9), ("r", 0.3), ("v", 0.4), ("theta", -0.9)] {
+            // Half of the last printed digit.
+            assert!((crossing[key].as_f64().unwrap() - printed).abs() < 0.05 + 1e-9, "{key} {crossing}");
+        }
+    }
+
+    #[test]
+    fn outlines_are_steps_on_the_grid() {
+        let unit = Interval::new(0.0, 1.0);
+        let frame = Frame::new(unit, unit, [0.0, 0.0, PIXELS, PIXELS]);
+        let outline = vec![vec![[0.0, 1.0], [0.5, 1.0], [0.5, 0.5]], vec![[1.0, 0.0]]];
+        assert_eq!(path(&outline, &frame), "M0 0l10000 0 0 10000 0 0zM20000 20000l0 0z");
+    }
+}

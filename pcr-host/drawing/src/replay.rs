@@ -1,0 +1,137 @@
+//! A page on which to watch runs: one HTML file with everything in it, no request to anywhere.
+//!
+//! Discs move as they did; beside them is the collision map of a robot as its last plan saw it: regions, planned
+//! motion, and how far the robot really is.
+
+use crate::contour::trace;
+use crate::palette::colour;
+use crate::template::Page;
+use pcr_core::{Motion, RegionRef};
+use pcr_planning::fleet::build_ecm;
+use pcr_planning::simulate::{Controller, FRAME, Journey, Outcome, Snapshot, Task, Vector};
+use serde_json::{Value, json};
+
+const PAGE: Page = Page {
+    kind: "replay",
+    body: include_str!("replay/replay.html"),
+    style: include_str!("replay/replay.css"),
+    script: include_str!("replay/replay.js"),
+};
+
+/// Positions are given in this unit \[m\].
+const UNIT: f64 = 1e-4;
+
+/// Points of a path, and of a planned motion.
+const POINTS: usize = 80;
+
+/// Pixels of a map that outlines are traced for.
+const PIXELS: f64 = 500.0;
+
+/// The page for some runs of a task.
+pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
+    let name = if task.name.is_empty() { "Simulation" } else { &task.name };
+    PAGE.fill(name, &data(task, outcomes))
+}
+
+fn rounded(length: f64) -> i64 {
+    (length / UNIT).round() as i64
+}
+
+/// x, y, x, y, ... in units.
+fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<i64> {
+    points.into_iter().flatten().map(rounded).collect()
+}
+
+/// A number with four digits after the point.
+fn short(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
+
+fn data(task: &Task, outcomes: &[Outcome]) -> Value {
+    let robots = task.robots.iter().enumerate().map(|(place, robot)| {
+        // Beyond 2⁵³ a number would lose its last digits in the browser.
+        let (id, name) = (robot.id.to_string(), task.labels.called(robot.id));
+        json!({ "id": id, "name": name, "radius": robot.radius, "colour": colour(place).to_string() })
+    });
+    let obstacles =
+        task.obstacles.iter().map(|obstacle| json!([obstacle.centre[0], obstacle.centre[1], obstacle.radius]));
+    json!({
+        "name": task.name,
+        "frame": FRAME,
+        "unit": UNIT,
+        "robots": robots.collect::<Vec<_>>(),
+        "obstacles": obstacles.collect::<Vec<_>>(),
+        "runs": outcomes.iter().map(|outcome| run(task, outcome)).collect::<Vec<_>>(),
+    })
+}
+
+fn run(task: &Task, outcome: &Outcome) -> Value {
+    let tracks = outcome.trace.positions.iter().map(|track| flat(track.iter().copied()));
+    let travelled = outcome.trace.travelled.iter().map(|track| track.iter().map(|l| rounded(*l)).collect::<Vec<_>>());
+    let bound = outcome.run.controller == Controller::Pcr;
+    let collisions = outcome
+        .run
+        .collisions
+        .iter()
+        .map(|collision| json!([collision.i.to_string(), collision.j.map(|j| j.to_string()), collision.t]));
+    json!({
+        "controller": outcome.run.controller.name(),
+        "travel": outcome.run.travel,
+        "tracks": tracks.collect::<Vec<_>>(),
+        "travelled": if bound { travelled.collect::<Vec<_>>() } else { Vec::new() },
+        "journeys": journeys(task, &outcome.trace.journeys),
+        "collisions": collisions.collect::<Vec<_>>(),
+        "plans": outcome.snapshots.iter().map(plan).collect::<Vec<_>>(),
+    })
+}
+
+/// Each with its path; the missions of a robot follow one another.
+fn journeys(task: &Task, journeys: &[Journey]) -> Vec<Value> {
+    let mut begun = vec![0_usize; task.robots.len()];
+    let journey = |journey: &Journey| {
+        let robot = task.robots.get(journey.robot)?;
+        let number = begun.get_mut(journey.robot)?;
+        let course = &robot.missions.get(*number)?.course;
+        *number += 1;
+        let path = (0..=POINTS).map(|k| course.point_at(course.length() * k as f64 / POINTS as f64));
+        Some(json!({ "robot": journey.robot, "begin": journey.begin, "end": journey.end, "path": flat(path) }))
+    };
+    journeys.iter().filter_map(journey).collect()
+}
+
+/// The map of every robot that moves.
+fn plan(snapshot: &Snapshot) -> Value {
+    let motions: Option<Vec<Motion<'_, f64>>> =
+        snapshot.drives.iter().zip(&snapshot.radii).map(|(drive, &radius)| drive.motion(radius)).collect();
+    let motions = motions.unwrap_or_default();
+    let ecm = build_ecm(&motions).ok();
+    let end = motions.iter().map(|motion| motion.time().hi).fold(snapshot.time, f64::max);
+    let maps = motions.iter().enumerate().map(|(ego, motion)| {
+        let offset = snapshot.offsets.get(ego).copied().unwrap_or(0.0);
+        let length = motion.path().length();
+        let pixel = [(end - snapshot.time).max(FRAME) / PIXELS, length.max(UNIT) / PIXELS];
+        let regions = ecm.iter().flat_map(|ecm| ecm.row(&motions, ego).expect("the table of the fleet"));
+        let regions = regions.map(|region| self::region(&region, motion, pixel, offset, end));
+        let times = (0..=POINTS).map(|k| snapshot.time + (end - snapshot.time) * k as f64 / POINTS as f64);
+        let curve = times.map(|time| [short(time), short(offset + motion.length_at(time))]);
+        json!({
+            "from": short(offset),
+            "to": short(offset + length),
+            "curve": if length > 0.0 { curve.collect::<Vec<_>>() } else { Vec::new() },
+            "regions": if length > 0.0 { regions.collect::<Vec<_>>() } else { Vec::new() },
+        })
+    });
+    json!({ "time": snapshot.time, "end": short(end), "maps": maps.collect::<Vec<_>>() })
+}
+
+/// Its outlines, and the strips of an agent that stands at its start or end, as \[from time, to time, from length, to length\].
+fn region(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2], offset: f64, end: f64) -> Value {
+    let outline = trace(region, ego, pixel);
+    let outline = outline
+        .iter()
+        .map(|contour| contour.iter().map(|&[time, length]| [short(time), short(length + offset)]).collect::<Vec<_>>());
+    let arrival = region.other_motion().time().hi;
+    let strips = region.slice_at(end).filter(|_| region.is_open_at_end() && arrival < end);
+    let strips = strips.map(|slice| [arrival, end, slice.lo + offset, slice.hi + offset].map(short));
+    json!({ "other": region.other(), "outline": outline.collect::<Vec<_>>(), "strips": strips.collect::<Vec<_>>() })
+}

@@ -1,0 +1,250 @@
+//! Footprints that are no discs: a polygon, covered by discs that move with it.
+//!
+//! The box around the polygon is cut into cells of equal size; the part of the polygon in a cell is covered by a disc around
+//! its box. The cells become smaller until no disc reaches further out of the polygon than is allowed, the *overhang*: a
+//! disc of radius r whose centre is at the depth d inside the polygon reaches at most r - d out of it.
+
+use serde::Serialize;
+
+/// Discs of a cover at most.
+const MOST: usize = 64;
+
+/// Corners of a polygon at most.
+const CORNERS: usize = 256;
+
+/// Overhang that is allowed if nothing is said: this share of the shorter side of the box around the polygon.
+const OVERHANG: f64 = 0.125;
+
+/// From one size of cells to the next.
+const SMALLER: f64 = 0.9;
+
+/// Rounding of a radius, relative.
+const ROUNDING: f64 = 1e-12;
+
+/// A disc of a cover, in the frame of the vehicle: the reference point travels the path, its heading is ahead.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Disc {
+    /// Of the centre from the reference point, in its heading \[m\].
+    pub ahead: f64,
+    /// And to its left \[m\].
+    pub left: f64,
+    /// \[m\]
+    pub radius: f64,
+}
+
+/// A polygon and its cover.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Footprint {
+    polygon: Vec<[f64; 2]>,
+    allowed: Option<f64>,
+    growth: f64,
+    discs: Vec<Disc>,
+    overhang: f64,
+}
+
+impl Footprint {
+    /// The footprint with these corners (ahead and left of the reference point \[m\]), with an overhang of the cover up to
+    /// `allowed` \[m\]; an eighth of the shorter side of its box if there is none.
+    ///
+    /// # Errors
+    /// What is wrong: fewer than three corners or more than 256, no area, or more than 64 discs would be needed.
+    pub fn new(polygon: Vec<[f64; 2]>, allowed: Option<f64>) -> Result<Self, String> {
+        if !(3..=CORNERS).contains(&polygon.len()) {
+            return Err(format!("{} corners; allowed are 3 to {CORNERS}", polygon.len()));
+        }
+        let [lo, hi] = bounds(&polygon);
+        let side = (hi[0] - lo[0]).min(hi[1] - lo[1]);
+        if side.is_nan() || side <= 0.0 {
+            return Err("the corners lie on a line along an axis; allowed is a polygon with an area".into());
+        }
+        let limit = allowed.unwrap_or(OVERHANG * side);
+        let mut cell = side;
+        loop {
+            let discs = cover(&polygon, cell);
+            if discs.len() > MOST {
+                return Err(format!("an overhang of {limit} m needs more than {MOST} discs; allow more"));
+            }
+            let out = |disc: &Disc| disc.radius - depth(&polygon, [disc.ahead, disc.left]);
+            let overhang = discs.iter().map(out).fold(0.0, f64::max);
+            if overhang <= limit {
+                return Ok(Self { polygon, allowed, growth: 0.0, discs, overhang });
+            }
+            cell *= SMALLER;
+        }
+    }
+
+    /// Corners, ahead and left of the reference point \[m\].
+    pub fn polygon(&self) -> &[[f64; 2]] {
+        &self.polygon
+    }
+
+    /// The overhang that is allowed \[m\], where it is given.
+    pub fn allowed(&self) -> Option<f64> {
+        self.allowed
+    }
+
+    /// The discs: every point of the polygon is in one of them.
+    pub fn discs(&self) -> &[Disc] {
+        &self.discs
+    }
+
+    /// No point of a disc is farther than this from the outline \[m\].
+    pub fn overhang(&self) -> f64 {
+        self.overhang
+    }
+
+    /// The same outline, larger by a distance from 0 all around \[m\].
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        let discs = self.discs.iter().map(|disc| Disc { radius: disc.radius + by, ..*disc });
+        Self { growth: self.growth + by, discs: discs.collect(), ..self.clone() }
+    }
+
+    /// How much larger than the polygon the outline is all around \[m\].
+    pub fn growth(&self) -> f64 {
+        self.growth
+    }
+
+    /// Radius of the disc around the reference point that holds all discs \[m\].
+    pub fn reach(&self) -> f64 {
+        self.discs.iter().map(|disc| disc.ahead.hypot(disc.left) + disc.radius).fold(0.0, f64::max)
+    }
+}
+
+/// Corners of the box around some points.
+fn bounds(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let corner = |pick: fn(f64, f64) -> f64, start: f64| {
+        [0, 1].map(|axis| points.iter().map(|point| point[axis]).fold(start, pick))
+    };
+    [corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY)]
+}
+
+/// Discs around the parts of the polygon in cells of at most this size.
+fn cover(polygon: &[[f64; 2]], cell: f64) -> Vec<Disc> {
+    let [lo, hi] = bounds(polygon);
+    let size = [0, 1].map(|axis| hi[axis] - lo[axis]);
+    // More than can be used are not looked at.
+    let cells = size.map(|size| (size / cell).ceil().clamp(1.0, 1e3) as usize);
+    let mut discs = Vec::new();
+    for column in 0..cells[0] {
+        for row in 0..cells[1] {
+            let mut part = polygon.to_vec();
+            for (axis, place) in [(0, column), (1, row)] {
+                let border = |k: usize| lo[axis] + size[axis] * (k as f64 / cells[axis] as f64);
+                part = clip(&part, axis, border(place), 1.0);
+                part = clip(&part, axis, border(place + 1), -1.0);
+            }
+            discs.extend(around(&part));
+            if discs.len() > MOST {
+                return discs;
+            }
+        }
+    }
+    discs
+}
+
+/// The part of a polygon on one side of a line along an axis (Sutherland and Hodgman): where `side` times (coordinate less
+/// `border`) is not negative.
+fn clip(polygon: &[[f64; 2]], axis: usize, border: f64, side: f64) -> Vec<[f64; 2]> {
+    let mut part = Vec::new();
+    let after = polygon.iter().cycle().skip(1);
+    for (from, to) in polygon.iter().zip(after) {
+        let [a, b] = [from, to].map(|point| side * (point[axis] - border));
+        if a >= 0.0 {
+            part.push(*from);
+        }
+        if (a < 0.0) != (b < 0.0) {
+            let mut at = [0, 1].map(|k| from[k] + (to[k] - from[k]) * (a / (a - b)));
+            at[axis] = border;
+            part.push(at);
+        }
+    }
+    part
+}
+
+/// The disc around the box of some points that holds them; none where they have no extent.
+fn around(points: &[[f64; 2]]) -> Option<Disc> {
+    let [lo, hi] = bounds(points);
+    let centre = [0, 1].map(|axis| 0.5 * (lo[axis] + hi[axis]));
+    let radius = points.iter().map(|point| distance(*point, centre)).fold(0.0, f64::max);
+    let radius = radius + ROUNDING * (radius + centre[0].abs() + centre[1].abs());
+    // What only touches a cell is in its neighbour.
+    (lo[0] < hi[0] && lo[1] < hi[1]).then_some(Disc { ahead: centre[0], left: centre[1], radius })
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Distance of a point from the sides of a polygon, negative outside.
+fn depth(polygon: &[[f64; 2]], point: [f64; 2]) -> f64 {
+    let (mut nearest, mut inside) = (f64::INFINITY, false);
+    for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let side = [b[0] - a[0], b[1] - a[1]];
+        let away = [point[0] - a[0], point[1] - a[1]];
+        let square = side[0] * side[0] + side[1] * side[1];
+        let share = if square > 0.0 { ((away[0] * side[0] + away[1] * side[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+        nearest = nearest.min(distance(away, side.map(|x| x * share)));
+        // Whether a ray to the right crosses the side.
+        inside ^= (a[1] > point[1]) != (b[1] > point[1]) && away[0] < side[0] * away[1] / side[1];
+    }
+    if inside { nearest } else { -nearest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covered(footprint: &Footprint, point: [f64; 2]) -> bool {
+        footprint.discs().iter().any(|disc| distance(point, [disc.ahead, disc.left]) <= disc.radius)
+    }
+
+    /// Many points in and around a polygon: those inside are covered, those that are covered are near it.
+    fn check(footprint: &Footprint) {
+        let [lo, hi] = bounds(footprint.polygon());
+        let mut inside = 0;
+        for column in -40..=240 {
+            for row in -40..=240 {
+                let at =
+                    [(0, column), (1, row)].map(|(axis, k)| lo[axis] + (hi[axis] - lo[axis]) * f64::from(k) / 200.0);
+                let depth = depth(footprint.polygon(), at);
+                inside += i32::from(depth > 0.0);
+                assert!(depth < 0.0 || covered(footprint, at), "{at:?}");
+                assert!(!covered(footprint, at) || -depth <= footprint.overhang() + 1e-9, "{at:?} {depth}");
+            }
+        }
+        assert!(inside > 1000);
+    }
+
+    #[test]
+    fn a_rectangle_is_covered_by_squares() {
+        let rectangle = vec![[-0.4, -0.4], [0.8, -0.4], [0.8, 0.4], [-0.4, 0.4]];
+        let footprint = Footprint::new(rectangle, None).unwrap();
+        assert_eq!(footprint.discs().len(), 6);
+        // The corner of a square of 0.4 m less half its side.
+        assert!((footprint.overhang() - (0.08_f64.sqrt() - 0.2)).abs() < 1e-9);
+        check(&footprint);
+    }
+
+    #[test]
+    fn any_polygon_is_covered_with_the_overhang_that_is_allowed() {
+        let fork =
+            vec![[0.0, -0.5], [1.5, -0.5], [1.5, -0.3], [0.3, -0.3], [0.3, 0.3], [1.5, 0.3], [1.5, 0.5], [0.0, 0.5]];
+        let triangle = vec![[1.0, 0.0], [-0.5, 0.6], [-0.5, -0.6]];
+        for polygon in [fork, triangle] {
+            for allowed in [0.1, 0.2] {
+                let footprint = Footprint::new(polygon.clone(), Some(allowed)).unwrap();
+                assert!(footprint.overhang() <= allowed);
+                check(&footprint);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_refused() {
+        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0]], None).unwrap_err().contains("corners"));
+        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], None).unwrap_err().contains("line"));
+        let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        assert!(Footprint::new(square, Some(1e-6)).unwrap_err().contains("64 discs"));
+    }
+}

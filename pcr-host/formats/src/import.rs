@@ -1,0 +1,354 @@
+//! Layouts, orders and plans in the formats that fleets use already, read leniently.
+//!
+//! ```text
+//! nav2        route graphs of the nav2 route server (GeoJSON)
+//! lif         layouts of the VDMA (JSON)
+//! vda5050     orders and states (JSON)
+//! loads       what a vehicle of VDA 5050 carries
+//! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
+//! rmf         buildings and fleets of Open-RMF (YAML)
+//! opendrive   reference lines of roads (XML)
+//! opentcs     plant models (XML)
+//! ccbs        roadmaps and plans of Continuous-CBS (XML)
+//! trajectory  NURBS as VDA 5050 and LIF write them
+//! nurbs       NURBS to Bézier curves
+//! biarc       curves to lines and arcs, with a certified distance
+//! samples     paths by their points (text)
+//! timed       plans of points and times
+//! layout      what they all become: nodes, and edges of lines and arcs     Layout
+//! trace       lines and arcs anywhere in the plane to one path
+//! speed       the fastest motion under changing limits
+//! route       the shortest way between nodes, corners rounded
+//! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
+//! names       names that tell apart what a file gives one name
+//! useful      which of them do something with which files                  Kind
+//! warnings    what was wrong and was read nevertheless                     Warnings
+//! ```
+//!
+//! What is in a file is in what is read, or the file is refused with an [`ImportError`] that names all that would be left out;
+//! with [`Options::partial`] it is left out. What is read otherwise than it is written is warned about, and the warnings go into
+//! the answers. No input makes it panic.
+
+mod biarc;
+mod ccbs;
+mod factsheet;
+mod layout;
+mod lif;
+mod loads;
+mod names;
+mod nav2;
+mod nurbs;
+mod opendrive;
+mod opentcs;
+mod rmf;
+mod route;
+mod samples;
+mod speed;
+mod timed;
+mod trace;
+mod trajectory;
+mod useful;
+mod value;
+mod vda5050;
+mod vehicle;
+mod warnings;
+mod xml;
+
+pub use layout::{Edge, Id, Layout, Node};
+pub use route::{Step, cheapest, ride, turn};
+pub use useful::Kind;
+pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
+pub use warnings::Warnings;
+
+use crate::scenario::{Agent, Scenario};
+use serde_json::Value;
+use std::path::Path;
+use std::{fmt, fs};
+use vehicle::Given;
+use warnings::listed;
+
+/// Formats of files that are not scenarios.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Format {
+    /// Route graph of the nav2 route server (.geojson, or by its content)
+    Nav2,
+    /// Layout Interchange Format of the VDMA (.lif.json, or by its content)
+    Lif,
+    /// Building of Open-RMF (.building.yaml)
+    Rmf,
+    /// Reference lines of the roads of an OpenDRIVE file (.xodr)
+    #[cfg_attr(feature = "clap", value(name = "opendrive"))]
+    OpenDrive,
+    /// Plant model of openTCS (.xml, by its content)
+    #[cfg_attr(feature = "clap", value(name = "opentcs"))]
+    OpenTcs,
+    /// Roadmap or plan of Continuous-CBS (.xml, by its content)
+    Ccbs,
+    /// Points of paths, `x y` a line, an empty line between agents (.path, .csv)
+    Path,
+    /// Orders and states of VDA 5050 (JSON, by their content)
+    Vda5050,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Nav2 => "nav2",
+            Self::Lif => "lif",
+            Self::Rmf => "rmf",
+            Self::OpenDrive => "opendrive",
+            Self::OpenTcs => "opentcs",
+            Self::Ccbs => "ccbs",
+            Self::Path => "path",
+            Self::Vda5050 => "vda5050",
+        })
+    }
+}
+
+/// Why a file was refused.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportError(String);
+
+impl ImportError {
+    /// For this reason.
+    pub fn new(problem: impl Into<String>) -> Self {
+        Self(problem.into())
+    }
+}
+
+impl fmt::Display for ImportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for ImportError {}
+
+/// A layout and the vehicle that travels it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// Nodes and edges.
+    pub layout: Layout,
+    /// Who travels them.
+    pub vehicle: Vehicle,
+}
+
+impl Format {
+    /// The format of a file with this name and content, `None` for a scenario.
+    pub fn of(file: &Path, text: &str) -> Option<Self> {
+        let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
+        if name.ends_with(".geojson") {
+            return Some(Self::Nav2);
+        }
+        if name.ends_with(".lif.json") || name.ends_with(".lif") {
+            return Some(Self::Lif);
+        }
+        if name.ends_with(".yaml") || name.ends_with(".yml") {
+            return Some(Self::Rmf);
+        }
+        if name.ends_with(".path") || name.ends_with(".csv") {
+            return Some(Self::Path);
+        }
+        if name.ends_with(".xodr") {
+            return Some(Self::OpenDrive);
+        }
+        match xml::root_of(text) {
+            Some("OpenDRIVE") => return Some(Self::OpenDrive),
+            Some("model") => return Some(Self::OpenTcs),
+            Some("root" | "graphml") => return Some(Self::Ccbs),
+            _ => {}
+        }
+        // What has agents is a scenario, and said to be wrong as one.
+        if text.contains("\"agents\"") {
+            return None;
+        }
+        let root = serde_json::Deserializer::from_str(text).into_iter::<Value>().next()?.ok()?;
+        match () {
+            () if lif::is_layout(&root) => Some(Self::Lif),
+            () if nav2::is_graph(&root) => Some(Self::Nav2),
+            () => vda5050::is_message(&root).then_some(Self::Vda5050),
+        }
+    }
+}
+
+/// Whether there is nothing in a text but blanks.
+pub(crate) fn is_empty(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim().is_empty()
+}
+
+/// Reads a layout.
+///
+/// # Errors
+/// [`ImportError`] where the file is not of the format, or holds no layout.
+pub fn layout(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
+    imported(format, text, options, false, warnings)
+}
+
+/// Reads a layout for a vehicle that moves: what is assumed about its speeds is warned about as well.
+///
+/// # Errors
+/// As [`layout`].
+pub fn roads(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
+    imported(format, text, options, true, warnings)
+}
+
+/// The agent that travels the shortest way between two nodes (places in [`Layout::nodes`]), from the time 0; `None` where there
+/// is no way.
+///
+/// # Errors
+/// [`ImportError`] where the way is not a path: a curve that does not reach its node.
+pub fn mission(imported: &Imported, id: u64, ends: [usize; 2]) -> Result<Option<Agent>, ImportError> {
+    route::mission(&imported.layout, &imported.vehicle, id, ends)
+}
+
+/// The layout for a vehicle that stands or `moves`.
+fn imported(
+    format: Format,
+    text: &str,
+    options: &Options,
+    moves: bool,
+    warnings: &mut Warnings,
+) -> Result<Imported, ImportError> {
+    if is_empty(text) {
+        return Err(ImportError::new("empty"));
+    }
+    let given = given(options, warnings)?;
+    let vehicle = options.vehicle(&given, moves, warnings);
+    let mut layout = whole(options, warnings, |warnings| match format {
+        Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings),
+        Format::Lif => lif::read(text, options, warnings),
+        Format::Rmf => rmf::read(text, options, warnings),
+        Format::OpenDrive => opendrive::read(text, options, warnings),
+        Format::OpenTcs => opentcs::read(text, options, warnings),
+        Format::Ccbs => ccbs::roadmap(text, options, warnings),
+        Format::Path => Err(ImportError::new("paths of agents are not a layout")),
+        Format::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
+    })?;
+    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
+    report(&off, warnings);
+    layout.warnings = warnings.all();
+    Ok(Imported { layout, vehicle })
+}
+
+/// What a reader reads, if it leaves out nothing or that is asked for.
+fn whole<T>(
+    options: &Options,
+    warnings: &mut Warnings,
+    read: impl FnOnce(&mut Warnings) -> Result<T, ImportError>,
+) -> Result<T, ImportError> {
+    let before = warnings.lost().len();
+    let outcome = read(warnings);
+    match &warnings.lost()[before..] {
+        // What would be left out says more than what is missing without it.
+        lost if !lost.is_empty() && !options.partial => {
+            Err(ImportError::new(format!("{}; --partial leaves that out", listed(lost, "; "))))
+        }
+        _ => outcome,
+    }
+}
+
+/// Deviation that goes without saying \[m\].
+const UNSAID: f64 = 1e-6;
+
+/// Says how far lines and arcs are from what they stand for.
+fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
+    let most = deviations.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
+    for (name, _) in deviations.iter().filter(|(_, deviation)| *deviation > UNSAID) {
+        let problem =
+            format!("its lines and arcs are up to {most:.1e} m from its curve, by which its radius is larger");
+        warnings.add(name, problem);
+    }
+}
+
+/// The same for agents, and the radii that their vehicles have.
+fn report_agents(scenario: &Scenario, radii: &[f64], warnings: &mut Warnings) {
+    let off =
+        scenario.agents.iter().zip(radii).map(|(agent, radius)| (format!("agent {}", agent.id), agent.radius - radius));
+    report(&off.collect::<Vec<_>>(), warnings);
+}
+
+/// What the configuration of a fleet or a factsheet says.
+fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
+    // JSON is YAML, too, but says better what is wrong with it.
+    let json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    let value = if json { value::parse(text) } else { rmf::yaml(text) }?;
+    if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
+}
+
+/// Reads the vehicle of a fleet: the configuration of Open-RMF, or a factsheet of VDA 5050.
+///
+/// # Errors
+/// [`ImportError`] where the text is neither.
+pub fn vehicle(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
+    let given = of_fleet(text, warnings)?;
+    Ok(options.vehicle(&given, true, warnings))
+}
+
+/// What the fleet says about the vehicle, if one is given.
+fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportError> {
+    let mut given = Given::default();
+    if let Some(file) = &options.fleet {
+        let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
+        let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
+        given = of_fleet(&text, warnings).map_err(|error| failed(&error))?;
+    }
+    if options.vehicle.is_some() {
+        given.name.clone_from(&options.vehicle);
+    }
+    Ok(given)
+}
+
+/// Reads a scenario: what the file says of agents and motions, or the routes that the options ask for on its layout.
+///
+/// # Errors
+/// [`ImportError`] where the file is not of the format, or a route is not possible.
+pub fn scenario(
+    format: Format,
+    text: &str,
+    options: &Options,
+    warnings: &mut Warnings,
+) -> Result<Scenario, ImportError> {
+    if is_empty(text) {
+        return Err(ImportError::new("empty"));
+    }
+    let mut scenario = match format {
+        Format::Ccbs if xml::root_of(text) != Some("graphml") => plan(text, options, warnings)?,
+        Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
+            let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
+            route::scenario(&layout, &vehicle, options, warnings)?
+        }
+        Format::Path | Format::Vda5050 => {
+            let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
+            let (scenario, radii) = if format == Format::Path {
+                let scenario = samples::read(text, options, &vehicle)?;
+                let radii = vec![vehicle.radius; scenario.agents.len()];
+                (scenario, radii)
+            } else {
+                whole(options, warnings, |warnings| vda5050::read(text, options, &vehicle, warnings))?
+            };
+            report_agents(&scenario, &radii, warnings);
+            scenario
+        }
+    };
+    scenario.warnings = warnings.all();
+    checked(&scenario)
+}
+
+/// The plan in a log of Continuous-CBS, which gives no radius.
+fn plan(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Scenario, ImportError> {
+    let mut given = given(options, warnings)?;
+    if options.radius.is_none() && given.radius.is_none() && given.footprint.is_none() {
+        warnings.add("radius", "not in the file; the default of the program, √2/4, is taken");
+        given.radius = Some(ccbs::RADIUS);
+    }
+    ccbs::log(text, &options.vehicle(&given, false, warnings))
+}
+
+/// The scenario as its file would be read: what a scenario file may not hold is refused here as well.
+///
+/// # Errors
+/// The reason why it would be refused.
+pub fn checked(scenario: &Scenario) -> Result<Scenario, ImportError> {
+    Scenario::from_json(&scenario.to_json()).map_err(|error| ImportError::new(error.to_string()))
+}

@@ -1,0 +1,293 @@
+//! Lines and arcs in the place of curves, with a certified distance.
+//!
+//! Two arcs with a common tangent (a biarc) join the ends of a piece of the curve in the directions that it has there; a piece
+//! that is farther from its biarc than the tolerance is halved. The distance is bounded, not sampled: in the frame of an arc
+//! with signed curvature k the point (x, y) is off by d with
+//!
+//! ```text
+//! g = k (x² + y²) / 2 - y,    (1 - k d)² = 1 + 2 k g    to the left of which d is counted
+//! ```
+//!
+//! and on a rational Bézier curve w² g is a polynomial, which the largest of its Bernstein coefficients bounds. That every point
+//! lies between the ends of the arc follows from the hull of the control points.
+
+use super::ImportError;
+use super::nurbs::Bezier;
+use crate::scenario::PathSegment;
+use crate::scenario::Placed;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Lines and arcs at most that a curve may need.
+const MOST: usize = 5_000;
+
+/// How often a piece may be halved.
+const HALVINGS: u32 = 40;
+
+/// Sweep of an arc up to which the bound holds, with some room for rounding \[rad\].
+const SWEEP: f64 = FRAC_PI_2 + 1e-6;
+
+/// Roundings of the largest coordinate that evaluating the bound may cost, far more than it does.
+pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+/// A curve as lines and arcs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Fit {
+    pub(super) pieces: Vec<Placed>,
+    /// Bound of the distance of every point of the curve from the lines and arcs \[m\].
+    pub(super) deviation: f64,
+}
+
+/// The lines and arcs for a chain of curves, within `tolerance` \[m\] of it.
+pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError> {
+    let extent = curves.iter().flat_map(Bezier::points).flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let rounding = ROUNDINGS * extent;
+    if tolerance <= 2.0 * rounding {
+        return Err(ImportError::new(format!(
+            "coordinates up to {extent:e} m cannot be fitted within {tolerance:e} m"
+        )));
+    }
+    let mut fit = Fit::default();
+    let mut rest: Vec<(Bezier, u32)> = curves.iter().rev().map(|curve| (curve.clone(), HALVINGS)).collect();
+    while let Some((curve, halvings)) = rest.pop() {
+        match best(&curve, tolerance - rounding) {
+            Some((pieces, deviation)) => {
+                fit.deviation = fit.deviation.max(deviation + rounding);
+                fit.pieces.extend(pieces.into_iter().filter(|piece| piece.shape.length() > 0.0));
+            }
+            None if halvings == 0 || fit.pieces.len() + rest.len() > MOST => {
+                return Err(ImportError::new(format!(
+                    "it takes more than {MOST} lines and arcs within {tolerance:e} m"
+                )));
+            }
+            None => {
+                let [before, after] = curve.split(0.5);
+                rest.extend([(after, halvings - 1), (before, halvings - 1)]);
+            }
+        }
+    }
+    Ok(fit)
+}
+
+/// A line or a biarc for one piece, with a bound of its distance, where it is within the tolerance.
+fn best(curve: &Bezier, tolerance: f64) -> Option<(Vec<Placed>, f64)> {
+    let [from, to] = curve.ends();
+    let line = Placed::line(from, to);
+    let within = |deviation: f64| deviation <= tolerance;
+    // What is straight, or too small to matter, is a line.
+    let spread = curve.points().map(|[x, y]| (x - from[0]).hypot(y - from[1])).fold(0.0, f64::max);
+    let straight = if spread <= tolerance / 4.0 { spread } else { distance(curve, &line) };
+    if straight <= tolerance / 1024.0 || spread <= tolerance / 4.0 {
+        return Some((vec![line], straight));
+    }
+    let [leaving, arriving] = curve.headings()?;
+    let arcs = biarc([from, to], [leaving, arriving])?;
+    let [before, after] = curve.split(parameter(curve, &arcs[1]));
+    let deviation = distance(&before, &arcs[0]).max(distance(&after, &arcs[1]));
+    within(deviation).then(|| (arcs.to_vec(), deviation))
+}
+
+/// The arcs from a point to another in given directions, with equally long tangents.
+pub(super) fn biarc([from, to]: [[f64; 2]; 2], [leaving, arriving]: [f64; 2]) -> Option<[Placed; 2]> {
+    let (t0, t1) = ([leaving.cos(), leaving.sin()], [arriving.cos(), arriving.sin()]);
+    let v = [to[0] - from[0], to[1] - from[1]];
+    let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+    // |v - d (t0 + t1)| = 2 d, by the form of the solution that does not cancel.
+    let (along, open) = (dot(v, [t0[0] + t1[0], t0[1] + t1[1]]), 2.0 * (1.0 - dot(t0, t1)));
+    let tangent = dot(v, v) / (along + (along * along + open * dot(v, v)).sqrt());
+    if !(tangent > 0.0 && tangent.is_finite()) {
+        return None;
+    }
+    let middle = |k: usize| from[k] + (v[k] + tangent * (t0[k] - t1[k])) / 2.0;
+    let joint = [middle(0), middle(1)];
+    let first = arc(from, leaving, joint)?;
+    let second = arc(joint, first.heading_at_end(), to)?;
+    Some([first, second])
+}
+
+/// The arc from a point in a direction to another point; a line where there is no difference.
+fn arc(at: [f64; 2], heading: f64, to: [f64; 2]) -> Option<Placed> {
+    let chord = Placed::line(at, to);
+    let PathSegment::Line { length } = chord.shape else { return None };
+    let half = (chord.heading - heading + PI).rem_euclid(2.0 * PI) - PI;
+    // Sagitta of the arc over its chord.
+    if length * half.abs() < ROUNDINGS * (at[0].abs() + at[1].abs() + length) {
+        return Some(Placed { heading, ..chord });
+    }
+    let (sweep, radius) = (2.0 * half, length / (2.0 * half.abs().sin()));
+    (sweep.abs() <= SWEEP && radius.is_finite()).then_some(Placed {
+        at,
+        heading,
+        shape: PathSegment::Arc { radius, sweep },
+    })
+}
+
+/// Whether a point lies beyond the beginning of a piece.
+pub(super) fn is_beyond([x, y]: [f64; 2], piece: &Placed) -> bool {
+    let (sin, cos) = piece.heading.sin_cos();
+    (x - piece.at[0]) * cos + (y - piece.at[1]) * sin > 0.0
+}
+
+/// Where the curve passes the beginning of the second arc of its biarc.
+fn parameter(curve: &Bezier, second: &Placed) -> f64 {
+    let (mut lo, mut hi) = (0.0, 1.0);
+    for _ in 0..f64::MANTISSA_DIGITS {
+        let middle = 0.5 * (lo + hi);
+        if is_beyond(curve.at(middle), second) { hi = middle } else { lo = middle }
+    }
+    0.5 * (lo + hi)
+}
+
+/// Bound of the distance of all points of a curve from a line or an arc of at most a quarter turn \[m\]; infinite where
+/// the curve is too far from it to tell.
+pub(super) fn distance(curve: &Bezier, piece: &Placed) -> f64 {
+    let curvature = match piece.shape {
+        PathSegment::Line { .. } => 0.0,
+        PathSegment::Arc { sweep, .. } if sweep.abs() > SWEEP => return f64::INFINITY,
+        PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+    };
+    let start = framed(curve, piece.at, piece.heading);
+    let end = framed(curve, piece.end(), piece.heading_at_end());
+    // How far it reaches over the ends.
+    let over = start.iter().map(|[x, _, w]| -x / w).chain(end.iter().map(|[x, _, w]| x / w)).fold(0.0, f64::max);
+    // Offset to the side of the tangents: the far half of the circle is out of reach.
+    let side = start.iter().chain(&end).map(|[_, y, w]| (y / w * curvature).abs()).fold(0.0, f64::max);
+    let bend = curvature.abs() * offset(&start, curvature);
+    if over * curvature.abs() > 0.5 || side > 1.25 || bend > 0.25 {
+        return f64::INFINITY;
+    }
+    let aside = offset(&start, curvature) * 2.0 / (1.0 + (1.0 - 2.0 * bend).sqrt());
+    aside + 2.0 * over
+}
+
+/// Homogeneous control points in the frame of a pose.
+fn framed(curve: &Bezier, at: [f64; 2], heading: f64) -> Vec<[f64; 3]> {
+    let (sin, cos) = heading.sin_cos();
+    let point = |[x, y, w]: &[f64; 3]| {
+        let (x, y) = (x - at[0] * w, y - at[1] * w);
+        [x * cos + y * sin, y * cos - x * sin, *w]
+    };
+    curve.0.iter().map(point).collect()
+}
+
+/// Bound of |k (x² + y²) / 2 - y| on a curve, by the Bernstein coefficients of its numerator and its denominator.
+fn offset(points: &[[f64; 3]], curvature: f64) -> f64 {
+    let degree = points.len().saturating_sub(1);
+    let binomials = binomials(degree);
+    let mut bound = 0.0_f64;
+    for sum in 0..=2 * degree {
+        let (mut numerator, mut denominator) = (0.0, 0.0);
+        for i in sum.saturating_sub(degree)..=sum.min(degree) {
+            let (a, b) = (points[i], points[sum - i]);
+            let share = binomials[i] * binomials[sum - i];
+            let across = 0.5 * (a[1] * b[2] + a[2] * b[1]);
+            numerator += share * (0.5 * curvature * (a[0] * b[0] + a[1] * b[1]) - across);
+            denominator += share * a[2] * b[2];
+        }
+        bound = bound.max((numerator / denominator).abs());
+    }
+    bound
+}
+
+/// The row of Pascal's triangle.
+fn binomials(degree: usize) -> Vec<f64> {
+    let mut row = vec![1.0];
+    for k in 0..degree {
+        row.push(row[k] * (degree - k) as f64 / (k + 1) as f64);
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::nurbs::Nurbs;
+    use super::*;
+
+    fn curve(points: &[[f64; 2]], weights: &[f64]) -> Vec<Bezier> {
+        let points: Vec<_> =
+            points.iter().copied().zip(weights.iter().copied().chain(std::iter::repeat(1.0))).collect();
+        Nurbs { degree: points.len().min(4) - 1, knots: Vec::new(), points }.beziers().unwrap()
+    }
+
+    /// Distance of a point from lines and arcs, by their definition.
+    fn from_pieces(pieces: &[Placed], [x, y]: [f64; 2]) -> f64 {
+        let distance = |piece: &Placed| {
+            let ends = [piece.at, piece.end()].map(|end| (x - end[0]).hypot(y - end[1]));
+            let (sin, cos) = piece.heading.sin_cos();
+            let inner = match piece.shape {
+                PathSegment::Line { length } => {
+                    let along = (x - piece.at[0]) * cos + (y - piece.at[1]) * sin;
+                    let across = (y - piece.at[1]) * cos - (x - piece.at[0]) * sin;
+                    (0.0..=length).contains(&along).then_some(across.abs())
+                }
+                PathSegment::Arc { radius, sweep } => {
+                    let side = radius.copysign(sweep);
+                    let from = [x - piece.at[0] + side * sin, y - piece.at[1] - side * cos];
+                    let angle = (from[1].atan2(from[0]) - piece.heading) * sweep.signum() + FRAC_PI_2;
+                    (angle.rem_euclid(2.0 * PI) <= sweep.abs()).then_some((from[0].hypot(from[1]) - radius).abs())
+                }
+            };
+            inner.into_iter().chain(ends).fold(f64::INFINITY, f64::min)
+        };
+        pieces.iter().map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn the_bound_holds_and_is_not_far_from_the_truth() {
+        let curves = [
+            curve(&[[0.0, 0.0], [0.0, 1.8], [3.6, 1.8], [3.6, 0.0]], &[]),
+            curve(&[[0.0, 0.0], [3.0, 4.0], [-1.0, 4.0], [2.0, 0.0]], &[1.0, 2.0, 0.5, 1.0]),
+            curve(&[[0.0, 0.0], [1.0, 0.0], [2.0, 1.0], [1.0, 3.0], [5.0, 2.0], [5.5, -1.0], [9.0, 0.0]], &[1.0, 3.0]),
+            curve(&[[100.0, 50.0], [101.0, 50.0], [104.0, 50.0], [109.0, 50.1]], &[]),
+            // A loop, and a cusp.
+            curve(&[[0.0, 0.0], [4.0, 3.0], [-3.0, 3.0], [1.0, 0.0]], &[]),
+            curve(&[[0.0, 0.0], [2.0, 2.0], [0.0, 2.0], [2.0, 0.0]], &[]),
+        ];
+        for curve in &curves {
+            for tolerance in [1e-1, 1e-2, 1e-3, 1e-5, 1e-7] {
+                let fit = fit(curve, tolerance).unwrap();
+                assert!(fit.deviation <= tolerance);
+                let points = curve.iter().flat_map(|bezier| (0..=400).map(|k| bezier.at(f64::from(k) / 400.0)));
+                let worst = points.map(|point| from_pieces(&fit.pieces, point)).fold(0.0, f64::max);
+                assert!(worst <= fit.deviation, "{worst} {}", fit.deviation);
+                assert!(
+                    fit.deviation <= 12.0 * worst + 1e-12 || fit.deviation < tolerance / 16.0,
+                    "{worst} {}",
+                    fit.deviation
+                );
+                for pair in fit.pieces.windows(2) {
+                    let (end, next) = (pair[0].end(), pair[1].at);
+                    assert!((end[0] - next[0]).hypot(end[1] - next[1]) < 1e-12);
+                }
+                // Halving the tolerance a thousand times takes ten times the arcs: the order of biarcs is 3.
+                assert!(fit.pieces.len() as f64 <= 12.0 + 12.0 * tolerance.powf(-1.0 / 3.0), "{}", fit.pieces.len());
+            }
+        }
+    }
+
+    #[test]
+    fn a_quarter_of_a_circle_is_an_arc() {
+        let weight = std::f64::consts::FRAC_1_SQRT_2;
+        let points = vec![([2.0, 0.0], 1.0), ([2.0, 2.0], weight), ([0.0, 2.0], 1.0)];
+        let fit = fit(&Nurbs { degree: 2, knots: Vec::new(), points }.beziers().unwrap(), 1e-9).unwrap();
+        assert_eq!(fit.pieces.len(), 2);
+        for piece in &fit.pieces {
+            assert!(matches!(piece.shape, PathSegment::Arc { radius, .. } if (radius - 2.0).abs() < 1e-12));
+        }
+        assert!(fit.deviation < 1e-12);
+    }
+
+    #[test]
+    fn a_straight_curve_is_a_line() {
+        let fit = fit(&curve(&[[1.0, 1.0], [2.0, 2.0], [2.5, 2.5], [4.0, 4.0]], &[]), 1e-3).unwrap();
+        assert_eq!(fit.pieces, [Placed::line([1.0, 1.0], [4.0, 4.0])]);
+        assert!(fit.deviation < 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_is_refused_in_time() {
+        let huge = [[0.0, 0.0], [1e9, 1e9], [-1e9, 1e9], [1e6, 0.0]];
+        assert!(fit(&curve(&huge, &[]), 1e-6).unwrap_err().to_string().contains("cannot be fitted within"));
+        assert!(fit(&curve(&huge, &[]), 1e-3).unwrap_err().to_string().contains("more than 5000 lines and arcs"));
+        assert!(fit(&curve(&[[1.0, 2.0]; 4], &[]), 1e-3).unwrap().pieces.is_empty());
+    }
+}

@@ -1,0 +1,139 @@
+//! Continuous-CBS: roadmaps (GraphML) as layouts, and logs of plans as scenarios.
+//!
+//! A section goes straight at constant speed, one that goes nowhere is a wait. Agents begin at time 0 and stay at their goals.
+
+use super::layout::{Edge, Id, Layout, Node};
+use super::names::Names;
+use super::timed;
+use super::xml::{child, children, number, only, parse};
+use super::{ImportError, Options, Vehicle, Warnings};
+use crate::scenario::Placed;
+use crate::scenario::Scenario;
+
+/// Radius that the program takes where its configuration gives none \[m\].
+pub(super) const RADIUS: f64 = std::f64::consts::SQRT_2 / 4.0;
+
+/// Largest gap between two sections that counts as none \[m\].
+const GAP: f64 = 1e-6;
+
+/// Reads a roadmap: nodes with `x,y` as their first datum.
+pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+    let document = parse(text)?;
+    let root = document.root_element();
+    let graph = only(root, "graph")?.ok_or_else(|| {
+        if is_task(root) {
+            return task();
+        }
+        ImportError::new(format!("{}: there is no graph in it, which a roadmap is", root.tag_name().name()))
+    })?;
+    let undirected = graph.attribute("edgedefault") == Some("undirected");
+    let mut nodes = Names::new();
+    for (k, node) in children(graph, "node").enumerate() {
+        let id = node.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        let datum = child(node, "data").and_then(|data| data.text()).unwrap_or_default();
+        let at = datum.split_once(',').and_then(|(x, y)| {
+            let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.abs() <= crate::scenario::LIMIT);
+            Some([number(x)?, number(y)?])
+        });
+        match at {
+            None => warnings.lose(format_args!("node {id}: its first datum is not x,y")),
+            Some(at) => {
+                nodes.add(Node { id: Id::Text(id), name: None, level: 0, at }, warnings);
+            }
+        }
+    }
+    if nodes.list().is_empty() {
+        return Err(ImportError::new("graph: there is no node in it"));
+    }
+    let mut edges = Names::new();
+    for (k, edge) in children(graph, "edge").enumerate() {
+        let id = edge.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        let end = |name: &str| {
+            let node = edge.attribute(name).ok_or_else(|| format!("edge {id}, {name}: missing"))?;
+            nodes.place(&Id::Text(node.to_owned())).map_err(|unclear| format!("edge {id}, {name}: {unclear}"))
+        };
+        let ends = match end("source").and_then(|from| Ok([from, end("target")?])) {
+            Ok(ends) => ends,
+            Err(problem) => {
+                warnings.lose(problem);
+                continue;
+            }
+        };
+        let [from, to] = ends.map(|node| nodes.list()[node].at);
+        let line = Placed::line(from, to);
+        let straight = line.shape.length() > 0.0;
+        if !straight {
+            warnings.add(format_args!("edge {id}"), "its length is 0");
+        }
+        let edge = Edge {
+            id: Id::Text(id),
+            ends,
+            curve: if straight { vec![line] } else { Vec::new() },
+            two_way: edge.attribute("directed").map_or(undirected, |directed| directed == "false"),
+            speed: None,
+            rotation: None,
+            deviation: 0.0,
+        };
+        edges.add(edge, warnings);
+    }
+    Ok(Layout {
+        name: graph.attribute("id").unwrap_or_default().to_owned(),
+        levels: vec![String::new()],
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    })
+}
+
+/// Whether a file says only who has to go where.
+fn is_task(root: roxmltree::Node<'_, '_>) -> bool {
+    child(root, "log").is_none() && child(root, "agent").is_some()
+}
+
+fn task() -> ImportError {
+    ImportError::new("a task of Continuous-CBS without its plan; the plan is in the log that the program writes")
+}
+
+/// Reads the plan in a log.
+pub(super) fn log(text: &str, vehicle: &Vehicle) -> Result<Scenario, ImportError> {
+    let document = parse(text)?;
+    let root = document.root_element();
+    if is_task(root) {
+        return Err(task());
+    }
+    let log = only(root, "log")?
+        .ok_or_else(|| ImportError::new(format!("{}: there is no log in it, hence no plan", root.tag_name().name())))?;
+    let mut agents = Vec::new();
+    for (k, agent) in children(log, "agent").enumerate() {
+        let id = match agent.attribute("number") {
+            None => k as u64,
+            Some(number) => number.trim().parse().map_err(|_| {
+                ImportError::new(format!("agent at place {}, number: a whole number from 0 is expected", k + 1))
+            })?,
+        };
+        let name = format!("agent {id}");
+        let path = only(agent, "path")?.ok_or_else(|| ImportError::new(format!("{name}, path: missing")))?;
+        let mut stops: Vec<timed::Stop> = Vec::new();
+        for (k, section) in children(path, "section").enumerate() {
+            let name = format!("{name}, section {k}");
+            let field = |attribute: &str| number(section, &name, attribute);
+            let (from, to) = ([field("start_i")?, field("start_j")?], [field("goal_i")?, field("goal_j")?]);
+            match stops.last() {
+                None => stops.push((from, 0.0)),
+                Some((at, _)) if (at[0] - from[0]).hypot(at[1] - from[1]) > GAP => {
+                    return Err(ImportError::new(format!("{name}: it does not begin where the one before it ends")));
+                }
+                Some(_) => {}
+            }
+            let before = stops.last().map_or(0.0, |(_, time)| *time);
+            stops.push((to, before + field("duration")?));
+        }
+        let named = |error| ImportError::new(format!("{name}: {error}"));
+        agents.push(timed::agent(id, vehicle.radius, &stops).map_err(named)?);
+    }
+    if agents.is_empty() {
+        return Err(ImportError::new("log: there is no agent in it"));
+    }
+    Ok(Scenario::new("", agents))
+}

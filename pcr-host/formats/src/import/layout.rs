@@ -1,0 +1,141 @@
+//! A layout: nodes, and edges between them with their true geometry, whatever file they come from.
+
+use crate::scenario::Placed;
+use serde::Serialize;
+use std::cmp::Ordering;
+use std::fmt;
+
+/// Name of a node or an edge, as in the source file.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(untagged)]
+pub enum Id {
+    /// A number.
+    Number(u64),
+    /// A text.
+    Text(String),
+}
+
+impl fmt::Display for Id {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Text(text) => text.fmt(f),
+        }
+    }
+}
+
+impl Ord for Id {
+    fn cmp(&self, other: &Self) -> Ordering {
+        match (self, other) {
+            (Self::Number(a), Self::Number(b)) => a.cmp(b),
+            (Self::Text(a), Self::Text(b)) => a.cmp(b),
+            (Self::Number(_), Self::Text(_)) => Ordering::Less,
+            (Self::Text(_), Self::Number(_)) => Ordering::Greater,
+        }
+    }
+}
+
+impl PartialOrd for Id {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// A place where vehicles may stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// As in the file, unique.
+    pub id: Id,
+    /// A second name that the file gives it.
+    pub name: Option<String>,
+    /// Place of its level in [`Layout::levels`].
+    pub level: usize,
+    /// \[m\]
+    pub at: [f64; 2],
+}
+
+/// A way from node to node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    /// As in the file, unique.
+    pub id: Id,
+    /// Places in [`Layout::nodes`] of the nodes where it begins and ends.
+    pub ends: [usize; 2],
+    /// Its lines and arcs, each beginning where the one before it ends.
+    pub curve: Vec<Placed>,
+    /// Whether it may be travelled backward as well.
+    pub two_way: bool,
+    /// Largest speed \[m/s\], where it is limited.
+    pub speed: Option<f64>,
+    /// Largest speed of rotation \[rad/s\], where it is limited.
+    pub rotation: Option<f64>,
+    /// Largest distance of the curve in the file from `curve` \[m\]: 0 where the file has lines and arcs.
+    pub deviation: f64,
+}
+
+impl Edge {
+    /// Length \[m\].
+    pub fn length(&self) -> f64 {
+        self.curve.iter().map(|placed| placed.shape.length()).sum()
+    }
+}
+
+/// Nodes and edges.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// Name, empty if the file gives none.
+    pub name: String,
+    /// Floors or maps: what lies on different ones cannot collide. At least one if there are nodes.
+    pub levels: Vec<String>,
+    /// The nodes.
+    pub nodes: Vec<Node>,
+    /// The edges.
+    pub edges: Vec<Edge>,
+    /// Other ids of nodes, with their places: names of ends of edges that are one node.
+    pub aliases: Vec<(String, usize)>,
+    /// Types of vehicles that the file tells apart.
+    pub vehicle_types: Vec<String>,
+    /// Vehicles that the file names.
+    pub vehicles: Vec<String>,
+    /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
+    pub corner_radius: Option<f64>,
+    /// What its reader had to say about the file.
+    pub warnings: Vec<String>,
+}
+
+impl Layout {
+    /// Places of the node of this id or of this other id or, if there is none, of those of this name.
+    pub fn nodes_called(&self, name: &str) -> Vec<usize> {
+        let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);
+        let by_name = || {
+            let named = self.nodes.iter().enumerate().filter(|(_, node)| node.name.as_deref() == Some(name));
+            named.map(|(place, _)| place).collect()
+        };
+        let by_alias = || self.aliases.iter().find(|(alias, _)| alias == name).map(|(_, place)| *place);
+        by_id.or_else(by_alias).map_or_else(by_name, |place| vec![place])
+    }
+
+    /// Place of the node of this id or, if there is none, of this other id, or of this name if only one has it.
+    pub fn node(&self, name: &str) -> Option<usize> {
+        match self.nodes_called(name)[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
+    /// The level that has most nodes; among equals the first.
+    pub fn largest_level(&self) -> usize {
+        let count = |level: usize| self.nodes.iter().filter(|node| node.level == level).count();
+        (0..self.levels.len()).rev().max_by_key(|&level| count(level)).unwrap_or(0)
+    }
+
+    /// Level of an edge: that of the node where it begins.
+    pub fn level(&self, edge: &Edge) -> usize {
+        self.nodes.get(edge.ends[0]).map_or(0, |node| node.level)
+    }
+
+    /// Whether an edge begins or ends on a level.
+    pub fn is_on(&self, edge: &Edge, level: usize) -> bool {
+        edge.ends.iter().any(|&node| self.nodes.get(node).is_some_and(|node| node.level == level))
+    }
+}

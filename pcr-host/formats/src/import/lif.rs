@@ -1,0 +1,190 @@
+//! The Layout Interchange Format of the VDMA (LIF 0.11 to 1.x): layouts of nodes and edges with properties by vehicle type.
+//!
+//! An edge is the NURBS trajectory of the vehicle type, or the straight line between its nodes. Without a type asked for,
+//! every edge is there, and more than once where types have trajectories of their own.
+
+use super::layout::{Edge, Id, Layout, Node};
+use super::names::Names;
+use super::value::Object;
+use super::{ImportError, Options, Warnings, trajectory, value};
+use crate::scenario::Placed;
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// Largest gap between the end of a trajectory and its node that goes without a warning \[m\].
+const GAP: f64 = 1e-3;
+
+/// Whether a JSON value looks like a layout.
+pub(super) fn is_layout(root: &Value) -> bool {
+    root.get("layouts").is_some()
+}
+
+/// Reads all layouts of a file as one with several levels.
+pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+    let value = value::parse(text)?;
+    let root = Object::new("LIF", &value)?;
+    if root.get("layouts").is_none() {
+        return Err(root.missing("layouts"));
+    }
+    let name = root.object("metaInformation").ok().flatten();
+    let name = name.and_then(|meta| meta.text("projectIdentification").ok().flatten()).unwrap_or_default();
+    let mut reader = Reader {
+        levels: Vec::new(),
+        nodes: Names::new(),
+        edges: Names::new(),
+        types: BTreeSet::new(),
+        options,
+        warnings,
+    };
+    let mut edges = Vec::new();
+    for (k, value) in root.list("layouts")?.iter().enumerate() {
+        let layout = Object::new(format!("layout {}", k + 1), value)?;
+        let id = layout.text("layoutId")?.unwrap_or("").to_owned();
+        for (k, value) in layout.list("nodes")?.iter().enumerate() {
+            reader.node(k, value, &id);
+        }
+        edges.extend(layout.list("edges")?);
+    }
+    for (k, value) in edges.into_iter().enumerate() {
+        if let Err(error) = reader.edge(k, value) {
+            reader.warnings.lose(error);
+        }
+    }
+    let Reader { levels, nodes, edges, types, .. } = reader;
+    let vehicle_types = types.iter().filter(|name| !name.is_empty()).cloned().collect();
+    if nodes.list().is_empty() {
+        return Err(ImportError::new("LIF, layouts: there is no node in them"));
+    }
+    match &options.vehicle {
+        Some(asked) if !types.contains(asked) => {
+            let there = types.into_iter().collect::<Vec<_>>().join(", ");
+            return Err(ImportError::new(format!("vehicle {asked}: no edge is for it; there are {there}")));
+        }
+        None if types.len() > 1 => {
+            let there = types.into_iter().collect::<Vec<_>>().join(", ");
+            warnings
+                .add(there, "several vehicle types; the ways of all of them are taken, each with the speed of the first type it is for (--vehicle TYPE)");
+        }
+        _ => {}
+    }
+    Ok(Layout {
+        name: name.to_owned(),
+        vehicle_types,
+        levels,
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    })
+}
+
+struct Reader<'a> {
+    levels: Vec<String>,
+    nodes: Names<Node>,
+    edges: Names<Edge>,
+    types: BTreeSet<String>,
+    options: &'a Options,
+    warnings: &'a mut Warnings,
+}
+
+impl Reader<'_> {
+    fn node(&mut self, k: usize, value: &Value, layout: &str) {
+        match read_node(k, value, layout) {
+            Err(error) => self.warnings.lose(error),
+            Ok((id, name, level, at)) => {
+                let known = self.levels.iter().position(|other| *other == level);
+                let level = known.unwrap_or_else(|| {
+                    self.levels.push(level);
+                    self.levels.len() - 1
+                });
+                self.nodes.add(Node { id: Id::Text(id), name, level, at }, self.warnings);
+            }
+        }
+    }
+
+    fn edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
+        let object = Object::new(format!("edge at place {}", k + 1), value)?;
+        let id = object.text("edgeId")?.ok_or_else(|| object.missing("edgeId"))?.to_owned();
+        let object = object.called(format!("edge {id}"));
+        let place = |field: &str| {
+            let node = object.text(field)?.ok_or_else(|| object.missing(field))?;
+            let place = self.nodes.place(&Id::Text(node.to_owned()));
+            place.map_err(|unclear| ImportError::new(format!("edge {id}, {field}: {unclear}")))
+        };
+        let ends = [place("startNodeId")?, place("endNodeId")?];
+        let mut edges: Vec<Edge> = Vec::new();
+        let properties = object.list("vehicleTypeEdgeProperties")?;
+        for (k, value) in properties.iter().enumerate() {
+            let property = Object::new(format!("edge {id}, properties {}", k + 1), value)?;
+            let vehicle = property.text("vehicleTypeId")?.unwrap_or_default().to_owned();
+            let asked = self.options.vehicle.as_ref().is_none_or(|asked| *asked == vehicle);
+            self.types.insert(vehicle);
+            if asked {
+                let edge = self.along(&id, ends, Some(&property))?;
+                // The same way at the speed of another type is the same edge.
+                if edges.iter().all(|known| known.curve != edge.curve) {
+                    edges.push(edge);
+                }
+            }
+        }
+        if properties.is_empty() && self.options.vehicle.is_none() {
+            edges.push(self.along(&id, ends, None)?);
+        }
+        for edge in edges {
+            self.edges.add(edge, self.warnings);
+        }
+        Ok(())
+    }
+
+    /// The edge with the properties of a vehicle type.
+    fn along(&mut self, id: &str, ends: [usize; 2], property: Option<&Object<'_>>) -> Result<Edge, ImportError> {
+        let at = ends.map(|node| self.nodes.list()[node].at);
+        let straight = Placed::line(at[0], at[1]);
+        let mut edge = Edge {
+            id: Id::Text(id.to_owned()),
+            ends,
+            curve: if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() },
+            two_way: false,
+            speed: None,
+            rotation: None,
+            deviation: 0.0,
+        };
+        if let Some(property) = property {
+            edge.speed = property.positive("maxSpeed")?;
+            edge.rotation = property.positive("maxRotationSpeed")?;
+            if let Some(trajectory) = property.object("trajectory")? {
+                let trajectory = trajectory.called(format!("edge {id}, trajectory"));
+                let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
+                self.gaps(id, &fit.pieces, at);
+                (edge.curve, edge.deviation) = (fit.pieces, fit.deviation);
+            }
+        }
+        if edge.curve.is_empty() {
+            self.warnings.add(format_args!("edge {id}"), "its length is 0");
+        }
+        Ok(edge)
+    }
+
+    /// Warns where a trajectory does not begin and end at its nodes.
+    fn gaps(&mut self, id: &str, pieces: &[Placed], at: [[f64; 2]; 2]) {
+        let ends = pieces.first().zip(pieces.last()).map(|(first, last)| [first.at, last.end()]);
+        for ((end, node), place) in ends.into_iter().flatten().zip(at).zip(["begins", "ends"]) {
+            let gap = (end[0] - node[0]).hypot(end[1] - node[1]);
+            if gap > GAP {
+                self.warnings
+                    .add(format_args!("edge {id}"), format!("its trajectory {place} {gap:.3} m from its node"));
+            }
+        }
+    }
+}
+
+/// Number, name, level and position of a node.
+fn read_node(k: usize, value: &Value, layout: &str) -> Result<(String, Option<String>, String, [f64; 2]), ImportError> {
+    let object = Object::new(format!("node at place {}", k + 1), value)?;
+    let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
+    let object = Object::new(format!("node {id}"), value)?;
+    let position = object.object("nodePosition")?.ok_or_else(|| object.missing("nodePosition"))?;
+    let level = object.text("mapId")?.unwrap_or(layout).to_owned();
+    let name = object.text("nodeName").ok().flatten().map(str::to_owned);
+    Ok((id, name, level, position.point()?))
+}

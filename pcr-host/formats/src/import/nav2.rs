@@ -1,0 +1,188 @@
+//! Route graphs of the nav2 route server: GeoJSON with a point a node and a line an edge.
+//!
+//! As there, an edge is the straight line between its nodes, whatever its own coordinates are; `speed_limit` in its metadata
+//! is a fraction of the full speed up to 1 and a percentage above it. Zero-length edges are kept, and so are several edges
+//! of one id.
+
+use super::layout::{Edge, Id, Layout, Node};
+use super::names::Names;
+use super::value::Object;
+use super::vehicle::CORNER_RADIUS;
+use super::{ImportError, Options, Warnings, value};
+use crate::scenario::Placed;
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// Largest distance between the drawn end of an edge and its node that goes without a warning \[m\].
+const DRAWN: f64 = 1e-3;
+
+/// Whether a JSON value looks like a graph.
+pub(super) fn is_graph(root: &Value) -> bool {
+    root.get("type").and_then(Value::as_str) == Some("FeatureCollection")
+}
+
+/// Reads a graph. `full_speed` is what fractions in `speed_limit` refer to \[m/s\].
+pub(super) fn read(
+    text: &str,
+    options: &Options,
+    full_speed: f64,
+    warnings: &mut Warnings,
+) -> Result<Layout, ImportError> {
+    let value = value::parse(text)?;
+    let root = Object::new("graph", &value)?;
+    if root.get("features").is_none() {
+        return Err(root.missing("features"));
+    }
+    let mut graph = Graph { nodes: Names::new(), edges: Names::new(), frames: BTreeSet::new(), warnings };
+    let mut lines = Vec::new();
+    for (k, feature) in root.list("features")?.iter().enumerate() {
+        match Feature::read(k, feature) {
+            Ok(Some(Feature { id, properties, geometry: Geometry::Point(at) })) => graph.node(id, &properties, at),
+            Ok(Some(line)) => lines.push(line),
+            Ok(None) => graph
+                .warnings
+                .add(format_args!("feature {}", k + 1), "it is no point and no line, hence no part of the graph"),
+            Err(error) => graph.warnings.lose(error),
+        }
+    }
+    for Feature { id, properties, geometry } in lines {
+        if let Err(problem) = graph.edge(id, &properties, &geometry, full_speed) {
+            graph.warnings.lose(problem);
+        }
+    }
+    let Graph { nodes, edges, frames, .. } = graph;
+    if nodes.list().is_empty() {
+        return Err(ImportError::new("graph, features: no node (a Point with an id in its properties) among them"));
+    }
+    if frames.len() > 1 {
+        let frames = frames.into_iter().collect::<Vec<_>>().join(", ");
+        return Err(ImportError::new(format!(
+            "graph: its nodes are in several frames ({frames}); one has to be given"
+        )));
+    }
+    Ok(Layout {
+        name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
+        levels: vec![String::new()],
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: Some(options.corner_radius.unwrap_or(CORNER_RADIUS)),
+        ..Layout::default()
+    })
+}
+
+struct Graph<'a> {
+    nodes: Names<Node>,
+    edges: Names<Edge>,
+    /// Of the nodes that name theirs.
+    frames: BTreeSet<String>,
+    warnings: &'a mut Warnings,
+}
+
+enum Geometry {
+    Point([f64; 2]),
+    /// Ends of a line, where it has any.
+    Line(Option<[[f64; 2]; 2]>),
+}
+
+struct Feature<'j> {
+    id: u64,
+    properties: Object<'j>,
+    geometry: Geometry,
+}
+
+fn whole(object: &Object<'_>, field: &str) -> Result<u64, ImportError> {
+    let value = object.get(field).ok_or_else(|| object.missing(field))?;
+    let number = value.as_u64().or_else(|| value.as_str().and_then(|text| text.parse().ok()));
+    // Some tools write every number with a decimal point.
+    let whole = || value.as_f64().filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x)).map(|x| x as u64);
+    number
+        .or_else(whole)
+        .ok_or_else(|| ImportError::new(format!("{}, {field}: not a whole number from 0", object.name)))
+}
+
+fn point(value: &Value) -> Option<[f64; 2]> {
+    let pair = value.as_array()?;
+    let number = |k: usize| pair.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
+    Some([number(0)?, number(1)?])
+}
+
+/// First and last point of a LineString or a MultiLineString.
+fn ends(value: &Value) -> Option<[[f64; 2]; 2]> {
+    let first = value.as_array()?.first()?;
+    let last = value.as_array()?.last()?;
+    match (point(first), point(last)) {
+        (Some(first), Some(last)) => Some([first, last]),
+        _ => Some([point(first.as_array()?.first()?)?, point(last.as_array()?.last()?)?]),
+    }
+}
+
+impl<'j> Feature<'j> {
+    /// A node or an edge; nothing of another geometry, which the route server passes over as well.
+    fn read(k: usize, value: &'j Value) -> Result<Option<Self>, ImportError> {
+        let feature = Object::new(format!("feature {}", k + 1), value)?;
+        let geometry = feature.object("geometry")?.ok_or_else(|| feature.missing("geometry"))?;
+        let kind = geometry.text("type")?.ok_or_else(|| geometry.missing("type"))?;
+        if !["Point", "LineString", "MultiLineString"].contains(&kind) {
+            return Ok(None);
+        }
+        let properties = feature.object("properties")?.ok_or_else(|| feature.missing("properties"))?;
+        let id = whole(&properties, "id")?;
+        let coordinates = geometry.get("coordinates").ok_or_else(|| geometry.missing("coordinates"))?;
+        let geometry = match kind {
+            "Point" => Geometry::Point(point(coordinates).ok_or_else(|| {
+                ImportError::new(format!("{}, coordinates: two numbers are expected", geometry.name))
+            })?),
+            _ => Geometry::Line(ends(coordinates)),
+        };
+        Ok(Some(Self { id, properties, geometry }))
+    }
+}
+
+impl Graph<'_> {
+    fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) {
+        let name = properties.text("name").ok().flatten().map(str::to_owned);
+        self.frames.extend(properties.text("frame").ok().flatten().map(str::to_owned));
+        self.nodes.add(Node { id: Id::Number(id), name, level: 0, at }, self.warnings);
+    }
+
+    /// Adds an edge. Of nodes of one name it joins the last one, as the route server does.
+    fn edge(&mut self, id: u64, properties: &Object<'_>, drawn: &Geometry, speed: f64) -> Result<(), ImportError> {
+        let named = format!("edge {id}");
+        let place = |field: &str| {
+            let node = Id::Number(whole(properties, field)?);
+            self.nodes.last_place(&node).map_err(|unclear| ImportError::new(format!("{named}, {field}: {unclear}")))
+        };
+        let ends = [place("startid")?, place("endid")?];
+        let at = ends.map(|node| self.nodes.list()[node].at);
+        let line = Placed::line(at[0], at[1]);
+        if let Geometry::Line(Some(drawn)) = drawn {
+            let off = |k: usize| (drawn[k][0] - at[k][0]).hypot(drawn[k][1] - at[k][1]) > DRAWN;
+            if off(0) || off(1) {
+                self.warnings
+                    .add(&named, "its drawn line does not join its nodes; the straight line between them is taken");
+            }
+        }
+        let straight = line.shape.length() > 0.0;
+        if !straight {
+            self.warnings.add(&named, "its length is 0");
+        }
+        let speed = self.speed_limit(&named, properties, speed)?;
+        let curve = if straight { vec![line] } else { Vec::new() };
+        let edge = Edge { id: Id::Number(id), ends, curve, two_way: false, speed, rotation: None, deviation: 0.0 };
+        self.edges.add(edge, self.warnings);
+        Ok(())
+    }
+
+    fn speed_limit(&mut self, edge: &str, properties: &Object<'_>, full: f64) -> Result<Option<f64>, ImportError> {
+        let Some(metadata) = properties.object("metadata")? else { return Ok(None) };
+        let Some(limit) = metadata.get("speed_limit") else { return Ok(None) };
+        Ok(match limit.as_f64() {
+            Some(fraction) if fraction > 0.0 && fraction <= 1.0 => Some(fraction * full),
+            Some(percent) if percent > 1.0 && percent <= 100.0 => Some(percent / 100.0 * full),
+            _ => {
+                self.warnings.add(edge, "its speed_limit is not above 0 and up to 100 (percent); it is not used");
+                None
+            }
+        })
+    }
+}

@@ -1,0 +1,277 @@
+//! OpenDRIVE: the reference lines of roads, whose lines and arcs are taken as they are.
+//!
+//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share where their reference lines meet: then
+//! the node has the names of all ends. Where lines of linked roads are apart, mostly sideways by lanes, no path leads from one onto the
+//! other, and there is a warning. Joints within a road that are open by what maps are off by are closed: the rest of the road
+//! keeps its place, and the gap counts as deviation of its path. Lanes are not read.
+
+use super::layout::{Edge, Id, Layout, Node};
+use super::names::Names;
+use super::xml::{child, children, number, only, parse};
+use super::{ImportError, Options, Warnings};
+use crate::scenario::PathSegment;
+use crate::scenario::Placed;
+use std::collections::HashMap;
+
+/// Gap \[m\] and angle \[rad\] of a joint that are rounding and nothing else.
+const CLOSED: f64 = 1e-9;
+
+/// Largest gap that is closed \[m\].
+const GAP: f64 = 0.05;
+
+/// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
+const STRAIGHT: f64 = 1e9;
+
+/// Most turns of an arc: more is a damaged file.
+const WINDINGS: f64 = 100.0;
+
+fn windings(shape: &PathSegment) -> f64 {
+    match shape {
+        PathSegment::Line { .. } => 0.0,
+        PathSegment::Arc { sweep, .. } => sweep.abs() / std::f64::consts::TAU,
+    }
+}
+
+/// The reference line of a road.
+struct Curve {
+    pieces: Vec<Placed>,
+    /// Distance of `pieces` from it, but for open joints \[m\].
+    deviation: f64,
+    /// Gap \[m\] and angle \[rad\] of its widest joint.
+    joint: [f64; 2],
+}
+
+/// Reads the roads.
+pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+    let document = parse(text)?;
+    let root = document.root_element();
+    if !root.has_tag_name("OpenDRIVE") {
+        return Err(ImportError::new(format!("{}: not an OpenDRIVE file", root.tag_name().name())));
+    }
+    let header = child(root, "header").and_then(|header| header.attribute("name")).unwrap_or_default();
+    let mut names = Names::new();
+    // Of each edge the first of its roads: a copy adds no links.
+    let mut links = Vec::new();
+    let (mut widest, mut open) = ([0.0_f64; 2], Vec::new());
+    for (k, road) in children(root, "road").enumerate() {
+        let id = road.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        let name = format!("road {id}");
+        match curve(road, &name).and_then(|found| Ok((found, speed(road, &name, warnings)?))) {
+            Err(error) => warnings.lose(error),
+            Ok((Curve { pieces, .. }, _)) if pieces.is_empty() => {
+                warnings.lose(format_args!("{name}: it has no geometry"))
+            }
+            Ok((Curve { pieces, deviation, joint }, speed)) => {
+                if joint.iter().any(|gap| *gap > CLOSED) {
+                    widest = [widest[0].max(joint[0]), widest[1].max(joint[1])];
+                    open.push(name);
+                }
+                // The nodes follow when all roads are known.
+                let edge = Edge {
+                    id: named(&id),
+                    ends: [0; 2],
+                    curve: pieces,
+                    two_way: true,
+                    speed,
+                    rotation: None,
+                    deviation,
+                };
+                if names.add(edge, warnings) == links.len() {
+                    links.push(child(road, "link"));
+                }
+            }
+        }
+    }
+    if names.list().is_empty() {
+        return Err(ImportError::new("OpenDRIVE: there is no road of lines and arcs in it"));
+    }
+    for road in open {
+        let [gap, angle] = widest;
+        let problem = format!(
+            "joints are open, by {gap:.1e} m and {angle:.1e} rad at most; they are closed and count as deviation"
+        );
+        warnings.add(road, problem);
+    }
+    let (group, Links { count, apart, widest }) = groups(&names, &links, warnings);
+    if apart > 0 {
+        let problem = format!(
+            "{apart} of {count} are between reference lines up to {widest:.3} m apart; no route passes there from road to road"
+        );
+        warnings.add("links of roads", problem);
+    }
+    let mut layout = Layout {
+        name: header.to_owned(),
+        levels: vec![String::new()],
+        edges: names.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    };
+    join(&mut layout, &group);
+    Ok(layout)
+}
+
+/// The name of a road, a number where it is one.
+fn named(id: &str) -> Id {
+    id.parse().map_or_else(|_| Id::Text(id.to_owned()), Id::Number)
+}
+
+/// The lines and arcs of a road, and its widest joint.
+fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError> {
+    let mut curve: Vec<Placed> = Vec::new();
+    let (mut joint, mut deviation) = ([0.0_f64; 2], 0.0_f64);
+    let view = only(road, "planView")?.ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
+    for (k, record) in children(view, "geometry").enumerate() {
+        let name = format!("{name}, geometry {}", k + 1);
+        let field = |attribute: &str| number(record, &name, attribute);
+        let (at, heading, length) = ([field("x")?, field("y")?], field("hdg")?, field("length")?);
+        let element = record.children().find(roxmltree::Node::is_element);
+        let shape = match element.map(|element| (element.tag_name().name(), element)) {
+            Some(("line", _)) => PathSegment::Line { length },
+            Some(("arc", arc)) => {
+                let curvature = number(arc, &name, "curvature")?;
+                let sweep = length * curvature;
+                match curvature.abs().recip() {
+                    radius if radius < STRAIGHT => PathSegment::Arc { radius, sweep },
+                    _ => {
+                        // How far the arc leaves its tangent.
+                        deviation = deviation.max(0.5 * length * sweep.abs());
+                        PathSegment::Line { length }
+                    }
+                }
+            }
+            Some((other, _)) => return Err(ImportError::new(format!("{name}: {other} is not a line and not an arc"))),
+            None => return Err(ImportError::new(format!("{name}: it has no shape"))),
+        };
+        if length < 0.0
+            || length.is_nan()
+            || heading.abs() > 1e6
+            || shape.length() > crate::scenario::LIMIT
+            || windings(&shape) > WINDINGS
+        {
+            return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
+        }
+        if length == 0.0 {
+            continue;
+        }
+        let placed = Placed { at, heading, shape };
+        if let Some(before) = curve.last() {
+            let end = before.end();
+            let turn = (heading - before.heading_at_end()).rem_euclid(std::f64::consts::TAU);
+            let gap = (end[0] - at[0]).hypot(end[1] - at[1]);
+            if gap > GAP {
+                return Err(ImportError::new(format!("{name}: it begins {gap:.3} m from the end of the one before")));
+            }
+            joint = [joint[0].max(gap), joint[1].max(turn.min(std::f64::consts::TAU - turn))];
+        }
+        curve.push(placed);
+    }
+    Ok(Curve { pieces: curve, deviation, joint })
+}
+
+/// The speed limit of a road, the least one where it changes on the way \[m/s\].
+fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
+    let mut limits = Vec::new();
+    for limit in children(road, "type").flat_map(|part| children(part, "speed")) {
+        let unit = match limit.attribute("unit") {
+            Some("mph") => 0.447_04,
+            Some("km/h") => 1.0 / 3.6,
+            None | Some("m/s") => 1.0,
+            Some(other) => return Err(ImportError::new(format!("{name}, speed, unit: {other} is not known"))),
+        };
+        if !matches!(limit.attribute("max"), Some("no limit" | "undefined")) {
+            limits.push(number(limit, &format!("{name}, speed"), "max")? * unit);
+        }
+    }
+    let least = limits.iter().copied().reduce(f64::min);
+    if limits.iter().any(|limit| Some(*limit) != least) {
+        warnings.add(name, "its speed limit changes on the way; the least one is taken for all of it");
+    }
+    // 0 is what maps say that have no limits.
+    Ok(least.filter(|speed| *speed > 0.0 && *speed < 1e6))
+}
+
+/// Links between the ends of roads.
+struct Links {
+    count: usize,
+    /// Between ends that are apart.
+    apart: usize,
+    /// The largest distance of linked ends \[m\].
+    widest: f64,
+}
+
+/// For each end of a road, by 2 × road and one more for its end, the end that stands for all that are linked to it and meet it.
+fn groups(
+    roads: &Names<Edge>,
+    links: &[Option<roxmltree::Node<'_, '_>>],
+    warnings: &mut Warnings,
+) -> (Vec<usize>, Links) {
+    let mut gaps = HashMap::new();
+    let mut group: Vec<usize> = (0..2 * links.len()).collect();
+    fn find(group: &mut [usize], mut end: usize) -> usize {
+        while group[end] != end {
+            group[end] = group[group[end]];
+            end = group[end];
+        }
+        end
+    }
+    for (place, link) in links.iter().enumerate() {
+        let Some(link) = link else { continue };
+        for (side, name) in ["predecessor", "successor"].into_iter().enumerate() {
+            // Junctions are roads that are linked to the roads that they join.
+            let Some(linked) = child(*link, name).filter(|link| link.attribute("elementType") == Some("road")) else {
+                continue;
+            };
+            let other = roads.place(&named(linked.attribute("elementId").unwrap_or_default()));
+            match (other, linked.attribute("contactPoint")) {
+                (Ok(road), Some(point @ ("start" | "end"))) => {
+                    let (end, other) = (2 * place + side, 2 * road + usize::from(point == "end"));
+                    let [a, b] = [end, other].map(|end| end_of(roads.list(), end));
+                    let gap = (a[0] - b[0]).hypot(a[1] - b[1]);
+                    // A link is mostly told by both of its roads.
+                    gaps.insert([end.min(other), end.max(other)], gap);
+                    if gap <= GAP {
+                        let (a, b) = (find(&mut group, end), find(&mut group, other));
+                        group[a.max(b)] = a.min(b);
+                    }
+                }
+                (other, _) => {
+                    let problem = other.map_or_else(|unclear| unclear.to_string(), |_| "it has no contactPoint".into());
+                    let road = roads.list()[place].id.clone();
+                    warnings.add(format_args!("road {road}, {name}"), format!("{problem}; no route leads over it"));
+                }
+            }
+        }
+    }
+    let links = Links {
+        count: gaps.len(),
+        apart: gaps.values().filter(|gap| **gap > GAP).count(),
+        widest: gaps.values().fold(0.0, |widest, gap| f64::max(widest, *gap)),
+    };
+    ((0..group.len()).map(|end| find(&mut group, end)).collect(), links)
+}
+
+/// Gives the roads their nodes: linked ends that meet are one node, which has the names of all of them.
+fn join(layout: &mut Layout, group: &[usize]) {
+    let mut nodes = HashMap::new();
+    for place in 0..layout.edges.len() {
+        for side in 0..2 {
+            let at = end_of(&layout.edges, 2 * place + side);
+            let next = layout.nodes.len();
+            let node = *nodes.entry(group[2 * place + side]).or_insert(next);
+            let id = format!("{}/{}", layout.edges[place].id, ["start", "end"][side]);
+            if node == next {
+                layout.nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+            } else {
+                layout.aliases.push((id, node));
+            }
+            layout.edges[place].ends[side] = node;
+        }
+    }
+}
+
+/// Where an end of a road is \[m\].
+fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
+    let curve = edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
+    let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    at.unwrap_or_default()
+}

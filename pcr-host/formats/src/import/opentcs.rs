@@ -1,0 +1,146 @@
+//! Plant models of openTCS: points in millimetres, paths straight or as Bézier curves.
+//!
+//! Control points are in units of the visual layout, y down. The `length` of a path is what its author typed; where it
+//! differs from the geometry, the geometry counts and there is a warning.
+
+use super::biarc::{Fit, fit};
+use super::layout::{Edge, Id, Layout, Node};
+use super::names::Names;
+use super::nurbs::Bezier;
+use super::xml::{children, number, only, optional, parse};
+use super::{ImportError, Options, Warnings};
+use crate::scenario::Placed;
+
+/// Metres of a millimetre.
+const MILLI: f64 = 1e-3;
+
+/// Unit of the visual layout of a model that names none \[mm\].
+const UNIT: f64 = 50.0;
+
+/// Relative difference of a length from the geometry that goes without a warning.
+const DIFFERENCE: f64 = 0.01;
+
+/// Reads a model.
+pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+    let document = parse(text)?;
+    let root = document.root_element();
+    if !root.has_tag_name("model") {
+        return Err(ImportError::new(format!("{}: not a plant model of openTCS", root.tag_name().name())));
+    }
+    let mut nodes = Names::new();
+    for (k, point) in children(root, "point").enumerate() {
+        let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        let name = format!("point {id}");
+        let at = |attribute: &str| number(point, &name, attribute).map(|x| x * MILLI);
+        match (at("positionX"), at("positionY")) {
+            (Err(error), _) | (_, Err(error)) => warnings.lose(error),
+            (Ok(x), Ok(y)) => {
+                nodes.add(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] }, warnings);
+            }
+        }
+    }
+    if nodes.list().is_empty() {
+        return Err(ImportError::new("model: there is no point in it"));
+    }
+    let visual = only(root, "visualLayout")?;
+    let unit = |attribute: &str| match visual.map(|visual| optional(visual, "visualLayout", attribute)).transpose()? {
+        None | Some(None) => Ok(UNIT * MILLI),
+        Some(Some(unit)) if unit > 0.0 => Ok(unit * MILLI),
+        Some(Some(unit)) => {
+            Err(ImportError::new(format!("visualLayout, {attribute}: {unit} where a number above 0 is expected")))
+        }
+    };
+    let units = [unit("scaleX")?, -unit("scaleY")?];
+    let mut edges = Names::new();
+    for (k, path) in children(root, "path").enumerate() {
+        let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        match edge(path, id, &nodes, units, options.tolerance(), warnings) {
+            Ok(edge) => {
+                edges.add(edge, warnings);
+            }
+            Err(error) => warnings.lose(error),
+        }
+    }
+    let is_outline = |node: roxmltree::Node<'_, '_>| {
+        node.has_tag_name("vehicleEnvelope") && node.children().any(|vertex| vertex.is_element())
+    };
+    for element in root.children().filter(|element| element.children().any(is_outline)) {
+        let name = element.attribute("name").unwrap_or_default();
+        let name = format!("{} {name}", element.tag_name().name());
+        warnings.add(name, "its vehicleEnvelope is not read; the vehicle has its own outline everywhere");
+    }
+    let vehicles = children(root, "vehicle").filter_map(|vehicle| vehicle.attribute("name"));
+    Ok(Layout {
+        vehicles: vehicles.map(crate::scenario::label).filter(|name| !name.is_empty()).collect(),
+        name: root.attribute("name").unwrap_or_default().to_owned(),
+        levels: vec![String::new()],
+        nodes: nodes.into_list(),
+        edges: edges.into_list(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    })
+}
+
+/// The edge that a path is.
+fn edge(
+    path: roxmltree::Node<'_, '_>,
+    id: String,
+    nodes: &Names<Node>,
+    units: [f64; 2],
+    tolerance: f64,
+    warnings: &mut Warnings,
+) -> Result<Edge, ImportError> {
+    let name = format!("path {id}");
+    let end = |attribute: &str| {
+        let problem = |problem: &dyn std::fmt::Display| ImportError::new(format!("{name}, {attribute}: {problem}"));
+        let point = path.attribute(attribute).ok_or_else(|| problem(&"missing"))?;
+        nodes.place(&Id::Text(point.to_owned())).map_err(|unclear| problem(&unclear))
+    };
+    let ends = [end("sourcePoint")?, end("destinationPoint")?];
+    let fit = curve(path, &name, ends.map(|node| nodes.list()[node].at), units, tolerance)?;
+    let limit = |attribute: &str| Ok(optional(path, &name, attribute)?.map(|speed| speed * MILLI));
+    let edge = Edge {
+        id: Id::Text(id),
+        ends,
+        curve: fit.pieces,
+        two_way: limit("maxReverseVelocity")?.is_some_and(|speed| speed > 0.0),
+        speed: limit("maxVelocity")?.filter(|speed| *speed > 0.0),
+        rotation: None,
+        deviation: fit.deviation,
+    };
+    let (typed, drawn) = (limit("length")?, edge.length());
+    if typed.is_none_or(|typed| (typed - drawn).abs() > DIFFERENCE * drawn) {
+        warnings.add(name, "its length is not that of its geometry, which counts");
+    }
+    Ok(edge)
+}
+
+/// The lines and arcs of a path.
+fn curve(
+    path: roxmltree::Node<'_, '_>,
+    name: &str,
+    [from, to]: [[f64; 2]; 2],
+    units: [f64; 2],
+    tolerance: f64,
+) -> Result<Fit, ImportError> {
+    let layout = only(path, "pathLayout")?;
+    let mut points = vec![from];
+    for point in layout.into_iter().flat_map(|layout| children(layout, "controlPoint")) {
+        points.push([number(point, name, "x")? * units[0], number(point, name, "y")? * units[1]]);
+    }
+    points.push(to);
+    let named = |error: ImportError| ImportError::new(format!("{name}: {error}"));
+    match layout.and_then(|layout| layout.attribute("connectionType")).unwrap_or("DIRECT") {
+        // Cubic curves, one after the other.
+        "BEZIER" | "BEZIER_3" if points.len() > 3 && points.len() % 3 == 1 => {
+            let curves: Vec<Bezier> = (0..points.len() / 3).map(|k| Bezier::new(&points[3 * k..3 * k + 4])).collect();
+            fit(&curves, tolerance).map_err(named)
+        }
+        "DIRECT" | "POLYPATH" => {
+            let lines = points.windows(2).map(|pair| Placed::line(pair[0], pair[1]));
+            let pieces = lines.filter(|line| line.shape.length() > 0.0).collect();
+            Ok(Fit { pieces, deviation: 0.0 })
+        }
+        other => Err(ImportError::new(format!("{name}: {other} with {} control points is not read", points.len() - 2))),
+    }
+}

@@ -1,0 +1,228 @@
+//! Buildings of Open-RMF (`*.building.yaml`) and the configuration of a fleet.
+//!
+//! Vertices are pixels of a floor plan, y down; the scale of a level is the mean of its measurements, metres by the
+//! distance of two vertices. A lane is straight; the vehicle stops and turns where two meet at an angle. Lanes and vertices
+//! have no names of their own: they are called by their level and their place in its list, from 0, as in `L1/12`.
+
+use super::layout::{Edge, Id, Layout, Node};
+use super::value::Object;
+use super::vehicle::Given;
+use super::{ImportError, Options, Warnings};
+use crate::scenario::Placed;
+use serde_json::Value;
+use std::collections::{BTreeSet, HashMap};
+
+/// Relative spread of the scales of a level that goes without a warning.
+const SPREAD: f64 = 0.01;
+
+pub(super) fn yaml(text: &str) -> Result<Value, ImportError> {
+    serde_saphyr::from_str(text).map_err(|error| {
+        let error = error.to_string();
+        ImportError::new(format!("not YAML: {}", error.lines().next().unwrap_or_default()))
+    })
+}
+
+/// What the configuration of a fleet says about its vehicles: the footprint is the radius, and the vicinity beyond it the margin.
+pub(super) fn fleet(value: &Value) -> Result<Given, ImportError> {
+    let root = Object::new("fleet", value)?;
+    let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
+    let mut given = Given { name: fleet.text("name")?.map(str::to_owned), ..Given::default() };
+    if let Some(profile) = fleet.object("profile")? {
+        given.radius = profile.positive("footprint")?;
+        let vicinity = profile.positive("vicinity")?;
+        given.margin = given.radius.zip(vicinity).map(|(radius, vicinity)| (vicinity - radius).max(0.0));
+    }
+    if let Some(limits) = fleet.object("limits")? {
+        let pair = |field: &str| {
+            let number = |value: &Value| value.as_f64().filter(|x| *x > 0.0 && *x < 1e6);
+            match limits.list(field)? {
+                [] => Ok((None, None)),
+                [speed, acceleration] if number(speed).is_some() && number(acceleration).is_some() => {
+                    Ok((number(speed), number(acceleration)))
+                }
+                _ => Err(ImportError::new(format!(
+                    "{}, {field}: speed and acceleration above 0 are expected",
+                    limits.name
+                ))),
+            }
+        };
+        (given.speed, given.acceleration) = pair("linear")?;
+        (given.rotation, given.rotation_acceleration) = pair("angular")?;
+    }
+    Ok(given)
+}
+
+/// Reads a building.
+pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+    let value = yaml(text)?;
+    let root = Object::new("building", &value)?;
+    if root.get("rmf_fleet").is_some() {
+        return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
+    }
+    let levels = root.object("levels")?.ok_or_else(|| root.missing("levels"))?;
+    let flipped = match root.text("coordinate_system")? {
+        None | Some("reference_image") => -1.0,
+        Some("cartesian_meters") => 1.0,
+        Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
+    };
+    let mut layout = Layout {
+        name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
+        corner_radius: options.corner_radius,
+        ..Layout::default()
+    };
+    let mut graphs = BTreeSet::new();
+    for (name, value) in levels.members() {
+        let object = Object::new(format!("level {name}"), value)?;
+        let vertices = object.list("vertices")?.iter().map(vertex).collect::<Vec<_>>();
+        if object.list("lanes")?.is_empty() {
+            continue;
+        }
+        let scale = if flipped < 0.0 { scale(&object, &vertices, warnings)? } else { 1.0 };
+        let mut level =
+            Level { name, scale: [scale, scale * flipped], vertices, nodes: HashMap::new(), layout: &mut layout };
+        for (k, lane) in object.list("lanes")?.iter().enumerate() {
+            match level.lane(k, lane, options, &mut graphs) {
+                Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
+                Ok(None) => {}
+                Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
+            }
+        }
+        layout.levels.push(name.clone());
+    }
+    if layout.edges.is_empty() {
+        return Err(ImportError::new(match options.graph {
+            Some(graph) => format!("building, levels: there is no lane of graph {graph} in them"),
+            None => "building, levels: there is no lane in them".to_owned(),
+        }));
+    }
+    if graphs.len() > 1 && options.graph.is_none() {
+        let there = graphs.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        warnings.add(format_args!("graphs {there}"), "the lanes of all of them are taken (--graph N)");
+    }
+    if layout.levels.len() > 1
+        && root.object("lifts").ok().flatten().is_some_and(|lifts| lifts.members().next().is_some())
+    {
+        warnings.add("lifts", "they are not read; routes stay on their level");
+    }
+    Ok(layout)
+}
+
+/// Position in pixels, name, and whether the vertex is one.
+fn vertex(value: &Value) -> Option<([f64; 2], Option<String>)> {
+    let list = value.as_array()?;
+    let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
+    let name = list.get(3).and_then(Value::as_str).filter(|name| !name.is_empty());
+    Some(([number(0)?, number(1)?], name.map(str::to_owned)))
+}
+
+/// The value of a parameter, which is a list of its type and itself.
+fn parameter<'j>(parameters: Option<&'j Value>, name: &str) -> Option<&'j Value> {
+    match parameters?.get(name)? {
+        Value::Array(typed) => typed.get(1),
+        plain => Some(plain),
+    }
+}
+
+type Vertex = Option<([f64; 2], Option<String>)>;
+
+/// Ends of a lane, a wall or a measurement.
+fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 2]); 2], String> {
+    let list = value.as_array().ok_or("not a list")?;
+    let mut ends = [(0, [0.0; 2]); 2];
+    for (k, end) in ends.iter_mut().enumerate() {
+        let place = list.get(k).and_then(Value::as_u64).ok_or("two numbers of vertices are expected")?;
+        let vertex =
+            usize::try_from(place).ok().and_then(|place| vertices.get(place)?.as_ref().map(|vertex| (place, vertex.0)));
+        *end = vertex.ok_or(format!("there is no vertex {place}"))?;
+    }
+    Ok(ends)
+}
+
+/// Metres of a pixel: the mean of the measurements.
+fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Result<f64, ImportError> {
+    let mut scales = Vec::new();
+    for (k, value) in level.list("measurements")?.iter().enumerate() {
+        let metres = parameter(value.get(2), "distance").and_then(Value::as_f64);
+        let scale = ends(value, vertices)
+            .ok()
+            .zip(metres)
+            .map(|([(_, a), (_, b)], metres)| metres / (a[0] - b[0]).hypot(a[1] - b[1]));
+        match scale.filter(|scale| (1e-9..1e9).contains(scale)) {
+            Some(scale) => scales.push(scale),
+            None => warnings.add(format_args!("{}, measurement {k}", level.name), "left out: it gives no scale"),
+        }
+    }
+    if scales.is_empty() {
+        return Err(ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.name)));
+    }
+    let mean = scales.iter().sum::<f64>() / scales.len() as f64;
+    let spread = scales.iter().map(|scale| (scale / mean - 1.0).abs()).fold(0.0, f64::max);
+    if spread > SPREAD {
+        let percent = 100.0 * spread;
+        warnings.add(&level.name, format!("its measurements differ from their mean by up to {percent:.1} %"));
+    }
+    Ok(mean)
+}
+
+struct Level<'a> {
+    name: &'a str,
+    /// Metres of a pixel to the right and down.
+    scale: [f64; 2],
+    vertices: Vec<Vertex>,
+    /// Places of the nodes in the layout, by vertex.
+    nodes: HashMap<usize, usize>,
+    layout: &'a mut Layout,
+}
+
+impl Level<'_> {
+    fn node(&mut self, vertex: usize, pixels: [f64; 2]) -> (usize, [f64; 2]) {
+        let at = [0, 1].map(|k| pixels[k] * self.scale[k]);
+        let place = *self.nodes.entry(vertex).or_insert_with(|| {
+            let name = self.vertices.get(vertex).and_then(|vertex| vertex.as_ref()?.1.clone());
+            let level = self.layout.levels.len();
+            self.layout.nodes.push(Node { id: Id::Text(format!("{}/{vertex}", self.name)), name, level, at });
+            self.layout.nodes.len() - 1
+        });
+        (place, at)
+    }
+
+    /// Adds a lane; returns a warning, or says why it is left out.
+    fn lane(
+        &mut self,
+        k: usize,
+        value: &Value,
+        options: &Options,
+        graphs: &mut BTreeSet<u64>,
+    ) -> Result<Option<String>, String> {
+        let parameters = value.get(2);
+        // A parameter that is there and has the wrong type is not left aside.
+        fn typed<T>(
+            value: Option<&Value>,
+            name: &str,
+            read: impl Fn(&Value) -> Option<T>,
+        ) -> Result<Option<T>, String> {
+            let read = |value| read(value).ok_or_else(|| format!("{name}: {value} is not read"));
+            parameter(value, name).map(read).transpose()
+        }
+        let graph = typed(parameters, "graph_idx", Value::as_u64)?.unwrap_or(0);
+        if options.graph.is_some_and(|asked| asked != graph) {
+            return Ok(None);
+        }
+        let both = ends(value, &self.vertices)?;
+        graphs.insert(graph);
+        let [from, to] = both.map(|(vertex, pixels)| self.node(vertex, pixels));
+        let line = Placed::line(from.1, to.1);
+        let straight = line.shape.length() > 0.0;
+        let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
+        self.layout.edges.push(Edge {
+            id: Id::Text(format!("{}/{k}", self.name)),
+            ends: [from.0, to.0],
+            curve: if straight { vec![line] } else { Vec::new() },
+            two_way: typed(parameters, "bidirectional", Value::as_bool)?.unwrap_or(false),
+            speed: speed.filter(|speed| *speed < 1e6),
+            rotation: None,
+            deviation: 0.0,
+        });
+        Ok((!straight).then(|| "its length is 0".to_owned()))
+    }
+}

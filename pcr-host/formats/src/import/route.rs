@@ -1,0 +1,349 @@
+//! Routes on a layout: the shortest way from node to node, and its path.
+//!
+//! Corners between straight edges are rounded where the layout has a rule for it, which is nav2's: an arc of radius R touches
+//! both edges at the distance R / tan(α/2) from the node, α the angle between them. It is left out where that is not less
+//! than what is left of the edge before (the arc of the corner before has taken its part) or than the edge after. Without an
+//! arc the vehicle stops and turns.
+
+use super::layout::{Edge, Layout};
+use super::trace::{Trace, Tracer};
+use super::vehicle::Asked;
+use super::{ImportError, Options, Vehicle, Warnings, speed};
+use crate::scenario::Placed;
+use crate::scenario::{Agent, PathSegment, Scenario, label};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::fmt;
+
+/// Angle between edges that nav2 takes as straight, or as turning back \[rad\].
+const SHALLOW: f64 = 1e-9;
+
+/// Largest gap between a curve and its node: it counts as deviation of the path \[m\].
+const GAP: f64 = 0.05;
+
+/// An edge, and whether it is travelled from its end to its beginning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<'a> {
+    /// The edge.
+    pub edge: &'a Edge,
+    /// From its end to its beginning.
+    pub backward: bool,
+}
+
+impl Step<'_> {
+    /// The node from which it goes.
+    pub fn origin(self) -> usize {
+        self.edge.ends[usize::from(self.backward)]
+    }
+
+    /// The node to which it goes.
+    pub fn target(self) -> usize {
+        self.edge.ends[usize::from(!self.backward)]
+    }
+
+    /// Its lines and arcs in the direction of travel.
+    pub fn curve(self) -> Vec<Placed> {
+        match self.backward {
+            true => self.edge.curve.iter().rev().map(Placed::reversed).collect(),
+            false => self.edge.curve.clone(),
+        }
+    }
+}
+
+/// A node that is reached, the nearest first; among equals the one of the lowest place.
+#[derive(PartialEq)]
+struct Reached {
+    length: f64,
+    node: usize,
+}
+
+impl Eq for Reached {}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.length.total_cmp(&self.length).then(other.node.cmp(&self.node))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The edges of the shortest way, by length; of equally long ones that of the edges that come first in the file.
+pub(super) fn shortest(layout: &Layout, ends: [usize; 2]) -> Option<Vec<Step<'_>>> {
+    cheapest(layout, ends, |step| step.edge.length())
+}
+
+/// The same by other costs, from 0; what costs an infinite amount is not travelled.
+pub fn cheapest<'a>(
+    layout: &'a Layout,
+    [from, to]: [usize; 2],
+    cost: impl Fn(Step<'a>) -> f64,
+) -> Option<Vec<Step<'a>>> {
+    let mut leaving = vec![Vec::new(); layout.nodes.len()];
+    for edge in &layout.edges {
+        for backward in [false, true] {
+            let origin = edge.ends[usize::from(backward)];
+            if (!backward || edge.two_way)
+                && let Some(steps) = leaving.get_mut(origin)
+            {
+                steps.push((origin, Step { edge, backward }));
+            }
+        }
+    }
+    let mut best = vec![(f64::INFINITY, None); layout.nodes.len()];
+    best.get_mut(from)?.0 = 0.0;
+    let mut heap = BinaryHeap::from([Reached { length: 0.0, node: from }]);
+    while let Some(Reached { length, node }) = heap.pop() {
+        if node == to {
+            break;
+        }
+        if best.get(node).is_none_or(|(shorter, _)| *shorter < length) {
+            continue;
+        }
+        for &(origin, step) in leaving.get(node)? {
+            let total = length + cost(step);
+            let target = best.get_mut(step.target())?;
+            if total < target.0 {
+                *target = (total, Some((origin, step)));
+                heap.push(Reached { length: total, node: step.target() });
+            }
+        }
+    }
+    let mut steps = Vec::new();
+    let mut node = to;
+    while node != from {
+        let (origin, step) = best.get(node)?.1?;
+        steps.push(step);
+        node = origin;
+    }
+    steps.reverse();
+    Some(steps)
+}
+
+/// The path along some edges, from the node where it begins.
+pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<Trace, ImportError> {
+    let at = |node: usize| layout.nodes.get(node).map_or([0.0; 2], |node| node.at);
+    let mut tracer = Tracer::default();
+    let mut position = at(from);
+    let mut deviation = 0.0_f64;
+    for (k, step) in steps.iter().enumerate() {
+        let (edge, target) = (step.edge, at(step.target()));
+        tracer.limit(edge.speed, edge.rotation);
+        deviation = deviation.max(edge.deviation);
+        let curve = step.curve();
+        if !edge.is_straight() {
+            let ends = curve.first().zip(curve.last()).map(|(first, last)| (first.at, last.end()));
+            let (begin, end) = ends.unwrap_or((position, target));
+            for (point, node, place) in [(begin, position, "begins"), (end, target, "ends")] {
+                let gap = (point[0] - node[0]).hypot(point[1] - node[1]);
+                if gap > GAP {
+                    let name = &edge.id;
+                    return Err(ImportError::new(format!("edge {name}: its curve {place} {gap:.3} m from its node")));
+                }
+            }
+            curve.iter().for_each(|piece| tracer.follow(piece));
+            position = end;
+            continue;
+        }
+        let corner = layout.corner_radius.zip(steps.get(k + 1).filter(|next| next.edge.is_straight()));
+        let arc = corner.and_then(|(radius, next)| corner_arc(position, target, at(next.target()), radius));
+        match arc {
+            Some(arc) => {
+                tracer.line(position, arc.at);
+                tracer.follow(&arc);
+                position = arc.end();
+            }
+            None => {
+                tracer.line(position, target);
+                position = target;
+            }
+        }
+    }
+    let mut trace = tracer.finish(position);
+    trace.deviation += deviation;
+    Ok(trace)
+}
+
+impl Edge {
+    /// Whether it is one line from node to node, or nothing.
+    fn is_straight(&self) -> bool {
+        match self.curve.as_slice() {
+            [] => true,
+            [only] => matches!(only.shape, PathSegment::Line { .. }) && self.deviation == 0.0,
+            _ => false,
+        }
+    }
+}
+
+/// The arc with which nav2 rounds the corner between two edges, `None` where it leaves it out.
+pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radius: f64) -> Option<Placed> {
+    let back = [start[0] - corner[0], start[1] - corner[1]];
+    let onward = [end[0] - corner[0], end[1] - corner[1]];
+    let [before, after] = [back, onward].map(|[x, y]| x.hypot(y));
+    if before == 0.0 || after == 0.0 || radius == 0.0 {
+        return None;
+    }
+    let cross = back[0] * onward[1] - back[1] * onward[0];
+    let dot = back[0] * onward[0] + back[1] * onward[1];
+    let angle = cross.abs().atan2(dot);
+    if angle < SHALLOW || std::f64::consts::PI - angle < SHALLOW {
+        return None;
+    }
+    let tangent = radius / (angle / 2.0).tan();
+    if tangent >= before || tangent >= after {
+        return None;
+    }
+    let at = [corner[0] + back[0] / before * tangent, corner[1] + back[1] / before * tangent];
+    let heading = (-back[1]).atan2(-back[0]);
+    // The way on lies to the left where the vector back lies to its left.
+    let sweep = (std::f64::consts::PI - angle).copysign(-cross);
+    Some(Placed { at, heading, shape: PathSegment::Arc { radius, sweep } })
+}
+
+/// The routes that the options ask for as a scenario, an agent a route.
+pub(super) fn scenario(
+    layout: &Layout,
+    vehicle: &Vehicle,
+    options: &Options,
+    warnings: &mut Warnings,
+) -> Result<Scenario, ImportError> {
+    if options.routes.is_empty() {
+        let nodes = layout.nodes.iter().take(3).map(|node| node.id.to_string()).collect::<Vec<_>>().join(", ");
+        return Err(ImportError::new(format!(
+            "a layout has no agents; ask for routes with --route FROM:TO, from node to node (there are {} nodes: {nodes}, ...)",
+            layout.nodes.len()
+        )));
+    }
+    let mut agents = Vec::new();
+    let mut levels = Vec::new();
+    for (k, route) in options.routes.iter().enumerate() {
+        let asked = Asked::parse(route, |name| layout.nodes_called(name))?;
+        let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
+        let agent = mission(layout, vehicle, k as u64 + 1, asked.ends).map_err(|error| refused(&error))?;
+        let agent = agent.ok_or_else(|| refused(&"there is no way from node to node"))?;
+        levels.push(layout.nodes.get(asked.ends[0]).map_or(0, |node| node.level));
+        let name = |place: usize| {
+            let node = layout.nodes.get(place);
+            node.map_or_else(String::new, |node| node.name.clone().unwrap_or_else(|| node.id.to_string()))
+        };
+        let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
+        // Where the file names its vehicles, the routes are theirs in the order of both.
+        let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
+        agents.push(Agent { label, t_start: asked.time, ..agent });
+    }
+    if levels.windows(2).any(|pair| pair[0] != pair[1]) {
+        warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
+    }
+    Ok(Scenario::new(layout.name.clone(), agents))
+}
+
+/// The agent that travels the shortest way between two nodes from the time 0, if there is one.
+pub(super) fn mission(
+    layout: &Layout,
+    vehicle: &Vehicle,
+    id: u64,
+    ends: [usize; 2],
+) -> Result<Option<Agent>, ImportError> {
+    let Some(steps) = shortest(layout, ends) else { return Ok(None) };
+    let trace = trace(layout, ends[0], &steps)?;
+    Ok(Some(agent(id, &trace, vehicle, 0.0)))
+}
+
+/// The vehicle on a single edge, in one direction.
+pub fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
+    let mut tracer = Tracer::default();
+    let curve = step.curve();
+    curve.iter().for_each(|piece| tracer.follow(piece));
+    let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.at));
+    trace.deviation += step.edge.deviation;
+    agent(0, &trace, vehicle, 0.0)
+}
+
+/// The vehicle that turns in place from a heading by an angle, or stands there.
+pub fn turn(vehicle: &Vehicle, at: [f64; 2], heading: f64, angle: f64) -> Agent {
+    let mut tracer = Tracer::default();
+    tracer.turn(at, heading, angle);
+    agent(0, &tracer.finish(at), vehicle, 0.0)
+}
+
+/// The agent that travels a path.
+pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> Agent {
+    let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
+    let motion = speed::motion(&trace.stretches, vehicle);
+    let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(trace.deviation));
+    let disc = Agent::disc(id, vehicle.radius + trace.deviation, trace.start, path, motion);
+    Agent { footprint, margin: vehicle.margin, t_start, ..disc }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Format, layout};
+    use super::*;
+    use std::collections::HashSet;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    const GRAPHS: [&str; 3] = [
+        include_str!("../../../../tests/data/real/nav2/warehouse_graph.geojson"),
+        include_str!("../../../../tests/data/real/nav2/aws_graph.geojson"),
+        include_str!("../../../../tests/data/real/nav2/sample_graph.geojson"),
+    ];
+
+    #[test]
+    fn a_corner_is_rounded_as_nav2_does_it() {
+        let arc = corner_arc([-3.0, 0.0], [0.0, 0.0], [0.0, 2.0], 1.0).unwrap();
+        assert!((arc.at[0] + 1.0).abs() < 1e-15 && arc.at[1] == 0.0 && arc.heading == 0.0);
+        assert!(matches!(arc.shape, PathSegment::Arc { radius: 1.0, sweep } if (sweep - FRAC_PI_2).abs() < 1e-15));
+        let right = corner_arc([-3.0, 0.0], [0.0, 0.0], [-1.0, -3.0_f64.sqrt()], 0.5).unwrap();
+        // Tangent length 0.5 / tan 30°, and 120° to turn.
+        assert!((right.at[0] + 0.5 * 3.0_f64.sqrt()).abs() < 1e-12);
+        assert!(matches!(right.shape, PathSegment::Arc { sweep, .. } if (sweep + 2.0 * PI / 3.0).abs() < 1e-12));
+        let end = right.end();
+        assert!((end[0] + 0.25 * 3.0_f64.sqrt()).abs() < 1e-12 && (end[1] + 0.75).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_arc_is_left_out_where_it_does_not_fit() {
+        let corner = [0.0, 0.0];
+        assert_eq!(
+            corner_arc([-1.0, 0.0], corner, [0.0, 2.0], 1.0),
+            None,
+            "the edge before is no longer than the tangent"
+        );
+        assert_eq!(corner_arc([-2.0, 0.0], corner, [0.0, 1.0], 1.0), None, "the edge after");
+        assert_eq!(corner_arc([-2.0, 0.0], corner, [-1.0, 0.0], 0.1), None, "back");
+        assert_eq!(corner_arc([-2.0, 0.0], corner, [1.0, 0.0], 0.1), None, "straight on");
+        assert_eq!(corner_arc(corner, corner, [1.0, 0.0], 0.1), None, "an edge of length 0");
+    }
+
+    /// Corners of ways from node to node to node that do not turn back, and how many of them have an arc.
+    fn corners(text: &str, radius: f64) -> [usize; 2] {
+        let imported = layout(Format::Nav2, text, &Options::default(), &mut Warnings::default()).unwrap();
+        let Layout { nodes, edges, .. } = &imported.layout;
+        let mut ways = HashSet::new();
+        for before in edges {
+            for after in edges.iter().filter(|after| after.ends[0] == before.ends[1] && after.ends[1] != before.ends[0])
+            {
+                ways.insert([before.ends[0], before.ends[1], after.ends[1]]);
+            }
+        }
+        let arcs = |radius: f64| {
+            let arc = |way: &&[usize; 3]| {
+                let [start, corner, end] = way.map(|node| nodes[node].at);
+                corner_arc(start, corner, end, radius).is_some()
+            };
+            ways.iter().filter(arc).count()
+        };
+        [arcs(1e-6), arcs(radius)]
+    }
+
+    #[test]
+    fn corners_of_the_published_graphs() {
+        assert_eq!(GRAPHS.map(|graph| corners(graph, 0.5)), [[112, 112], [118, 118], [32, 32]]);
+        assert_eq!(corners(GRAPHS[0], 1.0), [112, 100]);
+        // One of them turns by 2° only.
+        assert_eq!(corners(GRAPHS[1], 1.0), [118, 112]);
+    }
+}

@@ -1,0 +1,118 @@
+//! Plans with times: points and when they are reached, with constant speed between them.
+//!
+//! Such plans change their speed at once; a profile of constant accelerations changes it within [`RAMP`], before the slower
+//! of two sections and after it, so that every point is reached exactly when it has to be. In between the vehicle is off by at most the
+//! half of its speed times that, nanometres.
+
+use super::ImportError;
+use super::trace::Tracer;
+use crate::scenario::{Agent, LIMIT, MotionSpec};
+
+/// Time in which a speed changes that a plan changes at once \[s\], if that does not take more than half of the acceleration
+/// that is allowed or a quarter of the section.
+const RAMP: f64 = 1e-9;
+
+/// A point and when it is reached \[m, s\].
+pub(super) type Stop = ([f64; 2], f64);
+
+/// The agent that reaches these points at these times. At the same point twice it waits.
+pub(super) fn agent(id: u64, radius: f64, stops: &[Stop]) -> Result<Agent, ImportError> {
+    let &(first, t_start) = stops.first().ok_or_else(|| ImportError::new("no point at all"))?;
+    let mut tracer = Tracer::default();
+    let mut sections = Vec::new();
+    let mut travelled = 0.0;
+    for (k, pair) in stops.windows(2).enumerate() {
+        let [(from, begin), (to, end)] = [pair[0], pair[1]];
+        let duration = end - begin;
+        if duration.is_nan() || duration < 0.0 || (duration == 0.0 && from != to) {
+            let problem = format!("point {} is reached at {end} s, from point {} at {begin} s", k + 2, k + 1);
+            return Err(ImportError::new(problem));
+        }
+        tracer.line(from, to);
+        let length = tracer.length() - travelled;
+        travelled = tracer.length();
+        if duration > 0.0 {
+            if length / duration > LIMIT / 1e3 {
+                return Err(ImportError::new(format!(
+                    "point {} is {length} m away and reached in {duration} s",
+                    k + 2
+                )));
+            }
+            sections.push((length, duration));
+        }
+    }
+    let trace = tracer.finish(first);
+    let pieces = pieces(&sections);
+    let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
+    let motion = MotionSpec::Profile { v0: 0.0, pieces };
+    Ok(Agent { t_start, ..Agent::disc(id, radius + trace.deviation, trace.start, path, motion) })
+}
+
+/// The profile over sections of given lengths and durations.
+fn pieces(sections: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let speed = |k: Option<usize>| k.and_then(|k| sections.get(k)).map_or(0.0, |(length, duration)| length / duration);
+    let mut pieces = Vec::new();
+    for (k, &(length, duration)) in sections.iter().enumerate() {
+        let own = length / duration;
+        let [before, after] = [own.min(speed(k.checked_sub(1))), own.min(speed(Some(k + 1)))];
+        let ramp = RAMP.max(own / (LIMIT / 2.0)).min(duration / 4.0);
+        // (b + p) τ / 2 + p (T - 2 τ) + (p + e) τ / 2 is the length.
+        let peak = (length - (before + after) * ramp / 2.0) / (duration - ramp);
+        pieces.extend([(ramp, (peak - before) / ramp), (duration - 2.0 * ramp, 0.0), (ramp, (after - peak) / ramp)]);
+    }
+    pieces
+}
+
+/// Seconds since 1970 of a time stamp of ISO 8601: `2017-04-15T11:40:03.123Z`, also with an offset instead of `Z`.
+pub(super) fn seconds(stamp: &str) -> Option<f64> {
+    let (date, time) = stamp.trim().split_once(['T', 't', ' '])?;
+    let mut date = date.splitn(3, '-').map(|part| part.parse::<i64>().ok());
+    let (year, month, day) = (date.next()??, date.next()??, date.next()??);
+    if !(1600..=9999).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+        return None;
+    }
+    let zone = time.find(['Z', 'z', '+', '-']).unwrap_or(time.len());
+    let (clock, zone) = time.split_at(zone);
+    let hours = |text: &str| -> Option<f64> {
+        let mut parts = text.splitn(3, ':').map(|part| part.parse::<f64>().ok().filter(|x| (0.0..100.0).contains(x)));
+        let (hour, minute) = (parts.next()??, parts.next().unwrap_or(Some(0.0))?);
+        Some(hour * 3600.0 + minute * 60.0 + parts.next().unwrap_or(Some(0.0))?)
+    };
+    let offset = match zone.chars().next() {
+        Some('+') => hours(zone.get(1..)?)?,
+        Some('-') => -hours(zone.get(1..)?)?,
+        _ => 0.0,
+    };
+    // Days since 1 March of the year 0, by years that begin in March.
+    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let days = 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + day - 1 - 719_468;
+    Some(days as f64 * 86_400.0 + hours(clock)? - offset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stamps() {
+        assert_eq!(seconds("1970-01-01T00:00:00Z"), Some(0.0));
+        assert_eq!(seconds("2000-02-29T12:00:00.500Z"), Some(951_825_600.5));
+        assert_eq!(seconds("2026-11-21T08:30:00+01:00"), seconds("2026-11-21T07:30:00Z"));
+        for wrong in ["", "T", "2026-13-01T00:00:00Z", "2026-01-01", "x-1-1T1", "2026-01-01T-:00"] {
+            assert_eq!(seconds(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn impossible_plans_are_refused() {
+        let message = |stops: &[Stop]| agent(1, 0.5, stops).unwrap_err().to_string();
+        assert_eq!(message(&[]), "no point at all");
+        assert_eq!(message(&[([0.0, 0.0], 1.0), ([1.0, 0.0], 1.0)]), "point 2 is reached at 1 s, from point 1 at 1 s");
+        assert_eq!(
+            message(&[([0.0, 0.0], 1.0), ([0.0, 0.0], 0.5)]),
+            "point 2 is reached at 0.5 s, from point 1 at 1 s"
+        );
+        assert!(message(&[([0.0, 0.0], 0.0), ([1.0, 0.0], f64::NAN)]).contains("NaN"));
+        assert!(message(&[([0.0, 0.0], 0.0), ([1.0, 0.0], 1e-300)]).contains("reached in"));
+    }
+}

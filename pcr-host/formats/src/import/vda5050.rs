@@ -1,0 +1,318 @@
+//! VDA 5050: orders (2.x and 3.0) and states (3.0), an agent each.
+//!
+//! A file holds one message, a list of them, or one after the other. `null` is as good as nothing.
+//! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed limits; the base
+//!   ends where the first node or edge is not released, and the horizon is travelled only if asked for.
+//! - A state with an `intermediatePath` is a plan with times, seconds since the time stamp of the first state; one with a
+//!   `plannedPath` travels that from rest; one with neither stands where it is, and is refused if it has nodes to go to. Its loads make the vehicle larger.
+
+use super::timed::{self, seconds};
+use super::trace::Tracer;
+use super::value::Object;
+use super::warnings::TOGETHER;
+use super::{ImportError, Options, Vehicle, Warnings, loads, route, trajectory};
+use crate::scenario::Placed;
+use crate::scenario::{Agent, MotionSpec, Scenario, label};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// Largest gap between the end of a trajectory and its node: it counts as deviation of the path \[m\].
+const GAP: f64 = 0.05;
+
+/// Whether a JSON value looks like an order or a state.
+pub(super) fn is_message(root: &Value) -> bool {
+    let one = match root {
+        Value::Array(messages) => messages.first(),
+        one => Some(one),
+    };
+    one.is_some_and(|one| one.get("orderId").is_some() || one.get("nodeStates").is_some())
+}
+
+/// Reads orders and states; returns the radii of the vehicles with their loads as well.
+pub(super) fn read(
+    text: &str,
+    options: &Options,
+    vehicle: &Vehicle,
+    warnings: &mut Warnings,
+) -> Result<(Scenario, Vec<f64>), ImportError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut messages = Vec::new();
+    for value in serde_json::Deserializer::from_str(text).into_iter::<Value>() {
+        match value.map_err(|error| ImportError::new(format!("not JSON: {error}")))? {
+            Value::Array(several) => messages.extend(several),
+            one => messages.push(one),
+        }
+    }
+    if messages.is_empty() {
+        return Err(ImportError::new("there is no order and no state in it"));
+    }
+    let mut reader = Reader { options, vehicle, warnings, origin: None, maps: BTreeSet::new() };
+    let mut scenario = Scenario::new("", Vec::new());
+    let mut radii = Vec::new();
+    for (k, value) in messages.iter().enumerate() {
+        let id = k as u64 + 1;
+        let message = Object::new(format!("message {id}"), value)?;
+        let name = message.text("orderId").ok().flatten().unwrap_or_default();
+        let robot = message.text("serialNumber").ok().flatten().unwrap_or_default();
+        let called = label(&[robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "));
+        let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];
+        if message.get("nodes").is_some() {
+            let order = message.called(format!("order {name}"));
+            scenario.agents.push(Agent { label: called, ..reader.order(id, &order)? });
+            radii.push(vehicle.radius);
+        } else if state.iter().any(|field| message.get(field).is_some()) {
+            let robot = Some(robot).filter(|robot| !robot.is_empty());
+            let state =
+                message.called(robot.map_or_else(|| format!("state {id}"), |robot| format!("state of {robot}")));
+            let loaded = loads::loaded(&state, vehicle, reader.warnings)?;
+            scenario.agents.push(Agent { label: called, ..reader.state(id, &state, &loaded)? });
+            radii.push(loaded.radius);
+        } else {
+            return Err(message.missing("nodes or nodeStates"));
+        }
+        // Several have no name in common.
+        if messages.len() == 1 {
+            scenario.name = name.to_owned();
+        }
+    }
+    if reader.maps.len() > 1 {
+        let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
+        warnings
+            .add(format_args!("maps {maps}"), format!("{TOGETHER}on several, which a scenario does not tell apart"));
+    }
+    Ok((scenario, radii))
+}
+
+struct Reader<'a> {
+    options: &'a Options,
+    vehicle: &'a Vehicle,
+    warnings: &'a mut Warnings,
+    /// Time stamp of the first state \[s\].
+    origin: Option<f64>,
+    /// Of all agents.
+    maps: BTreeSet<String>,
+}
+
+/// A node or an edge in the order of travel.
+struct Part<'j> {
+    object: Object<'j>,
+    sequence: f64,
+    released: bool,
+}
+
+fn parts<'j>(order: &Object<'j>, list: &str, what: &str, id: &str) -> Result<Vec<Part<'j>>, ImportError> {
+    let mut parts = Vec::new();
+    for (k, value) in order.list(list)?.iter().enumerate() {
+        let object = Object::new(format!("{}, {what} {}", order.name, k + 1), value)?;
+        let name = object.text(id)?.ok_or_else(|| object.missing(id))?;
+        let object = object.called(format!("{}, {what} {name}", order.name));
+        let released = object.flag("released")?.unwrap_or(true);
+        // Without numbers the lists are in the order of travel.
+        parts.push(Part { sequence: object.number("sequenceId")?.unwrap_or(k as f64), released, object });
+    }
+    parts.sort_by(|a, b| a.sequence.total_cmp(&b.sequence));
+    Ok(parts)
+}
+
+impl Reader<'_> {
+    fn order(&mut self, id: u64, order: &Object<'_>) -> Result<Agent, ImportError> {
+        let mut nodes = parts(order, "nodes", "node", "nodeId")?;
+        let mut edges = parts(order, "edges", "edge", "edgeId")?;
+        if nodes.len() != edges.len() + 1 {
+            let problem = format!("{}: {} nodes and {} edges, which is no path", order.name, nodes.len(), edges.len());
+            return Err(ImportError::new(problem));
+        }
+        if !self.options.horizon {
+            let base =
+                nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
+            if base < edges.len() {
+                let ahead = format!(
+                    "{} of {} edges are not released and left out (--horizon)",
+                    edges.len() - base,
+                    edges.len()
+                );
+                self.warnings.add(&order.name, ahead);
+            }
+            nodes.truncate(base + 1);
+            edges.truncate(base);
+        }
+        self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
+        for edge in &edges {
+            if edge.object.get("corridor").is_some() {
+                self.warnings
+                    .add(&edge.object.name, "its corridor is not read; the vehicle keeps to the middle of its way");
+            }
+        }
+        let mut tracer = Tracer::default();
+        let (mut position, mut deviation) = (position(nodes.first(), "nodePosition")?, 0.0_f64);
+        if position.is_none() && edges.is_empty() {
+            return Err(nodes
+                .first()
+                .map_or_else(|| order.missing("nodes"), |node| node.object.missing("nodePosition")));
+        }
+        for (k, edge) in edges.iter().enumerate() {
+            let (before, after) = (nodes.get(k), nodes.get(k + 1));
+            let edge = &edge.object;
+            joins(edge, before, after)?;
+            let speed = match edge.positive("maxSpeed")? {
+                None => edge.positive("maximumSpeed")?,
+                speed => speed,
+            };
+            let rotation = match edge.positive("maxRotationSpeed")? {
+                None => edge.positive("maximumRotationSpeed")?,
+                rotation => rotation,
+            };
+            tracer.limit(speed, rotation);
+            let target = self::position(after, "nodePosition")?;
+            let Some(trajectory) = edge.object("trajectory")? else {
+                let missing = |node: Option<&Part<'_>>| {
+                    node.map_or_else(|| edge.missing("node"), |node| node.object.missing("nodePosition"))
+                };
+                let from = position.ok_or_else(|| missing(before))?;
+                let to = target.ok_or_else(|| missing(after))?;
+                tracer.line(from, to);
+                position = Some(to);
+                continue;
+            };
+            let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
+            let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
+            deviation = deviation.max(fit.deviation);
+            position = Some(follow(&mut tracer, edge, &fit.pieces, position, target)?);
+        }
+        let stops = nodes.iter().any(|node| !node.object.list("actions").unwrap_or_default().is_empty());
+        if stops {
+            self.warnings.add(&order.name, "its actions take no time here: the file does not say how long they last");
+        }
+        let mut trace = tracer.finish(position.unwrap_or_default());
+        trace.deviation += deviation;
+        Ok(route::agent(id, &trace, self.vehicle, 0.0))
+    }
+
+    /// Keeps the map on which an agent is, which has to be one, as what is on different maps has no common coordinates.
+    fn maps<'j>(
+        &mut self,
+        of: &Object<'_>,
+        positions: impl Iterator<Item = Result<Option<Object<'j>>, ImportError>>,
+    ) -> Result<(), ImportError> {
+        let mut own: Option<&str> = None;
+        for position in positions {
+            let Some(map) = position?.map(|position| position.text("mapId")).transpose()?.flatten() else { continue };
+            if own.is_some_and(|own| own != map) {
+                let own = own.unwrap_or_default();
+                return Err(ImportError::new(format!("{}: it leads from map {own} to map {map}", of.name)));
+            }
+            own = Some(map);
+        }
+        self.maps.extend(own.map(str::to_owned));
+        Ok(())
+    }
+
+    fn state(&mut self, id: u64, state: &Object<'_>, vehicle: &Vehicle) -> Result<Agent, ImportError> {
+        let pose =
+            state.object("mobileRobotPosition")?.map_or_else(|| state.object("agvPosition"), |pose| Ok(Some(pose)))?;
+        self.maps(state, std::iter::once(Ok(pose.clone())))?;
+        let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?.unwrap_or(0.0);
+        let at = pose.map(|pose| pose.point()).transpose()?;
+        if let Some(path) = state.object("intermediatePath")? {
+            if state.get("plannedPath").is_some() {
+                let problem = "its plannedPath, which goes on where the times of its intermediatePath end";
+                self.warnings.lose(format_args!("{}: {problem}", state.name));
+            }
+            return self.timed(id, state, &path, at, vehicle.radius);
+        }
+        if let Some(path) = state.object("plannedPath")? {
+            let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
+            let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
+            let begin = fit.pieces.first().map(|piece| piece.at);
+            if let Some(gap) = at.zip(begin).map(|(at, begin)| (at[0] - begin[0]).hypot(at[1] - begin[1]))
+                && gap > GAP
+            {
+                self.warnings
+                    .add(&path.name, format!("it begins {gap:.3} m from where the vehicle is; it is taken as there"));
+            }
+            let mut tracer = Tracer::default();
+            fit.pieces.iter().for_each(|piece| tracer.follow(piece));
+            let mut trace = tracer.finish(at.or(fit.pieces.first().map(|piece| piece.at)).unwrap_or_default());
+            trace.deviation += fit.deviation;
+            return Ok(route::agent(id, &trace, vehicle, 0.0));
+        }
+        let [x, y] = at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
+        if !state.list("nodeStates")?.is_empty() {
+            self.warnings
+                .lose(format_args!("{}: its way is told by nodeStates only, give its order instead", state.name));
+        }
+        let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
+        let Vehicle { radius, margin, .. } = *vehicle;
+        let stands = Agent::disc(id, radius, [x, y, heading], Vec::new(), motion);
+        Ok(Agent { footprint: vehicle.footprint.clone(), margin, ..stands })
+    }
+
+    /// The agent on a polyline with times.
+    fn timed(
+        &mut self,
+        id: u64,
+        state: &Object<'_>,
+        path: &Object<'_>,
+        at: Option<[f64; 2]>,
+        radius: f64,
+    ) -> Result<Agent, ImportError> {
+        let stamp = |object: &Object<'_>, field: &str| match object.text(field)? {
+            None => Err(object.missing(field)),
+            Some(text) => seconds(text)
+                .ok_or_else(|| ImportError::new(format!("{}, {field}: {text:?} is not a time stamp", object.name))),
+        };
+        let mut stops = Vec::new();
+        if let Some(at) = at {
+            stops.push((at, stamp(state, "timestamp")?));
+        }
+        for (k, value) in path.list("polyline")?.iter().enumerate() {
+            let point = Object::new(format!("{}, point {}", path.name, k + 1), value)?;
+            stops.push((point.point()?, stamp(&point, "eta")?));
+        }
+        let origin = *self.origin.get_or_insert(stops.first().map_or(0.0, |(_, time)| *time));
+        stops.iter_mut().for_each(|(_, time)| *time -= origin);
+        let named = |error| ImportError::new(format!("{}: {error}", path.name));
+        timed::agent(id, radius, &stops).map_err(named)
+    }
+}
+
+/// Position of a node, where it has one.
+fn position(node: Option<&Part<'_>>, field: &str) -> Result<Option<[f64; 2]>, ImportError> {
+    let Some(node) = node else { return Ok(None) };
+    node.object.object(field)?.map(|position| position.point()).transpose()
+}
+
+/// Checks that an edge joins the nodes before and after it, where it names its nodes.
+fn joins(edge: &Object<'_>, before: Option<&Part<'_>>, after: Option<&Part<'_>>) -> Result<(), ImportError> {
+    for (field, node) in [("startNodeId", before), ("endNodeId", after)] {
+        let there = node.map(|node| node.object.text("nodeId")).transpose()?.flatten();
+        let named = edge.text(field)?;
+        if named.is_some() && named != there {
+            let (named, there) = (named.unwrap_or_default(), there.unwrap_or_default());
+            return Err(ImportError::new(format!("{}, {field}: {named}, but by sequenceId it is {there}", edge.name)));
+        }
+    }
+    Ok(())
+}
+
+/// Follows a trajectory from node to node; returns where the path then is.
+fn follow(
+    tracer: &mut Tracer,
+    edge: &Object<'_>,
+    pieces: &[Placed],
+    from: Option<[f64; 2]>,
+    to: Option<[f64; 2]>,
+) -> Result<[f64; 2], ImportError> {
+    let ends = pieces.first().zip(pieces.last()).map(|(first, last)| [first.at, last.end()]);
+    let Some([begin, end]) = ends.or(from.map(|at| [at; 2])) else {
+        return Err(ImportError::new(format!("{}: a trajectory of length 0, and no position", edge.name)));
+    };
+    for (point, node, place) in [(begin, from, "begins"), (end, to, "ends")] {
+        let gap = node.map_or(0.0, |node| (point[0] - node[0]).hypot(point[1] - node[1]));
+        if gap > GAP {
+            return Err(ImportError::new(format!("{}: its trajectory {place} {gap:.3} m from its node", edge.name)));
+        }
+    }
+    pieces.iter().for_each(|piece| tracer.follow(piece));
+    Ok(end)
+}

@@ -1,0 +1,211 @@
+//! The vehicle that travels a layout, and what the command line says about it and its routes.
+
+use super::{Format, ImportError, Warnings};
+use crate::footprint::Footprint;
+use std::path::PathBuf;
+
+/// What a vehicle is and can.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vehicle {
+    /// Name or type, where it has one.
+    pub name: Option<String>,
+    /// Radius of its disc \[m\]; with a footprint that of the disc around all of it.
+    pub radius: f64,
+    /// Its outline, if it is no disc.
+    pub footprint: Option<Footprint>,
+    /// Margin to be kept around it \[m\].
+    pub margin: f64,
+    /// \[m/s\]
+    pub speed: f64,
+    /// \[m/s²\]
+    pub acceleration: f64,
+    /// \[rad/s\]
+    pub rotation: f64,
+    /// \[rad/s²\]
+    pub rotation_acceleration: f64,
+}
+
+/// What a file says about the vehicle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Given {
+    pub(super) name: Option<String>,
+    pub(super) radius: Option<f64>,
+    pub(super) footprint: Option<Footprint>,
+    pub(super) margin: Option<f64>,
+    pub(super) speed: Option<f64>,
+    pub(super) acceleration: Option<f64>,
+    pub(super) rotation: Option<f64>,
+    pub(super) rotation_acceleration: Option<f64>,
+}
+
+/// Largest deviation of a fitted path from a curve, if no other is asked for \[m\].
+pub const TOLERANCE: f64 = 1e-3;
+
+/// Corner radius of nav2 \[m\].
+pub const CORNER_RADIUS: f64 = 1.0;
+
+/// Heading of the options in the help.
+pub const HEADING: &str = "Layouts and other formats";
+
+/// How to read files that are not scenarios.
+///
+/// Lengths are in metres, speeds in m/s and rad/s, accelerations in m/s² and rad/s². The command line takes numbers above 0,
+/// of margin and corner radius also 0, up to 1e6.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = HEADING))]
+pub struct Options {
+    /// Format; by name and content if left out
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT"))]
+    pub from: Option<Format>,
+    /// Way of an agent; as often as there are agents
+    #[cfg_attr(feature = "clap", arg(long = "route", value_name = "FROM:TO[@TIME]"))]
+    pub routes: Vec<String>,
+    /// Radius of the vehicle
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
+    pub radius: Option<f64>,
+    /// Margin to keep around discs that have none of their own
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
+    pub margin: Option<f64>,
+    /// Largest speed of the vehicle
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M/S", value_parser = positive))]
+    pub speed: Option<f64>,
+    /// Largest acceleration of the vehicle
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M/S2", value_parser = positive))]
+    pub acceleration: Option<f64>,
+    /// Largest speed of rotation of the vehicle
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RAD/S", value_parser = positive))]
+    pub rotation: Option<f64>,
+    /// Largest angular acceleration of the vehicle
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RAD/S2", value_parser = positive))]
+    pub rotation_acceleration: Option<f64>,
+    /// Type of the vehicle, where a layout has several (LIF)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TYPE"))]
+    pub vehicle: Option<String>,
+    /// Fleet configuration (Open-RMF) or factsheet (VDA 5050)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE"))]
+    pub fleet: Option<PathBuf>,
+    /// Radius of corners (nav2: 1 if left out)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
+    pub corner_radius: Option<f64>,
+    /// Largest distance of arcs from curves (0.001 if left out)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
+    pub tolerance: Option<f64>,
+    /// Navigation graph, where there are several (Open-RMF)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub graph: Option<u64>,
+    /// Travel the horizon of an order, not only its base (VDA 5050)
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub horizon: bool,
+    /// Read what can be read of a layout; without it, a file is refused for anything that would be left out
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub partial: bool,
+}
+
+/// Largest value of an option: beyond it nothing is a vehicle.
+const MOST: f64 = 1e6;
+
+#[cfg(feature = "clap")]
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=MOST).contains(&number) => Ok(number),
+        _ => Err(format!("a number from 0 to {MOST:e} is expected")),
+    }
+}
+
+#[cfg(feature = "clap")]
+fn positive(text: &str) -> Result<f64, String> {
+    match not_negative(text) {
+        Ok(number) if number >= 1.0 / MOST => Ok(number),
+        _ => Err(format!("a number from {:e} to {MOST:e} is expected", 1.0 / MOST)),
+    }
+}
+
+impl Options {
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(TOLERANCE)
+    }
+
+    /// The vehicle: what the options say, else the file, else a default that is warned about. If nothing `moves` only the
+    /// radius matters.
+    pub(super) fn vehicle(&self, given: &Given, moves: bool, warnings: &mut Warnings) -> Vehicle {
+        let mut assumed = Vec::new();
+        let mut choose = |option: Option<f64>, given: Option<f64>, default: f64, what: &str| {
+            option.or(given).unwrap_or_else(|| {
+                assumed.push(format!("{what} {default}"));
+                default
+            })
+        };
+        // A radius that is asked for is that of a disc.
+        let footprint = given.footprint.clone().filter(|_| self.radius.is_none());
+        let reach = footprint.as_ref().map(Footprint::reach);
+        let radius = choose(self.radius, reach.or(given.radius), 0.5, "radius [m]");
+        let vehicle = Vehicle {
+            name: given.name.clone(),
+            radius,
+            footprint,
+            margin: self.margin.or(given.margin).unwrap_or(0.0),
+            speed: choose(self.speed, given.speed, 1.0, "speed [m/s]"),
+            acceleration: choose(self.acceleration, given.acceleration, 0.5, "acceleration [m/s²]"),
+            rotation: choose(self.rotation, given.rotation, 1.0, "rotation [rad/s]"),
+            rotation_acceleration: choose(
+                self.rotation_acceleration,
+                given.rotation_acceleration,
+                1.0,
+                "rotation-acceleration [rad/s²]",
+            ),
+        };
+        if !moves {
+            assumed.retain(|what| what.starts_with("radius"));
+        }
+        if !assumed.is_empty() {
+            warnings.add("vehicle", format!("not in the file and not given, hence taken as: {}", assumed.join(", ")));
+        }
+        vehicle
+    }
+}
+
+/// A route that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Asked {
+    pub(super) ends: [usize; 2],
+    pub(super) time: f64,
+}
+
+impl Asked {
+    /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons and `@`, as long as it can be read in one way only.
+    pub(super) fn parse(text: &str, nodes: impl Fn(&str) -> Vec<usize>) -> Result<Self, ImportError> {
+        let refused = |problem: String| Err(ImportError::new(format!("route {text}: {problem}")));
+        let splits = |text: &str| -> Vec<[String; 2]> {
+            let split = |(colon, _)| Some([text.get(..colon)?.to_owned(), text.get(colon + 1..)?.to_owned()]);
+            let names = text.match_indices(':').filter_map(split);
+            names.filter(|names| names.iter().all(|name| !nodes(name).is_empty())).collect()
+        };
+        let timed = text.rsplit_once('@').and_then(|(names, time)| {
+            let time = time.parse::<f64>().ok().filter(|time| time.abs() <= MOST)?;
+            Some((names, time))
+        });
+        let mut readings: Vec<([String; 2], f64)> = splits(text).into_iter().map(|names| (names, 0.0)).collect();
+        readings.extend(timed.into_iter().flat_map(|(text, time)| splits(text).into_iter().map(move |it| (it, time))));
+        match readings.as_slice() {
+            [(names, time)] => {
+                let mut ends = [0; 2];
+                for (end, name) in ends.iter_mut().zip(names) {
+                    match nodes(name)[..] {
+                        [only] => *end = only,
+                        ref several => return refused(format!("{} nodes have the name {name}", several.len())),
+                    }
+                }
+                Ok(Self { ends, time: *time })
+            }
+            [] => {
+                let names = text.rsplit_once('@').map_or(text, |(names, _)| names);
+                let unknown = names.split_once(':').map(|(from, to)| if nodes(from).is_empty() { from } else { to });
+                match unknown {
+                    Some(name) if nodes(name).is_empty() => refused(format!("there is no node {name}")),
+                    _ => refused("FROM:TO or FROM:TO@TIME is expected".into()),
+                }
+            }
+            _ => refused("there are nodes for more than one reading of it".into()),
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Scenario files: agents with their paths and motions, as JSON.
+//!
+//! ```
+//! # use pcr_formats::scenario::Scenario;
+//! let scenario = Scenario::from_json(r#"
+//!     { "name": "crossing",
+//!       "agents": [
+//!         { "id": 1, "radius": 0.11, "v_max": 0.58, "a_max": 0.30, "t_start": 0.0,
+//!           "start": { "x": 0.0, "y": 0.0, "heading": 0.0 },
+//!           "path": [ { "kind": "line", "length": 2.0 },
+//!                     { "kind": "arc", "radius": 1.1, "sweep": -1.2 } ] } ] }"#)?;
+//! assert_eq!(scenario.agents[0].structure(), "SA");
+//! # Ok::<(), pcr_formats::scenario::ScenarioError>(())
+//! ```
+//!
+//! - Metres, seconds, radians. `sweep` is positive to the left and may be more than a turn. A segment starts in the
+//!   pose in which the one before it ends; one of length 0 is skipped.
+//! - An empty path, or one of length 0, is an agent that stands at its start for the whole time.
+//! - The motion is from rest to rest in the least time under `v_max` and `a_max`. Instead an agent may have
+//!   `"profile": { "v0": 0.5, "pieces": [ { "duration": 2.0, "accel": 0.0 } ] }`: the speed at the start, then constant
+//!   accelerations, never below speed 0. It has to travel the length of the path within [`LENGTH_TOLERANCE`] and is
+//!   scaled onto it.
+//! - `name` and `t_start` may be left out, and with a profile `v_max` and `a_max`. An unknown key is refused.
+//! - `"footprint": { "polygon": [ { "ahead": 0.8, "left": 0.4 }, ... ], "overhang": 0.1 }` instead of `radius` is the outline of
+//!   the vehicle around the point that travels the path; see [`Footprint`].
+//! - `"loads": [ { "segments": [2, 3], "radius": 0.6 } ]`: another radius, or a `footprint`, from segment 2 to segment 3 (counted
+//!   from 1): what the vehicle carries there.
+//! - `{ "kind": "turn", "sweep": 1.57 }` in a path is a turn in place, an arc of 1 nm radius. With `v_max` and `a_max` it needs
+//!   `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\], and the vehicle comes to rest before and after it.
+//! - `"warnings": [ "..." ]` beside `agents` is what `pcr import` had to say about the file that the scenario is from.
+//! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
+//! - `"label": "AGV-7"` is what people call the agent. Ids may be texts, too, if all are: then the agents are numbered from 1 in the
+//!   order of the file, and the texts are their labels.
+//! - `"format": "pcr-scenario"` and `"version": 1` are what files of the tool begin with; they may be left out.
+//!
+//! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
+//! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
+
+mod decode;
+mod encode;
+mod fields;
+mod labels;
+mod load;
+mod outline;
+mod parts;
+mod placed;
+mod turns;
+
+use crate::footprint::Footprint;
+pub use decode::LENGTH_TOLERANCE;
+pub use decode::speed_after;
+pub use fields::figure;
+pub use fields::{LIMIT, ScenarioError};
+pub(crate) use labels::label;
+pub use labels::{LONGEST_LABEL, Labels};
+pub use load::Load;
+pub use parts::Part;
+pub use placed::{KINK, Placed, TURN};
+use std::f64::consts::TAU;
+
+#[cfg(test)]
+mod tests;
+
+/// A fleet as a file describes it. SI units, angles in radians.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scenario {
+    /// Name, empty if the file gives none.
+    pub name: String,
+    /// The agents, in the order of the file.
+    pub agents: Vec<Agent>,
+    /// What was read otherwise than it was written, if it comes from a file of another format.
+    pub warnings: Vec<String>,
+}
+
+/// One agent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Agent {
+    /// Number, unique in its scenario.
+    pub id: u64,
+    /// What people call it: printable text, empty if the file gives none.
+    pub label: String,
+    /// Radius of the disc \[m\]; with a footprint that of the disc around all of it.
+    pub radius: f64,
+    /// Its outline, if it is no disc.
+    pub footprint: Option<Footprint>,
+    /// Other outlines on some of its segments, in their order.
+    pub loads: Vec<Load>,
+    /// Margin to be kept around the disc \[m\].
+    pub margin: f64,
+    /// When it sets off \[s\].
+    pub t_start: f64,
+    /// Abscissa \[m\], ordinate \[m\] and heading \[rad\] at the start of the path.
+    pub start: [f64; 3],
+    /// The path.
+    pub path: Vec<PathSegment>,
+    /// How it moves along it.
+    pub motion: MotionSpec,
+}
+
+/// A line or an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathSegment {
+    /// Straight, with its length \[m\].
+    Line {
+        /// \[m\]
+        length: f64,
+    },
+    /// Circular.
+    Arc {
+        /// \[m\]
+        radius: f64,
+        /// \[rad\], left positive.
+        sweep: f64,
+    },
+}
+
+impl Scenario {
+    /// Agents that nobody has to be warned about.
+    pub fn new(name: impl Into<String>, agents: Vec<Agent>) -> Self {
+        Self { name: name.into(), agents, warnings: Vec::new() }
+    }
+
+    /// Gives this margin, from 0 \[m\], to every agent that has none.
+    pub fn give_margin(&mut self, margin: f64) {
+        for agent in self.agents.iter_mut().filter(|agent| agent.margin == 0.0) {
+            agent.margin = margin;
+        }
+    }
+}
+
+impl PathSegment {
+    /// Length \[m\].
+    pub fn length(&self) -> f64 {
+        match *self {
+            Self::Line { length } => length,
+            Self::Arc { radius, sweep } => radius * sweep.abs(),
+        }
+    }
+
+    /// Parts of at most one turn each, equally long, that it is made of.
+    pub fn turns(&self) -> f64 {
+        /// A full turn may come in with the rounding of 2π to a dozen digits.
+        const SHORTENED: f64 = 1.0 - 1e-12;
+        match *self {
+            Self::Line { .. } => 1.0,
+            Self::Arc { sweep, .. } => (sweep.abs() / TAU * SHORTENED).ceil().max(1.0),
+        }
+    }
+
+    /// Letter of the paper's path structure.
+    pub fn letter(&self) -> char {
+        match self {
+            Self::Line { .. } => 'S',
+            Self::Arc { .. } => 'A',
+        }
+    }
+}
+
+/// Speed over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionSpec {
+    /// From rest to rest in the least time under these limits.
+    RestToRest {
+        /// \[m/s\]
+        v_max: f64,
+        /// \[m/s²\]
+        a_max: f64,
+    },
+    /// A speed at the start, then constant accelerations.
+    Profile {
+        /// \[m/s\]
+        v0: f64,
+        /// Duration \[s\] and acceleration \[m/s²\] of each piece.
+        pieces: Vec<(f64, f64)>,
+    },
+}
+
+impl MotionSpec {
+    /// Speed at the start of a path of this length \[m/s\], then durations \[s\] and accelerations \[m/s²\].
+    pub fn pieces(&self, length: f64) -> (f64, Vec<(f64, f64)>) {
+        match self {
+            Self::Profile { v0, pieces } => (*v0, pieces.clone()),
+            Self::RestToRest { .. } if length <= 0.0 => (0.0, Vec::new()),
+            Self::RestToRest { v_max, a_max } => {
+                let peak = v_max.min((length * a_max).sqrt());
+                let cruise = (length / peak - peak / a_max).max(0.0);
+                (0.0, vec![(peak / a_max, *a_max), (cruise, 0.0), (peak / a_max, -a_max)])
+            }
+        }
+    }
+}
+
+impl Agent {
+    /// A disc of this radius \[m\] without a margin that sets off at the time 0; `start` is abscissa \[m\], ordinate \[m\], heading
+    /// \[rad\].
+    pub fn disc(id: u64, radius: f64, start: [f64; 3], path: Vec<PathSegment>, motion: MotionSpec) -> Self {
+        let (label, footprint, loads) = (String::new(), None, Vec::new());
+        Self { id, label, radius, footprint, loads, margin: 0.0, t_start: 0.0, start, path, motion }
+    }
+
+    /// Length of the path \[m\].
+    pub fn length(&self) -> f64 {
+        self.path.iter().map(PathSegment::length).sum()
+    }
+
+    /// From setting off to arrival \[s\].
+    pub fn duration(&self) -> f64 {
+        match &self.motion {
+            MotionSpec::RestToRest { v_max, a_max } => {
+                let length = self.length();
+                let peak = v_max.min((length * a_max).sqrt());
+                if length > 0.0 { length / peak + peak / a_max } else { 0.0 }
+            }
+            MotionSpec::Profile { pieces, .. } => pieces.iter().map(|(duration, _)| duration).sum(),
+        }
+    }
+
+    /// The paper's path structure: a letter a segment.
+    pub fn structure(&self) -> String {
+        self.path.iter().map(PathSegment::letter).collect()
+    }
+
+    /// Heading at a travelled length \[rad\], accumulated along the arcs and not reduced to one turn.
+    pub fn heading_at(&self, length: f64) -> f64 {
+        let (mut heading, mut rest) = (self.start[2], length);
+        for segment in &self.path {
+            if let PathSegment::Arc { radius, sweep } = *segment {
+                heading += (rest / radius).clamp(0.0, sweep.abs()).copysign(sweep);
+            }
+            rest = (rest - segment.length()).max(0.0);
+        }
+        heading
+    }
+}

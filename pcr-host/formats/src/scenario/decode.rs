@@ -1,0 +1,330 @@
+//! From JSON to a scenario: what each field means, and what holds between fields.
+
+use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
+use super::labels::{self, called};
+use super::outline::{loads, outline};
+use super::turns;
+use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
+use crate::json::{self, Data, Json};
+use serde_json::Value;
+use std::collections::HashSet;
+
+/// What a scenario file holds.
+const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
+
+/// Relative difference between the travelled length and the length of the path that is still scaled away.
+pub const LENGTH_TOLERANCE: f64 = 1e-6;
+
+/// Speed below zero that a profile may reach by the rounding of its numbers, relative to its largest speed (or to
+/// 1 m/s if that is more): nine digits, which is what files carry.
+const SPEED_TOLERANCE: f64 = 1e-9;
+
+/// Agents, and segments of a path, that the core can number. An arc counts once for each turn begun.
+const MOST: usize = u16::MAX as usize;
+
+/// What a scenario file says that it is, and the version of its fields.
+pub(super) const FORMAT: &str = "pcr-scenario";
+pub(super) const VERSION: u64 = 1;
+
+impl Scenario {
+    /// The scenario in a JSON text; a byte order mark at its start is skipped.
+    ///
+    /// # Errors
+    /// [`ScenarioError`], naming agent, segment, field, value and what is allowed there; the column where the text is not JSON.
+    pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            return Err(Place::default().error(1, "", "empty; a scenario is an object with a list of agents"));
+        }
+        let json = json::parse(text).map_err(|error| {
+            let problem = format!("column {}: {}", error.column, error.problem);
+            Place::default().error(error.line, "", problem)
+        })?;
+        Self::decode(&json)
+    }
+
+    /// The scenario in a JSON value.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_json`].
+    pub fn from_value(value: &Value) -> Result<Self, ScenarioError> {
+        Self::decode(&Json::from(value))
+    }
+
+    fn decode(json: &Json) -> Result<Self, ScenarioError> {
+        let name = match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == "name"),
+            _ => None,
+        };
+        let name = match name {
+            Some((_, Json { data: Data::Text(name), .. })) => name.clone(),
+            _ => String::new(),
+        };
+        match Self::agents(json).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
+            Ok((agents, warnings)) => Ok(Self { name, agents, warnings }),
+            Err(mut error) => {
+                error.scenario = name;
+                Err(error)
+            }
+        }
+    }
+
+    fn warnings(json: &Json) -> Result<Vec<String>, ScenarioError> {
+        let fields = Place::default().fields(json, &FIELDS)?;
+        if fields.get("warnings").is_none() {
+            return Ok(Vec::new());
+        }
+        let text = |warning: &Json| match &warning.data {
+            Data::Text(text) => Ok(text.clone()),
+            _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
+        };
+        fields.array("warnings")?.iter().map(text).collect()
+    }
+
+    fn agents(json: &Json) -> Result<Vec<Agent>, ScenarioError> {
+        let fields = Place::default().fields(json, &FIELDS)?;
+        match fields.get("format").map(|format| (format, &format.data)) {
+            Some((_, Data::Text(format))) if format == FORMAT => {}
+            None => {}
+            Some((format, _)) => return Err(fields.unexpected("format", format, &format!("\"{FORMAT}\""))),
+        }
+        match fields.get("version").map(|version| (version, &version.data)) {
+            Some((_, Data::Number(version))) if version.parse() == Ok(VERSION) => {}
+            None => {}
+            Some((version, _)) => {
+                return Err(fields.unexpected("version", version, &format!("{VERSION}, all that this pcr knows,")));
+            }
+        }
+        if let Some(name) = fields.get("name")
+            && !matches!(name.data, Data::Text(_))
+        {
+            return Err(fields.unexpected("name", name, "a string"));
+        }
+        let list = fields.array("agents")?;
+        if list.len() > MOST {
+            let problem = format!("{} agents; allowed are up to {MOST}", list.len());
+            return Err(fields.error(fields.line, "agents", problem));
+        }
+        let mut agents = Vec::with_capacity(list.len());
+        let (mut ids, mut texts, mut all_texts) = (HashSet::new(), HashSet::new(), None);
+        for (index, json) in list.iter().enumerate() {
+            let (agent, text) = Agent::decode(json, index)?;
+            let place = Place { agent: Some(format!("agent {}", agent.called())), part: None };
+            if text && !texts.insert(agent.label.clone()) {
+                return Err(place.error(json.line, "id", format!("{:?} is given to two agents", agent.label)));
+            }
+            if *all_texts.get_or_insert(text) != text {
+                let problem = "some ids are numbers and others texts; give numbers to all, and texts as labels";
+                return Err(place.error(json.line, "id", problem));
+            }
+            if !ids.insert(agent.id) {
+                return Err(place.error(json.line, "id", format!("{} is given to two agents", agent.id)));
+            }
+            agents.push(agent);
+        }
+        Ok(agents)
+    }
+}
+
+impl Agent {
+    /// The agent at a place, and whether its id is a text.
+    fn decode(json: &Json, index: usize) -> Result<(Self, bool), ScenarioError> {
+        const KNOWN: [&str; 14] = [
+            "id",
+            "label",
+            "radius",
+            "footprint",
+            "loads",
+            "margin",
+            "v_max",
+            "a_max",
+            "turn_v_max",
+            "turn_a_max",
+            "t_start",
+            "start",
+            "path",
+            "profile",
+        ];
+        let given = |name: &str| match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == name).map(|(_, value)| value),
+            _ => None,
+        };
+        let text = |value: Option<&Json>| match value {
+            Some(Json { data: Data::Text(text), .. }) if labels::fault(text).is_none() => text.clone(),
+            _ => String::new(),
+        };
+        // A text of digits could be meant for a number.
+        let named = Some(text(given("id"))).filter(|id| !id.is_empty() && id.parse::<u64>().is_err());
+        let id = match (given("id"), &named) {
+            (Some(Json { data: Data::Number(text), .. }), _) => text.parse::<u64>().ok(),
+            (_, Some(_)) => Some(index as u64 + 1),
+            _ => None,
+        };
+        let is_text = named.is_some();
+        let label = named.unwrap_or_else(|| text(given("label")));
+        let agent = match id {
+            Some(id) => format!("agent {}", called(id, &label)),
+            None => format!("agent at place {}", index + 1),
+        };
+        let place = Place { agent: Some(agent), part: None };
+        let fields = place.fields(json, &KNOWN)?;
+        let id = match (id, fields.required("id")?) {
+            (Some(id), _) => id,
+            (None, given) => {
+                return Err(fields.unexpected("id", given, "a whole number from 0 or a name"));
+            }
+        };
+        match fields.get("label").map(|label| (label, &label.data)) {
+            None => {}
+            Some((label, _)) if is_text => {
+                return Err(fields.error(label.line, "label", "given, and the id is a text"));
+            }
+            Some((given, Data::Text(text))) => {
+                if let Some(fault) = labels::fault(text) {
+                    return Err(fields.error(given.line, "label", fault));
+                }
+            }
+            Some((given, _)) => return Err(fields.unexpected("label", given, "a string")),
+        }
+        let (radius, footprint) = outline(&fields, &place)?;
+        let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
+        let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
+        let start = fields.object("start", "start.", &["x", "y", "heading"])?;
+        let start =
+            [start.number("x", Range::Any)?, start.number("y", Range::Any)?, start.number("heading", Range::Any)?];
+        let path = fields.array("path")?.iter().enumerate();
+        let path = path.map(|(index, json)| PathSegment::decode(json, &place.part("segment", index)));
+        let path: Vec<PathSegment> = path.collect::<Result<_, _>>()?;
+        let refused = |field, problem| {
+            let line = fields.get(field).map_or(fields.line, |json| json.line);
+            Err(fields.error(line, field, problem))
+        };
+        let length: f64 = path.iter().map(PathSegment::length).sum();
+        if length > LIMIT {
+            return refused("path", format!("{} m long; allowed is up to {LIMIT:e}", figure(length)));
+        }
+        let segments: f64 = path.iter().map(PathSegment::turns).sum();
+        if segments > MOST as f64 {
+            let problem = format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST}");
+            return refused("path", problem);
+        }
+        let moves = fields.get("profile").is_none();
+        let limit = |field| match fields.get(field) {
+            None if !moves => Ok(None),
+            _ => fields.number(field, Range::Positive).map(Some),
+        };
+        let turns = moves && fields.array("path")?.iter().any(turns::is_given);
+        let of_turns = |field| match fields.get(field) {
+            None if !turns => Ok(0.0),
+            _ => fields.number(field, Range::Positive),
+        };
+        let of_turns = [of_turns("turn_v_max")?, of_turns("turn_a_max")?];
+        let motion = match (limit("v_max")?, limit("a_max")?) {
+            (Some(v_max), Some(a_max)) if turns => turns::motion(&path, [v_max, a_max], of_turns),
+            (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
+            _ => MotionSpec::decode(&fields, length)?,
+        };
+        let loads = loads(&fields, path.len())?;
+        let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
+        let duration = agent.duration();
+        if duration > LIMIT || (t_start + duration).abs() > LIMIT {
+            let field = if !moves {
+                "profile"
+            } else if duration > LIMIT {
+                "v_max, a_max"
+            } else {
+                "t_start"
+            };
+            let problem = format!(
+                "the motion takes {} s from {} s; allowed is up to {LIMIT:e} s",
+                figure(duration),
+                figure(t_start)
+            );
+            return refused(field, problem);
+        }
+        Ok((agent, is_text))
+    }
+}
+
+impl PathSegment {
+    fn decode(json: &Json, place: &Place) -> Result<Self, ScenarioError> {
+        let kind = match &json.data {
+            Data::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
+            _ => None,
+        };
+        match kind.map(|kind| &kind.data) {
+            Some(Data::Text(kind)) if kind == "line" => {
+                let fields = place.fields(json, &["kind", "length"])?;
+                Ok(Self::Line { length: fields.number("length", Range::NotNegative)? })
+            }
+            Some(Data::Text(kind)) if kind == "arc" => {
+                let fields = place.fields(json, &["kind", "radius", "sweep"])?;
+                let radius = fields.number("radius", Range::Positive)?;
+                Ok(Self::Arc { radius, sweep: fields.number("sweep", Range::Any)? })
+            }
+            Some(Data::Text(kind)) if kind == "turn" => {
+                let fields = place.fields(json, &["kind", "sweep"])?;
+                Ok(Self::Arc { radius: TURN, sweep: fields.number("sweep", Range::Any)? })
+            }
+            _ => {
+                let fields = place.fields(json, &["kind", "length", "radius", "sweep"])?;
+                let kind = fields.required("kind")?;
+                Err(fields.error(
+                    kind.line,
+                    "kind",
+                    format!("{}; allowed is \"line\", \"arc\" or \"turn\"", brief(kind)),
+                ))
+            }
+        }
+    }
+}
+
+impl MotionSpec {
+    /// The profile of an agent, scaled onto the length of its path.
+    fn decode(agent: &Fields<'_>, length: f64) -> Result<Self, ScenarioError> {
+        let fields = agent.object("profile", "profile.", &["v0", "pieces"])?;
+        let v0 = fields.number("v0", Range::NotNegative)?;
+        let (mut speed, mut fastest, mut travelled) = (v0, v0, 0.0);
+        let mut pieces = Vec::new();
+        for (index, json) in fields.array("pieces")?.iter().enumerate() {
+            let place = agent.place.part("profile piece", index);
+            let fields = place.fields(json, &["duration", "accel"])?;
+            let duration = fields.number("duration", Range::NotNegative)?;
+            let accel = fields.number("accel", Range::Any)?;
+            let after = speed + accel * duration;
+            if after < -SPEED_TOLERANCE * f64::max(1.0, fastest) {
+                let problem =
+                    format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
+                return Err(fields.error(json.line, "accel", problem));
+            }
+            let after = speed_after(after, fastest);
+            travelled += 0.5 * (speed + after) * duration;
+            pieces.push((duration, if duration > 0.0 { (after - speed) / duration } else { 0.0 }));
+            (speed, fastest) = (after, fastest.max(after));
+        }
+        if fastest > LIMIT || (travelled - length).abs() > LENGTH_TOLERANCE * length {
+            let problem = if fastest > LIMIT {
+                format!("reaches {} m/s; allowed is up to {LIMIT:e}", figure(fastest))
+            } else {
+                format!(
+                    "travels {} m on a path of {} m; allowed is a relative difference of {LENGTH_TOLERANCE:e}",
+                    figure(travelled),
+                    figure(length)
+                )
+            };
+            return Err(agent.error(fields.line, "profile", problem));
+        }
+        let scale = if travelled > 0.0 { length / travelled } else { 1.0 };
+        for (_, accel) in &mut pieces {
+            *accel *= scale;
+        }
+        Ok(Self::Profile { v0: v0 * scale, pieces })
+    }
+}
+
+/// The speed after a piece of a profile: what rounding leaves of a stop is no speed.
+pub fn speed_after(speed: f64, fastest: f64) -> f64 {
+    /// Some hundred roundings of the largest speed, far below any speed that matters.
+    const STOP: f64 = 1e-12;
+    if speed < STOP * fastest { 0.0 } else { speed }
+}

@@ -1,0 +1,134 @@
+//! From a scenario to its file.
+
+use super::decode::{FORMAT, VERSION};
+use super::{Agent, Load, MotionSpec, PathSegment, Scenario, TURN};
+use crate::footprint::Footprint;
+use serde_json::Value;
+use std::fmt::{self, Display};
+
+impl Scenario {
+    /// The file of the scenario, an agent a line. Every number is written with all its digits, so that
+    /// [`Scenario::from_json`] reads the same paths back.
+    pub fn to_json(&self) -> String {
+        let agents = self.agents.iter().map(|agent| format!("    {}", Json(agent))).collect::<Vec<_>>().join(",\n");
+        let agents = if agents.is_empty() { "[]".to_owned() } else { format!("[\n{agents}\n  ]") };
+        let warnings = match self.warnings.is_empty() {
+            true => String::new(),
+            false => format!("  \"warnings\": {},\n", Value::from(self.warnings.clone())),
+        };
+        let name = Value::from(self.name.as_str());
+        format!(
+            "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{warnings}  \"agents\": {agents} }}\n"
+        )
+    }
+}
+
+/// Something as JSON writes it.
+struct Json<T>(T);
+
+impl Display for Json<&Agent> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Agent { id, label, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } =
+            self.0;
+        write!(f, "{{ \"id\": {id}, ")?;
+        if !label.is_empty() {
+            write!(f, "\"label\": {}, ", Value::from(label.as_str()))?;
+        }
+        write!(f, "{}, ", Json((*radius, footprint.as_ref())))?;
+        if !loads.is_empty() {
+            let loads = loads.iter().map(|Load { segments: [first, last], radius, footprint }| {
+                let outline = Json((*radius, footprint.as_ref()));
+                format!("{{ \"segments\": [{}, {}], {outline} }}", first + 1, last + 1)
+            });
+            write!(f, "\"loads\": [ {} ], ", loads.collect::<Vec<_>>().join(", "))?;
+        }
+        if *margin > 0.0 {
+            write!(f, "\"margin\": {margin:?}, ")?;
+        }
+        write!(f, "\"t_start\": {t_start:?}, ")?;
+        write!(f, "\"start\": {{ \"x\": {x:?}, \"y\": {y:?}, \"heading\": {heading:?} }}, \"path\": [")?;
+        for (k, segment) in path.iter().enumerate() {
+            let comma = if k > 0 { "," } else { "" };
+            match segment {
+                PathSegment::Line { length } => write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?} }}")?,
+                PathSegment::Arc { radius: TURN, sweep } if matches!(motion, MotionSpec::Profile { .. }) => {
+                    write!(f, "{comma} {{ \"kind\": \"turn\", \"sweep\": {sweep:?} }}")?;
+                }
+                PathSegment::Arc { radius, sweep } => {
+                    write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?} }}")?;
+                }
+            }
+        }
+        f.write_str(if path.is_empty() { "], " } else { " ], " })?;
+        match motion {
+            MotionSpec::RestToRest { v_max, a_max } => write!(f, "\"v_max\": {v_max:?}, \"a_max\": {a_max:?} }}"),
+            MotionSpec::Profile { v0, pieces } => {
+                write!(f, "\"profile\": {{ \"v0\": {v0:?}, \"pieces\": [")?;
+                for (k, (duration, accel)) in pieces.iter().enumerate() {
+                    let comma = if k > 0 { "," } else { "" };
+                    write!(f, "{comma} {{ \"duration\": {duration:?}, \"accel\": {accel:?} }}")?;
+                }
+                f.write_str(if pieces.is_empty() { "] } }" } else { " ] } }" })
+            }
+        }
+    }
+}
+
+/// An outline: the radius of a disc, or a footprint.
+impl Display for Json<(f64, Option<&Footprint>)> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (radius, footprint) = self.0;
+        let Some(footprint) = footprint else {
+            return write!(f, "\"radius\": {radius:?}");
+        };
+        let corners = footprint.polygon().iter();
+        let corners = corners.map(|[ahead, left]| format!("{{ \"ahead\": {ahead:?}, \"left\": {left:?} }}"));
+        write!(f, "\"footprint\": {{ \"polygon\": [ {} ]", corners.collect::<Vec<_>>().join(", "))?;
+        if let Some(overhang) = footprint.allowed() {
+            write!(f, ", \"overhang\": {overhang:?}")?;
+        }
+        if footprint.growth() > 0.0 {
+            write!(f, ", \"growth\": {:?}", footprint.growth())?;
+        }
+        f.write_str(" }")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let agent = Agent {
+            id: u64::MAX,
+            label: "AGV \"7\" → é".into(),
+            radius: 1.0 / 3.0,
+            footprint: None,
+            loads: vec![Load { segments: [0, 1], radius: 0.7, footprint: None }],
+            margin: 0.1,
+            t_start: -1e9,
+            start: [1e-300, -7.0, 0.1 + 0.2],
+            path: vec![PathSegment::Line { length: 0.5 }, PathSegment::Arc { radius: 1e-9, sweep: -1e-9 }],
+            motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
+        };
+        let length = agent.length();
+        let stands =
+            Agent { id: 0, label: String::new(), margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
+        let moves = Agent {
+            id: 1,
+            motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
+            ..agent.clone()
+        };
+        let outline =
+            Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().grown(0.01);
+        let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
+        let scenario = Scenario {
+            warnings: vec!["edge \"5\": left out".into()],
+            ..Scenario::new("a \"name\"\n\\", vec![agent, stands, moves, outlined])
+        };
+        assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+        let empty = Scenario::default();
+        assert_eq!(Scenario::from_json(&empty.to_json()), Ok(empty));
+    }
+}

@@ -1,0 +1,208 @@
+//! Fields of a scenario, and errors that name them.
+
+use crate::json::{Data, Json, QUOTED};
+use std::fmt;
+
+/// Largest magnitude of a number in a scenario, in its unit, and of the length and the duration of a path.
+///
+/// It leaves room for coordinates of a map projection and for seconds since 1970. Results are exact to some 10⁻¹⁵ of
+/// the largest coordinate or time, hence to 10⁻⁵ at the limit. Number formats other than `f64` may allow less.
+pub const LIMIT: f64 = 1e10;
+
+/// Why a scenario was refused: agent, segment, field, value and what is allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioError {
+    pub(super) scenario: String,
+    line: usize,
+    message: String,
+}
+
+impl ScenarioError {
+    /// Line of the text, counted from 1. It is not part of the message.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Name of the scenario, empty if it was not readable or not given.
+    pub fn scenario(&self) -> &str {
+        &self.scenario
+    }
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+/// Where in the scenario we are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Place {
+    /// Its number, or its place in the file where it has none.
+    pub(super) agent: Option<String>,
+    /// Segment of the path or piece of the profile, counted from 1.
+    pub(super) part: Option<(&'static str, usize)>,
+}
+
+impl Place {
+    /// The error at this place; `field` is empty where the place as a whole is meant.
+    pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
+        let part = self.part.map(|(part, number)| format!("{part} {number}"));
+        let field = Some(field.to_owned()).filter(|field| !field.is_empty());
+        let place: Vec<String> = [self.agent.clone(), part, field].into_iter().flatten().collect();
+        let colon = if place.is_empty() { "" } else { ": " };
+        ScenarioError { scenario: String::new(), line, message: format!("{}{colon}{problem}", place.join(", ")) }
+    }
+
+    pub(super) fn part(&self, name: &'static str, index: usize) -> Self {
+        Self { agent: self.agent.clone(), part: Some((name, index + 1)) }
+    }
+
+    /// The fields of an object that has no others than these.
+    pub(super) fn fields<'j>(&self, json: &'j Json, known: &[&str]) -> Result<Fields<'j>, ScenarioError> {
+        self.fields_inside(json, "", known)
+    }
+
+    /// The same for an object within the one that the place names; `inside` precedes its fields in messages.
+    fn fields_inside<'j>(
+        &self,
+        json: &'j Json,
+        inside: &'static str,
+        known: &[&str],
+    ) -> Result<Fields<'j>, ScenarioError> {
+        let Data::Object(members) = &json.data else {
+            return Err(self.error(json.line, "", format!("{} where an object is expected", brief(json))));
+        };
+        let fields = Fields { place: self.clone(), inside, line: json.line, members };
+        for (index, (key, value)) in members.iter().enumerate() {
+            if !known.contains(&key.as_str()) {
+                let problem = format!("unknown key; known are {}", known.join(", "));
+                return Err(fields.error(value.line, &shortened(key), problem));
+            }
+            // At most as many steps as there are known keys before one of them is given twice.
+            if members.iter().take(index).any(|(before, _)| before == key) {
+                return Err(fields.error(value.line, key, "given twice"));
+            }
+        }
+        Ok(fields)
+    }
+}
+
+/// The members of an object whose keys are known.
+pub(super) struct Fields<'j> {
+    pub(super) place: Place,
+    /// What precedes its fields in messages.
+    inside: &'static str,
+    pub(super) line: usize,
+    members: &'j [(String, Json)],
+}
+
+impl<'j> Fields<'j> {
+    pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
+        self.place.error(line, &format!("{}{field}", self.inside), problem)
+    }
+
+    pub(super) fn get(&self, field: &str) -> Option<&'j Json> {
+        self.members.iter().find(|(key, _)| key == field).map(|(_, value)| value)
+    }
+
+    pub(super) fn required(&self, field: &str) -> Result<&'j Json, ScenarioError> {
+        self.get(field).ok_or_else(|| self.error(self.line, field, "missing"))
+    }
+
+    pub(super) fn unexpected(&self, field: &str, found: &Json, expected: &str) -> ScenarioError {
+        self.error(found.line, field, format!("{} where {expected} is expected", brief(found)))
+    }
+
+    pub(super) fn array(&self, field: &str) -> Result<&'j [Json], ScenarioError> {
+        let found = self.required(field)?;
+        match &found.data {
+            Data::Array(elements) => Ok(elements),
+            _ => Err(self.unexpected(field, found, "an array")),
+        }
+    }
+
+    pub(super) fn object(
+        &self,
+        field: &str,
+        inside: &'static str,
+        known: &[&str],
+    ) -> Result<Fields<'j>, ScenarioError> {
+        let found = self.required(field)?;
+        match &found.data {
+            Data::Object(_) => self.place.fields_inside(found, inside, known),
+            _ => Err(self.unexpected(field, found, "an object")),
+        }
+    }
+
+    pub(super) fn number(&self, field: &str, range: Range) -> Result<f64, ScenarioError> {
+        let found = self.required(field)?;
+        let Data::Number(text) = &found.data else {
+            return Err(self.unexpected(field, found, "a number"));
+        };
+        // A number of the grammar always parses; what is too large becomes infinite, and is then refused.
+        match text.parse::<f64>() {
+            Ok(number) if range.allows(number) => Ok(number),
+            _ => {
+                let problem = format!("{} is out of range; allowed is {range}", shortened(text));
+                Err(self.error(found.line, field, problem))
+            }
+        }
+    }
+}
+
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(QUOTED) {
+        Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
+        None => text.to_owned(),
+    }
+}
+
+/// A number as messages give it: short, and exact.
+pub fn figure(number: f64) -> String {
+    let plain = number == 0.0 || (1e-3..1e6).contains(&number.abs());
+    if plain { number.to_string() } else { format!("{number:e}") }
+}
+
+/// A value as messages quote it.
+pub(super) fn brief(json: &Json) -> String {
+    match &json.data {
+        Data::Null => "null".into(),
+        Data::Bool(value) => value.to_string(),
+        Data::Number(text) => shortened(text),
+        Data::Text(text) => format!("{:?}", shortened(text)),
+        Data::Array(_) => "an array".into(),
+        Data::Object(_) => "an object".into(),
+    }
+}
+
+/// What a number may be. NaN is in no range.
+#[derive(Clone, Copy)]
+pub(super) enum Range {
+    Any,
+    NotNegative,
+    Positive,
+}
+
+impl Range {
+    fn allows(self, number: f64) -> bool {
+        let sign = match self {
+            Self::Any => true,
+            Self::NotNegative => number >= 0.0,
+            Self::Positive => number > 0.0,
+        };
+        sign && number.abs() <= LIMIT
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Any => write!(f, "-{LIMIT:e} to {LIMIT:e}"),
+            Self::NotNegative => write!(f, "0 to {LIMIT:e}"),
+            Self::Positive => write!(f, "above 0, up to {LIMIT:e}"),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The agents of a scenario as discs: those of their footprints, or the one that they are; with loads one for each stretch of
+//! the path on which the outline is the same.
+
+mod offset;
+
+use crate::fleet::{Fleet, Format, Refused, Rounding};
+use offset::{Offset, Precision};
+use pcr_core::{Interval, Motion};
+use pcr_formats::scenario::Placed;
+use pcr_formats::scenario::{Agent, PathSegment, Scenario};
+
+/// Rounding of lengths along a path, relative.
+const ROUNDING: f64 = 1e-12;
+
+/// A scenario whose agents are the discs of another one's.
+pub struct Bodies<S: Format> {
+    /// The discs as agents.
+    pub scenario: Scenario,
+    /// Their motions.
+    pub fleet: Fleet<S>,
+    /// Whose they are.
+    pub discs: Vec<Disced>,
+}
+
+/// A disc of an agent.
+pub struct Disced {
+    /// Place of the agent in its scenario.
+    pub agent: usize,
+    /// None where the agent is the disc.
+    offset: Option<Offset>,
+    stretch: Stretch,
+    /// How much larger than in the cover it is \[m\].
+    pub growth: f64,
+}
+
+/// Where on the path of its agent a disc is there.
+#[derive(Clone, Copy)]
+struct Stretch {
+    /// Length before it \[m\].
+    from: f64,
+    /// Length of the whole path \[m\].
+    length: f64,
+    /// Its first segment (from 0).
+    first: usize,
+    /// Whether it is at the start and at the end of the path.
+    ends: [bool; 2],
+}
+
+impl Disced {
+    /// Lengths on the path of the agent, outward, of lengths on that of the disc.
+    pub fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
+        let [lo, hi] = self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths));
+        let Stretch { from, length, ends, .. } = self.stretch;
+        if ends == [true, true] {
+            return [lo, hi];
+        }
+        // The rounding of the sums.
+        let slack = ROUNDING * (1.0 + length);
+        [(lo + from - slack).max(0.0), (hi + from + slack).min(length)]
+    }
+
+    /// Its first segment in the scenario (from 0).
+    pub fn first(&self) -> usize {
+        self.stretch.first
+    }
+
+    /// Segment in the scenario (from 0) of a segment of the disc.
+    pub fn segment(&self, segment: usize) -> Option<usize> {
+        let segment = self.offset.as_ref().map_or(Some(segment), |offset| offset.source(segment))?;
+        segment.checked_add(self.stretch.first)
+    }
+
+    /// Whether it is there before the agent sets off.
+    pub fn is_at_start(&self) -> bool {
+        self.stretch.ends[0]
+    }
+
+    /// Whether it is there after the arrival of the agent.
+    pub fn is_at_end(&self) -> bool {
+        self.stretch.ends[1]
+    }
+
+    /// When it is there, in a time that holds all motions \[s\].
+    pub fn time<S: Format>(&self, motion: &Motion<'_, S>, all: Interval<S>) -> Interval<S> {
+        let own = motion.time();
+        let [start, end] = self.stretch.ends;
+        Interval { lo: if start { all.lo } else { own.lo }, hi: if end { all.hi } else { own.hi } }
+    }
+}
+
+impl<S: Format> Bodies<S> {
+    /// The discs of a scenario.
+    ///
+    /// # Errors
+    /// [`Refused`] where a value does not fit the number format.
+    pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
+        let mut bodies = (Vec::new(), Vec::new());
+        for (place, agent) in scenario.agents.iter().enumerate() {
+            discs::<S>(agent, place, &mut bodies)?;
+        }
+        let (agents, discs) = bodies;
+        let scenario = Scenario::new(scenario.name.clone(), agents);
+        Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
+    }
+}
+
+/// Where the discs of an agent run, and their radii \[m\].
+pub fn tracks(agent: &Agent) -> Vec<(Vec<Placed>, f64)> {
+    let mut bodies = (Vec::new(), Vec::new());
+    // In `f64` no disc is refused.
+    let _ = discs::<f64>(agent, 0, &mut bodies);
+    let track = |disc: &Agent| {
+        let [x, y, heading] = disc.start;
+        let mut last = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
+        let pieces = disc.path.iter().map(|&shape| {
+            last = Placed { at: last.end(), heading: last.heading_at_end(), shape };
+            last
+        });
+        let pieces: Vec<Placed> = pieces.collect();
+        (if pieces.is_empty() { vec![last] } else { pieces }, disc.radius)
+    };
+    bodies.0.iter().map(track).collect()
+}
+
+/// Adds the discs of an agent.
+fn discs<S: Format>(
+    agent: &Agent,
+    place: usize,
+    (agents, discs): &mut (Vec<Agent>, Vec<Disced>),
+) -> Result<(), Refused> {
+    let outlines = agent.outlines();
+    for outline in &outlines {
+        let [first, last] = outline.segments;
+        let (part, from) = if outlines.len() > 1 { agent.stretch(first, last) } else { (agent.clone(), 0.0) };
+        let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
+        let stretch = Stretch { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
+        let Some(footprint) = outline.footprint else {
+            discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
+            agents.push(if outlines.len() > 1 { settled::<S>(part) } else { part });
+            continue;
+        };
+        let precision = Precision::of::<S>(&part);
+        for disc in footprint.discs() {
+            // Their number is that of the agent, by which errors name them.
+            let offset = rounded::<S>(Offset::of(&part, disc, agent.id, precision))?;
+            let growth = offset.agent.radius - disc.radius;
+            agents.push(offset.agent.clone());
+            discs.push(Disced { agent: place, offset: Some(offset), stretch, growth });
+        }
+    }
+    Ok(())
+}
+
+/// The agent with a start of which no coordinate is less than the last digit of the format, which rounding may leave of 0.
+fn settled<S: Format>(mut agent: Agent) -> Agent {
+    for coordinate in agent.start.iter_mut().take(2) {
+        if S::from_f64(*coordinate) == S::ZERO {
+            *coordinate = 0.0;
+        }
+    }
+    agent
+}
+
+/// The disc with a radius that makes up for the digits that the format does not have.
+fn rounded<S: Format>(offset: Offset) -> Result<Offset, Refused> {
+    if S::NAME == f64::NAME {
+        return Ok(offset);
+    }
+    let offset = offset.map(settled::<S>);
+    let fleet = Fleet::<S>::new(&Scenario::new("", vec![offset.agent.clone()]))?;
+    let rounding = fleet.motions().first().map(|motion| Rounding::of(&offset.agent, motion));
+    Ok(rounding.map_or(offset.clone(), |rounding| offset.rounded(rounding)))
+}

@@ -1,0 +1,240 @@
+//! The motion of a disc that is fixed to a vehicle beside its reference point.
+//!
+//! On a line it runs on the parallel line. On an arc of curvature κ it runs on the concentric arc with lengths scaled by
+//! g = √((κ a)² + (1 - κ b)²), in a heading that differs by atan2(κ a, 1 - κ b), where a is how far ahead and b how far left of the
+//! reference point it is. That its path is continuous but has corners where the curvature changes is met as in imported paths,
+//! by turns in place of [`TURN`] radius; that its speed jumps there from g v to g′ v by a change within a nanosecond, in other formats than `f64` a
+//! millisecond. What these
+//! displace it by at most is added to its radius.
+
+use crate::fleet::{Format, Rounding};
+use pcr_formats::footprint::Disc;
+use pcr_formats::scenario::{Agent, MotionSpec, Part, PathSegment};
+use pcr_formats::scenario::{Placed, TURN};
+use std::f64::consts::{PI, TAU};
+
+/// Speed above which a segment is taken as a jump from its start to its end \[m/s\]: what is left of an angle between two
+/// segments that is passed without stopping.
+const QUICK: f64 = 1e4;
+
+/// What a number format can tell apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Precision {
+    /// Length, angle and speed that are rounding and nothing else \[m, rad, m/s\].
+    nothing: f64,
+    /// Least time of a change of speed \[s\].
+    least: f64,
+    /// Largest acceleration \[m/s²\].
+    largest: f64,
+}
+
+impl Precision {
+    /// That of the format for a vehicle.
+    pub(super) fn of<S: Format>(vehicle: &Agent) -> Self {
+        if S::NAME == f64::NAME {
+            return Self { nothing: NOTHING, least: 1e-9, largest: 1e9 };
+        }
+        let [x, y, _] = vehicle.start;
+        let extent = S::from_f64(x.abs().max(y.abs()) + vehicle.length() + vehicle.reach());
+        let nothing = S::slack(extent.min(S::LIMIT)).to_f64();
+        Self { nothing, least: 1.0 / 1024.0, largest: 0.5 * S::LIMIT.to_f64() }
+    }
+
+    /// How long a change of speed takes.
+    fn jump(&self, change: f64) -> f64 {
+        self.least.max(change.abs() / self.largest)
+    }
+}
+
+/// Angle and speed that are rounding and nothing else \[rad, m/s\].
+const NOTHING: f64 = 1e-12;
+
+/// A disc as an agent of its own, with what its lengths are on the path of the vehicle.
+#[derive(Clone, Debug)]
+pub(super) struct Offset {
+    pub(super) agent: Agent,
+    /// Own lengths and those of the reference point, both not decreasing.
+    marks: Vec<[f64; 2]>,
+    /// For each segment of the agent that of the vehicle.
+    sources: Vec<usize>,
+    /// Rounding of own lengths \[m\].
+    slack: f64,
+}
+
+impl Offset {
+    /// The disc of the vehicle, as an agent of this number.
+    pub(super) fn of(vehicle: &Agent, disc: &Disc, id: u64, precision: Precision) -> Self {
+        let [x, y, heading] = vehicle.start;
+        let (sin, cos) = heading.sin_cos();
+        let Disc { ahead, left, radius } = *disc;
+        let at = [x + ahead * cos - left * sin, y + ahead * sin + left * cos];
+        let mut tracer = Tracer::new(radius + NOTHING * (1.0 + x.abs() + y.abs()), precision);
+        let mut reference = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
+        let length = vehicle.length();
+        for (source, (&shape, parts)) in vehicle.path.iter().zip(vehicle.parts()).enumerate() {
+            reference = Placed { at: [0.0; 2], heading: reference.heading_at_end(), shape };
+            let curvature = match shape {
+                PathSegment::Line { .. } => 0.0,
+                PathSegment::Arc { radius, sweep } => sweep.signum() / radius,
+            };
+            let [across, along] = [curvature * ahead, 1.0 - curvature * left];
+            let (scale, turned) = (across.hypot(along), across.atan2(along));
+            let shape = match shape {
+                PathSegment::Line { .. } => shape,
+                PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius: radius * scale, sweep },
+            };
+            // The rounding of lengths on the path of the vehicle is scaled as well.
+            tracer.growth += 4.0 * f64::EPSILON * length * scale;
+            tracer.add(shape, reference.heading + turned, [scale, reference.shape.length()], &parts, source);
+        }
+        tracer.finish(vehicle, at, id)
+    }
+
+    /// The disc with something done to its agent.
+    pub(super) fn map(mut self, change: impl Fn(Agent) -> Agent) -> Self {
+        self.agent = change(self.agent);
+        self
+    }
+
+    /// The disc with what a number format makes of its motion.
+    pub(super) fn rounded(mut self, Rounding { distance, length }: Rounding) -> Self {
+        self.agent.radius += distance;
+        self.slack = length;
+        self
+    }
+
+    /// The lengths of the reference point that belong to own lengths, outward.
+    pub(super) fn on_reference(&self, [lo, hi]: [f64; 2]) -> [f64; 2] {
+        let [lo, hi] = [lo - self.slack, hi + self.slack];
+        let end = self.marks.last().map_or(0.0, |mark| mark[1]);
+        let between = |[a, b]: [[f64; 2]; 2], length: f64| {
+            let share = if b[0] > a[0] { ((length - a[0]) / (b[0] - a[0])).clamp(0.0, 1.0) } else { 0.0 };
+            a[1] + (b[1] - a[1]) * share
+        };
+        let pairs = || self.marks.windows(2).map(|pair| [pair[0], pair[1]]);
+        let slack = NOTHING * (1.0 + end);
+        let own_end = self.marks.last().map_or(0.0, |mark| mark[0]);
+        // Where own lengths stand still: the first reference length for the lower end, the last one for the upper.
+        let first = pairs()
+            .find(|[_, b]| b[0] >= lo - slack)
+            .map_or(0.0, |[a, b]| if b[0] > a[0] { between([a, b], lo) } else { a[1] });
+        let last = pairs().rfind(|[a, _]| a[0] <= hi + slack);
+        let last = last.map_or(0.0, |[a, b]| if b[0] > a[0] { between([a, b], hi) } else { b[1] });
+        [
+            if lo <= slack { 0.0 } else { (first - slack).max(0.0) },
+            if hi >= own_end - slack { end } else { (last + slack).min(end) },
+        ]
+    }
+
+    /// Segment of the vehicle that a segment of the disc belongs to.
+    pub(super) fn source(&self, segment: usize) -> Option<usize> {
+        self.sources.get(segment).copied()
+    }
+}
+
+/// A path and a motion in the making.
+struct Tracer {
+    precision: Precision,
+    start: Option<f64>,
+    heading: f64,
+    path: Vec<PathSegment>,
+    sources: Vec<usize>,
+    pieces: Vec<(f64, f64)>,
+    first: Option<f64>,
+    speed: f64,
+    fastest: f64,
+    marks: Vec<[f64; 2]>,
+    growth: f64,
+    lag: f64,
+}
+
+impl Tracer {
+    fn new(growth: f64, precision: Precision) -> Self {
+        Self {
+            precision,
+            start: None,
+            heading: 0.0,
+            path: Vec::new(),
+            sources: Vec::new(),
+            pieces: Vec::new(),
+            first: None,
+            speed: 0.0,
+            fastest: 0.0,
+            marks: vec![[0.0; 2]],
+            growth,
+            lag: 0.0,
+        }
+    }
+
+    /// Goes on by a segment in a heading, on which lengths are `scale` times the `length` of the vehicle.
+    fn add(&mut self, shape: PathSegment, heading: f64, [scale, length]: [f64; 2], parts: &[Part], source: usize) {
+        let own = shape.length();
+        let [mut at, reference] = self.marks.last().copied().unwrap_or_default();
+        let duration: f64 = parts.iter().map(|part| part.duration).sum();
+        let quick = own > duration * self.precision.largest.min(QUICK);
+        if own <= self.precision.nothing || quick {
+            // It stands, or is at the end at once; the next segments lie beside where it would have taken the disc.
+            self.growth += 2.0 * own;
+            self.marks.push([at, reference + length]);
+            if !quick {
+                self.reach(0.0);
+                self.pieces.push((duration, 0.0));
+            }
+            return;
+        }
+        let turn = self.start.map_or(0.0, |_| within_half_turn(heading - self.heading));
+        self.start.get_or_insert(heading);
+        if turn.abs() > NOTHING {
+            self.path.push(PathSegment::Arc { radius: TURN, sweep: turn });
+            self.sources.push(source);
+            at += TURN * turn.abs();
+            self.marks.push([at, reference]);
+            // Its chord, and its length before and after the motion makes up for it.
+            self.growth += (2.0 + TAU) * TURN;
+        }
+        self.path.push(shape);
+        self.sources.push(source);
+        self.marks.push([at + own, reference + length]);
+        self.heading = match shape {
+            PathSegment::Line { .. } => heading,
+            PathSegment::Arc { sweep, .. } => heading + sweep,
+        };
+        for &Part { duration, before, after } in parts.iter().filter(|part| part.duration > 0.0) {
+            self.reach(scale * before);
+            self.pieces.push((duration, (scale * after - self.speed) / duration));
+            self.speed = scale * after;
+            self.fastest = self.fastest.max(self.speed);
+        }
+    }
+
+    /// Changes the speed.
+    fn reach(&mut self, speed: f64) {
+        if self.first.is_none() {
+            (self.first, self.speed) = (Some(speed), speed);
+        }
+        let change = speed - self.speed;
+        if change.abs() > self.precision.nothing || (speed == 0.0 && change != 0.0) {
+            let duration = self.precision.jump(change);
+            self.pieces.push((duration, change / duration));
+            self.lag += duration;
+            self.speed = speed;
+        }
+        self.fastest = self.fastest.max(speed);
+    }
+
+    fn finish(self, vehicle: &Agent, [x, y]: [f64; 2], id: u64) -> Offset {
+        // The lag and the way that is made up for it.
+        let radius = self.growth + 2.0 * self.lag * self.fastest;
+        let heading = self.start.unwrap_or(vehicle.start[2]);
+        let motion = MotionSpec::Profile { v0: self.first.unwrap_or(0.0), pieces: self.pieces };
+        let start = [x, y, heading];
+        let agent = Agent { id, radius, start, path: self.path, motion, ..vehicle.clone() };
+        Offset { agent, marks: self.marks, sources: self.sources, slack: 0.0 }
+    }
+}
+
+/// The same angle within half a turn to either side.
+fn within_half_turn(angle: f64) -> f64 {
+    let rest = angle.rem_euclid(TAU);
+    if rest > PI { rest - TAU } else { rest }
+}

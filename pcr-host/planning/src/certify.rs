@@ -1,0 +1,146 @@
+//! Tables and motions proved by [`pcr_certify`]: what `pcr certify` prints in every format.
+//!
+//! The types are the JSON output, field for field in this order.
+
+mod motions;
+
+pub use motions::{Contact, Proof};
+
+use pcr_certify::data::Table;
+use pcr_certify::pair::{Findings, Promise};
+use pcr_certify::table::{Checker, Margin};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// What has been proved of a table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Certified {
+    /// Name of the scenario.
+    pub name: String,
+    /// `proved`, `refuted` or `undecided`; none where the scenario was refused.
+    pub verdict: Option<&'static str>,
+    /// Discs.
+    pub discs: usize,
+    /// Pairs of segments that were looked at.
+    pub segment_pairs: usize,
+    /// Pieces of the table.
+    pub pieces: usize,
+    /// Evaluations of the bounds on a pair of parts of segments.
+    pub steps: usize,
+    /// The largest margin \[ε\] at which all contacts are covered, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin: Option<f64>,
+    /// Where a promise is broken.
+    pub refuted: Vec<Point>,
+    /// Where the checker's own rounding does not tell.
+    pub undecided: Vec<Point>,
+    /// Why there is no verdict.
+    pub error: Option<String>,
+}
+
+/// A point of two paths.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// What is not kept there, or may not be.
+    pub promise: &'static str,
+    /// Number of an agent.
+    pub i: u64,
+    /// Number of the other one.
+    pub j: u64,
+    /// Length along the path of `i`, or of its disc \[m\].
+    pub l_i: f64,
+    /// Length along the path of `j` \[m\].
+    pub l_j: f64,
+    /// Distance of the centres less the radii there \[m\].
+    pub clearance: f64,
+    /// The same in ε of the pair: from 0 to 1 a table may have it either way.
+    pub in_excess: f64,
+}
+
+/// The tables in an answer of `pcr regions --certificate`; what else is there does not count.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Dump {
+    /// Name of the scenario.
+    pub name: String,
+    /// That of contact, and that in which margins overlap, if there are any.
+    pub certificate: Vec<Table>,
+}
+
+impl Dump {
+    /// Reads one from a file.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn read(file: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
+        serde_json::from_str(&text).map_err(|error| error.to_string())
+    }
+}
+
+impl Certified {
+    /// What is proved of a table; with its margin, if asked for.
+    pub fn of(name: &str, table: &Table, margin: bool) -> Self {
+        let checked = Checker::new(table).and_then(|checker| {
+            let findings = checker.check(Margin::Needed)?;
+            let margin = if margin { checker.margin()? } else { None };
+            Ok((findings, margin))
+        });
+        match checked {
+            Ok((findings, margin)) => Self::found(name, table, &findings, margin.map(|(margin, _)| margin)),
+            Err(problem) => Self::refused(name, problem),
+        }
+    }
+
+    fn found(name: &str, table: &Table, findings: &Findings, margin: Option<f64>) -> Self {
+        let points = |those: &[pcr_certify::pair::Witness]| {
+            let id = |place: usize| table.agents.get(place).map_or(0, |agent| agent.id);
+            let point = those.iter().map(|witness| Point {
+                promise: match witness.promise {
+                    Promise::Covered => "contact outside of all pieces",
+                    Promise::Shared => "contact in a piece that does not show it",
+                    Promise::Near => "told, but no contact",
+                },
+                i: id(witness.agents[0]),
+                j: id(witness.agents[1]),
+                l_i: witness.lengths[0],
+                l_j: witness.lengths[1],
+                clearance: witness.clearance,
+                in_excess: witness.clearance / witness.excess,
+            });
+            point.collect::<Vec<_>>()
+        };
+        let verdict = match findings {
+            Findings { refuted, .. } if !refuted.is_empty() => "refuted",
+            Findings { undecided, .. } if !undecided.is_empty() => "undecided",
+            _ => "proved",
+        };
+        Self {
+            name: name.to_owned(),
+            verdict: Some(verdict),
+            discs: table.agents.len(),
+            segment_pairs: findings.segments,
+            pieces: findings.pieces,
+            steps: findings.steps,
+            margin,
+            refuted: points(&findings.refuted),
+            undecided: points(&findings.undecided),
+            error: None,
+        }
+    }
+
+    /// No verdict, and why.
+    pub fn refused(name: &str, error: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            verdict: None,
+            discs: 0,
+            segment_pairs: 0,
+            pieces: 0,
+            steps: 0,
+            margin: None,
+            refuted: Vec::new(),
+            undecided: Vec::new(),
+            error: Some(error),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Motions proved to be without contact at any time, by [`pcr_certify`].
+
+use crate::bodies::Bodies;
+use crate::certificate;
+use crate::fleet::{Format, Refused};
+use pcr_certify::motion::{Meeting, Mover, meetings};
+use pcr_core::{Interval, Motion};
+use pcr_formats::scenario::Scenario;
+use serde::Serialize;
+
+/// What has been proved of motions.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Proof {
+    /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell.
+    pub verdict: &'static str,
+    /// Pairs of discs.
+    pub pairs: usize,
+    /// Intervals of time that were looked at.
+    pub steps: usize,
+    /// A contact of each pair of discs that have one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<Contact>,
+    /// Where it is not decided.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub undecided: Vec<Contact>,
+    /// Why there is no verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+/// Two agents at one time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// Number of an agent.
+    pub i: u64,
+    /// Number of the other one.
+    pub j: u64,
+    /// When \[s\].
+    pub t: f64,
+    /// Distance of the centres of two of their discs less the radii \[m\].
+    pub clearance: f64,
+}
+
+impl Proof {
+    /// That of a scenario, as the format `S` holds it.
+    ///
+    /// # Errors
+    /// [`Refused`] where a value does not fit the format.
+    pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
+        let Bodies { fleet, discs, .. } = Bodies::<S>::new(scenario)?;
+        let motions = fleet.motions();
+        let all = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        let ids: Vec<u64> =
+            discs.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
+        let agents = certificate::agents(&fleet, &motions, &ids);
+        let movers = agents.iter().zip(&motions).zip(&discs).map(|((agent, motion), disc)| {
+            let time = disc.time(motion, all);
+            Mover::new(agent, [time.lo.to_f64(), time.hi.to_f64()])
+        });
+        Ok(match movers.collect::<Result<Vec<_>, _>>() {
+            Ok(movers) => Self::found(&movers),
+            Err(problem) => Self { error: Some(problem), ..Self::found(&[]) }.undecided(),
+        })
+    }
+
+    fn found(movers: &[Mover]) -> Self {
+        let found = meetings(movers);
+        let contact = |meeting: &Meeting| {
+            let [i, j] = meeting.agents;
+            Contact { i, j, t: meeting.time, clearance: meeting.clearance }
+        };
+        let verdict = match (found.contacts.is_empty(), found.undecided.is_empty()) {
+            (false, _) => "contact",
+            (true, false) => "undecided",
+            (true, true) => "proved",
+        };
+        Self {
+            verdict,
+            pairs: found.pairs,
+            steps: found.steps,
+            contacts: found.contacts.iter().map(contact).collect(),
+            undecided: found.undecided.iter().map(contact).collect(),
+            error: None,
+        }
+    }
+
+    fn undecided(self) -> Self {
+        Self { verdict: "undecided", ..self }
+    }
+
+    /// A sentence about it.
+    pub fn sentence(&self) -> String {
+        let place = |those: &[Contact]| {
+            those.first().map_or(String::new(), |at| {
+                format!("agents {} and {} at {} s, clearance {:.3e} m", at.i, at.j, at.t, at.clearance)
+            })
+        };
+        match (self.verdict, &self.error) {
+            (_, Some(problem)) => format!("certificate: none, {problem}"),
+            ("proved", _) => format!("certificate: no contact at any time, proved ({} pairs of discs)", self.pairs),
+            ("contact", _) => format!("certificate: contact, {}", place(&self.contacts)),
+            _ => format!("certificate: not decided, {}", place(&self.undecided)),
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! From scenarios to motions and maps, in any number format of the tool.
+
+mod fixed;
+#[cfg(feature = "micromath")]
+mod micro;
+mod rounding;
+pub(crate) mod speed;
+#[cfg(test)]
+mod tests;
+
+use pcr_certify::data::Angle;
+use pcr_core::{
+    Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
+    Scalar, Segment, Turn,
+};
+use pcr_formats::scenario::TURN;
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
+pub(crate) use rounding::Rounding;
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// A number format that scenario files can be read into.
+pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
+    /// Name on the command line and in the output.
+    const NAME: &'static str;
+    /// The nearest number of the format.
+    fn from_f64(value: f64) -> Self;
+    /// The exact value.
+    fn to_f64(self) -> f64;
+    /// The nearest angle of the format.
+    fn angle(radians: f64) -> Self::Angle;
+    /// The exact angle \[rad\].
+    fn radians(angle: Self::Angle) -> f64;
+    /// The angle as the format holds it.
+    fn held_angle(angle: Self::Angle) -> Angle {
+        Angle::Radians(Self::radians(angle))
+    }
+    /// By how much of itself a sum may be rounded, twice: 0 in a format that adds exactly.
+    const EPSILON: f64;
+}
+
+impl Format for f64 {
+    const NAME: &'static str = "f64";
+    const EPSILON: f64 = f64::EPSILON;
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+    fn to_f64(self) -> f64 {
+        self
+    }
+    fn angle(radians: f64) -> Radians<f64> {
+        Radians(radians)
+    }
+    fn radians(angle: Radians<f64>) -> f64 {
+        angle.0
+    }
+}
+
+impl Format for f32 {
+    const NAME: &'static str = "f32";
+    const EPSILON: f64 = f32::EPSILON as f64;
+    fn from_f64(value: f64) -> Self {
+        value as f32
+    }
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    /// Whole turns are taken off first: they would cost the digits of the rest.
+    fn angle(radians: f64) -> Radians<f32> {
+        Radians((if radians.abs() > PI { radians - TAU * (radians / TAU).round() } else { radians }) as f32)
+    }
+    fn radians(angle: Radians<f32>) -> f64 {
+        f64::from(angle.0)
+    }
+}
+
+/// Why an agent of a scenario does not fit a number format: agent, segment, field, value and what is allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refused {
+    agent: String,
+    part: Option<(&'static str, usize)>,
+    format: &'static str,
+    problem: String,
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "agent {}", self.agent)?;
+        if let Some((part, index)) = self.part {
+            write!(f, ", {part} {}", index + 1)?;
+        }
+        write!(f, ", {} ({})", self.problem, self.format)
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// The number of the format for a field; what it would overflow or lose altogether is refused.
+fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
+    let number = S::from_f64(value);
+    if !number.is_finite() || number.abs() > S::LIMIT {
+        let (value, limit) = (figure(value), S::LIMIT.to_f64());
+        Err(format!("{field}: {value} is out of range; allowed is up to {limit:e} in magnitude"))
+    } else if number == S::ZERO && value != 0.0 {
+        Err(format!("{field}: {} is out of range; it is so small that it becomes 0", figure(value)))
+    } else {
+        Ok(number)
+    }
+}
+
+/// What the core refused: a value that follows from several fields.
+fn derived<S: Format>(reason: Invalid) -> String {
+    let limit = S::LIMIT.to_f64();
+    match reason {
+        Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
+        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:?}", S::LEAST),
+        reason => reason.to_string(),
+    }
+}
+
+/// The paths and profiles of a scenario in one number format.
+#[derive(Clone, Debug)]
+pub struct Fleet<S: Scalar> {
+    agents: Vec<Parts<S>>,
+}
+
+/// What the motion of one agent borrows.
+#[derive(Clone, Debug)]
+struct Parts<S: Scalar> {
+    segments: Vec<Segment<S>>,
+    /// Place of each segment in the scenario: zero lengths are left out there, arcs over one turn are split.
+    sources: Vec<usize>,
+    heading: S::Angle,
+    /// Turns in place, each before the segment of this place.
+    turns: Vec<(usize, S::Angle)>,
+    phases: Vec<Phase<S>>,
+    radius: S,
+    margin: S,
+    start: S,
+}
+
+impl<S: Format> Fleet<S> {
+    /// All agents of a scenario.
+    ///
+    /// # Errors
+    /// [`Refused`] where a value does not fit the number format.
+    pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
+        let agents = scenario.agents.iter().map(|agent| {
+            let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
+            Parts::new(agent).map_err(refused)
+        });
+        Ok(Self { agents: agents.collect::<Result<_, _>>()? })
+    }
+
+    /// The motions, in the order of the scenario.
+    pub fn motions(&self) -> Vec<Motion<'_, S>> {
+        // `Parts::new` has built each of them once.
+        let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
+        debug_assert_eq!(motions.len(), self.agents.len());
+        motions
+    }
+
+    /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.
+    pub(crate) fn headings(&self, agent: usize) -> Option<(S::Angle, &[Turned<S>])> {
+        self.agents.get(agent).map(|parts| (parts.heading, &parts.turns[..]))
+    }
+
+    /// Place in the scenario (from 0) of a segment of an agent's motion; `None` for the point of an agent that stands.
+    pub fn source(&self, agent: usize, segment: usize) -> Option<usize> {
+        self.agents.get(agent)?.sources.get(segment).copied()
+    }
+}
+
+/// The segment (from 0) before which an agent turns in place, and by how much.
+pub(crate) type Turned<S> = (usize, <S as Scalar>::Angle);
+
+/// Segment or piece of a profile (from 0) where there is one, and what is wrong there.
+type Fault = (Option<(&'static str, usize)>, String);
+
+/// A fault of the agent as a whole.
+fn of_agent(problem: String) -> Fault {
+    (None, problem)
+}
+
+impl<S: Format> Parts<S> {
+    fn new(agent: &Agent) -> Result<Self, Fault> {
+        let Route { segments, sources, turns } = place(agent)?;
+        let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
+        let phases = phases(agent, path.length())?;
+        let radius = number("radius", agent.reach()).map_err(of_agent)?;
+        let start = number("t_start", agent.t_start).map_err(of_agent)?;
+        let margin = number("margin", agent.margin).map_err(of_agent)?;
+        let heading = S::angle(agent.start[2]);
+        let parts = Self { segments, sources, heading, turns, phases, radius, margin, start };
+        match parts.motion() {
+            Ok(_) => Ok(parts),
+            Err(reason) => Err(of_agent(derived::<S>(reason))),
+        }
+    }
+
+    fn motion(&self) -> Result<Motion<'_, S>, Invalid> {
+        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, self.radius, self.start)?
+            .with_margin(self.margin)
+    }
+}
+
+/// The segments of a path, placed one after the other, the place of each in the scenario, and turns in place.
+struct Route<S: Scalar> {
+    segments: Vec<Segment<S>>,
+    sources: Vec<usize>,
+    turns: Vec<(usize, S::Angle)>,
+}
+
+fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
+    let [x, y, heading] = agent.start;
+    let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
+    let pose = Pose { position, heading: S::angle(heading) };
+    let mut origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
+    let (mut segments, mut sources, mut turns) = (Vec::<Segment<S>>::new(), Vec::new(), Vec::new());
+    for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
+        let at = |problem| (Some(("segment", source)), problem);
+        if let Some(sweep) = turn_in_place::<S>(segment) {
+            let last = segments.last_mut().unwrap_or(&mut origin);
+            *last = last.turned(S::angle(sweep)).map_err(|reason| at(derived::<S>(reason)))?;
+            turns.push((segments.len(), S::angle(sweep)));
+            continue;
+        }
+        let whole = segment.turns();
+        let curve = match *segment {
+            PathSegment::Line { .. } => None,
+            PathSegment::Arc { radius, sweep } => {
+                Some((number("radius", radius).map_err(at)?, if sweep > 0.0 { Turn::Left } else { Turn::Right }))
+            }
+        };
+        let length = number("length", segment.length() / whole).map_err(at)?;
+        for _ in 0..whole as usize {
+            let last = segments.last().unwrap_or(&origin);
+            let next = match curve {
+                None => last.then_line(length),
+                Some((radius, turn)) => last.then_arc(radius, turn, length),
+            };
+            segments.push(next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?);
+            sources.push(source);
+        }
+    }
+    if segments.is_empty() {
+        segments.push(origin);
+    }
+    Ok(Route { segments, sources, turns })
+}
+
+/// The angle of a turn in place \[rad\], in a format that has no lengths as small as its radius.
+fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
+    match *segment {
+        PathSegment::Arc { radius: TURN, sweep } if S::from_f64(TURN) == S::ZERO => Some(sweep),
+        _ => None,
+    }
+}
+
+/// The phases of the motion over a path of this length.
+fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
+    let duration = agent.duration();
+    // The core's division saturates, so what takes too long has to be found here.
+    if S::from_f64(duration) >= S::LIMIT {
+        let limit = S::LIMIT.to_f64();
+        let duration = figure(duration);
+        return Err(of_agent(format!("the motion takes {duration} s; allowed is below {limit:e} s")));
+    }
+    let motion = if agent.path.iter().any(|segment| turn_in_place::<S>(segment).is_some()) {
+        &waiting::<S>(agent)
+    } else {
+        &agent.motion
+    };
+    match motion {
+        MotionSpec::RestToRest { v_max, a_max } => {
+            let speed = number("v_max", *v_max).map_err(of_agent)?;
+            let acceleration = number("a_max", *a_max).map_err(of_agent)?;
+            let profile = Profile::rest_to_rest(length, Limits { speed, acceleration });
+            let profile = profile.map_err(|reason| of_agent(derived::<S>(reason)))?;
+            Ok(profile.as_profile().phases().to_vec())
+        }
+        MotionSpec::Profile { v0, pieces } => speed::phases(*v0, pieces, length).map_err(|(piece, problem)| {
+            let part = piece.map(|piece| ("profile piece", piece));
+            (part, problem)
+        }),
+    }
+}
+
+/// The motion of an agent that waits while it turns in place. What is less than the last digit of time or speed is
+/// none.
+fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
+    let parts = agent.parts();
+    let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
+    // Duration and speed after it.
+    let mut reached: Vec<(f64, f64)> = Vec::new();
+    for (segment, parts) in agent.path.iter().zip(parts) {
+        let turns = turn_in_place::<S>(segment).is_some();
+        for part in parts {
+            let lost = |value: f64| S::from_f64(value) == S::ZERO;
+            let after = if lost(part.after) { 0.0 } else { part.after };
+            match reached.last_mut() {
+                Some(last) if lost(part.duration) => last.1 = after,
+                _ => reached.push((part.duration, if turns { 0.0 } else { after })),
+            }
+        }
+    }
+    let mut speed = v0;
+    let pieces = reached.into_iter().map(|(duration, after)| {
+        let gain = after - std::mem::replace(&mut speed, after);
+        (duration, if duration > 0.0 { gain / duration } else { 0.0 })
+    });
+    MotionSpec::Profile { v0, pieces: pieces.collect() }
+}
+
+/// A table on the heap.
+pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
+
+/// The extended collision map of a fleet of any size: the storage grows until it is large enough.
+///
+/// # Errors
+/// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
+pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
+    Ecm::grown(motions)
+}
+
+/// The same with the regions of one agent with all others only.
+///
+/// # Errors
+/// As [`build_ecm`].
+pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
+    table_of(motions, agent, [16 * motions.len(), 32 * motions.len()])
+}
+
+/// The same, with storage for so many regions and pieces at first.
+///
+/// # Errors
+/// As [`build_ecm`].
+pub(crate) fn table_of<S: Scalar>(
+    motions: &[Motion<'_, S>],
+    agent: usize,
+    [regions, pieces]: [usize; 2],
+) -> Result<HostEcm<S>, Full> {
+    let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+    while let Err(full) = ecm.fill_row(motions, agent) {
+        ecm.grow(full)?;
+    }
+    Ok(ecm)
+}

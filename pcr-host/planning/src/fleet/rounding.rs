@@ -1,0 +1,121 @@
+//! How far a motion in a number format is from the one in the scenario, which lose digits on the way there.
+
+use super::{Format, turn_in_place};
+use pcr_core::Motion;
+use pcr_formats::scenario::Placed;
+use pcr_formats::scenario::{Agent, PathSegment};
+use std::f64::consts::{PI, TAU};
+
+/// What a format makes of a motion, at most.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rounding {
+    /// Distance of the disc from where the scenario has it at the same time \[m\].
+    pub(crate) distance: f64,
+    /// Difference of lengths along the path \[m\].
+    pub(crate) length: f64,
+}
+
+impl Rounding {
+    /// That of a motion of an agent.
+    ///
+    /// Where paths differ: points at the same share of a segment are as far apart as its starts, and along it by the difference
+    /// of the headings times its length, and by that of the lengths. Where times differ: a difference of two motions is a
+    /// parabola between two times at which one of them changes its acceleration.
+    pub(crate) fn of<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
+        let Self { distance, length } = of_path::<S>(agent);
+        let digits = S::slack(motion.extent()).to_f64();
+        Self { distance: distance + 2.0 * length + of_times(agent, motion) + 2.0 * digits, length: length + digits }
+    }
+}
+
+/// The number that the format holds.
+fn held<S: Format>(value: f64) -> f64 {
+    S::from_f64(value).to_f64()
+}
+
+fn of_path<S: Format>(agent: &Agent) -> Rounding {
+    let [x, y, heading] = agent.start;
+    let stands = |[x, y]: [f64; 2], heading| Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
+    let mut exact = stands([x, y], heading);
+    let mut rounded = stands([held::<S>(x), held::<S>(y)], S::radians(S::angle(heading)));
+    let (mut rounding, mut longer) = (Rounding { distance: 0.0, length: 0.0 }, 0.0_f64);
+    for &segment in &agent.path {
+        let (from, to) = (exact.end(), rounded.end());
+        let apart = (from[0] - to[0]).hypot(from[1] - to[1]);
+        let turned = (exact.heading_at_end() - rounded.heading_at_end()).rem_euclid(TAU);
+        let turned = if turned > PI { TAU - turned } else { turned };
+        let mut next = Placed { at: to, heading: rounded.heading_at_end(), shape: segment };
+        let (length, mut bent) = (segment.length(), 0.0);
+        if let Some(sweep) = turn_in_place::<S>(&segment) {
+            next.heading += S::radians(S::angle(sweep));
+            next.shape = PathSegment::Line { length: 0.0 };
+        } else {
+            let turns = segment.turns();
+            let kept = held::<S>(length / turns) * turns;
+            next.shape = match segment {
+                PathSegment::Line { .. } => PathSegment::Line { length: kept },
+                PathSegment::Arc { radius, sweep } => {
+                    let radius = held::<S>(radius);
+                    let rounded = if radius > 0.0 { (kept / radius).copysign(sweep) } else { 0.0 };
+                    bent = (rounded - sweep).abs();
+                    PathSegment::Arc { radius, sweep: rounded }
+                }
+            };
+        }
+        let differs = next.shape.length() - length;
+        longer += differs;
+        rounding.length = rounding.length.max(longer.abs());
+        rounding.distance = rounding.distance.max(apart + length * (turned + bent) + differs.abs());
+        exact = Placed { at: from, heading: exact.heading_at_end(), shape: segment };
+        rounded = next;
+    }
+    let (from, to) = (exact.end(), rounded.end());
+    rounding.distance = rounding.distance.max((from[0] - to[0]).hypot(from[1] - to[1]));
+    rounding
+}
+
+/// Time, length, speed and acceleration from then on.
+type Knot = [f64; 4];
+
+fn of_times<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> f64 {
+    let (mut speed, pieces) = agent.motion.pieces(agent.length());
+    let (mut time, mut length) = (agent.t_start, 0.0);
+    let mut exact: Vec<Knot> = Vec::new();
+    for (duration, acceleration) in pieces {
+        exact.push([time, length, speed, acceleration]);
+        time += duration;
+        length += (speed + 0.5 * acceleration * duration) * duration;
+        speed += acceleration * duration;
+    }
+    exact.push([time, length, 0.0, 0.0]);
+    let start = motion.time().lo.to_f64();
+    let mut rounded: Vec<Knot> = Vec::new();
+    for phase in motion.profile().phases() {
+        let [before, _] = phase.speed().map(S::to_f64);
+        let (time, length) = (phase.time().lo.to_f64(), phase.length().lo.to_f64());
+        rounded.push([start + time, length, before, phase.acceleration().to_f64()]);
+    }
+    let end = start + motion.profile().duration().to_f64();
+    rounded.push([end, motion.profile().length().to_f64(), 0.0, 0.0]);
+    let mut times: Vec<f64> = exact.iter().chain(&rounded).map(|knot| knot[0]).collect();
+    times.sort_by(f64::total_cmp);
+    let bound = |pair: &[f64]| {
+        let [a, b] = [pair[0], pair[1]];
+        let middle = 0.5 * (a + b);
+        let differs = |time: f64| (at(&exact, time, middle)[0] - at(&rounded, time, middle)[0]).abs();
+        let bends = (at(&exact, middle, middle)[1] - at(&rounded, middle, middle)[1]).abs();
+        differs(a).max(differs(b)) + 0.125 * bends * (b - a) * (b - a)
+    };
+    times.windows(2).map(bound).fold(0.0, f64::max)
+}
+
+/// Length and acceleration at a time by the piece that holds another one.
+fn at(knots: &[Knot], time: f64, within: f64) -> [f64; 2] {
+    match knots.partition_point(|knot| knot[0] <= within).checked_sub(1).and_then(|place| knots.get(place)) {
+        None => [0.0, 0.0],
+        Some(&[from, length, speed, acceleration]) => {
+            let elapsed = time - from;
+            [length + (speed + 0.5 * acceleration * elapsed) * elapsed, acceleration]
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! A scenario's speed profile as phases of the core.
+
+use super::{Format, derived, number};
+use pcr_core::Phase;
+use pcr_core::scalar::Wide;
+use pcr_formats::scenario::speed_after;
+
+/// Rounds in which the last digits of the travelled length are settled. One does it; a second one mends
+/// its rounding.
+const ROUNDS: usize = 3;
+
+/// Share of the longest way of a piece from which on it may be made longer or shorter.
+const SHARE: f64 = 0.125;
+
+/// Piece of the profile (from 0) where there is one, and what is wrong.
+type Fault = (Option<usize>, String);
+
+/// The phases of `pieces` (durations \[s\] and accelerations \[m/s²\]) from speed `v0` \[m/s\].
+///
+/// Each phase aims at the speed that the piece reaches exactly, so that speeds do not drift and a stop is a stop. What
+/// rounding leaves of the difference to `length` \[m\] goes into the duration of the fastest piece that is not short, where it
+/// costs the least time.
+pub(crate) fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
+    let targets = targets(v0, pieces);
+    let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));
+    let way = |k: usize| pieces.get(k).map_or(0.0, |(duration, _)| duration * mean(k));
+    let longest = (0..pieces.len()).map(way).fold(0.0, f64::max);
+    // A short one may not have as much to give.
+    let moving = (0..pieces.len()).filter(|&k| way(k) > 0.0 && way(k) >= SHARE * longest);
+    let fastest = moving.max_by(|&a, &b| mean(a).total_cmp(&mean(b)));
+    let first = number::<S>("v0", v0).map_err(|problem| (None, problem))?;
+    let mut correction = 0.0;
+    let mut phases = Vec::<Phase<S>>::new();
+    for _ in 0..ROUNDS {
+        phases.clear();
+        let mut speed = first;
+        for (k, (&(duration, _), &after)) in pieces.iter().zip(targets.iter().skip(1)).enumerate() {
+            let longer = if Some(k) == fastest { correction } else { 0.0 };
+            let next = phase(phases.last(), speed, after, duration + longer).map_err(|problem| (Some(k), problem))?;
+            phases.push(next.0);
+            speed = next.1;
+        }
+        let travelled = phases.last().map_or(S::ZERO, |last| last.length().hi);
+        let short = (length - travelled).to_f64();
+        match fastest {
+            Some(fastest) if short != 0.0 && mean(fastest) > 0.0 => correction += short / mean(fastest),
+            _ => break,
+        }
+    }
+    Ok(phases)
+}
+
+/// The speeds at the joints of the pieces, one more than there are pieces.
+fn targets(v0: f64, pieces: &[(f64, f64)]) -> Vec<f64> {
+    let (mut speed, mut fastest) = (v0, v0);
+    let mut speeds = vec![v0];
+    for (duration, accel) in pieces {
+        speed = speed_after(speed + accel * duration, fastest);
+        fastest = fastest.max(speed);
+        speeds.push(speed);
+    }
+    speeds
+}
+
+/// The phase that follows `last` from the speed `before` to the speed `after`, and the speed that it reaches: `after`
+/// but for rounding, and 0 exactly.
+fn phase<S: Format>(last: Option<&Phase<S>>, before: S, after: f64, duration: f64) -> Result<(Phase<S>, S), String> {
+    let duration = number::<S>("duration", duration)?;
+    let mut acceleration = S::ZERO;
+    if duration > S::ZERO {
+        let gain = number::<S>("speed", after)? - before;
+        let exact = gain.to_f64() / duration.to_f64();
+        // What rounding left of a change of speed may be too little for the format.
+        if gain.abs() > S::slack(before) || S::from_f64(exact) != S::ZERO {
+            acceleration = number("accel", exact)?;
+        }
+    }
+    // The core's own sum, so that both know the same speed.
+    let reached = |acceleration: S| before + acceleration.times(duration).narrow();
+    if after == 0.0 {
+        // Down to 0 and not to a rounding above it: the core takes as 0 what is below it by rounding.
+        for _ in 0..ROUNDS {
+            if reached(acceleration) > S::ZERO {
+                acceleration = acceleration - S::slack(acceleration.abs()).half().half();
+            }
+        }
+    }
+    let phase = match last {
+        None => Phase::starting_at(before, duration, acceleration),
+        Some(last) => last.then(duration, acceleration),
+    };
+    Ok((phase.map_err(derived::<S>)?, reached(acceleration).max(S::ZERO)))
+}

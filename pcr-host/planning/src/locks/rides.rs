@@ -1,0 +1,161 @@
+//! What a vehicle sweeps on an edge: its motions along it, and its turns at both ends.
+//!
+//! A disc is the same in every heading. Any other outline is another one on the way back along a two-way edge, and sweeps more where the
+//! vehicle turns: at each end of an edge these are the turns in place from the edges that come before it, and to those that go on
+//! from it. Back along the same line it turns only where no other way leads on.
+
+use crate::bodies::tracks;
+use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
+use pcr_formats::scenario::Agent;
+use pcr_formats::scenario::{KINK, Placed};
+use std::f64::consts::{PI, TAU};
+
+/// Rounding of lengths, relative.
+const ROUNDING: f64 = 1e-12;
+
+/// The vehicle somewhere on an edge.
+pub struct Ride {
+    /// Who travels it.
+    pub agent: Agent,
+    lengths: Lengths,
+}
+
+/// What lengths on the path of an agent are on the edge.
+enum Lengths {
+    Same,
+    /// Of an edge of this length \[m\], from its other end.
+    Reversed(f64),
+    /// It turns there \[m\].
+    At(f64),
+}
+
+impl Ride {
+    /// Lengths on the edge, outward, of lengths on the path of the agent.
+    pub fn on_edge(&self, [lo, hi]: [f64; 2]) -> [f64; 2] {
+        match self.lengths {
+            Lengths::Same => [lo, hi],
+            Lengths::Reversed(length) => {
+                let slack = ROUNDING * (1.0 + length);
+                [length - hi - slack, length - lo + slack].map(|l| l.clamp(0.0, length))
+            }
+            Lengths::At(length) => [length; 2],
+        }
+    }
+}
+
+/// All rides on the edges of a layout.
+pub struct Rides<'a> {
+    layout: &'a Layout,
+    vehicle: Vehicle,
+    /// For each node the headings in which the vehicle comes to it, and leaves it \[rad\].
+    headings: Vec<[Vec<f64>; 2]>,
+}
+
+impl<'a> Rides<'a> {
+    /// Those of the vehicle with its margin.
+    pub fn new(Imported { layout, vehicle }: &'a Imported) -> Self {
+        let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(vehicle.margin));
+        let vehicle = Vehicle { radius: vehicle.radius + vehicle.margin, footprint, margin: 0.0, ..vehicle.clone() };
+        let mut headings = vec![<[Vec<f64>; 2]>::default(); layout.nodes.len()];
+        for step in layout.edges.iter().flat_map(ways) {
+            let Some([start, end]) = ends(step) else { continue };
+            for (node, side, end) in [(step.target(), 0, end), (step.origin(), 1, start)] {
+                if let Some(sides) = headings.get_mut(node) {
+                    sides[side].push(end.heading);
+                }
+            }
+        }
+        Self { layout, vehicle, headings }
+    }
+
+    /// The vehicle, larger by its margin.
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// The rides on an edge: one for a disc, else those in each direction.
+    pub fn on(&self, edge: &Edge) -> Vec<Ride> {
+        if self.vehicle.footprint.is_none() {
+            return vec![self.along(Step { edge, backward: false })];
+        }
+        ways(edge).flat_map(|step| self.turning(step)).collect()
+    }
+
+    /// The rides of an outline in one direction.
+    fn turning(&self, step: Step<'_>) -> Vec<Ride> {
+        let Some([start, end]) = ends(step) else {
+            // Without a length it has no direction.
+            return vec![self.at(step.origin())];
+        };
+        let length = step.edge.length();
+        let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
+        let before = self.turns(step.origin(), 0, |arrives| start.heading - arrives);
+        let after = self.turns(step.target(), 1, |leaves| leaves - end.heading);
+        // Before a turn to the left the vehicle looks further to the right.
+        let turns =
+            [(from, start, before.map(|turn| -turn)), (to, end, after)].into_iter().filter_map(|(at, end, turns)| {
+                let [right, left] = [turns[0].min(turns[1]), turns[0].max(turns[1])];
+                let agent = (right < left).then(|| turn(&self.vehicle, end.at, end.heading + right, left - right));
+                Some(Ride { agent: agent?, lengths: Lengths::At(at) })
+            });
+        std::iter::once(self.along(step)).chain(turns).collect()
+    }
+
+    fn along(&self, step: Step<'_>) -> Ride {
+        let agent = match ends(step) {
+            Some(_) => ride(&self.vehicle, step),
+            None => turn(&self.vehicle, self.place(step.origin()), 0.0, 0.0),
+        };
+        let lengths = if step.backward { Lengths::Reversed(agent.length()) } else { Lengths::Same };
+        Ride { agent, lengths }
+    }
+
+    /// The vehicle that stands at a node, in any heading.
+    pub fn at(&self, node: usize) -> Ride {
+        let angle = if self.vehicle.footprint.is_some() { TAU } else { 0.0 };
+        Ride { agent: turn(&self.vehicle, self.place(node), 0.0, angle), lengths: Lengths::At(0.0) }
+    }
+
+    fn place(&self, node: usize) -> [f64; 2] {
+        self.layout.nodes.get(node).map_or([0.0; 2], |node| node.at)
+    }
+
+    /// The farthest turns to the right and to the left between an edge and those on one side of a node.
+    fn turns(&self, node: usize, side: usize, turn: impl Fn(f64) -> f64) -> [f64; 2] {
+        let there = self.headings.get(node).map_or(&[][..], |sides| &sides[side]);
+        let turns = there.iter().map(|&heading| (turn(heading) + PI).rem_euclid(TAU) - PI);
+        let on = turns.filter(|turn| turn.abs() <= PI - KINK);
+        let range = on.fold(None, |range: Option<[f64; 2]>, turn| {
+            let [right, left] = range.unwrap_or_default();
+            Some([right.min(turn), left.max(turn)])
+        });
+        let back = if there.is_empty() { 0.0 } else { PI };
+        range.unwrap_or([-back, back])
+    }
+}
+
+/// The directions in which an edge may be travelled.
+fn ways(edge: &Edge) -> impl Iterator<Item = Step<'_>> {
+    let backward = edge.two_way.then_some(true);
+    std::iter::once(false).chain(backward).map(move |backward| Step { edge, backward })
+}
+
+/// Where the vehicle is.
+struct End {
+    at: [f64; 2],
+    heading: f64,
+}
+
+/// The beginning and the end of an edge, where it has a length.
+fn ends(step: Step<'_>) -> Option<[End; 2]> {
+    let curve = step.curve();
+    let mut pieces = curve.iter().filter(|piece| piece.shape.length() > 0.0);
+    let first = pieces.next()?;
+    let last = pieces.next_back().unwrap_or(first);
+    Some([End { at: first.at, heading: first.heading }, End { at: last.end(), heading: last.heading_at_end() }])
+}
+
+/// Where the discs of a vehicle run on an edge, and their radii \[m\]: for pictures.
+pub fn corridor(rides: &[Ride]) -> Vec<(Vec<Placed>, f64)> {
+    rides.iter().flat_map(|ride| tracks(&ride.agent)).collect()
+}

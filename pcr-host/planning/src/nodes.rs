@@ -1,0 +1,86 @@
+//! What a layout holds, to be listed: what `pcr nodes` prints. The types are the JSON output, field for field in this order.
+
+use pcr_formats::import::{Edge, Id, Layout, Node};
+use serde::Serialize;
+
+/// The nodes and edges of a layout.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Listing<'a> {
+    /// Name of the layout.
+    pub layout: &'a str,
+    /// Floors or maps.
+    pub levels: &'a [String],
+    /// Types of vehicles that the file tells apart (`--vehicle`).
+    pub vehicle_types: &'a [String],
+    /// Vehicles that the file names.
+    pub vehicles: &'a [String],
+    /// Where routes may begin and end.
+    pub nodes: Vec<Place<'a>>,
+    /// The ways between them.
+    pub edges: Vec<Way<'a>>,
+}
+
+/// A node.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place<'a> {
+    /// As in the file, and as `--route` takes it.
+    pub id: &'a Id,
+    /// What `--route` takes as well: a name, or other ids of the same node.
+    pub names: Vec<&'a str>,
+    /// Its floor or map.
+    pub level: &'a str,
+    /// \[m\]
+    pub at: [f64; 2],
+}
+
+/// An edge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Way<'a> {
+    /// As in the file.
+    pub id: &'a Id,
+    /// Node where it begins.
+    pub from: &'a Id,
+    /// Node where it ends.
+    pub to: &'a Id,
+    /// \[m\]
+    pub length: f64,
+    /// Whether it may be travelled backward as well.
+    pub two_way: bool,
+    /// Largest speed \[m/s\], where it is limited.
+    pub speed: Option<f64>,
+}
+
+impl<'a> Listing<'a> {
+    /// What there is in a layout, in the order of the file.
+    pub fn of(layout: &'a Layout) -> Self {
+        let mut nodes: Vec<Place<'a>> = layout.nodes.iter().map(|node| Place::of(node, layout)).collect();
+        for (alias, place) in &layout.aliases {
+            if let Some(node) = nodes.get_mut(*place) {
+                node.names.push(alias);
+            }
+        }
+        Self {
+            layout: &layout.name,
+            levels: &layout.levels,
+            vehicle_types: &layout.vehicle_types,
+            vehicles: &layout.vehicles,
+            nodes,
+            edges: layout.edges.iter().filter_map(|edge| Way::of(edge, layout)).collect(),
+        }
+    }
+}
+
+impl<'a> Place<'a> {
+    fn of(node: &'a Node, layout: &'a Layout) -> Self {
+        let level = layout.levels.get(node.level).map_or("", String::as_str);
+        Self { id: &node.id, names: node.name.as_deref().into_iter().collect(), level, at: node.at }
+    }
+}
+
+impl<'a> Way<'a> {
+    fn of(edge: &'a Edge, layout: &'a Layout) -> Option<Self> {
+        let id = |place: usize| layout.nodes.get(place).map(|node| &node.id);
+        let [from, to] = [id(edge.ends[0])?, id(edge.ends[1])?];
+        Some(Self { id: &edge.id, from, to, length: edge.length(), two_way: edge.two_way, speed: edge.speed })
+    }
+}

@@ -1,0 +1,278 @@
+//! The collision regions of a scenario as plain numbers: what `pcr regions` prints in every format.
+//!
+//! The types are the JSON output, field for field in this order. All numbers are `f64` and hold
+//! the results of the chosen number format exactly, hence rounded outward.
+
+mod outlines;
+mod record;
+
+use crate::bodies::{Bodies, Disced};
+use crate::certificate;
+use crate::fleet::{Format, HostEcm, Refused, build_ecm};
+use pcr_certify::data::Table;
+use pcr_core::{Full, Motion};
+use pcr_formats::footprint::Disc;
+use pcr_formats::scenario::{Agent, Labels, Scenario};
+use record::Work;
+pub use record::{Descriptor, Piece, Region, Slice};
+use serde::Serialize;
+use std::fmt;
+
+/// Regions of one scenario, or why there are none.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// Name of the scenario.
+    pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
+    /// Number format of the computation.
+    pub scalar: &'static str,
+    /// Sorted by `i`, `j`, start time and start length.
+    pub regions: Vec<Region>,
+    /// The same for the discs with their margins, if any agent has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin_regions: Option<Vec<Region>>,
+    /// The covers of the agents that have footprints, if any has.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub footprints: Vec<Cover>,
+    /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Vec<Table>>,
+    /// Why the scenario was refused.
+    pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// The discs that an agent with a footprint is computed with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cover {
+    /// Number of the agent.
+    pub id: u64,
+    /// First and last segment of its path with this outline, counted from 1; none where it is the same on all of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segments: Option<[usize; 2]>,
+    /// No point of a disc is farther than this from the outline \[m\].
+    pub overhang: f64,
+    /// How much larger the discs are in motion at most \[m\]: for turns, changes of speed, and digits that a number format does
+    /// not have.
+    pub growth: f64,
+    /// The discs.
+    pub discs: Vec<Disc>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Request {
+    /// Only the regions of the agent of this number.
+    pub agent: Option<u64>,
+    /// Number of slices a region.
+    pub slices: Option<usize>,
+    /// The tables as they are held.
+    pub certificate: bool,
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// A value does not fit the number format.
+    Refused(Refused),
+    /// The fleet is beyond a limit of the table.
+    Full(Full),
+    /// These two agents have more pieces of regions than the table can number.
+    Overfull([u64; 2]),
+    /// There is no agent of the number asked for; these are there.
+    NoSuchAgent(u64, Vec<u64>),
+    /// The path of this robot, or its disc with the margins of a simulation, is out of range.
+    Robot(u64),
+    /// An obstacle of a simulation, by its centre \[m\], is out of range.
+    Obstacle([f64; 2]),
+    /// There is no agent of the label asked for; these are there.
+    NoSuchLabel(String, Vec<String>),
+    /// Several agents have the label asked for.
+    Ambiguous(String, Vec<u64>),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// Numbers that a message lists.
+        const LISTED: usize = 16;
+        match self {
+            Self::Refused(refused) => refused.fmt(f),
+            Self::Full(full) => full.fmt(f),
+            Self::Overfull([i, j]) => write!(
+                f,
+                "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
+            ),
+            Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),
+            Self::Obstacle([x, y]) => write!(f, "obstacle at {x}, {y}: it is out of range"),
+            Self::NoSuchAgent(asked, there) => {
+                let there = there.iter().map(u64::to_string).collect();
+                Self::NoSuchLabel(asked.to_string(), there).fmt(f)
+            }
+            Self::NoSuchLabel(asked, there) => {
+                write!(f, "no agent {asked}; ")?;
+                let listed = there.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+                match there.len() {
+                    0 => f.write_str("there are none"),
+                    1..=LISTED => write!(f, "there are {listed}"),
+                    all => write!(f, "there are {all}: {listed}, ..."),
+                }
+            }
+            Self::Ambiguous(asked, ids) => {
+                let ids = ids.iter().take(LISTED).map(u64::to_string).collect::<Vec<_>>().join(", ");
+                write!(f, "several agents are called {asked}; say which by its number: {ids}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<Refused> for Failure {
+    fn from(refused: Refused) -> Self {
+        Self::Refused(refused)
+    }
+}
+
+impl From<Full> for Failure {
+    fn from(full: Full) -> Self {
+        Self::Full(full)
+    }
+}
+
+/// The extended collision map of a scenario.
+///
+/// # Errors
+/// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
+pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Failure> {
+    let id = |agent: usize| scenario.agents.get(agent).map(|agent| agent.id);
+    build_ecm(motions).map_err(|full| match full {
+        Full::Pair(agents) => match agents.map(id) {
+            [Some(i), Some(j)] => Failure::Overfull([i, j]),
+            _ => Failure::Full(full),
+        },
+        _ => Failure::Full(full),
+    })
+}
+
+/// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
+///
+/// # Errors
+/// [`Failure`] where a value does not fit the format.
+pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
+    let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
+    let motions = fleet.motions();
+    let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
+    let mut tables = vec![motions.clone()];
+    if motions.iter().any(|motion| motion.margin() > S::ZERO) {
+        tables.push(motions.iter().map(|motion| motion.inflated()).collect());
+    }
+    let certificate = |motions: &Vec<_>| {
+        let agents = certificate::agents(&fleet, motions, &ids);
+        Ok(certificate::table(agents, motions, &table(&discs, motions)?))
+    };
+    tables.iter().map(certificate).collect()
+}
+
+/// The number of the agent that is asked for by its number or, where there is no such number, by its label.
+///
+/// # Errors
+/// [`Failure::NoSuchAgent`] and, for texts, [`Failure::NoSuchLabel`] or, where several have it, [`Failure::Ambiguous`].
+pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, Failure> {
+    let number = asked.parse::<u64>().ok();
+    let ids = || scenario.agents.iter().map(|agent| agent.id);
+    if let Some(id) = number.filter(|number| ids().any(|id| id == *number)) {
+        return Ok(id);
+    }
+    let labelled: Vec<u64> =
+        scenario.agents.iter().filter(|agent| agent.label == asked).map(|agent| agent.id).collect();
+    match (labelled.as_slice(), number) {
+        ([id], _) => Ok(*id),
+        ([], Some(number)) => Err(Failure::NoSuchAgent(number, ids().collect())),
+        ([], None) => Err(Failure::NoSuchLabel(asked.to_owned(), scenario.agents.iter().map(Agent::called).collect())),
+        _ => Err(Failure::Ambiguous(asked.to_owned(), labelled)),
+    }
+}
+
+impl Answer {
+    /// The regions of a scenario, computed in the format `S`.
+    ///
+    /// # Errors
+    /// [`Failure`] where a value does not fit the format, or the agent asked for is not there.
+    pub fn of<S: Format>(scenario: &Scenario, request: Request) -> Result<Self, Failure> {
+        let ids: Vec<u64> = scenario.agents.iter().map(|agent| agent.id).collect();
+        if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
+            return Err(Failure::NoSuchAgent(asked, ids));
+        }
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
+        let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
+        let motions = fleet.motions();
+        let regions = |motions: &[Motion<'_, S>]| -> Result<Vec<Region>, Failure> {
+            let ecm = table(&discs, motions)?;
+            let work = Work { ids: &ids, fleet: &fleet, motions, ecm: &ecm, slices: request.slices };
+            let mut regions: Vec<Region> = if outlined {
+                outlines::regions(&work, &owners, request.agent)
+            } else {
+                let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
+                egos.flat_map(|ego| work.row(ego)).collect()
+            };
+            regions.sort_by(|a, b| {
+                let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
+                (a.i, a.j).cmp(&(b.i, b.j)).then(starts)
+            });
+            Ok(regions)
+        };
+        let inflated: Vec<_> = motions.iter().map(|motion| motion.inflated()).collect();
+        let margins = motions.iter().any(|motion| motion.margin() > S::ZERO);
+        let margin_regions = margins.then(|| regions(&inflated)).transpose()?;
+        Ok(Self {
+            name: scenario.name.clone(),
+            labels: Labels::of(scenario),
+            scalar: S::NAME,
+            regions: regions(&motions)?,
+            margin_regions,
+            footprints: scenario
+                .agents
+                .iter()
+                .enumerate()
+                .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
+                .collect(),
+            warnings: scenario.warnings.clone(),
+            certificate: request.certificate.then(|| table_of::<S>(scenario)).transpose()?,
+            error: None,
+        })
+    }
+
+    /// No regions, and why.
+    pub fn refused<S: Format>(name: &str, error: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            labels: Labels::default(),
+            scalar: S::NAME,
+            regions: Vec::new(),
+            margin_regions: None,
+            footprints: Vec::new(),
+            warnings: Vec::new(),
+            certificate: None,
+            error: Some(error),
+        }
+    }
+}
+
+impl Cover {
+    /// Those of an agent, for each stretch of its path with another outline, and the discs that they became.
+    fn of(agent: &Agent, place: usize, owners: &[Disced]) -> Vec<Self> {
+        let covers = agent.outlines().into_iter().filter_map(|outline| {
+            let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
+            let own = owners.iter().filter(|disc| disc.agent == place && disc.first() == outline.segments[0]);
+            let growth = own.map(|disc| disc.growth).fold(0.0, f64::max);
+            let footprint = outline.footprint?;
+            let (overhang, discs) = (footprint.overhang(), footprint.discs().to_vec());
+            Some(Self { id: agent.id, segments, overhang, growth, discs })
+        });
+        covers.collect()
+    }
+}

@@ -1,0 +1,181 @@
+//! Regions of agents with footprints: the unions of those of their discs.
+//!
+//! The discs of an agent move with one motion, so that the regions of all pairs of discs lie in the same plane of time and
+//! length once their lengths are those of the reference point. A region of the agents is a connected union of them.
+
+use super::record::{Piece, Region, Slice, Work, slice};
+use crate::bodies::Disced;
+use crate::fleet::Format;
+use pcr_core::RegionRef;
+use std::collections::BTreeMap;
+
+/// Times at which two regions of discs are looked at for a common point, beside the first. Those of discs side by side overlap
+/// over most of their extent.
+const LOOKS: u32 = 64;
+
+/// Times and lengths that are one but for rounding \[s\], \[m\]: where one outline gives way to another.
+const NEAR: f64 = 1e-9;
+
+/// A region of two discs.
+struct Part<'a, S: Format> {
+    region: RegionRef<'a, S>,
+    /// Places of the discs.
+    discs: [usize; 2],
+    /// Whether it goes on before and after the motion of the other agent.
+    open: [bool; 2],
+    time: [f64; 2],
+    length: [f64; 2],
+    own: &'a Disced,
+}
+
+impl<S: Format> Part<'_, S> {
+    fn slice(&self, time: f64) -> Vec<[f64; 2]> {
+        if time < self.time[0] - NEAR || time > self.time[1] + NEAR {
+            return Vec::new();
+        }
+        let within = self.region.time();
+        slice(&self.region, S::from_f64(time).clamp(within.lo, within.hi))
+            .l
+            .into_iter()
+            .map(|lengths| self.own.on_agent(lengths))
+            .collect()
+    }
+
+    /// Whether a point of both was found.
+    fn meets(&self, other: &Self) -> bool {
+        let [lo, hi] = common(self.time, other.time);
+        let [from, to] = common(self.length, other.length);
+        // What is nearer than rounding may have parted is one.
+        let (hi, to) = (if hi < lo { hi + NEAR } else { hi }, to + NEAR);
+        let overlap = |time: f64| {
+            let own = self.slice(time);
+            other.slice(time).iter().any(|b| own.iter().any(|a| a[0] <= b[1] + NEAR && b[0] <= a[1] + NEAR))
+        };
+        lo <= hi && from <= to && (0..=LOOKS).any(|k| overlap(lo + (hi - lo) * f64::from(k) / f64::from(LOOKS)))
+    }
+}
+
+fn common(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].max(b[0]), a[1].min(b[1])]
+}
+
+fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// The regions of a table of discs by the agents whose they are, of all or of the agent asked for.
+pub(super) fn regions<S: Format>(work: &Work<'_, S>, discs: &[Disced], asked: Option<u64>) -> Vec<Region> {
+    let mut pairs: BTreeMap<[usize; 2], Vec<Part<'_, S>>> = BTreeMap::new();
+    let id = |agent: usize| work.ids.get(agent).copied().unwrap_or_default();
+    for (place, own) in discs.iter().enumerate().filter(|(_, disc)| asked.is_none_or(|asked| id(disc.agent) == asked)) {
+        for region in work.ecm.row(work.motions, place).expect("the table of the fleet") {
+            let Some(other) = discs.get(region.other()).filter(|other| other.agent != own.agent) else { continue };
+            let (time, length) = (region.time(), region.length());
+            let part = Part {
+                discs: [place, region.other()],
+                open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
+                time: [time.lo.to_f64(), time.hi.to_f64()],
+                length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
+                own,
+                region,
+            };
+            pairs.entry([own.agent, other.agent]).or_default().push(part);
+        }
+    }
+    let unions = pairs.into_iter().flat_map(|([ego, other], parts)| {
+        let components = components(&parts).into_iter();
+        components.map(|parts| union(work, discs, [id(ego), id(other)], &parts)).collect::<Vec<_>>()
+    });
+    unions.collect()
+}
+
+/// The parts, those together that are connected.
+fn components<'p, 'a, S: Format>(parts: &'p [Part<'a, S>]) -> Vec<Vec<&'p Part<'a, S>>> {
+    let mut sorted: Vec<&Part<'a, S>> = parts.iter().collect();
+    sorted.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]));
+    let mut group: Vec<usize> = (0..sorted.len()).collect();
+    fn find(group: &mut [usize], mut part: usize) -> usize {
+        while group[part] != part {
+            group[part] = group[group[part]];
+            part = group[part];
+        }
+        part
+    }
+    // Those that are not over yet.
+    let mut lasting: Vec<usize> = Vec::new();
+    for (place, part) in sorted.iter().enumerate() {
+        lasting.retain(|&other| sorted[other].time[1] + NEAR >= part.time[0]);
+        for &other in &lasting {
+            let (a, b) = (find(&mut group, place), find(&mut group, other));
+            // What is connected already needs no look.
+            if a != b && part.meets(sorted[other]) {
+                group[a.max(b)] = a.min(b);
+            }
+        }
+        lasting.push(place);
+    }
+    let mut components: BTreeMap<usize, Vec<&Part<'a, S>>> = BTreeMap::new();
+    for (place, part) in sorted.iter().enumerate() {
+        components.entry(find(&mut group, place)).or_default().push(part);
+    }
+    components.into_values().collect()
+}
+
+fn union<S: Format>(work: &Work<'_, S>, discs: &[Disced], [i, j]: [u64; 2], parts: &[&Part<'_, S>]) -> Region {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let t = parts.iter().fold(none, |range, part| hull(range, part.time));
+    let l = parts.iter().fold(none, |range, part| hull(range, part.length));
+    let slices = work.slices.map(|slices| {
+        let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
+        times.map(|t| Slice { t, l: merged(parts.iter().flat_map(|part| part.slice(t)).collect()) }).collect()
+    });
+    Region {
+        i,
+        j,
+        t,
+        l,
+        open_start: parts.iter().any(|part| part.open[0]),
+        open_end: parts.iter().any(|part| part.open[1]),
+        pieces: pieces(work, discs, parts),
+        slices,
+    }
+}
+
+/// The union of some intervals.
+fn merged(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut merged: Vec<[f64; 2]> = Vec::new();
+    for next in intervals {
+        match merged.last_mut() {
+            Some(last) if next[0] <= last[1] + NEAR => last[1] = last[1].max(next[1]),
+            _ => merged.push(next),
+        }
+    }
+    merged
+}
+
+/// One for each pair of segments of the agents; the crossings of their discs are none of theirs.
+fn pieces<S: Format>(work: &Work<'_, S>, discs: &[Disced], parts: &[&Part<'_, S>]) -> Vec<Piece> {
+    let mut pieces: BTreeMap<[Option<usize>; 2], Piece> = BTreeMap::new();
+    for part in parts {
+        let [own, other] = part.discs.map(|disc| discs.get(disc));
+        let on = |disc: Option<&Disced>, lengths: [f64; 2]| disc.map_or(lengths, |disc| disc.on_agent(lengths));
+        for piece in work.region(part.discs[0], part.discs[1], &part.region).pieces {
+            let segment = |disc: Option<&Disced>, number: Option<usize>| {
+                disc?.segment(number?.checked_sub(1)?).map(|segment| segment + 1)
+            };
+            let segments = [segment(own, piece.i_segment), segment(other, piece.j_segment)];
+            let piece = Piece {
+                i_segment: segments[0],
+                j_segment: segments[1],
+                i_length: on(own, piece.i_length),
+                j_length: on(other, piece.j_length),
+                ..piece
+            };
+            let there = pieces.entry(segments).or_insert_with(|| piece.clone());
+            there.i_length = hull(there.i_length, piece.i_length);
+            there.j_length = hull(there.j_length, piece.j_length);
+        }
+    }
+    pieces.into_values().collect()
+}

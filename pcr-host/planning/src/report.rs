@@ -1,0 +1,175 @@
+//! Answers as text: JSON and CSV for programs, tables for people.
+
+mod certified;
+pub mod columns;
+mod conflicts;
+pub mod figures;
+mod locks;
+mod nodes;
+mod overview;
+mod plans;
+mod simulation;
+mod table;
+mod traffic;
+
+pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
+pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
+pub use locks::{LOCKS_HEADER, locks_csv, locks_table};
+pub use nodes::{nodes_csv, nodes_table};
+pub use overview::overview;
+pub use plans::{PLAN_CSV_HEADER, plan_csv, plan_table};
+pub use simulation::{simulation_csv, simulation_table};
+pub use table::table;
+pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
+
+use crate::certify::Certified;
+use crate::check::Verdict;
+use crate::locks::Locks;
+use crate::nodes::Listing;
+use crate::plan::Plan;
+use crate::regions::{Answer, Region};
+use crate::simulate::Simulation;
+use crate::traffic::Traffic;
+use pcr_formats::scenario::Labels;
+use serde::Serialize;
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+/// What is printed as JSON: it says what it is, and in which version of its fields.
+pub trait Document: Serialize {
+    /// What it is; its schema is `docs/schema/FORMAT.schema.json`.
+    const FORMAT: &'static str;
+    /// Counts changes that a program which reads it has to know of; new fields are none.
+    const VERSION: u32 = 1;
+}
+
+impl Document for Answer {
+    const FORMAT: &'static str = "pcr-regions";
+}
+impl Document for Verdict {
+    const FORMAT: &'static str = "pcr-conflicts";
+}
+impl Document for Certified {
+    const FORMAT: &'static str = "pcr-certificate";
+}
+impl Document for Plan {
+    const FORMAT: &'static str = "pcr-plan";
+}
+impl Document for Simulation {
+    const FORMAT: &'static str = "pcr-simulation";
+}
+impl Document for Locks {
+    const FORMAT: &'static str = "pcr-locks";
+}
+impl Document for Traffic {
+    const FORMAT: &'static str = "pcr-traffic";
+}
+impl Document for Listing<'_> {
+    const FORMAT: &'static str = "pcr-nodes";
+}
+
+/// One line of JSON.
+///
+/// # Errors
+/// Those of the writer.
+pub fn json<D: Document>(answer: &D, out: &mut impl Write) -> io::Result<()> {
+    #[derive(Serialize)]
+    struct Versioned<'a, D> {
+        format: &'static str,
+        version: u32,
+        #[serde(flatten)]
+        answer: &'a D,
+    }
+    serde_json::to_writer(&mut *out, &Versioned { format: D::FORMAT, version: D::VERSION, answer })?;
+    out.write_all(b"\n")
+}
+
+/// The header line of [`csv`].
+pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin,i_label,j_label\n";
+
+/// A line a region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`. Those of the discs with their
+/// margins come last, with 1 in the column `margin`.
+///
+/// # Errors
+/// Those of the writer.
+pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+    let name = quoted(&answer.name);
+    let contact = answer.regions.iter().map(|region| (region, 0));
+    let margin = answer.margin_regions.iter().flatten().map(|region| (region, 1));
+    for (region, margin) in contact.chain(margin) {
+        let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;
+        let (open_start, open_end) = (u8::from(region.open_start), u8::from(region.open_end));
+        let crossings = crossings(region);
+        let types = types(region);
+        let [a, b] = [i, j].map(|id| quoted(answer.labels.get(*id)));
+        write!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings},{margin}")?;
+        writeln!(out, ",{a},{b}")?;
+    }
+    Ok(())
+}
+
+/// A name as a field of CSV.
+pub fn quoted(name: &str) -> Cow<'_, str> {
+    if name.contains(['"', ',', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", name.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(name)
+    }
+}
+
+/// Number of crossings in a region.
+fn crossings(region: &Region) -> usize {
+    region.pieces.iter().map(|piece| piece.crossings.len()).sum()
+}
+
+/// The types of the pieces with their numbers, in the order in which they first occur.
+fn types(region: &Region) -> String {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for piece in &region.pieces {
+        match counts.iter_mut().find(|(piece_type, _)| *piece_type == piece.piece_type) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((&piece.piece_type, 1)),
+        }
+    }
+    let mut text = String::new();
+    for (piece_type, count) in counts {
+        let plus = if text.is_empty() { "" } else { "+" };
+        let count = if count > 1 { count.to_string() } else { String::new() };
+        // Writing to a `String` does not fail.
+        let _ = write!(text, "{plus}{count}{piece_type}");
+    }
+    text
+}
+
+/// The titles of the columns of two agents: labels are set to the left.
+fn agents(labels: &Labels) -> [&'static str; 2] {
+    if labels.is_empty() { ["i", "j"] } else { ["<i", "<j"] }
+}
+
+/// An agent in a table.
+fn called(labels: &Labels, id: u64) -> String {
+    printable(&labels.called(id))
+}
+
+/// Some agents in a sentence.
+fn all_called(labels: &Labels, ids: &[u64]) -> String {
+    ids.iter().map(|id| called(labels, *id)).collect::<Vec<_>>().join(" and ")
+}
+
+/// The name of a scenario in a heading.
+pub fn heading(name: &str) -> String {
+    if name.is_empty() { "scenario".into() } else { printable(name) }
+}
+
+/// A name on a terminal: whatever would move the cursor or change colours is escaped.
+pub fn printable(name: &str) -> String {
+    name.chars().fold(String::new(), |mut text, c| {
+        if c.is_control() {
+            text.extend(c.escape_default());
+        } else {
+            text.push(c);
+        }
+        text
+    })
+}

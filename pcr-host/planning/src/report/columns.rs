@@ -1,0 +1,58 @@
+//! Text in aligned columns.
+
+use std::io::{self, Write};
+
+/// Rows of cells, each column as wide as its widest cell.
+pub struct Columns {
+    widths: Vec<usize>,
+    left: Vec<bool>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Columns {
+    /// With these titles; a title that begins with `<` is that of a column that is set to the left.
+    pub fn new(titles: &[&str]) -> Self {
+        let left = titles.iter().map(|title| title.starts_with('<')).collect();
+        let mut columns = Self { widths: vec![0; titles.len()], left, rows: Vec::new() };
+        columns.row(titles.iter().map(|title| title.trim_start_matches('<').to_owned()).collect());
+        columns
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: Vec<String>) {
+        for (width, cell) in self.widths.iter_mut().zip(&cells) {
+            *width = (*width).max(cell.chars().count());
+        }
+        self.rows.push(cells);
+    }
+
+    /// Writes them as text.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        for row in &self.rows {
+            let mut line = String::new();
+            for ((cell, &width), &left) in row.iter().zip(&self.widths).zip(&self.left) {
+                line.push_str(&if left { format!("  {cell:<width$}") } else { format!("  {cell:>width$}") });
+            }
+            writeln!(out, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+
+    /// The same as a table of Markdown.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_markdown(&self, out: &mut impl Write) -> io::Result<()> {
+        for (k, row) in self.rows.iter().enumerate() {
+            writeln!(out, "| {} |", row.join(" | "))?;
+            if k == 0 {
+                let rules: Vec<&str> = self.left.iter().map(|&left| if left { "---" } else { "---:" }).collect();
+                writeln!(out, "|{}|", rules.join("|"))?;
+            }
+        }
+        Ok(())
+    }
+}

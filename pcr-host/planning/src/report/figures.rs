@@ -1,0 +1,78 @@
+//! Numbers with three digits and their units.
+
+/// Three digits, and all of a number from 1000 on.
+pub fn digits(value: f64) -> String {
+    let before = value.abs().log10().floor();
+    let decimals = if before.is_finite() { (2.0 - before).clamp(0.0, 3.0) } else { 0.0 };
+    format!("{value:.*}", decimals as usize)
+}
+
+/// A length in metres: to the millimetre, and three digits of what is shorter than that.
+pub fn small(length: f64) -> String {
+    if length == 0.0 {
+        return "0".into();
+    }
+    if length.abs() >= 1e-3 {
+        return format!("{length:.3}");
+    }
+    let text = format!("{length:.2e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// A time that is given in milliseconds.
+pub fn time(ms: f64) -> String {
+    match ms {
+        0.0..1e-3 => format!("{} ns", digits(1e6 * ms)),
+        1e-3..1.0 => format!("{} µs", digits(1e3 * ms)),
+        1.0..1e3 => format!("{} ms", digits(ms)),
+        _ => format!("{} s", digits(1e-3 * ms)),
+    }
+}
+
+/// How many times something.
+pub fn times(ratio: f64) -> String {
+    format!("{} ×", if ratio < 1.0 { format!("{ratio:.2}") } else { digits(ratio) })
+}
+
+/// A number of bytes.
+pub fn bytes(count: usize) -> String {
+    let count = count as f64;
+    match count {
+        0.0..1e3 => format!("{count} B"),
+        1e3..1e6 => format!("{} kB", digits(count / 1e3)),
+        _ => format!("{} MB", digits(count / 1e6)),
+    }
+}
+
+/// An error in seconds.
+pub fn seconds(time: f64) -> String {
+    if time < 1e-3 { format!("{time:.0e} s") } else { format!("{} ms", digits(1e3 * time)) }
+}
+
+/// A share in per cent.
+pub fn share(part: f64) -> String {
+    if part < 1e-4 { format!("{part:.0e}") } else { format!("{} %", digits(100.0 * part)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::small;
+
+    #[test]
+    fn what_is_small_is_not_zero() {
+        let expected = [
+            (0.0, "0"),
+            (6.2e-6, "6.2e-6"),
+            (1.23456e-9, "1.23e-9"),
+            (-4e-4, "-4e-4"),
+            (9.999e-4, "1e-3"),
+            (0.001, "0.001"),
+            (0.5, "0.500"),
+            (12.34567, "12.346"),
+        ];
+        for (length, text) in expected {
+            assert_eq!(small(length), text);
+        }
+    }
+}

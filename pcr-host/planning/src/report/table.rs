@@ -1,0 +1,141 @@
+//! Regions and crossings for reading.
+
+use super::columns::Columns;
+use super::{agents, called, crossings, heading, types};
+use crate::regions::{Answer, Descriptor, Region};
+use pcr_formats::scenario::Labels;
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+/// A crossing with its place in the paper's numbering.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Numbered<'a> {
+    pub(super) i: u64,
+    pub(super) j: u64,
+    /// Counted along the path of `i`, from 1, for each `j`.
+    pub(super) k: usize,
+    pub(super) piece_type: &'a str,
+    pub(super) crossing: &'a Descriptor,
+    /// Index of its region.
+    region: usize,
+}
+
+/// The crossings in the order of Table VII: by ego, then along its path.
+pub(super) fn numbered(regions: &[Region]) -> Vec<Numbered<'_>> {
+    let mut all: Vec<Numbered<'_>> = Vec::new();
+    for (index, region) in regions.iter().enumerate() {
+        for piece in &region.pieces {
+            let crossings = piece.crossings.iter();
+            all.extend(crossings.map(|crossing| Numbered {
+                i: region.i,
+                j: region.j,
+                k: 0,
+                piece_type: &piece.piece_type,
+                crossing,
+                region: index,
+            }));
+        }
+    }
+    all.sort_by(|a, b| a.i.cmp(&b.i).then(a.crossing.length.total_cmp(&b.crossing.length)));
+    let mut counts = HashMap::new();
+    for numbered in &mut all {
+        let count = counts.entry((numbered.i, numbered.j)).or_insert(0);
+        *count += 1;
+        numbered.k = *count;
+    }
+    all
+}
+
+/// An arc of a descriptor: radius and turn.
+pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
+    match (sigma, dir) {
+        (Some(sigma), Some(dir)) => format!("{sigma:.3} {}", if dir > 0 { "ccw" } else { "cw " }),
+        _ => "-".into(),
+    }
+}
+
+/// The crossings in the form of the paper's Table VII, then the regions, then those of the discs with their margins.
+///
+/// # Errors
+/// Those of the writer.
+pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+    let all = numbered(&answer.regions);
+    let name = heading(&answer.name);
+    let (regions, number) = (answer.regions.len(), all.len());
+    writeln!(out, "{name}: {regions} collision regions, {number} crossings ({})", answer.scalar)?;
+    for cover in &answer.footprints {
+        let discs = cover.discs.len();
+        let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
+        let (id, overhang) = (cover.id, cover.overhang + cover.growth);
+        let id = called(&answer.labels, id);
+        writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang:.3} m out of it")?;
+    }
+    if !all.is_empty() {
+        writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
+        let [i, j] = agents(&answer.labels);
+        let mut columns = Columns::new(&[
+            i,
+            j,
+            "k",
+            "<type",
+            "T [s]",
+            "L [m]",
+            "r_hat [m]",
+            "v_j [m/s]",
+            "theta",
+            "arc of i",
+            "arc of j",
+        ]);
+        for Numbered { i, j, k, piece_type, crossing, .. } in &all {
+            let [i, j] = [i, j].map(|id| called(&answer.labels, *id));
+            let mut row = vec![i, j, k.to_string(), (*piece_type).to_owned()];
+            let numbers = [crossing.time, crossing.length, crossing.r_hat, crossing.v, crossing.theta];
+            row.extend(numbers.map(|number| format!("{number:.3}")));
+            row.extend([arc(crossing.sigma_i, crossing.dir_i), arc(crossing.sigma_j, crossing.dir_j)]);
+            columns.row(row);
+        }
+        columns.write(out)?;
+    }
+    extents(&answer.labels, &answer.regions, &all, "Regions", out)?;
+    let margin = answer.margin_regions.as_deref().unwrap_or_default();
+    extents(&answer.labels, margin, &numbered(margin), "Regions of the discs with their margins", out)
+}
+
+/// The extents of regions, with the numbers of their crossings.
+fn extents(
+    labels: &Labels,
+    regions: &[Region],
+    all: &[Numbered<'_>],
+    title: &str,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    if regions.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n{title}: their extents; what is covered at a given time: --format json --slices N")?;
+    let [i, j] = agents(labels);
+    let mut columns = Columns::new(&[i, j, "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
+    let mut held: HashMap<usize, Vec<String>> = HashMap::new();
+    for crossing in all {
+        held.entry(crossing.region).or_default().push(crossing.k.to_string());
+    }
+    for (index, region) in regions.iter().enumerate() {
+        let mut row = [region.i, region.j].map(|id| called(labels, id)).to_vec();
+        row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(|number| format!("{number:.3}")));
+        let open = match (region.open_start, region.open_end) {
+            (false, false) => "-",
+            (true, false) => "start",
+            (false, true) => "end",
+            (true, true) => "both",
+        };
+        let held = held.get(&index).map_or("-".into(), |held| held.join(","));
+        row.extend([open.to_owned(), held, types(region)]);
+        columns.row(row);
+    }
+    columns.write(out)?;
+    let near = regions.iter().filter(|region| crossings(region) == 0).count();
+    if near > 0 {
+        writeln!(out, "k -: the paths come near but do not cross ({near} of {})", regions.len())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! Traffic for reading.
+
+use super::columns::Columns;
+use super::{all_called, heading, printable};
+use crate::traffic::{PassedOver, Traffic};
+use pcr_formats::scenario::Labels;
+use std::io::{self, Write};
+
+/// The header line of [`traffic_csv`].
+pub const TRAFFIC_CSV_HEADER: &str = "id,from,to,length,delay,t_end\n";
+
+/// A line a mission: numbers that read back exactly; no delay and no end without a plan.
+///
+/// # Errors
+/// Those of the writer.
+pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(TRAFFIC_CSV_HEADER.as_bytes())?;
+    for mission in &traffic.missions {
+        let [from, to] = [&mission.from, &mission.to].map(|id| super::quoted(&id.to_string()).into_owned());
+        let [delay, end] = [mission.delay, mission.t_end].map(|time| time.map_or_else(String::new, |t| t.to_string()));
+        writeln!(out, "{},{from},{to},{},{delay},{end}", mission.id, mission.length)?;
+    }
+    Ok(())
+}
+
+/// The missions in columns, and what comes of them.
+///
+/// # Errors
+/// Those of the writer.
+pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
+    let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
+    let name = if layout.is_empty() { "layout" } else { layout };
+    writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
+    if *passed_over == 0 {
+        writeln!(out, "no mission passed over")?;
+    }
+    for PassedOver { why, missions } in &traffic.passed_over_because {
+        writeln!(out, "{missions} missions passed over: {}", printable(why))?;
+    }
+    if placed < asked {
+        let without = asked - placed;
+        writeln!(
+            out,
+            "{without} without a mission: whatever nodes are left, somebody always stands in the way of another"
+        )?;
+    }
+    let mut columns = Columns::new(&["agent", "<from", "<to", "length [m]", "delay [s]", "t_end [s]"]);
+    let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| format!("{time:.3}"));
+    for mission in &traffic.missions {
+        let [from, to] = [&mission.from, &mission.to].map(|id| printable(&id.to_string()));
+        let length = format!("{:.3}", mission.length);
+        columns.row(vec![mission.id.to_string(), from, to, length, time(mission.delay), time(mission.t_end)]);
+    }
+    columns.write(out)?;
+    for unsolved in &traffic.unsolved {
+        let agents = all_called(&Labels::default(), &unsolved.ids);
+        writeln!(out, "agents {agents}: {}; the first is left out", unsolved.why)?;
+    }
+    let Traffic { regions, conflicts_before, conflicts_after, .. } = traffic;
+    writeln!(
+        out,
+        "{regions} regions; {conflicts_before} conflicts if all set off at once, {conflicts_after} as planned"
+    )?;
+    let Traffic { makespan, sum_of_costs, lower_bound, missions_per_hour, .. } = traffic;
+    let costs = format!("sum of costs {sum_of_costs:.3} s (without any wait {lower_bound:.3} s)");
+    writeln!(out, "makespan {makespan:.3} s, {costs}, {missions_per_hour:.1} missions an hour")?;
+    writeln!(out, "{}", traffic.certificate.sentence())
+}

@@ -1,0 +1,180 @@
+//! Closed loop: robots that slip, drift and are held up, seen by a camera that errs, under three controllers.
+//!
+//! ```text
+//! task        robots, missions, obstacles: of a scenario              Task
+//! forage      the paper's experiment (Section 4.2)
+//! tangents    shortest ways around discs
+//! course      the path of a mission, and drives along it
+//! noise       random numbers by seed, robot and purpose
+//! body        a robot as it really is                                 Disturbance
+//! supervisor  plans with collision regions every few seconds:
+//!   observer    where a robot can be
+//!   replan      motions for the rest of the paths
+//!   guard       passing orders in between
+//!   braking     speeds frame by frame
+//! steering    what the reactive controllers have in common:
+//!   potential   artificial potential field
+//!   orca        optimal reciprocal collision avoidance
+//! world       true positions and missions, frame by frame
+//! contact     collisions on the true positions
+//! outcome     what comes out                                          Outcome, Run, Trace
+//! ```
+//!
+//! Time goes in frames of the camera. The same task, seed and settings give the same run, down to the last digit; only the
+//! time that planning takes on the machine differs.
+
+mod body;
+mod braking;
+mod contact;
+mod course;
+pub mod forage;
+mod guard;
+mod noise;
+mod observer;
+mod orca;
+mod outcome;
+mod potential;
+mod replan;
+mod steering;
+mod supervisor;
+mod tangents;
+mod task;
+mod vector;
+mod world;
+
+pub use body::{Disturbance, HELD_EVERY};
+pub use course::{Course, Drive};
+pub use outcome::{Arrival, Collision, Journey, Outcome, Planning, Run, Simulation, Trace};
+pub use task::{Mission, Obstacle, Robot, Task};
+pub use vector::Vector;
+
+use crate::regions::Failure;
+use body::Command;
+use orca::Orca;
+use pcr_core::{Limits, Profile};
+use potential::Potential;
+use serde::Serialize;
+use supervisor::{Errors, Statistics, Supervisor};
+use world::World;
+
+/// Time of a frame \[s\]: the camera of the paper sees 30 a second.
+pub const FRAME: f64 = 1.0 / 30.0;
+
+/// How the robots are controlled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Controller {
+    /// A supervisor with collision regions.
+    Pcr,
+    /// Each robot by itself in an artificial potential field.
+    Potential,
+    /// Each robot by itself, by optimal reciprocal collision avoidance.
+    Orca,
+}
+
+impl Controller {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Pcr, Self::Potential, Self::Orca];
+
+    /// Name in the output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pcr => "pcr",
+            Self::Potential => "potential",
+            Self::Orca => "orca",
+        }
+    }
+}
+
+/// The settings of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The same seed gives the same disturbances.
+    pub seed: u64,
+    /// Time from one plan to the next \[s\].
+    pub replan: f64,
+    /// How the world differs from the plan.
+    pub disturbance: Disturbance,
+}
+
+/// What a controller sees in a frame.
+struct Frame<'a> {
+    /// \[s\]
+    time: f64,
+    /// Positions with the errors of the camera \[m\].
+    seen: &'a [Vector],
+    /// Of the wheels in the last frame \[m/s\].
+    speeds: &'a [f64],
+}
+
+/// A plan of the supervisor, for the replay.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// When it was made \[s\].
+    pub time: f64,
+    /// What is planned for the robots.
+    pub drives: Vec<Drive>,
+    /// Lengths of the courses travelled before \[m\].
+    pub offsets: Vec<f64>,
+    /// With their margins \[m\].
+    pub radii: Vec<f64>,
+}
+
+/// Something that tells robots how to move.
+trait Control {
+    /// A robot that stands gets a path.
+    fn assign(&mut self, robot: usize, course: &Course);
+    /// A command for each robot.
+    fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command>;
+    /// How near its goal a robot has arrived \[m\]; 0 for robots on paths, which know their end.
+    fn reach(&self) -> f64 {
+        0.0
+    }
+    /// The plans that were made.
+    fn take_snapshots(&mut self) -> Vec<Snapshot> {
+        Vec::new()
+    }
+    /// What planning took.
+    fn planning(&self) -> Option<&Statistics> {
+        None
+    }
+}
+
+/// Runs a task under a controller until all missions are done, or until [`time_limit`].
+///
+/// # Errors
+/// [`Failure`] where a value is out of range or the table cannot hold the fleet.
+pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Outcome, Failure> {
+    let Disturbance { noise, drift, .. } = settings.disturbance;
+    let mut control: Box<dyn Control> = match controller {
+        Controller::Pcr => Box::new(Supervisor::new(task, Errors { noise, drift }, settings.replan)?),
+        Controller::Potential => Box::new(Potential::new(task)),
+        Controller::Orca => Box::new(Orca::new(task, noise + drift)),
+    };
+    let mut world = World::new(task, settings);
+    let frames = (time_limit(task) / FRAME).ceil() as usize;
+    for frame in 0..frames {
+        world.missions(frame, control.as_mut());
+        if world.is_done() {
+            break;
+        }
+        world.step(frame, control.as_mut());
+    }
+    let snapshots = control.take_snapshots();
+    Ok(Outcome { run: Run::of(task, controller, &world.trace, control.planning()), trace: world.trace, snapshots })
+}
+
+/// When a run is given up \[s\]: eight times as long as the longest missions of a robot take without anybody else, and a
+/// minute.
+pub fn time_limit(task: &Task) -> f64 {
+    let robot = |robot: &Robot| {
+        let missions = robot.missions.iter();
+        missions.map(|mission| mission.release.max(0.0) + unimpeded(&mission.course, robot.limits)).sum::<f64>()
+    };
+    60.0 + 8.0 * task.robots.iter().map(robot).fold(0.0, f64::max)
+}
+
+/// Time for a course from rest to rest with nobody in the way \[s\].
+fn unimpeded(course: &Course, limits: Limits<f64>) -> f64 {
+    Profile::rest_to_rest(course.length(), limits).map_or(0.0, |profile| profile.as_profile().duration())
+}

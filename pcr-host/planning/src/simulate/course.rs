@@ -1,0 +1,168 @@
+//! The path of a mission, and how an agent moves along the rest of it.
+
+use crate::fleet::speed;
+use pcr_core::{Curve, Invalid, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};
+use pcr_formats::scenario::PathSegment;
+
+/// A path of lines and arcs.
+#[derive(Clone, Debug)]
+pub struct Course {
+    segments: Vec<Segment<f64>>,
+}
+
+impl Course {
+    /// From a pose along these segments.
+    ///
+    /// # Errors
+    /// [`Invalid`] for lengths or coordinates that are out of range.
+    pub fn new(start: Pose<f64>, path: &[PathSegment]) -> Result<Self, Invalid> {
+        let mut course = Self::standing(start)?;
+        for segment in path {
+            match *segment {
+                PathSegment::Line { length } => course.push(Curve::Line, length)?,
+                PathSegment::Arc { radius, sweep } => {
+                    let turn = if sweep > 0.0 { Turn::Left } else { Turn::Right };
+                    course.push(Curve::Arc { radius, turn }, radius * sweep.abs())?;
+                }
+            }
+        }
+        course.path()?;
+        Ok(course)
+    }
+
+    /// A place to stand.
+    ///
+    /// # Errors
+    /// As [`Course::new`].
+    pub fn standing(pose: Pose<f64>) -> Result<Self, Invalid> {
+        Ok(Self { segments: vec![Segment::standing(pose)?] })
+    }
+
+    /// To stand at its beginning.
+    pub(super) fn beginning(&self) -> Self {
+        // What a segment begins with is a pose in range.
+        let pose = self.path().map(|path| path.pose_at(0.0));
+        Self { segments: pose.and_then(Segment::standing).into_iter().collect() }
+    }
+
+    /// The path of a motion.
+    pub fn of(motion: &Motion<'_, f64>) -> Self {
+        Self { segments: motion.path().segments().to_vec() }
+    }
+
+    fn push(&mut self, curve: Curve<f64>, length: f64) -> Result<(), Invalid> {
+        let [.., last] = self.segments.as_slice() else {
+            return Ok(());
+        };
+        let next = match curve {
+            Curve::Line => last.then_line(length)?,
+            Curve::Arc { radius, turn } => last.then_arc(radius, turn, length)?,
+        };
+        if next.length() > 0.0 {
+            if last.length() == 0.0 {
+                self.segments.clear();
+            }
+            self.segments.push(next);
+        }
+        Ok(())
+    }
+
+    /// The lines and arcs.
+    ///
+    /// # Errors
+    /// [`Invalid`] where they do not make a path.
+    pub fn path(&self) -> Result<PathRef<'_, f64>, Invalid> {
+        PathRef::new(&self.segments)
+    }
+
+    /// \[m\]
+    pub fn length(&self) -> f64 {
+        self.segments.iter().map(Segment::length).sum()
+    }
+
+    /// Position at a travelled length \[m\].
+    pub fn point_at(&self, length: f64) -> [f64; 2] {
+        let point = self.path().map(|path| path.point_at(length)).unwrap_or_default();
+        [point.x, point.y]
+    }
+
+    /// The part behind a travelled length \[m\].
+    ///
+    /// # Errors
+    /// As [`Course::new`].
+    pub fn from(&self, length: f64) -> Result<Self, Invalid> {
+        let mut rest = Self::standing(self.path()?.pose_at(length))?;
+        for segment in &self.segments {
+            let left = segment.from() + segment.length() - length;
+            if left > 0.0 {
+                rest.push(segment.curve(), left.min(segment.length()))?;
+            }
+        }
+        Ok(rest)
+    }
+
+    /// The least radius of an arc \[m\]; infinite without any.
+    pub(super) fn least_radius(&self) -> f64 {
+        let radius = |segment: &Segment<f64>| match segment.curve() {
+            Curve::Line => f64::INFINITY,
+            Curve::Arc { radius, .. } => radius,
+        };
+        self.segments.iter().map(radius).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A course and when an agent is where on it.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    course: Course,
+    phases: Vec<Phase<f64>>,
+    start: f64,
+}
+
+impl Drive {
+    /// From a speed \[m/s\] with these pieces (duration \[s\], acceleration \[m/s²\]); `None` where they do not travel the
+    /// length of the course.
+    pub(super) fn new(course: Course, speed: f64, pieces: &[(f64, f64)], start: f64) -> Option<Self> {
+        let phases = speed::phases(speed, pieces, course.length()).ok()?;
+        let drive = Self { course, phases, start };
+        drive.motion(1.0).is_some().then_some(drive)
+    }
+
+    pub(super) fn standing(course: Course, start: f64) -> Option<Self> {
+        let drive = Self { course, phases: Vec::new(), start };
+        drive.motion(1.0).is_some().then_some(drive)
+    }
+
+    /// At 1 m/s from time 0 on: times are lengths.
+    pub(super) fn at_unit_speed(course: Course) -> Option<Self> {
+        let length = course.length();
+        let start = 0.0;
+        if length > 0.0 { Self::new(course, 1.0, &[(length, 0.0)], start) } else { Self::standing(course, start) }
+    }
+
+    /// As the motion of a disc of this radius \[m\].
+    pub fn motion(&self, radius: f64) -> Option<Motion<'_, f64>> {
+        Motion::new(self.course.path().ok()?, ProfileRef::new(&self.phases).ok()?, radius, self.start).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_core::{Point, Radians};
+
+    #[test]
+    fn the_rest_of_a_course_is_where_the_course_is() {
+        let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
+        let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
+        let course = Course::new(pose, &[PathSegment::Line { length: 1.0 }, arc, arc]).expect("a course");
+        for from in [0.0, 0.4, 1.0, 1.2, 1.5, 1.9, 2.0] {
+            let rest = course.from(from).expect("its rest");
+            assert!((rest.length() - (course.length() - from)).abs() < 1e-12);
+            for further in [0.0, 0.05, 0.3] {
+                let ([x, y], [u, v]) = (rest.point_at(further), course.point_at(from + further));
+                assert!((x - u).hypot(y - v) < 1e-12, "{from} {further}");
+            }
+        }
+    }
+}

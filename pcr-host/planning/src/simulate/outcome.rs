@@ -1,0 +1,238 @@
+//! What comes out of a run: a record of the true positions, and the figures that follow from it.
+
+use super::contact::{contacts, separation};
+use super::supervisor::Statistics;
+use super::task::Task;
+use super::vector::{Vector, norm, sub};
+use super::{Controller, Disturbance, FRAME, Settings, Snapshot};
+use pcr_formats::scenario::Labels;
+use serde::Serialize;
+
+/// Below this part of its top speed a robot waits.
+const WAITS: f64 = 0.1;
+
+/// A run with its record.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The figures.
+    pub run: Run,
+    /// What they follow from.
+    pub trace: Trace,
+    /// The plans of the supervisor.
+    pub snapshots: Vec<Snapshot>,
+}
+
+/// Where everything was.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// True positions \[m\] of each robot, at each frame; in between it moves uniformly.
+    pub positions: Vec<Vec<Vector>>,
+    /// Lengths along the paths of their missions \[m\] likewise; 0 for robots that are not bound to a path.
+    pub travelled: Vec<Vec<f64>>,
+    /// The missions, by their begin.
+    pub journeys: Vec<Journey>,
+}
+
+/// A mission as it went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Journey {
+    /// Place of the robot in the task.
+    pub robot: usize,
+    /// Frame in which the robot got its mission.
+    pub begin: usize,
+    /// Frame in which it had arrived, if it ever did.
+    pub end: Option<usize>,
+    /// Where to \[m\].
+    pub goal: Vector,
+    /// How long it takes with nobody in the way \[s\].
+    pub unimpeded: f64,
+}
+
+/// The runs of a task: the JSON output, field for field in this order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Simulation {
+    /// Name of the scenario.
+    pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
+    /// Seed of the disturbances.
+    pub seed: u64,
+    /// Time from one plan to the next \[s\].
+    pub replan: f64,
+    /// Largest error of an observed position \[m\].
+    pub noise: f64,
+    /// How far a robot may be off its path \[m\].
+    pub drift: f64,
+    /// Largest part of its way that a robot loses to slip.
+    pub slip: f64,
+    /// Longest time for which a robot is held up \[s\].
+    pub delay: f64,
+    /// One for each controller.
+    pub runs: Vec<Run>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+impl Simulation {
+    /// Of these runs.
+    pub fn of(task: &Task, settings: Settings, outcomes: &[Outcome]) -> Self {
+        let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
+        let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
+        let (name, labels, warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
+        Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
+    }
+
+    /// Whether under [`Controller::Pcr`], if it is there, all missions were done without a collision.
+    pub fn is_as_promised(&self) -> bool {
+        let failed = |run: &Run| run.not_done > 0 || !run.collisions.is_empty();
+        !self.runs.iter().any(|run| run.controller == Controller::Pcr && failed(run))
+    }
+}
+
+/// The figures of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// How the robots were controlled.
+    pub controller: Controller,
+    /// Missions that were done.
+    pub done: usize,
+    /// Missions that were not.
+    pub not_done: usize,
+    /// Until the end of the last mission, or until the run was given up \[s\].
+    pub duration: f64,
+    /// Mean time of a mission that was done \[s\].
+    pub travel: f64,
+    /// Mean of what these missions would have taken with nobody in the way \[s\].
+    pub unimpeded: f64,
+    /// Mean time of such a mission in which the robot moved at less than a tenth of its top speed \[s\].
+    pub waiting: f64,
+    /// The missions, by their begin.
+    pub missions: Vec<Arrival>,
+    /// Discs in contact.
+    pub collisions: Vec<Collision>,
+    /// Least distance between two discs \[m\]; negative where they overlap.
+    pub clearance: Option<f64>,
+    /// What planning took; none without a supervisor.
+    pub planning: Option<Planning>,
+}
+
+/// A mission.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Arrival {
+    /// Number of the robot.
+    pub id: u64,
+    /// When it got the mission \[s\].
+    pub begin: f64,
+    /// When it arrived \[s\].
+    pub end: Option<f64>,
+    /// How long it takes with nobody in the way \[s\].
+    pub unimpeded: f64,
+    /// Time in which the robot moved at less than a tenth of its top speed \[s\].
+    pub waiting: f64,
+}
+
+/// Two discs in contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Collision {
+    /// Number of a robot.
+    pub i: u64,
+    /// Number of another robot or obstacle; none for an obstacle without a number.
+    pub j: Option<u64>,
+    /// From when to when, in whole frames \[s\].
+    pub t: [f64; 2],
+    /// Largest overlap \[m\].
+    pub depth: f64,
+}
+
+/// What planning took. The times are those of the machine and differ from run to run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Planning {
+    /// How often it was done.
+    pub count: usize,
+    /// How often no plan was found, and the old passing orders stayed.
+    pub kept: usize,
+    /// How often a robot could not brake in time for its passing order: 0, or the supervisor is wrong.
+    pub breaches: usize,
+    /// Mean time \[ms\].
+    pub mean_ms: f64,
+    /// Longest time \[ms\].
+    pub longest_ms: f64,
+}
+
+impl Run {
+    pub(super) fn of(task: &Task, controller: Controller, trace: &Trace, planning: Option<&Statistics>) -> Self {
+        let missions: Vec<Arrival> =
+            trace.journeys.iter().filter_map(|journey| arrival(task, trace, journey)).collect();
+        let all: usize = task.robots.iter().map(|robot| robot.missions.len()).sum();
+        let done: Vec<(&Arrival, f64)> =
+            missions.iter().filter_map(|mission| Some((mission, mission.end? - mission.begin))).collect();
+        let mean = |value: &dyn Fn(&(&Arrival, f64)) -> f64| {
+            if done.is_empty() { 0.0 } else { done.iter().map(value).sum::<f64>() / done.len() as f64 }
+        };
+        let given_up = trace.positions.first().map_or(0.0, |track| (track.len() - 1) as f64 * FRAME);
+        let (collisions, clearance) = collisions(task, trace);
+        Self {
+            controller,
+            done: done.len(),
+            not_done: all - done.len(),
+            duration: given_up,
+            travel: mean(&|(_, travel)| *travel),
+            unimpeded: mean(&|(mission, _)| mission.unimpeded),
+            waiting: mean(&|(mission, _)| mission.waiting),
+            collisions,
+            clearance,
+            planning: planning.map(Planning::of),
+            missions,
+        }
+    }
+}
+
+impl Planning {
+    fn of(statistics: &Statistics) -> Self {
+        let Statistics { times, kept, breaches } = statistics;
+        let count = times.len();
+        let mean_ms = times.iter().sum::<f64>() / count.max(1) as f64 * 1e3;
+        let longest_ms = times.iter().copied().fold(0.0, f64::max) * 1e3;
+        Self { count, kept: *kept, breaches: *breaches, mean_ms, longest_ms }
+    }
+}
+
+fn arrival(task: &Task, trace: &Trace, journey: &Journey) -> Option<Arrival> {
+    let robot = task.robots.get(journey.robot)?;
+    let track = trace.positions.get(journey.robot)?;
+    let part = track.get(journey.begin..=journey.end.unwrap_or(track.len() - 1))?;
+    let slow = WAITS * robot.limits.speed * FRAME;
+    let waits = part.windows(2).filter(|pair| norm(sub(pair[1], pair[0])) < slow).count();
+    Some(Arrival {
+        id: robot.id,
+        begin: journey.begin as f64 * FRAME,
+        end: journey.end.map(|end| end as f64 * FRAME),
+        unimpeded: journey.unimpeded,
+        waiting: waits as f64 * FRAME,
+    })
+}
+
+/// All contacts of robots with one another and with obstacles, by their begin; and the least distance.
+fn collisions(task: &Task, trace: &Trace) -> (Vec<Collision>, Option<f64>) {
+    let robots: Vec<_> = task.robots.iter().zip(&trace.positions).collect();
+    let (mut collisions, mut clearance) = (Vec::new(), None::<f64>);
+    let mut look = |i: u64, j: Option<u64>, tracks: [&[Vector]; 2], radius: f64| {
+        let apart = separation(tracks[0], tracks[1]) - radius;
+        clearance = Some(clearance.map_or(apart, |least| least.min(apart)));
+        collisions.extend(contacts(tracks[0], tracks[1], radius).into_iter().map(|contact| {
+            let t = contact.frames.map(|frame| frame as f64 * FRAME);
+            Collision { i, j, t, depth: contact.depth }
+        }));
+    };
+    for (place, (robot, track)) in robots.iter().enumerate() {
+        for (other, other_track) in robots.iter().skip(place + 1) {
+            look(robot.id, Some(other.id), [track, other_track], robot.radius + other.radius);
+        }
+        for obstacle in &task.obstacles {
+            look(robot.id, obstacle.id, [track, &vec![obstacle.centre; track.len()]], robot.radius + obstacle.radius);
+        }
+    }
+    collisions.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
+    (collisions, clearance.filter(|clearance| clearance.is_finite()))
+}

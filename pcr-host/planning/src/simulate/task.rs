@@ -1,0 +1,109 @@
+//! What the robots have to do, and among what.
+
+use super::course::Course;
+use super::vector::Vector;
+use crate::fleet::Fleet;
+use crate::regions::Failure;
+use pcr_core::Limits;
+use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
+
+/// A run: robots, what stands in their way, and their missions.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// Name of the scenario.
+    pub name: String,
+    /// What its agents are called.
+    pub labels: Labels,
+    /// The robots.
+    pub robots: Vec<Robot>,
+    /// What does not move.
+    pub obstacles: Vec<Obstacle>,
+    /// What was read otherwise than it was written, or is left aside here.
+    pub warnings: Vec<String>,
+}
+
+/// A robot and its missions.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// Number.
+    pub id: u64,
+    /// Radius of the disc \[m\].
+    pub radius: f64,
+    /// Margin to be kept around it \[m\].
+    pub margin: f64,
+    /// Largest speed \[m/s\] and acceleration \[m/s²\].
+    pub limits: Limits<f64>,
+    /// One after the other; each begins where the one before it ends.
+    pub missions: Vec<Mission>,
+}
+
+/// A path to be travelled.
+#[derive(Clone, Debug)]
+pub struct Mission {
+    /// Not before this time \[s\].
+    pub release: f64,
+    /// The way.
+    pub course: Course,
+}
+
+/// A disc that stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Obstacle {
+    /// Number, where the scenario gives one.
+    pub id: Option<u64>,
+    /// \[m\]
+    pub centre: Vector,
+    /// \[m\]
+    pub radius: f64,
+}
+
+impl Robot {
+    /// Where it stands at the beginning.
+    pub fn home(&self) -> Vector {
+        self.missions.first().map_or([0.0; 2], |first| first.course.point_at(0.0))
+    }
+}
+
+impl Task {
+    /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
+    /// around all of them, and turns in place take no time.
+    ///
+    /// # Errors
+    /// [`Failure::Refused`] where a value is out of range.
+    pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
+        let fleet = Fleet::<f64>::new(scenario)?;
+        let (mut robots, mut obstacles) = (Vec::new(), Vec::new());
+        for (agent, motion) in scenario.agents.iter().zip(fleet.motions()) {
+            let course = Course::of(&motion);
+            if course.length() > 0.0 {
+                let missions = vec![Mission { release: agent.t_start, course }];
+                let limits = limits(&agent.motion);
+                robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
+            } else {
+                let centre = course.point_at(0.0);
+                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
+            }
+        }
+        let mut warnings = scenario.warnings.clone();
+        for agent in scenario.agents.iter().filter(|agent| agent.turns_in_place()) {
+            warnings.push(format!("agent {}: its turns in place take no time in a simulation", agent.id));
+        }
+        Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles, warnings })
+    }
+}
+
+/// Those of the scenario; of a profile, the most it makes use of, and where it never accelerates, a second to top speed.
+fn limits(motion: &MotionSpec) -> Limits<f64> {
+    match motion {
+        MotionSpec::RestToRest { v_max, a_max } => Limits { speed: *v_max, acceleration: *a_max },
+        MotionSpec::Profile { v0, pieces } => {
+            let (mut now, mut speed, mut acceleration) = (*v0, *v0, 0.0_f64);
+            for (duration, accel) in pieces {
+                now += accel * duration;
+                speed = speed.max(now);
+                acceleration = acceleration.max(accel.abs());
+            }
+            Limits { speed, acceleration: if acceleration > 0.0 { acceleration } else { speed } }
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Random traffic on a layout: what `pcr traffic` prints and draws.
+//!
+//! Every agent has one mission, the shortest way between two random nodes. All would set off at once; the plan delays them.
+//! Agents for which there is no delay, because they meet others whenever they start, are left out and counted.
+
+mod crowd;
+mod missions;
+mod schedule;
+
+use crate::certify::Proof;
+use crate::check::Verdict;
+use crate::plan::{Forbidden, Schedule, Unsolved};
+use crate::regions::{self, Answer, Failure};
+use missions::{Drawn, Mission};
+use pcr_formats::import::{Id, Imported};
+use pcr_formats::scenario::{Agent, Scenario};
+use serde::Serialize;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Agents that shall have missions.
+    pub agents: usize,
+    /// Another number gives other missions.
+    pub seed: u64,
+}
+
+/// Missions, and how well they can be carried out. The JSON output, field for field in this order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Traffic {
+    /// Name of the layout.
+    pub layout: String,
+    /// From which the missions follow.
+    pub seed: u64,
+    /// Radius of the discs, without their margin and the deviation of their paths \[m\].
+    pub radius: f64,
+    /// Agents asked for.
+    pub asked: usize,
+    /// Agents that have a mission; for the others there is no room to start or to end.
+    pub placed: usize,
+    /// Missions that were drawn and passed over, in all draws.
+    pub passed_over: usize,
+    /// Why, and how many each.
+    pub passed_over_because: Vec<PassedOver>,
+    /// Agents that have a mission and a plan.
+    pub planned: usize,
+    /// Collision regions of the agents that have a mission, both directions of every pair.
+    pub regions: usize,
+    /// Conflicts of the agents that have a plan if all set off at once.
+    pub conflicts_before: usize,
+    /// Conflicts with the plan.
+    pub conflicts_after: usize,
+    /// What an independent checker has proved of the plan.
+    pub certificate: Proof,
+    /// From the start of all to the last arrival \[s\].
+    pub makespan: f64,
+    /// Sum over the agents of the time until they arrive \[s\].
+    pub sum_of_costs: f64,
+    /// The sum of costs if nobody had to wait \[s\].
+    pub lower_bound: f64,
+    /// Missions carried out in the makespan, an hour.
+    pub missions_per_hour: f64,
+    /// The missions, by the number of their agent.
+    pub missions: Vec<Travel>,
+    /// Why agents have no plan, the first of each `ids`.
+    pub unsolved: Vec<Unsolved>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// Why missions were passed over.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassedOver {
+    /// In words.
+    pub why: String,
+    /// How many.
+    pub missions: usize,
+}
+
+/// A mission and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Travel {
+    /// Number of the agent.
+    pub id: u64,
+    /// Node where it begins, as in the layout.
+    pub from: Id,
+    /// Node where it ends.
+    pub to: Id,
+    /// Length of the way \[m\].
+    pub length: f64,
+    /// How long it waits before it starts \[s\]; none without a plan.
+    pub delay: Option<f64>,
+    /// When it arrives \[s\]; none without a plan.
+    pub t_end: Option<f64>,
+}
+
+impl Traffic {
+    /// The traffic on a layout, the scenario of all missions with all agents setting off at once, and that of the plan.
+    ///
+    /// # Errors
+    /// [`Failure`] where the missions cannot be computed with.
+    pub fn of(imported: &Imported, request: Request) -> Result<(Self, [Scenario; 2]), Failure> {
+        let Drawn { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
+        let layout = &imported.layout;
+        let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
+        let mut missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
+        if layout.levels.len() > 1 {
+            let level = &layout.levels[layout.largest_level()];
+            let problem = format!("levels: missions are drawn on {level} only, of {}", layout.levels.len());
+            missions.warnings.push(problem);
+        }
+        let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
+        let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
+        let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
+        let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
+        let at_once = Scenario { agents: kept.clone().map(|(agent, _)| agent.clone()).collect(), ..missions.clone() };
+        let later = kept.map(|(agent, delay)| Agent { t_start: delay, ..agent.clone() });
+        let plan = Scenario { agents: later.collect(), ..missions.clone() };
+        let conflicts = |scenario: &Scenario| Verdict::of::<f64>(scenario, false).map(|found| found.conflicts.len());
+        let travels: Vec<Travel> =
+            drawn.iter().zip(&delays).map(|(mission, delay)| Travel::of(mission, imported, *delay)).collect();
+        let ends = || travels.iter().filter_map(|travel| travel.t_end);
+        let makespan = ends().fold(0.0, f64::max);
+        let traffic = Self {
+            layout: layout.name.clone(),
+            seed: request.seed,
+            radius: imported.vehicle.radius,
+            asked: request.agents,
+            placed: drawn.len(),
+            passed_over: passed_over.values().sum(),
+            passed_over_because: passed_over.into_iter().map(|(why, missions)| PassedOver { why, missions }).collect(),
+            planned: plan.agents.len(),
+            regions,
+            conflicts_before: conflicts(&at_once)?,
+            conflicts_after: conflicts(&plan)?,
+            certificate: Proof::of::<f64>(&plan)?,
+            makespan,
+            sum_of_costs: ends().sum(),
+            lower_bound: at_once.agents.iter().map(Agent::duration).sum(),
+            missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
+            missions: travels,
+            unsolved: out.iter().map(|out| Unsolved::of(&missions, [id(out.agent), id(out.by)], out.always)).collect(),
+            warnings: missions.warnings.clone(),
+        };
+        Ok((traffic, [missions, plan]))
+    }
+}
+
+/// Start delays for as many agents of a scenario as can have one, of 2000 orders that are tried.
+pub fn schedule(scenario: &Scenario, seed: u64) -> Result<Schedule, Failure> {
+    let mut longest_first: Vec<usize> = (0..scenario.agents.len()).collect();
+    let duration = |agent: usize| scenario.agents[agent].duration();
+    longest_first.sort_by(|&a, &b| duration(b).total_cmp(&duration(a)));
+    Ok(schedule::best(&Forbidden::of(scenario)?, longest_first, seed))
+}
+
+impl Travel {
+    fn of(mission: &Mission, imported: &Imported, delay: Option<f64>) -> Self {
+        let node = |place: usize| {
+            let node = imported.layout.nodes.get(place);
+            node.map_or_else(|| Id::Text(String::new()), |node| node.id.clone())
+        };
+        Self {
+            id: mission.agent.id,
+            from: node(mission.ends[0]),
+            to: node(mission.ends[1]),
+            length: mission.agent.length(),
+            delay,
+            t_end: delay.map(|delay| delay + mission.agent.duration()),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Random missions: pairs of nodes with a way between them, that some order of starts lets through.
+
+use super::crowd::Crowd;
+use crate::random::Random;
+use pcr_formats::import::{Imported, mission};
+use pcr_formats::scenario::Agent;
+use pcr_formats::scenario::Placed;
+use std::collections::BTreeMap;
+
+/// How many times the sum of their radii and margins agents keep that wait at their starts or stand at their ends: more than
+/// 1 by what plans and checks may take for a contact.
+const CLEAR: f64 = 1.0 + 1e-6;
+
+/// A way from node to node.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mission {
+    /// Places of its nodes in the layout.
+    pub(super) ends: [usize; 2],
+    /// Who travels it, from the time 0.
+    pub(super) agent: Agent,
+}
+
+impl Mission {
+    /// Where the agent stands before and after \[m\].
+    fn stands(&self) -> [[f64; 2]; 2] {
+        let Agent { start: [x, y, heading], ref path, .. } = self.agent;
+        let end = path.iter().fold((([x, y]), heading), |(at, heading), &shape| {
+            let placed = Placed { at, heading, shape };
+            (placed.end(), placed.heading_at_end())
+        });
+        [[x, y], end.0]
+    }
+
+    /// Whether its agent and another one can stand at their starts at the same time, and at their ends.
+    fn is_clear_of(&self, other: &Self) -> bool {
+        let reach = [self, other].map(|mission| mission.agent.reach() + mission.agent.margin).iter().sum::<f64>();
+        let pairs = self.stands().into_iter().zip(other.stands());
+        pairs.into_iter().all(|(own, other)| distance(own, other) > reach * CLEAR)
+    }
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Missions that were drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Drawn {
+    pub(super) missions: Vec<Mission>,
+    /// How many were passed over, by the reason.
+    pub(super) passed_over: BTreeMap<String, usize>,
+}
+
+/// Draws at most, where not all agents have a mission in the first one.
+const DRAWS: usize = 4;
+
+/// Missions for up to `count` agents on the level that has most nodes: each from a random node to another one, so that
+/// no two agents overlap at their starts or at their ends, and there is an order in which all can start. Of some draws the first that has a
+/// mission for everybody, else the one that has most.
+pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Drawn {
+    let mut seeds = Random(seed);
+    let mut best = attempt(imported, count, Random(seed));
+    for _ in 1..DRAWS {
+        if best.missions.len() == count {
+            break;
+        }
+        let next = attempt(imported, count, Random(seeds.bits()));
+        let mut passed_over = std::mem::take(&mut best.passed_over);
+        next.passed_over.iter().for_each(|(why, count)| *passed_over.entry(why.clone()).or_default() += count);
+        let more = next.missions.len() > best.missions.len();
+        best = Drawn { passed_over, ..if more { next } else { best } };
+    }
+    best
+}
+
+/// One draw, an agent after the other: it ends where there is no pair of nodes with a way between them for the next one.
+fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
+    let Imported { layout, vehicle } = imported;
+    let level = layout.largest_level();
+    let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
+    let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
+    let mut drawn = Drawn::default();
+    let mut crowd = Crowd::default();
+    for id in (1..).take(count) {
+        let missions = &drawn.missions;
+        let free = &|end: usize, node: usize| {
+            let apart = |mission: &Mission| distance(layout.nodes[mission.ends[end]].at, layout.nodes[node].at) > reach;
+            missions.iter().all(apart)
+        };
+        let (starts, ends) = (random.shuffled(&there), random.shuffled(&there));
+        let pairs = starts.iter().filter(|&&from| free(0, from)).flat_map(|&from| {
+            let ends = ends.iter().filter(move |&&to| to != from && free(1, to));
+            ends.map(move |&to| [from, to])
+        });
+        let clear =
+            |drawn: &Mission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
+        let mut passed_over = Vec::new();
+        let found = pairs.into_iter().find_map(|ends| match mission(imported, id, ends) {
+            // Nodes without a way between them, or too near others, are no mission that could be passed over.
+            Ok(agent) => {
+                let mission = Mission { ends, agent: agent? };
+                let added = if clear(&mission) { crowd.add(&mission.agent) } else { return None };
+                added.map(|()| mission).map_err(|why| passed_over.push(why)).ok()
+            }
+            Err(error) => {
+                passed_over.push(format!("the way is no path: {error}"));
+                None
+            }
+        });
+        passed_over.into_iter().for_each(|why| *drawn.passed_over.entry(why).or_default() += 1);
+        let Some(mission) = found else { break };
+        drawn.missions.push(mission);
+    }
+    drawn
+}
