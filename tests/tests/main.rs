@@ -12,6 +12,7 @@ mod constructors;
 mod degenerate;
 mod delays;
 mod earned;
+mod exclusions;
 mod firmware;
 mod footprints;
 mod formats;

@@ -12,8 +12,8 @@ use std::collections::HashMap;
 const PAGE: Page = Page {
     kind: "locks",
     body: include_str!("locks/locks.html"),
-    style: include_str!("locks/locks.css"),
-    script: include_str!("locks/locks.js"),
+    style: concat!(include_str!("locks/locks.css"), include_str!("locks/layers.css")),
+    script: concat!(include_str!("locks/locks.js"), include_str!("locks/layers.js")),
 };
 
 /// The page.

@@ -164,7 +164,7 @@ pub(crate) fn write(
     let mut edits = Edits::default();
     let root = document.root_element();
     if let Some(key) = &settings.envelopes {
-        write_envelopes(root, offset, imported, key, &mut edits)?;
+        notes.groups = write_envelopes(root, offset, imported, key, &mut edits)?;
     } else {
         write_blocks(text, root, offset, layout, locks, notes, &mut edits);
     }
@@ -256,7 +256,7 @@ fn write_envelopes(
     imported: &Imported,
     key: &str,
     edits: &mut Edits,
-) -> Result<(), ImportError> {
+) -> Result<usize, ImportError> {
     let (layout, vehicle) = (&imported.layout, &imported.vehicle);
     if elements(root, "vehicle").next().is_none() {
         return Err(ImportError::new("envelopes: there is no vehicle in the model that could have their key"));
@@ -270,8 +270,10 @@ fn write_envelopes(
             (edge.id.to_string(), (curve, edge.deviation))
         }))
         .collect();
+    let mut count = 0;
     for element in root.children().filter(|child| child.has_tag_name("point") || child.has_tag_name("path")) {
         let Some((curve, deviation)) = curves.get(name(element)) else { continue };
+        count += 1;
         let mut outline = millimetres(&around(curve, radius + deviation + ROUNDING));
         outline.extend(outline.first().copied());
         let vertices = outline.iter().map(|[x, y]| format!("<vertex x=\"{x}\" y=\"{y}\"/>")).collect::<String>();
@@ -309,7 +311,7 @@ fn write_envelopes(
             }
         }
     }
-    Ok(())
+    Ok(count)
 }
 
 /// The hull of corners at whole millimetres, each less than a millimetre from where it was.
