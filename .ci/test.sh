@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages schemas instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -72,6 +72,13 @@ pages() {
   # As the tests build it.
   cargo build --workspace --profile checked --features pcr-tests/peers --locked
   pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
+}
+
+web() {
+  step "the module for WebAssembly, in node and in a browser"
+  browser
+  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
 }
 
 instructions() {
@@ -189,7 +196,7 @@ fuzz() {
 }
 
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests pages schemas instructions fuzz proofs}; do
+for part in ${*:-style docs features no_std c firmware tests pages web schemas instructions fuzz proofs}; do
   "$part"
 done
 step "all passed"

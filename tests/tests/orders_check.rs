@@ -2,7 +2,8 @@
 //! alone, and by agents that go on one at a time.
 
 use pcr_core::{
-    Full, Hold, Limits, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances, plan_delays,
+    Encounter, Full, Hold, Limits, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances,
+    plan_delays,
 };
 use pcr_planning::fleet::build_ecm;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
@@ -180,6 +181,34 @@ fn the_orders_of_a_plan_are_kept_by_the_plan() {
         planned += 1;
     }
     assert!(planned > 40, "{planned}");
+}
+
+#[test]
+fn motions_that_collide_have_no_orders() {
+    let (mut collide, mut apart) = (0, 0);
+    for seed in 0..if cfg!(optimized) { 2000 } else { 200 } {
+        let driven = fleet(&mut Dice::seeded(seed));
+        let courses: Vec<_> =
+            driven.iter().filter_map(|(disc, drive, start)| Course::driven(disc, drive, *start).ok()).collect();
+        let motions: Vec<_> = courses.iter().map(Course::motion).collect();
+        let pairs = (0..motions.len()).flat_map(|a| (0..a).map(move |b| [b, a]));
+        let deep = |[a, b]: [usize; 2]| {
+            let pair = Encounter::new(&motions[a], &motions[b]);
+            pair.conflicts(pair.time()).any(|conflict| !conflict.touching)
+        };
+        match table(&motions).as_planned(&motions) {
+            Err(Refused::Meeting(agents)) => {
+                collide += 1;
+                assert!(deep(agents), "seed {seed}: {agents:?} do not meet");
+            }
+            found => {
+                assert_eq!(found, Ok(()), "seed {seed}");
+                assert_eq!(pairs.into_iter().find(|&pair| deep(pair)), None, "seed {seed}");
+                apart += 1;
+            }
+        }
+    }
+    assert!(collide > 40 && apart > 20, "{collide} {apart}");
 }
 
 fn course(start: [f64; 3], legs: &[Leg]) -> Course<f64> {

@@ -211,3 +211,20 @@ fn a_path_that_is_exchanged_is_decided_anew_and_those_of_the_others_are_not() {
     assert_eq!(trace(&narrow, &fleet), before);
     assert_eq!(narrow.replace(&mut fleet, 9, other), Err(Mismatch::NoSuchAgent(9).into()));
 }
+
+#[test]
+fn motions_that_meet_are_not_a_plan() {
+    let lanes = lanes(0.3);
+    // Lane 0 passes the crossing that it has with lane 3 after 2 s, that one its own after 4 s.
+    let fleet = |delay: f64| [lanes[0].motion().delayed(delay).expect("a small delay"), lanes[3].motion()];
+    for (delay, pass) in [(0.0, Some(Pass::First)), (1.5, None), (2.0, None), (2.5, None), (5.0, Some(Pass::Second))] {
+        let fleet = fleet(delay);
+        let mut orders = table(&fleet, 1);
+        let found = orders.as_planned(&fleet);
+        let passes: Vec<_> = orders.row(&fleet, 0).expect("the table of the fleet").map(|(.., pass)| pass).collect();
+        match pass {
+            Some(pass) => assert_eq!((found, passes), (Ok(()), vec![pass]), "{delay}"),
+            None => assert_eq!((found, passes), (Err(Refused::Meeting([0, 1])), vec![Pass::Undecided]), "{delay}"),
+        }
+    }
+}

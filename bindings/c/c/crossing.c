@@ -30,7 +30,7 @@ static int conflicts(void) {
 }
 
 int main(void) {
-  const PcrMemory memory = {segments, 4, phases, 6, motions, 2, entries, 4, pieces, 8};
+  const PcrMemory memory = {segments, 4, phases, 6, motions, 2, entries, 4, pieces, 8, NULL, 0, NULL};
   const PcrAgent agents[] = {
       {-2.0f, 0.0f, 0.0f, 0.25f, 0.0f, east, 1, 1.0f, 1.0f, NULL, 0},
       {-1.0f, -2.0f, 0.0f, 0.25f, 0.0f, north, 2, 1.0f, 1.0f, NULL, 0},

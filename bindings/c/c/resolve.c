@@ -34,7 +34,7 @@ static int conflicts(void) {
 }
 
 int main(void) {
-  const PcrMemory memory = {segments, 4, phases, 12, motions, 3, entries, 8, pieces, 8};
+  const PcrMemory memory = {segments, 4, phases, 12, motions, 3, entries, 8, pieces, 8, NULL, 0, NULL};
   /* West to east, south to north, and north to south in the other's way. */
   PcrAgent agents[] = {
       {-2.0f, 0.0f, 0.0f, 0.25f, 0.0f, line, 1, 1.0f, 1.0f, NULL, 0},

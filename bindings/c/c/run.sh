@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Compiles crossing.c and resolve.c against the library with the host's compiler and with arm-none-eabi-gcc, runs both, the latter in
-# QEMU on a Cortex-M4F, and compares what they print with crossing.out and resolve.out. That an image links proves that it cannot panic.
-#   --accept   writes these anew
+# Installs the library into a scratch folder, for the host and for a Cortex-M4F, compiles the programs of this folder against it, runs
+# them, on the target in QEMU, and compares what they print with their .out files. That an image links proves that it cannot panic.
+# Then the wrapper for C++ and the example for CMake, on the host.
+#   --accept   writes the .out files anew
 set -euo pipefail
 cd "$(dirname "$0")"
 root=$PWD/../../..
@@ -10,24 +11,27 @@ packages=()
 command -v arm-none-eabi-gcc >/dev/null || packages+=(gcc-arm-none-eabi libnewlib-arm-none-eabi)
 command -v qemu-system-arm >/dev/null || packages+=(qemu-system-arm)
 command -v cc >/dev/null || packages+=(gcc libc6-dev)
+command -v c++ >/dev/null || packages+=(g++)
+command -v pkg-config >/dev/null || packages+=(pkg-config)
+command -v cmake >/dev/null || packages+=(cmake make)
 if [ ${#packages[@]} -gt 0 ]; then
-  echo "pcr-ffi: installing ${packages[*]}" >&2
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "pcr-ffi: please install ${packages[*]}" >&2; exit 2; }
+  echo "bindings/c: installing ${packages[*]}" >&2
+  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "bindings/c: please install ${packages[*]}" >&2; exit 2; }
   { apt-get -o DPkg::Lock::Timeout=600 update && apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "${packages[@]}"; } >&2
 fi
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
 cd "$root"
-built=${CARGO_TARGET_DIR:-$root/target}
-cargo build --quiet --locked --profile ffi -p pcr-ffi
-firmware/cross.sh $target build --quiet --locked --profile ffi -p pcr-ffi
-warnings=(-std=c11 -O2 -Wall -Wextra -Wpedantic -Werror -Ibindings/c/include)
-for program in crossing resolve; do
-  cc "${warnings[@]}" bindings/c/c/$program.c "$built/ffi/libpcr_ffi.a" -lpthread -ldl -lm -o "$build/host"
-  arm-none-eabi-gcc "${warnings[@]}" -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -ffunction-sections \
-    -fdata-sections -Wl,--gc-sections -nostartfiles -T bindings/c/c/m4.ld bindings/c/c/start.c bindings/c/c/$program.c \
-    "$built/$target/ffi/libpcr_ffi.a" --specs=nano.specs --specs=rdimon.specs -u _printf_float -lm -o "$build/$program.elf"
-  "$build/host" >"$build/host.out"
+bindings/c/install.sh "$build/host"
+bindings/c/install.sh "$build/target" $target
+flags() { PKG_CONFIG_PATH=$build/$1/lib/pkgconfig pkg-config "${@:2}" pcr; }
+warnings=(-O2 -Wall -Wextra -Wpedantic -Werror)
+for program in crossing resolve passing robot_q16; do
+  cc -std=c11 "${warnings[@]}" $(flags host --cflags) bindings/c/c/$program.c $(flags host --libs) -o "$build/$program"
+  arm-none-eabi-gcc -std=c11 "${warnings[@]}" $(flags target --cflags) -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard \
+    -ffunction-sections -fdata-sections -Wl,--gc-sections -nostartfiles -T bindings/c/c/m4.ld bindings/c/c/start.c \
+    bindings/c/c/$program.c $(flags target --libs) --specs=nano.specs --specs=rdimon.specs -u _printf_float -lm -o "$build/$program.elf"
+  "$build/$program" >"$build/host.out"
   # Only a program that never ends takes that long.
   timeout 3600 qemu-system-arm -machine mps2-an386 -display none -monitor none -serial none \
     -semihosting-config enable=on,target=native -kernel "$build/$program.elf" </dev/null >"$build/target.out"
@@ -37,4 +41,12 @@ for program in crossing resolve; do
   arm-none-eabi-size "$build/$program.elf"
   cat "$build/target.out"
 done
-echo "pcr-ffi: the same on the host and on a Cortex-M4F"
+echo "bindings/c: the same on the host and on a Cortex-M4F"
+[ "$(wc -l <bindings/c/include/pcr.hpp)" -lt 200 ] || { echo "bindings/c: the wrapper for C++ is no longer small" >&2; exit 1; }
+c++ -std=c++17 "${warnings[@]}" $(flags host --cflags) bindings/c/c/wrapper.cpp $(flags host --libs) -o "$build/wrapper"
+"$build/wrapper"
+cmake -S bindings/c/c/cmake -B "$build/cmake" -DCMAKE_PREFIX_PATH="$build/host" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
+cmake --build "$build/cmake" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
+"$build/cmake/passing" | diff bindings/c/c/passing.out -
+"$build/cmake/wrapper"
+echo "bindings/c: C++ and CMake"

@@ -2,8 +2,7 @@
 //!
 //! Sound under what the crate's documentation asks of the caller, and no more is assumed.
 
-use crate::fleet::Fleet;
-use crate::types::PcrFleet;
+use core::cell::Cell;
 use core::mem::{align_of, size_of};
 use core::ptr::NonNull;
 use core::slice;
@@ -22,6 +21,11 @@ impl<R: Copy + 'static> Stack<R> {
         NonNull::new(first.cast::<R>()).map(|first| Self { first, room, len: 0 })
     }
 
+    /// No memory.
+    pub(crate) const fn none() -> Self {
+        Self { first: NonNull::dangling(), room: 0, len: 0 }
+    }
+
     /// Adds a value; `false` where there is no room.
     pub(crate) fn push(&mut self, value: R) -> bool {
         if self.is_full() {
@@ -36,6 +40,20 @@ impl<R: Copy + 'static> Stack<R> {
     /// Whether there is no more room.
     pub(crate) fn is_full(&self) -> bool {
         self.len >= self.room
+    }
+
+    /// Takes a value out; those behind it move down.
+    pub(crate) fn remove(&mut self, index: usize) {
+        if index >= self.len {
+            return;
+        }
+        let places = Cell::from_mut(self.values_mut()).as_slice_of_cells();
+        for neighbours in places.windows(2).skip(index) {
+            if let [place, next] = neighbours {
+                place.set(next.get());
+            }
+        }
+        self.len = self.len.saturating_sub(1);
     }
 
     /// The values that are there.
@@ -62,6 +80,21 @@ impl<R: Copy + 'static> Stack<R> {
         // SAFETY: as above, and nothing else keeps the pointer.
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }
     }
+}
+
+/// C records that have room for an `A` and a `B` each: first all of the one, then all of the other. `None` for a null pointer.
+pub(crate) fn both<C, A: Copy + 'static, B: Copy + 'static>(
+    first: *mut C,
+    room: usize,
+) -> Option<(Stack<A>, Stack<B>)> {
+    const {
+        assert!(size_of::<C>() == size_of::<A>() + size_of::<B>() && size_of::<A>() % align_of::<B>() == 0);
+        assert!(align_of::<C>() >= align_of::<A>() && align_of::<C>() >= align_of::<B>());
+    };
+    let first = NonNull::new(first.cast::<A>())?;
+    // SAFETY: the caller promises room for as many of both.
+    let behind = unsafe { first.add(room) }.cast::<B>();
+    Some((Stack { first, room, len: 0 }, Stack { first: behind, room, len: 0 }))
 }
 
 /// Memory of which one part after the other is taken for good, until it is given back.
@@ -143,22 +176,30 @@ pub(crate) fn places<'a, T>(first: *mut T, count: usize) -> Option<&'a mut [T]> 
     }
 }
 
-const _: () = assert!(size_of::<Fleet>() <= size_of::<PcrFleet>() && align_of::<Fleet>() <= align_of::<PcrFleet>());
+/// A place that C has for a value of the library.
+///
+/// # Safety
+/// All bytes of it may be anything, and nothing but this module looks at them.
+pub(crate) unsafe trait Place {
+    /// What is put there.
+    type Value;
+}
 
-/// Puts a fleet in its place.
-pub(crate) fn put(place: &mut PcrFleet, fleet: Fleet) {
+/// Puts a value in its place.
+pub(crate) fn put<P: Place>(place: &mut P, value: P::Value) {
+    const { assert!(size_of::<P::Value>() <= size_of::<P>() && align_of::<P::Value>() <= align_of::<P>()) };
     // SAFETY: there is room, as asserted above; what was there needs no drop.
-    unsafe { core::ptr::from_mut(place).cast::<Fleet>().write(fleet) };
+    unsafe { core::ptr::from_mut(place).cast::<P::Value>().write(value) };
 }
 
-/// The fleet that was put there.
-pub(crate) fn fleet(place: &PcrFleet) -> &Fleet {
-    // SAFETY: the caller promises that `pcr_fleet_init` succeeded on it.
-    unsafe { &*core::ptr::from_ref(place).cast::<Fleet>() }
+/// The value that was put there.
+pub(crate) fn get<P: Place>(place: &P) -> &P::Value {
+    // SAFETY: the caller promises that it was initialized.
+    unsafe { &*core::ptr::from_ref(place).cast::<P::Value>() }
 }
 
-/// The fleet that was put there.
-pub(crate) fn fleet_mut(place: &mut PcrFleet) -> &mut Fleet {
+/// The value that was put there.
+pub(crate) fn get_mut<P: Place>(place: &mut P) -> &mut P::Value {
     // SAFETY: as above.
-    unsafe { &mut *core::ptr::from_mut(place).cast::<Fleet>() }
+    unsafe { &mut *core::ptr::from_mut(place).cast::<P::Value>() }
 }

@@ -1,26 +1,157 @@
-//! The header in the repository is the one that the code makes.
+//! The headers in the repository are those that the code makes.
 //!
-//! `PCR_UPDATE=1 cargo test -p pcr-ffi --test header` writes it anew.
+//! `PCR_UPDATE=1 cargo test -p pcr-ffi --test header` writes them anew.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// A number format: its header, what its names begin with, and its numbers.
+struct Format {
+    header: &'static str,
+    types: &'static str,
+    functions: &'static str,
+    real: &'static str,
+    heading: &'static str,
+    piece: &'static str,
+    title: &'static str,
+    after: &'static str,
+}
+
+const FORMATS: [Format; 3] = [
+    Format {
+        header: "pcr.h",
+        types: "Pcr",
+        functions: "pcr_",
+        real: "f32",
+        heading: "f32",
+        piece: "7",
+        title: "in single precision: numbers up to a million in magnitude",
+        after: "",
+    },
+    Format {
+        header: "pcr_f64.h",
+        types: "PcrF64",
+        functions: "pcr_f64_",
+        real: "f64",
+        heading: "f64",
+        piece: "6",
+        title: "in double precision: numbers up to a trillion in magnitude",
+        after: "",
+    },
+    Format {
+        header: "pcr_q16.h",
+        types: "PcrQ16",
+        functions: "pcr_q16_",
+        real: "i32",
+        heading: "i32",
+        piece: "7",
+        title: "in fixed point: numbers are 1/65536 m, s, m/s and m/s^2, up to 4096 in magnitude. Headings are 1/2^32 of a turn",
+        after: "/* Constants that a compiler evaluates: a number, and a heading in radians from -pi to pi. */\n\
+            #define PCR_Q16(x) ((int32_t)((x) * 65536.0 + ((x) < 0 ? -0.5 : 0.5)))\n\
+            #define PCR_Q16_RADIANS(x) ((int32_t)(uint32_t)(int64_t)((x) * 683565275.5764316 + ((x) < 0 ? -0.5 : 0.5)))",
+    },
+];
+
+/// What all formats share is in a header of its own.
+const COMMON: &str = "pcr_common.h";
+
+const PROMISES: &str = "   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus, and whatever fails changes nothing.
+   Pointers are null, which is told, or point to as many values as is said. What is in a memory belongs to the fleet from
+   fleet_init on, for as long as it is used; all other pointers are used during the call only. Nothing is allocated. A fleet is
+   used by one thread at a time, and is not moved or copied.";
+
+fn config(title: &str, guard: &str) -> cbindgen::Config {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml");
+    config.header =
+        Some(format!("/* {title}\n   Made by cbindgen from bindings/c/src: see bindings/c/tests/header.rs. */"));
+    config.include_guard = Some(guard.into());
+    config
+}
+
+/// The text that cbindgen reads, with the names and numbers of a format.
+fn rust_of(format: &Format, shared: &[String]) -> String {
+    let mut text = String::new();
+    for file in ["types", "table", "plans", "orders"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/format").join(file).with_extension("rs");
+        for line in std::fs::read_to_string(path).expect("a source").lines() {
+            let line = if line.starts_with("#[unsafe(export_name") { "#[unsafe(no_mangle)]" } else { line };
+            if !line.starts_with("use ") && !line.starts_with("//!") {
+                words(line, |word| text.push_str(&name(word, format, shared)));
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+fn name(word: &str, format: &Format, shared: &[String]) -> String {
+    match word {
+        "Real" => format.real.into(),
+        "Heading" => format.heading.into(),
+        "SEGMENT" => "30".into(),
+        "MOTION" => "14".into(),
+        "PIECE" => format.piece.into(),
+        _ if shared.iter().any(|shared| shared == word) => word.into(),
+        _ => match (word.strip_prefix("Pcr"), word.strip_prefix("pcr_")) {
+            (Some(rest), _) => format!("{}{rest}", format.types),
+            (_, Some(rest)) => format!("{}{rest}", format.functions),
+            _ => word.into(),
+        },
+    }
+}
+
+/// A line word by word, with what is between them.
+fn words(line: &str, mut each: impl FnMut(&str)) {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut rest = line;
+    while let Some(first) = rest.chars().next() {
+        let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
+        each(&rest[..end]);
+        rest = &rest[end..];
+    }
+}
+
+fn made(config: cbindgen::Config, source: &Path) -> String {
+    let mut made = Vec::new();
+    let builder = cbindgen::Builder::new().with_config(config).with_src(source);
+    builder.generate().expect("bindings").write(&mut made);
+    String::from_utf8(made).expect("UTF-8")
+}
+
+/// All headers and what is to be in them.
+fn headers() -> Vec<(&'static str, String)> {
+    let status = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src/status.rs");
+    let text = std::fs::read_to_string(&status).expect("a source");
+    let declared = |line: &str| {
+        let name = line.strip_prefix("pub enum ").or_else(|| line.strip_prefix("pub struct "))?;
+        Some(name.trim_end_matches([' ', '{']).to_owned())
+    };
+    let shared: Vec<String> = text.lines().filter_map(declared).collect();
+    let mut common = config("What the interface of pcr has in all number formats.", "PCR_COMMON_H");
+    // No function names them there.
+    common.export.include = shared.clone();
+    let mut headers = vec![(COMMON, made(common, &status))];
+    for format in &FORMATS {
+        let source = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format.header).with_extension("rs");
+        std::fs::write(&source, rust_of(format, &shared)).expect("a temporary file");
+        let title = format!("Collision regions of discs on line/arc paths, {}.\n{PROMISES}", format.title);
+        let guard = format.header.replace('.', "_").to_uppercase();
+        let mut config = config(&title, &guard);
+        config.includes = vec![COMMON.into()];
+        config.after_includes = Some(format.after.into()).filter(|after: &String| !after.is_empty());
+        headers.push((format.header, made(config, &source)));
+    }
+    headers
+}
 
 #[test]
-fn the_header_is_up_to_date() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml");
-    let sources = ["api", "types"].map(|name| root.join("src").join(name).with_extension("rs"));
-    let builder =
-        sources.iter().fold(cbindgen::Builder::new().with_config(config), |builder, source| builder.with_src(source));
-    let mut made = Vec::new();
-    builder.generate().expect("bindings").write(&mut made);
-    let made = String::from_utf8(made).expect("UTF-8");
-    let path = root.join("include/pcr.h");
-    if std::env::var_os("PCR_UPDATE").is_some() {
-        std::fs::write(&path, &made).expect("the header can be written");
+fn the_headers_are_up_to_date() {
+    for (name, made) in headers() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("include").join(name);
+        if std::env::var_os("PCR_UPDATE").is_some() {
+            std::fs::write(&path, &made).expect("the header can be written");
+        }
+        let there = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(made == there, "{name} is not what the code makes: PCR_UPDATE=1 cargo test -p pcr-ffi --test header");
     }
-    let there = std::fs::read_to_string(&path).expect("the header");
-    assert!(
-        made == there,
-        "include/pcr.h is not what the code makes: PCR_UPDATE=1 cargo test -p pcr-ffi --test header"
-    );
 }

@@ -1,5 +1,6 @@
 //! The C functions, called as C does: the numbers are those of the core, and what is wrong is told.
 
+use pcr_ffi::single::*;
 use pcr_ffi::*;
 use std::ptr::{null, null_mut};
 
@@ -19,6 +20,9 @@ fn memory(agents: usize, entries: usize, pieces: usize) -> PcrMemory {
         entry_count: entries,
         pieces: slots(PcrPiece::EMPTY, pieces),
         piece_count: pieces,
+        orders: null_mut(),
+        order_count: 0,
+        robots: null_mut(),
     }
 }
 

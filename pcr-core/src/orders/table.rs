@@ -8,7 +8,7 @@ use crate::orders::check::Refused;
 use crate::orders::hold::Hold;
 use crate::orders::order::{Order, Pass, Progress};
 use crate::pieces::Piece;
-use crate::query::times;
+use crate::query::{first_overlap, times};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
@@ -292,16 +292,19 @@ where
     }
 
     /// Takes the orders in which the motions of the fleet pass their regions, those of a plan without collisions.
-    /// Decisions that were made before are overwritten. Cost: a few slices a region.
+    /// Decisions that were made before are overwritten. Cost: that of [`first_overlap`] a region.
     ///
     /// # Errors
-    /// [`Refused::Meeting`] for two that meet, or pass so near that it cannot be told who is first; [`Refused::Mismatch`].
+    /// [`Refused::Meeting`] for two that do more than touch, or pass so near that it cannot be told who is first;
+    /// [`Refused::Mismatch`].
     pub fn as_planned(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
         for place in 0..self.ecm.len() {
             let Some([lower, higher]) = self.ecm.agents_at(place) else { continue };
             let Some(region) = self.ecm.at(fleet, place, lower) else { continue };
-            let pass = planned(&region).ok_or(Refused::Meeting([lower, higher]))?;
+            let always = Interval::new(-S::LIMIT, S::LIMIT);
+            let met = first_overlap(region.ego_motion(), core::iter::once(region.clone()), always).is_some();
+            let pass = planned(&region).filter(|_| !met).ok_or(Refused::Meeting([lower, higher]))?;
             let order = Order::new(&region, pass, S::ZERO);
             if let Some(room) = self.orders.as_mut().get_mut(place) {
                 *room = order;

@@ -1,77 +1,164 @@
 //! A fleet in the caller's memory, in safe Rust.
 
-use crate::memory::{Arena, Stack, values};
-use crate::types::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrAgent, PcrMemory, PcrStatus};
+use super::number::{S, angle, inner};
+use super::points::given;
+use super::types::{PcrAgent, PcrMemory};
+use crate::memory::{Arena, Stack, both, values};
+use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus};
 use pcr_core::{
-    Ecm, Interval, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region, Segment,
-    Turn, Unchanged, Unsolved, plan_delays,
+    Ecm, Full, Interval, Limits, Mismatch, Mission, Motion, Order, Orders, Pass, PathRef, Phase, Piece, Point, Pose,
+    Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, Tolerances, Turn, Unchanged,
+    Unsolved, plan_delays,
 };
+
+/// The regions of a fleet, in the caller's memory.
+pub(super) type Regions = Ecm<S, &'static mut [Region], &'static mut [Piece<S>]>;
+/// The same with orders.
+pub(super) type Ordered = Orders<S, &'static mut [Region], &'static mut [Piece<S>], &'static mut [Order<S>]>;
+
+/// The table of a fleet, with orders where there is memory for them.
+enum Table {
+    Regions(Regions),
+    Ordered(Ordered),
+}
+
+impl Table {
+    fn fill(&mut self, fleet: &[Motion<'static, S>]) -> Result<(), Full> {
+        match self {
+            Self::Regions(table) => table.fill(fleet),
+            Self::Ordered(table) => table.fill(fleet),
+        }
+    }
+
+    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), Full> {
+        match self {
+            Self::Regions(table) => table.fill_row(fleet, agent),
+            Self::Ordered(table) => table.fill_row(fleet, agent),
+        }
+    }
+
+    fn replace(
+        &mut self,
+        fleet: &mut [Motion<'static, S>],
+        agent: usize,
+        motion: Motion<'static, S>,
+    ) -> Result<(), Unchanged> {
+        match self {
+            Self::Regions(table) => table.replace(fleet, agent, motion),
+            Self::Ordered(table) => table.replace(fleet, agent, motion),
+        }
+    }
+
+    fn erase(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), Mismatch> {
+        match self {
+            Self::Regions(table) => table.erase(fleet, agent),
+            Self::Ordered(table) => table.erase(fleet, agent),
+        }
+    }
+}
 
 /// Agents, and the table of their regions.
 pub(crate) struct Fleet {
     /// Of all agents, without gaps, and in the same order.
-    segments: Arena<Segment<f32>>,
-    phases: Arena<Phase<f32>>,
-    motions: Stack<Motion<'static, f32>>,
-    table: Ecm<f32, &'static mut [Region], &'static mut [Piece<f32>]>,
+    segments: Arena<Segment<S>>,
+    phases: Arena<Phase<S>>,
+    motions: Stack<Motion<'static, S>>,
+    table: Table,
+    /// Where the agents are, and room for a check: as many as motions, or none without orders.
+    progress: Stack<Progress<S>>,
+    reaches: &'static mut [Reach<S>],
 }
 
 impl Fleet {
-    pub(crate) fn new(memory: &PcrMemory) -> Result<Self, PcrStatus> {
-        let origin = Segment::standing(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
-        let rest = Phase::starting_at(0.0, 0.0, 0.0)?;
-        let segments = Stack::new(memory.segments, memory.segment_count).ok_or(PcrStatus::Null)?;
-        let phases = Stack::new(memory.phases, memory.phase_count).ok_or(PcrStatus::Null)?;
-        let motions = Stack::new(memory.motions, memory.motion_count).ok_or(PcrStatus::Null)?;
-        let entries = Stack::new(memory.entries, memory.entry_count).ok_or(PcrStatus::Null)?;
-        let pieces = Stack::new(memory.pieces, memory.piece_count).ok_or(PcrStatus::Null)?;
-        let table = Ecm::new(entries.filled(Region::EMPTY), pieces.filled(Piece::EMPTY));
+    pub(super) fn new(memory: &PcrMemory) -> Result<Self, PcrStatus> {
+        let zero = S::ZERO;
+        let origin = Segment::standing(Pose { position: Point::new(zero, zero), heading: angle(Default::default()) })?;
+        let rest = Phase::starting_at(zero, zero, zero)?;
+        let segments = given(Stack::new(memory.segments, memory.segment_count))?;
+        let phases = given(Stack::new(memory.phases, memory.phase_count))?;
+        let motions = given(Stack::new(memory.motions, memory.motion_count))?;
+        let entries = given(Stack::new(memory.entries, memory.entry_count))?.filled(Region::EMPTY);
+        let pieces = given(Stack::new(memory.pieces, memory.piece_count))?.filled(Piece::EMPTY);
+        let (table, progress, reaches) = if memory.order_count == 0 {
+            (Table::Regions(Ecm::new(entries, pieces)), Stack::none(), Stack::none())
+        } else {
+            let orders = given(Stack::new(memory.orders, memory.order_count))?.filled(Order::EMPTY);
+            let (progress, reaches) = given(both(memory.robots, memory.motion_count))?;
+            (Table::Ordered(Orders::new(entries, pieces, orders)), progress, reaches)
+        };
+        let reaches = reaches.filled(Reach::EMPTY);
         let (segments, phases) = (Arena::new(segments, origin), Arena::new(phases, rest));
-        Ok(Self { segments, phases, motions, table })
+        Ok(Self { segments, phases, motions, table, progress, reaches })
     }
 
-    pub(crate) fn motions(&self) -> &[Motion<'static, f32>] {
+    pub(super) fn motions(&self) -> &[Motion<'static, S>] {
         self.motions.values()
     }
 
-    pub(crate) fn motion(&self, agent: usize) -> Result<&Motion<'static, f32>, PcrStatus> {
+    pub(super) fn motion(&self, agent: usize) -> Result<&Motion<'static, S>, PcrStatus> {
         self.motions().get(agent).ok_or(PcrStatus::NoSuchAgent)
     }
 
-    pub(crate) fn table(&self) -> &Ecm<f32, &'static mut [Region], &'static mut [Piece<f32>]> {
-        &self.table
+    pub(super) fn table(&self) -> &Regions {
+        match &self.table {
+            Table::Regions(table) => table,
+            Table::Ordered(table) => table.ecm(),
+        }
+    }
+
+    /// The orders, and where all are.
+    pub(super) fn ordered(&self) -> Result<(&Ordered, &[Progress<S>]), PcrStatus> {
+        match &self.table {
+            Table::Regions(_) => Err(PcrStatus::NoOrders),
+            Table::Ordered(table) => Ok((table, self.progress.values())),
+        }
+    }
+
+    /// The same, to be changed, the motions, and room for a check.
+    pub(super) fn ordered_mut(&mut self) -> Result<OrderedMut<'_>, PcrStatus> {
+        match &mut self.table {
+            Table::Regions(_) => Err(PcrStatus::NoOrders),
+            Table::Ordered(orders) => Ok(OrderedMut {
+                orders,
+                motions: self.motions.values_mut(),
+                progress: self.progress.values_mut(),
+                reaches: self.reaches,
+            }),
+        }
     }
 
     /// From the first start to the last arrival.
-    pub(crate) fn duration(&self) -> Interval<f32> {
+    pub(super) fn duration(&self) -> Interval<S> {
         let times = self.motions().iter().map(Motion::time);
         times.reduce(Interval::hull).unwrap_or_default()
     }
 
-    pub(crate) fn add(&mut self, agent: &PcrAgent) -> Result<(), PcrStatus> {
+    pub(super) fn add(&mut self, agent: &PcrAgent) -> Result<(), PcrStatus> {
         let motion = self.placed(agent)?;
         if !self.motions.push(motion) {
             return Err(PcrStatus::NoRoom);
         }
+        // As many as motions; none without orders.
+        let _ = self.progress.push(Progress::default());
         self.take(&motion);
         Ok(())
     }
 
     /// The motion of an agent in free memory, which is taken once nothing can go wrong any more.
-    fn placed(&mut self, agent: &PcrAgent) -> Result<Motion<'static, f32>, PcrStatus> {
+    fn placed(&mut self, agent: &PcrAgent) -> Result<Motion<'static, S>, PcrStatus> {
         let segments = place(agent, self.segments.free())?;
         let path = PathRef::new(self.segments.next(segments))?;
         let phases = profile(agent, path.length(), self.phases.free())?;
-        Ok(Motion::new(path, ProfileRef::new(self.phases.next(phases))?, agent.radius, agent.start)?)
+        Ok(Motion::new(path, ProfileRef::new(self.phases.next(phases))?, inner(agent.radius), inner(agent.start))?)
     }
 
-    fn take(&mut self, motion: &Motion<'static, f32>) {
+    fn take(&mut self, motion: &Motion<'static, S>) {
         self.segments.take(motion.path().segments().len());
         self.phases.take(motion.profile().phases().len());
     }
 
     /// Another agent in the place of one; a table that was complete is so afterwards.
-    pub(crate) fn replace(&mut self, index: usize, agent: &PcrAgent) -> Result<(), PcrStatus> {
+    pub(super) fn replace(&mut self, index: usize, agent: &PcrAgent) -> Result<(), PcrStatus> {
         let before = *self.motion(index)?;
         let motion = self.placed(agent)?;
         match self.table.replace(self.motions.values_mut(), index, motion) {
@@ -80,18 +167,52 @@ impl Fleet {
             // It was not complete before.
             Err(_) => *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion,
         }
+        if let Some(progress) = self.progress.get_mut(index) {
+            *progress = Progress::default();
+        }
         self.take(&motion);
         self.close(&before)
     }
 
+    /// A new path with orders, as [`Orders::admit`].
+    pub(super) fn admit(
+        &mut self,
+        agent: usize,
+        by: &PcrAgent,
+        progress: Progress<S>,
+        tolerances: Tolerances<S>,
+        prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
+    ) -> Result<(), (PcrStatus, Option<Refused>)> {
+        let silent = |status| (status, None);
+        let before = *self.motion(agent).map_err(silent)?;
+        let motion = self.placed(by).map_err(silent)?;
+        let OrderedMut { orders, motions, progress: all, reaches } = self.ordered_mut().map_err(silent)?;
+        let mission = Mission { agent, motion, progress };
+        orders
+            .admit(motions, all, mission, tolerances, reaches, prefer)
+            .map_err(|refused| (refused.into(), Some(refused)))?;
+        self.take(&motion);
+        self.close(&before).map_err(silent)
+    }
+
+    /// Removes an agent; those behind it move up by one number. A table that was complete is so afterwards.
+    pub(super) fn remove(&mut self, index: usize) -> Result<(), PcrStatus> {
+        let gone = *self.motion(index)?;
+        // Whatever it was not the table of, it is not now.
+        let _ = self.table.erase(self.motions.values(), index);
+        self.motions.remove(index);
+        self.progress.remove(index);
+        self.close(&gone)
+    }
+
     /// Closes the gap that a motion leaves: those behind it move down, one after the other, so that each is read before
     /// anything is written there.
-    fn close(&mut self, gone: &Motion<'static, f32>) -> Result<(), PcrStatus> {
+    fn close(&mut self, gone: &Motion<'static, S>) -> Result<(), PcrStatus> {
         let (path, profile) = (gone.path().segments(), gone.profile().phases());
         let mut to = [self.segments.place(path), self.phases.place(profile)];
         let mut from = [to[0].saturating_add(path.len()), to[1].saturating_add(profile.len())];
         let (motions, segments, phases) = (&mut self.motions, &mut self.segments, &mut self.phases);
-        let next = |motion: &&mut Motion<'static, f32>, segments: &Arena<_>, from| {
+        let next = |motion: &&mut Motion<'static, S>, segments: &Arena<_>, from| {
             segments.place(motion.path().segments()) == from
         };
         while let Some(motion) = motions.values_mut().iter_mut().find(|motion| next(motion, segments, from[0])) {
@@ -110,20 +231,26 @@ impl Fleet {
     }
 
     /// Computes the table anew.
-    pub(crate) fn build(&mut self) -> Result<(), PcrStatus> {
+    pub(super) fn build(&mut self) -> Result<(), PcrStatus> {
         Ok(self.table.fill(self.motions.values())?)
     }
 
-    pub(crate) fn delay(&mut self, agent: usize, delay: f32) -> Result<(), PcrStatus> {
+    /// Computes the row of one agent only.
+    pub(super) fn build_row(&mut self, agent: usize) -> Result<(), PcrStatus> {
+        self.motion(agent)?;
+        Ok(self.table.fill_row(self.motions.values(), agent)?)
+    }
+
+    pub(super) fn delay(&mut self, agent: usize, delay: S) -> Result<(), PcrStatus> {
         let motion = self.motions.get_mut(agent).ok_or(PcrStatus::NoSuchAgent)?;
         *motion = motion.delayed(delay)?;
         Ok(())
     }
 
     /// Delays the starts so that nobody collides; `room` is for a plan. The fleet is as before where there is none.
-    pub(crate) fn plan(
+    pub(super) fn plan(
         &mut self,
-        mut room: Stack<Motion<'static, f32>>,
+        mut room: Stack<Motion<'static, S>>,
         order: &mut [usize],
     ) -> Result<(), (PcrStatus, Option<Unsolved>)> {
         let agents = self.motions().len();
@@ -135,7 +262,7 @@ impl Fleet {
         if !self.motions().iter().all(|&motion| room.push(motion)) {
             return Err((PcrStatus::NoRoom, None));
         }
-        plan_delays(&self.table, self.motions.values(), room.values_mut(), order).map_err(
+        plan_delays(self.table(), self.motions.values(), room.values_mut(), order).map_err(
             |unsolved| match unsolved {
                 Unsolved::Table(mismatch) => (mismatch.into(), None),
                 unsolved => (PcrStatus::NoPlan, Some(unsolved)),
@@ -146,21 +273,29 @@ impl Fleet {
     }
 }
 
+/// Orders and what goes with them.
+pub(super) struct OrderedMut<'a> {
+    pub(super) orders: &'a mut Ordered,
+    pub(super) motions: &'a mut [Motion<'static, S>],
+    pub(super) progress: &'a mut [Progress<S>],
+    pub(super) reaches: &'a mut [Reach<S>],
+}
+
 /// Places the path of an agent in the first of these slots; how many it takes.
-fn place(agent: &PcrAgent, slots: &mut [Segment<f32>]) -> Result<usize, PcrStatus> {
-    let legs = values(agent.legs, agent.leg_count).ok_or(PcrStatus::Null)?;
-    let position = Point::new(agent.x, agent.y);
-    let origin = Segment::standing(Pose { position, heading: Radians(agent.heading) })?;
+fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, PcrStatus> {
+    let legs = given(values(agent.legs, agent.leg_count))?;
+    let position = Point::new(inner(agent.x), inner(agent.y));
+    let origin = Segment::standing(Pose { position, heading: angle(agent.heading) })?;
     *slots.first_mut().ok_or(PcrStatus::NoRoom)? = origin;
     let (mut last, mut count) = (origin, 0);
     for leg in legs {
         let next = match leg.curve {
-            PCR_LINE => last.then_line(leg.length)?,
-            PCR_LEFT => last.then_arc(leg.radius, Turn::Left, leg.length)?,
-            PCR_RIGHT => last.then_arc(leg.radius, Turn::Right, leg.length)?,
+            PCR_LINE => last.then_line(inner(leg.length))?,
+            PCR_LEFT => last.then_arc(inner(leg.radius), Turn::Left, inner(leg.length))?,
+            PCR_RIGHT => last.then_arc(inner(leg.radius), Turn::Right, inner(leg.length))?,
             _ => return Err(PcrStatus::NoSuchCurve),
         };
-        if next.length() > 0.0 {
+        if next.length() > S::ZERO {
             *slots.get_mut(count).ok_or(PcrStatus::NoRoom)? = next;
             (last, count) = (next, count + 1);
         }
@@ -169,8 +304,8 @@ fn place(agent: &PcrAgent, slots: &mut [Segment<f32>]) -> Result<usize, PcrStatu
 }
 
 /// The profile of an agent in the first of these slots; how many it takes.
-fn profile(agent: &PcrAgent, length: f32, slots: &mut [Phase<f32>]) -> Result<usize, PcrStatus> {
-    let stretches = values(agent.stretches, agent.stretch_count).ok_or(PcrStatus::Null)?;
+fn profile(agent: &PcrAgent, length: S, slots: &mut [Phase<S>]) -> Result<usize, PcrStatus> {
+    let stretches = given(values(agent.stretches, agent.stretch_count))?;
     let mut count = 0;
     let mut push = |phase| {
         *slots.get_mut(count).ok_or(PcrStatus::NoRoom)? = phase;
@@ -178,16 +313,16 @@ fn profile(agent: &PcrAgent, length: f32, slots: &mut [Phase<f32>]) -> Result<us
         Ok::<(), PcrStatus>(())
     };
     if stretches.is_empty() {
-        let limits = Limits { speed: agent.speed, acceleration: agent.acceleration };
+        let limits = Limits { speed: inner(agent.speed), acceleration: inner(agent.acceleration) };
         for &phase in Profile::rest_to_rest(length, limits)?.as_profile().phases() {
             push(phase)?;
         }
     }
-    let mut last: Option<Phase<f32>> = None;
+    let mut last: Option<Phase<S>> = None;
     for stretch in stretches {
         let next = match last {
-            None => Phase::starting_at(agent.speed, stretch.duration, stretch.acceleration)?,
-            Some(last) => last.then(stretch.duration, stretch.acceleration)?,
+            None => Phase::starting_at(inner(agent.speed), inner(stretch.duration), inner(stretch.acceleration))?,
+            Some(last) => last.then(inner(stretch.duration), inner(stretch.acceleration))?,
         };
         push(next)?;
         last = Some(next);

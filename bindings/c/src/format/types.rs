@@ -1,80 +1,8 @@
-//! The C types. SI units: metres, seconds, radians; left turns and counter-clockwise angles are positive.
+//! The C types of a number format. SI units: metres, seconds, radians, or what the header says of its numbers; left turns and
+//! counter-clockwise angles are positive.
 
-use pcr_core::{Full, Invalid, Mismatch, Unsolved};
-
-/// What a call comes to. Whatever fails leaves the fleet as it was; a table that became full is empty.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PcrStatus {
-    /// Done.
-    Ok = 0,
-    /// A pointer is null.
-    Null,
-    /// A number is NaN or infinite.
-    NonFinite,
-    /// A number is below 0 that must not be.
-    Negative,
-    /// A number must be above 0.
-    NonPositive,
-    /// A number is beyond a million in magnitude, or a path or a motion gets there.
-    OutOfRange,
-    /// An arc sweeps more than one turn: split it.
-    SweepOverOneTurn,
-    /// The profile does not travel the length of the path.
-    LengthMismatch,
-    /// A leg is neither a line nor an arc.
-    NoSuchCurve,
-    /// There is no agent of that number.
-    NoSuchAgent,
-    /// The memory has no room for another agent, or for its segments or phases.
-    NoRoom,
-    /// The table has no room for the entries or the pieces of all regions.
-    TableFull,
-    /// The buffer is too small; the count that is needed is told.
-    BufferTooSmall,
-    /// The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
-    NotBuilt,
-    /// The order does not list each agent once.
-    BadOrder,
-    /// There is no such plan: whoever waits, for however long, meets another one.
-    NoPlan,
-}
-
-impl From<Invalid> for PcrStatus {
-    fn from(invalid: Invalid) -> Self {
-        match invalid {
-            Invalid::NonFinite(_) => Self::NonFinite,
-            Invalid::Negative(_) => Self::Negative,
-            Invalid::NonPositive(_) => Self::NonPositive,
-            Invalid::SweepOverOneTurn => Self::SweepOverOneTurn,
-            Invalid::LengthMismatch => Self::LengthMismatch,
-            Invalid::Full(_) => Self::NoRoom,
-            _ => Self::OutOfRange,
-        }
-    }
-}
-
-impl From<Full> for PcrStatus {
-    fn from(_: Full) -> Self {
-        Self::TableFull
-    }
-}
-
-impl From<Mismatch> for PcrStatus {
-    fn from(mismatch: Mismatch) -> Self {
-        match mismatch {
-            Mismatch::NoSuchAgent(_) => Self::NoSuchAgent,
-            _ => Self::NotBuilt,
-        }
-    }
-}
-
-/// `PcrLeg.curve` of a straight line.
-pub const PCR_LINE: u8 = 0;
-/// `PcrLeg.curve` of an arc that turns left, counter-clockwise.
-pub const PCR_LEFT: u8 = 1;
-/// `PcrLeg.curve` of an arc that turns right, clockwise.
-pub const PCR_RIGHT: u8 = 2;
+use super::number::{Heading, MOTION, PIECE, Real, SEGMENT, ZERO};
+use crate::status::PcrHoldKind;
 
 /// A line or an arc of a path; it begins in the pose in which the one before it ends.
 #[repr(C)]
@@ -83,9 +11,9 @@ pub struct PcrLeg {
     /// PCR_LINE, PCR_LEFT or PCR_RIGHT.
     pub curve: u8,
     /// Length (m), of an arc at most one turn; 0 adds nothing.
-    pub length: f32,
+    pub length: Real,
     /// Radius of an arc (m), above 0; of a line it is not looked at.
-    pub radius: f32,
+    pub radius: Real,
 }
 
 /// Motion at constant acceleration, part of a profile.
@@ -93,9 +21,9 @@ pub struct PcrLeg {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrStretch {
     /// In s.
-    pub duration: f32,
+    pub duration: Real,
     /// In m/s².
-    pub acceleration: f32,
+    pub acceleration: Real,
 }
 
 /// A disc, its path and its motion along it.
@@ -103,23 +31,23 @@ pub struct PcrStretch {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrAgent {
     /// Position at the start of the path (m).
-    pub x: f32,
+    pub x: Real,
     /// In m.
-    pub y: f32,
+    pub y: Real,
     /// Direction of travel there (rad).
-    pub heading: f32,
+    pub heading: Heading,
     /// Of the disc (m), above 0.
-    pub radius: f32,
+    pub radius: Real,
     /// When it sets off (s); it stands before, and after its arrival.
-    pub start: f32,
+    pub start: Real,
     /// The path; none for an agent that stands.
     pub legs: *const PcrLeg,
     /// Number of legs.
     pub leg_count: usize,
     /// Largest speed of a motion from rest to rest (m/s); with a profile, the speed at its start.
-    pub speed: f32,
+    pub speed: Real,
     /// Largest acceleration of a motion from rest to rest (m/s²); with a profile it is not looked at.
-    pub acceleration: f32,
+    pub acceleration: Real,
     /// Profile that travels the length of the path; none for a motion from rest to rest in the least time.
     pub stretches: *const PcrStretch,
     /// Number of stretches.
@@ -131,9 +59,9 @@ pub struct PcrAgent {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrInterval {
     /// Lower end.
-    pub lo: f32,
+    pub lo: Real,
     /// Upper end.
-    pub hi: f32,
+    pub hi: Real,
 }
 
 /// A collision region: a connected set of times and lengths that an agent has to keep out of.
@@ -165,7 +93,7 @@ pub struct PcrConflict {
     /// Lengths along the path of the other meanwhile (m).
     pub other_length: PcrInterval,
     /// Largest overlap of the discs (m).
-    pub depth: f32,
+    pub depth: Real,
     /// Whether they do no more than touch.
     pub touching: bool,
 }
@@ -180,61 +108,18 @@ pub struct PcrMet {
     pub conflict: PcrConflict,
 }
 
-/// Why there is no plan.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PcrReason {
-    /// The two overlap at the starts of their paths.
-    Starts,
-    /// The two overlap at the ends of their paths.
-    Ends,
-    /// The two meet however late either sets off.
-    Always,
-    /// The first cannot go because of the second, with the orders that were tried.
-    Order,
-    /// The check of the plan found that the two overlap.
-    Overlap,
-    /// The times of the first are out of range.
-    Times,
-}
-
-/// Why there is no plan, and of whom.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PcrUnsolved {
-    /// The reason.
-    pub reason: PcrReason,
-    /// The agents; twice the same where it is one.
-    pub agents: [usize; 2],
-}
-
-impl From<Unsolved> for PcrUnsolved {
-    fn from(unsolved: Unsolved) -> Self {
-        let (reason, agents) = match unsolved {
-            Unsolved::Starts(agents) => (PcrReason::Starts, agents),
-            Unsolved::Ends(agents) => (PcrReason::Ends, agents),
-            Unsolved::Always(agents) => (PcrReason::Always, agents),
-            Unsolved::Priorities(agents) => (PcrReason::Order, agents),
-            Unsolved::Overlap(agents) => (PcrReason::Overlap, agents),
-            Unsolved::Full(agent) => (PcrReason::Times, [agent; 2]),
-            _ => (PcrReason::Times, [usize::MAX; 2]),
-        };
-        Self { reason, agents }
-    }
-}
-
 /// Room for a segment of a path: one a leg, or one for an agent that stands.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrSegment {
-    opaque: [f32; 30],
+    opaque: [Real; SEGMENT],
 }
 
 /// Room for a phase of a profile: three an agent, or one a stretch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrPhase {
-    opaque: [f32; 7],
+    opaque: [Real; 7],
 }
 
 /// Room for the motion of an agent.
@@ -242,7 +127,7 @@ pub struct PcrPhase {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMotion {
     pointers: [usize; 4],
-    opaque: [f32; 14],
+    opaque: [Real; MOTION],
 }
 
 /// Room for a region in the table; each serves both agents of its pair.
@@ -256,7 +141,78 @@ pub struct PcrEntry {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrPiece {
-    opaque: [u32; 7],
+    opaque: [Real; PIECE],
+}
+
+/// What is known of where an agent is on its path.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcrProgress {
+    /// Where it is (m). The lower end may be old: it counts for what the agent has passed.
+    pub at: PcrInterval,
+    /// Where it can be at rest at the latest (m), the upper end of `at` or more. What it has promised not to go beyond
+    /// counts, too.
+    pub stop: Real,
+}
+
+/// How far an agent may go, and may stand there.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcrHold {
+    /// Whether there is a limit.
+    pub kind: PcrHoldKind,
+    /// The limit (m): of PCR_HOLD_KIND_AT the length along its path, of PCR_HOLD_KIND_FREE the end of it.
+    pub length: Real,
+}
+
+/// A region of an agent, and who passes it first.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcrPassing {
+    /// The place of the region in the table, for `pcr_fleet_decide_at`.
+    pub place: usize,
+    /// The other agent.
+    pub other: u16,
+    /// PCR_UNDECIDED, PCR_FIRST, PCR_SECOND or PCR_OVER, of the agent that was asked for.
+    pub pass: u8,
+    /// Length range along the path of the agent (m).
+    pub length: PcrInterval,
+    /// Length range along the path of the other (m).
+    pub other_length: PcrInterval,
+}
+
+/// What a check of orders takes into account.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcrTolerances {
+    /// So far the lower end of an agent's place may be behind it when it stands (m).
+    pub width: Real,
+    /// Less way than this (m) is no progress; above 0.
+    pub gain: Real,
+}
+
+/// How an agent brakes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcrBrakes {
+    /// Deceleration (m/s²), above 0.
+    pub deceleration: Real,
+    /// Reaction time (s) during which it may go on at its speed: what passes between two controls, and until one takes effect.
+    pub reaction: Real,
+}
+
+/// Room for the order of a region.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PcrOrder {
+    opaque: [Real; 5],
+}
+
+/// Room for what is known of an agent, and for a check.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PcrRobot {
+    opaque: [Real; 7],
 }
 
 /// Memory for a fleet. It belongs to the fleet from `pcr_fleet_init` on.
@@ -283,33 +239,40 @@ pub struct PcrMemory {
     pub pieces: *mut PcrPiece,
     /// Number of them.
     pub piece_count: usize,
+    /// For passing orders: as many as regions; as many more as an agent has that is admitted or replaced. Null where no orders
+    /// are used.
+    pub orders: *mut PcrOrder,
+    /// Number of them; 0 where no orders are used.
+    pub order_count: usize,
+    /// For what is known of the agents, as many as `motions`; null where no orders are used.
+    pub robots: *mut PcrRobot,
 }
 
 /// A fleet and the table of its regions.
 #[repr(C)]
 #[derive(Debug)]
 pub struct PcrFleet {
-    opaque: [usize; 24],
+    opaque: [usize; 32],
 }
 
 impl PcrFleet {
     /// A place for a fleet, not yet one.
-    pub const EMPTY: Self = Self { opaque: [0; 24] };
+    pub const EMPTY: Self = Self { opaque: [0; 32] };
 }
 
 impl PcrSegment {
     /// A free slot.
-    pub const EMPTY: Self = Self { opaque: [0.0; 30] };
+    pub const EMPTY: Self = Self { opaque: [ZERO; SEGMENT] };
 }
 
 impl PcrPhase {
     /// A free slot.
-    pub const EMPTY: Self = Self { opaque: [0.0; 7] };
+    pub const EMPTY: Self = Self { opaque: [ZERO; 7] };
 }
 
 impl PcrMotion {
     /// A free slot.
-    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [0.0; 14] };
+    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [ZERO; MOTION] };
 }
 
 impl PcrEntry {
@@ -319,5 +282,15 @@ impl PcrEntry {
 
 impl PcrPiece {
     /// A free slot.
-    pub const EMPTY: Self = Self { opaque: [0; 7] };
+    pub const EMPTY: Self = Self { opaque: [ZERO; PIECE] };
+}
+
+impl PcrOrder {
+    /// A free slot.
+    pub const EMPTY: Self = Self { opaque: [ZERO; 5] };
+}
+
+impl PcrRobot {
+    /// A free slot.
+    pub const EMPTY: Self = Self { opaque: [ZERO; 7] };
 }

@@ -1,0 +1,91 @@
+/* Three robots that keep passing orders, however late they are: orders from a plan, a hold for each, a new mission that is
+ * admitted, one that is refused, and a robot that looks after itself with its own row only. */
+#include "pcr.h"
+#include <stdio.h>
+
+/* Room for 3 agents of one leg and one more while an agent is replaced; orders for all regions, and as many again. */
+static PcrSegment segments[4];
+static PcrPhase phases[12];
+static PcrMotion motions[3];
+static PcrEntry entries[8];
+static PcrPiece pieces[8];
+static PcrOrder orders[8];
+static PcrRobot robots[3];
+static PcrFleet fleet;
+
+static const PcrLeg line[] = {{PCR_LINE, 4.0f, 0.0f}};
+static const PcrBrakes brakes = {0.5f, 0.1f};
+
+static int failed(const char *what, PcrStatus status) {
+  if (status == PCR_STATUS_OK) return 0;
+  printf("%s: status %d\n", what, (int)status);
+  return 1;
+}
+
+/* How far each may go now, and how fast it may be at its start. */
+static int holds(void) {
+  for (size_t agent = 0; agent < pcr_fleet_agents(&fleet); agent++) {
+    PcrHold hold;
+    float speed = 0.0f;
+    if (failed("hold", pcr_fleet_hold(&fleet, agent, &hold))) return 1;
+    if (hold.kind == PCR_HOLD_KIND_INSIDE) return 1;
+    if (failed("speed", pcr_stopping_speed(&brakes, hold.length, &speed))) return 1;
+    printf("agent %u may go to %.3f m%s, at %.3f m/s\n", (unsigned)agent, hold.length,
+           hold.kind == PCR_HOLD_KIND_FREE ? ", the end" : "", speed);
+  }
+  return 0;
+}
+
+static PcrProgress at(float length) { return (PcrProgress){{length, length}, length}; }
+
+int main(void) {
+  const PcrMemory memory = {segments, 4, phases, 12, motions, 3, entries, 8, pieces, 8, orders, 8, robots};
+  /* West to east; south to north, 3 s later; and one that stands aside. */
+  const PcrAgent agents[] = {
+      {-2.0f, 0.0f, 0.0f, 0.25f, 0.0f, line, 1, 1.0f, 1.0f, NULL, 0},
+      {0.0f, -2.0f, 1.5707963f, 0.25f, 3.0f, line, 1, 1.0f, 1.0f, NULL, 0},
+      {1.0f, 2.0f, -1.5707963f, 0.25f, 0.0f, NULL, 0, 1.0f, 1.0f, NULL, 0},
+  };
+  const PcrTolerances tolerances = {0.01f, 0.001f};
+  const PcrProgress start = at(0.0f);
+  PcrAgent mission = agents[2];
+  PcrProgress progress;
+  PcrRefused why;
+  PcrHold own;
+
+  if (failed("init", pcr_fleet_init(&fleet, &memory))) return 1;
+  for (size_t k = 0; k < 3; k++)
+    if (failed("add", pcr_fleet_add(&fleet, &agents[k]))) return 1;
+  if (failed("build", pcr_fleet_build(&fleet))) return 1;
+  if (failed("orders", pcr_fleet_orders_as_planned(&fleet, &why))) return 1;
+  if (failed("check", pcr_fleet_check(&fleet, &tolerances, &why))) return 1;
+  if (holds()) return 1;
+
+  printf("agent 2 gets a mission\n");
+  mission.legs = line;
+  mission.leg_count = 1;
+  if (failed("admit", pcr_fleet_admit(&fleet, 2, &mission, &start, &tolerances, NULL, &why))) return 1;
+  if (holds()) return 1;
+
+  mission.x = 0.0f; /* down the lane on which agent 1 comes up */
+  if (pcr_fleet_admit(&fleet, 2, &mission, &start, &tolerances, NULL, &why) != PCR_STATUS_REFUSED) return 1;
+  printf("another one is refused: reason %d, agents %u and %u\n", (int)why.reason, (unsigned)why.agents[0],
+         (unsigned)why.agents[1]);
+
+  printf("agent 0 is at 2.600 m\n");
+  progress = at(2.6f);
+  if (failed("report", pcr_fleet_report(&fleet, 0, &progress))) return 1;
+  progress = at(1.0f); /* an old report comes late, and takes nothing back */
+  if (failed("report", pcr_fleet_report(&fleet, 0, &progress))) return 1;
+  if (holds()) return 1;
+
+  if (failed("row", pcr_fleet_build_row(&fleet, 1))) return 1;
+  if (failed("decide", pcr_fleet_decide(&fleet, 1, 0, PCR_SECOND))) return 1;
+  if (failed("hold", pcr_fleet_hold(&fleet, 1, &own))) return 1;
+  printf("agent 1 by itself: %s\n", own.kind == PCR_HOLD_KIND_FREE ? "free" : "held");
+  if (pcr_fleet_hold(&fleet, 0, &own) != PCR_STATUS_ONLY_ROW) return 1;
+
+  if (failed("remove", pcr_fleet_remove(&fleet, 0))) return 1;
+  printf("%u agents are left\n", (unsigned)pcr_fleet_agents(&fleet));
+  return 0;
+}

@@ -1,0 +1,46 @@
+/* One robot that looks after itself, in fixed point: no floating-point instruction on the target but in what prints. It knows
+ * its row, who goes first, and what the other has reported. */
+#include "pcr_q16.h"
+#include <stdio.h>
+
+static PcrQ16Segment segments[3];
+static PcrQ16Phase phases[6];
+static PcrQ16Motion motions[2];
+static PcrQ16Entry entries[2];
+static PcrQ16Piece pieces[4];
+static PcrQ16Order orders[2];
+static PcrQ16Robot robots[2];
+static PcrQ16Fleet fleet;
+
+static const PcrQ16Leg east[] = {{PCR_LINE, PCR_Q16(4.0), 0}};
+static const PcrQ16Leg north[] = {{PCR_LEFT, PCR_Q16(1.5707963), PCR_Q16(1.0)}, {PCR_LINE, PCR_Q16(3.0), 0}};
+
+static double metres(int32_t number) { return number / 65536.0; }
+
+static int hold(void) {
+  PcrQ16Hold found;
+  PcrStatus status = pcr_q16_fleet_hold(&fleet, 1, &found);
+  if (status != PCR_STATUS_OK) return 1;
+  printf("robot 1 may go to %.3f m%s\n", metres(found.length), found.kind == PCR_HOLD_KIND_FREE ? ", the end" : "");
+  return 0;
+}
+
+int main(void) {
+  const PcrQ16Memory memory = {segments, 3, phases, 6, motions, 2, entries, 2, pieces, 4, orders, 2, robots};
+  const int32_t radius = PCR_Q16(0.25), one = PCR_Q16(1.0);
+  const PcrQ16Agent agents[] = {
+      {PCR_Q16(-2.0), 0, 0, radius, 0, east, 1, one, one, NULL, 0},
+      {PCR_Q16(-1.0), PCR_Q16(-2.0), PCR_Q16_RADIANS(0.0), radius, 0, north, 2, one, one, NULL, 0},
+  };
+  if (pcr_q16_fleet_init(&fleet, &memory) != PCR_STATUS_OK) return 1;
+  for (size_t k = 0; k < 2; k++)
+    if (pcr_q16_fleet_add(&fleet, &agents[k]) != PCR_STATUS_OK) return 1;
+  if (pcr_q16_fleet_build_row(&fleet, 1) != PCR_STATUS_OK) return 1;
+  if (pcr_q16_fleet_decide(&fleet, 1, 0, PCR_SECOND) != PCR_STATUS_OK || hold()) return 1;
+  for (int32_t at = PCR_Q16(1.0); at <= PCR_Q16(3.0); at += PCR_Q16(0.5)) {
+    const PcrQ16Progress progress = {{at, at}, at};
+    printf("robot 0 reports %.3f m\n", metres(at));
+    if (pcr_q16_fleet_report(&fleet, 0, &progress) != PCR_STATUS_OK || hold()) return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,84 @@
+// The C++ wrapper in all three number formats: what it computes, what it throws, and that it can be moved.
+#include "pcr.hpp"
+#include <cmath>
+#include <cstdio>
+#include <type_traits>
+#include <utility>
+
+static int failures = 0;
+#define EXPECT(what) \
+  if (!(what)) std::printf("line %d: %s\n", __LINE__, #what), failures++
+
+// West to east, south to north, and one that stands aside; `real` makes a number of the format, `back` a double of it.
+template <class F, class Make, class Back>
+void crossing(const char *name, Make real, Back back, typename F::Agent quarter) {
+  using Fleet = pcr::BasicFleet<F>;
+  const auto one = real(1.0);
+  auto agent = [&](double x, double y, decltype(quarter.heading) turned, decltype(quarter.legs) legs, std::size_t count) {
+    return typename F::Agent{real(x), real(y), turned, real(0.25), real(0.0), legs, count, one, one, nullptr, 0};
+  };
+  static const std::remove_const_t<std::remove_pointer_t<decltype(quarter.legs)>> line[] = {{PCR_LINE, real(4.0), real(0.0)}};
+  const auto east = agent(-2.0, 0.0, 0, line, 1);
+  const auto north = agent(0.0, -2.0, quarter.heading, line, 1);
+  const auto stands = agent(1.0, 2.0, 0, nullptr, 0);
+  Fleet first;
+  EXPECT(first.add(east) == 0 && first.add(north) == 1 && first.add(stands) == 2);
+  try {
+    first.regions(0);
+    EXPECT(!"a table that was not built");
+  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NOT_BUILT); }
+  first.build();
+  Fleet fleet = std::move(first);
+  const auto regions = fleet.regions(0);
+  EXPECT(regions.size() == 1 && std::abs(back(regions[0].length.lo) - 1.5) < 1e-3);
+  EXPECT(fleet.conflicts(0, 1).size() == 1 && fleet.first_conflict(1) && !fleet.first_conflict(2));
+  EXPECT(fleet.slices(0, 1, real(2.5)).size() == 1);
+  EXPECT(fleet.safe_intervals(0, {real(2.0), real(2.0)}, {real(0.0), real(9.0)}).size() == 2);
+  try {
+    fleet.orders_as_planned();
+    EXPECT(!"two that meet are no plan");
+  } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_REFUSAL_MEETING && refused.why.agents[1] == 1); }
+  EXPECT(std::abs(back(fleet.earliest_start(1)) - std::sqrt(0.5)) < 1e-2);
+  EXPECT(fleet.plan_delays({1, 0, 2}).size() == 3);
+  fleet.delay(0, real(1.0)); // well apart: a plan lets them touch
+  fleet.orders_as_planned();
+  fleet.check({real(0.01), real(0.001)});
+  const auto passings = fleet.passings(0);
+  EXPECT(passings.size() == 1 && passings[0].pass == PCR_SECOND && passings[0].other == 1);
+  EXPECT(fleet.hold(0).kind == PCR_HOLD_KIND_AT && fleet.hold(1).kind == PCR_HOLD_KIND_FREE);
+  fleet.report(1, {{real(2.75), real(2.75)}, real(2.75)});
+  EXPECT(fleet.hold(0).kind == PCR_HOLD_KIND_FREE);
+  fleet.passed();
+  fleet.decide_at(passings[0].place, 0, PCR_FIRST);
+  // One that would stand on the path of the first for good.
+  try {
+    fleet.admit(2, agent(0.5, 0.0, 0, nullptr, 0), {}, {real(0.01), real(0.001)});
+    EXPECT(!"it is in the way");
+  } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_REFUSAL_BLOCKED); }
+  fleet.replace(2, agent(1.0, -2.0, quarter.heading, line, 1));
+  fleet.decide(2, 0, PCR_SECOND);
+  fleet.remove(1);
+  EXPECT(fleet.size() == 2 && fleet.passings(1).size() == 1 && fleet.passings(1)[0].pass == PCR_SECOND);
+  fleet.build_row(1);
+  EXPECT(fleet.regions(1).size() == 1);
+  pcr::Capacity small;
+  small.agents = 1;
+  Fleet full(small);
+  full.add(east);
+  try {
+    full.add(north);
+    EXPECT(!"there is no room");
+  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_ROOM); }
+  std::printf("%s: %s\n", name, failures == 0 ? "passed" : "failed");
+}
+
+int main() {
+  PcrAgent single{};
+  PcrF64Agent twice{};
+  PcrQ16Agent fixed{};
+  single.heading = 1.5707963f, twice.heading = 1.5707963267948966, fixed.heading = PCR_Q16_RADIANS(1.5707963267948966);
+  crossing<pcr::Single>("float", [](double x) { return static_cast<float>(x); }, [](float x) { return double(x); }, single);
+  crossing<pcr::Double>("double", [](double x) { return x; }, [](double x) { return x; }, twice);
+  crossing<pcr::Fixed>("Q16.16", [](double x) { return PCR_Q16(x); }, [](std::int32_t x) { return x / 65536.0; }, fixed);
+  return failures == 0 ? 0 : 1;
+}

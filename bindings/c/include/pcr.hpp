@@ -1,0 +1,199 @@
+// C++17 over the C interface: memory is owned, errors are exceptions. pcr::Fleet is in double, pcr::FleetF32 in float,
+// pcr::FleetQ16 in 1/65536. Indices and units are those of pcr.h.
+#ifndef PCR_HPP
+#define PCR_HPP
+
+#include "pcr.h"
+#include "pcr_f64.h"
+#include "pcr_q16.h"
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace pcr {
+
+// What a call came to that did not come to PCR_STATUS_OK, and who is in the way.
+struct Error : std::runtime_error {
+  Error(const char *call, PcrStatus status)
+      : std::runtime_error(std::string(call) + ": pcr status " + std::to_string(static_cast<int>(status))),
+        status(status) {}
+  const PcrStatus status;
+};
+
+// PCR_STATUS_REFUSED.
+struct Refused : Error {
+  Refused(const char *call, PcrRefused why) : Error(call, PCR_STATUS_REFUSED), why(why) {}
+  const PcrRefused why;
+};
+
+// PCR_STATUS_NO_PLAN.
+struct Unsolved : Error {
+  Unsolved(const char *call, PcrUnsolved why) : Error(call, PCR_STATUS_NO_PLAN), why(why) {}
+  const PcrUnsolved why;
+};
+
+inline void check(const char *call, PcrStatus status) {
+  if (status != PCR_STATUS_OK) throw Error(call, status);
+}
+
+// How much a fleet has room for. Segments and phases need room for those of an agent that is replaced twice.
+struct Capacity {
+  std::size_t agents = 16, segments = 96, phases = 64, regions = 256, pieces = 512, orders = 512;
+};
+
+// The types and functions of a number format by the names that they have in pcr.h.
+#define PCR_FORMAT(Format, Types, functions, Number)                                                                   \
+  struct Format {                                                                                                      \
+    using Real = Number; using Agent = Types##Agent; using Conflict = Types##Conflict; using Handle = Types##Fleet;    \
+    using Hold = Types##Hold; using Interval = Types##Interval; using Met = Types##Met; using Motion = Types##Motion;  \
+    using Passing = Types##Passing; using Progress = Types##Progress; using Region = Types##Region;                    \
+    using Tolerances = Types##Tolerances;                                                                              \
+    struct Storage {                                                                                                   \
+      std::vector<Types##Segment> segments;                                                                            \
+      std::vector<Types##Phase> phases;                                                                                \
+      std::vector<Motion> motions, room;                                                                               \
+      std::vector<Types##Entry> entries;                                                                               \
+      std::vector<Types##Piece> pieces;                                                                                \
+      std::vector<Types##Order> orders;                                                                                \
+      std::vector<Types##Robot> robots;                                                                                \
+      Handle handle;                                                                                                   \
+      Types##Memory memory() {                                                                                         \
+        return {segments.data(), segments.size(), phases.data(),  phases.size(),  motions.data(),                      \
+                motions.size(),  entries.data(),  entries.size(), pieces.data(),  pieces.size(),                       \
+                orders.data(),   orders.size(),   robots.data()};                                                      \
+      }                                                                                                                \
+    };                                                                                                                 \
+    static constexpr auto init = functions##init; static constexpr auto add = functions##add;                          \
+    static constexpr auto agents = functions##agents; static constexpr auto build = functions##build;                  \
+    static constexpr auto build_row = functions##build_row; static constexpr auto delay = functions##delay;            \
+    static constexpr auto replace = functions##replace; static constexpr auto remove = functions##remove;              \
+    static constexpr auto regions = functions##regions; static constexpr auto slices = functions##slices;              \
+    static constexpr auto conflicts = functions##conflicts;                                                            \
+    static constexpr auto first_conflict = functions##first_conflict;                                                  \
+    static constexpr auto earliest_start = functions##earliest_start;                                                  \
+    static constexpr auto safe_intervals = functions##safe_intervals;                                                  \
+    static constexpr auto plan_delays = functions##plan_delays; static constexpr auto passings = functions##passings;  \
+    static constexpr auto orders_as_planned = functions##orders_as_planned;                                            \
+    static constexpr auto decide = functions##decide; static constexpr auto decide_at = functions##decide_at;          \
+    static constexpr auto report = functions##report; static constexpr auto hold = functions##hold;                    \
+    static constexpr auto check = functions##check; static constexpr auto admit = functions##admit;                    \
+    static constexpr auto passed = functions##passed;                                                                  \
+  }
+PCR_FORMAT(Single, Pcr, pcr_fleet_, float);
+PCR_FORMAT(Double, PcrF64, pcr_f64_fleet_, double);
+PCR_FORMAT(Fixed, PcrQ16, pcr_q16_fleet_, std::int32_t);
+#undef PCR_FORMAT
+
+// A fleet with its memory; it may be moved. Every method throws an Error where the C function of its name fails.
+template <class F> class BasicFleet {
+  std::unique_ptr<typename F::Storage> own;
+  typename F::Handle *at() { return &own->handle; }
+  const typename F::Handle *at() const { return &own->handle; }
+
+  // How many there are, then all of them.
+  template <class T, class Ask> static std::vector<T> list(const char *call, Ask ask) {
+    std::size_t count = 0;
+    PcrStatus status = ask(static_cast<T *>(nullptr), std::size_t{0}, &count);
+    if (status != PCR_STATUS_BUFFER_TOO_SMALL) pcr::check(call, status);
+    std::vector<T> all(count);
+    if (count > 0) pcr::check(call, ask(all.data(), all.size(), &count));
+    return all;
+  }
+  static void settle(const char *call, PcrStatus status, const PcrRefused &why) {
+    if (status == PCR_STATUS_REFUSED) throw Refused(call, why);
+    pcr::check(call, status);
+  }
+
+public:
+  using Agent = typename F::Agent;
+  using Interval = typename F::Interval;
+  using Progress = typename F::Progress;
+  using Real = typename F::Real;
+  using Tolerances = typename F::Tolerances;
+
+  explicit BasicFleet(const Capacity &most = {}) : own(new typename F::Storage()) {
+    own->segments.resize(most.segments), own->phases.resize(most.phases), own->entries.resize(most.regions);
+    own->motions.resize(most.agents), own->room.resize(most.agents), own->robots.resize(most.agents);
+    own->pieces.resize(most.pieces), own->orders.resize(most.orders);
+    const auto memory = own->memory();
+    pcr::check("init", F::init(at(), &memory));
+  }
+  std::size_t add(const Agent &agent) { return pcr::check("add", F::add(at(), &agent)), size() - 1; }
+  std::size_t size() const { return F::agents(at()); }
+  void build() { pcr::check("build", F::build(at())); }
+  void build_row(std::size_t agent) { pcr::check("build_row", F::build_row(at(), agent)); }
+  void delay(std::size_t agent, Real by) { pcr::check("delay", F::delay(at(), agent, by)); }
+  void replace(std::size_t agent, const Agent &by) { pcr::check("replace", F::replace(at(), agent, &by)); }
+  void remove(std::size_t agent) { pcr::check("remove", F::remove(at(), agent)); }
+
+  std::vector<typename F::Region> regions(std::size_t ego) const {
+    return list<typename F::Region>("regions", [&](auto... out) { return F::regions(at(), ego, out...); });
+  }
+  std::vector<Interval> slices(std::size_t ego, std::size_t other, Real time) const {
+    return list<Interval>("slices", [&](auto... out) { return F::slices(at(), ego, other, time, out...); });
+  }
+  std::vector<typename F::Conflict> conflicts(std::size_t ego, std::size_t other) const {
+    return list<typename F::Conflict>("conflicts", [&](auto... out) { return F::conflicts(at(), ego, other, out...); });
+  }
+  std::vector<Interval> safe_intervals(std::size_t ego, Interval length, Interval during) const {
+    auto ask = [&](auto... out) { return F::safe_intervals(at(), ego, length, during, out...); };
+    return list<Interval>("safe_intervals", ask);
+  }
+  std::optional<typename F::Met> first_conflict(std::size_t ego, bool touches = false) const {
+    typename F::Met met;
+    bool found = false;
+    pcr::check("first_conflict", F::first_conflict(at(), ego, touches, &met, &found));
+    return found ? std::optional(met) : std::nullopt;
+  }
+  Real earliest_start(std::size_t agent, Real from = 0) const {
+    Real found = 0;
+    return pcr::check("earliest_start", F::earliest_start(at(), agent, from, &found)), found;
+  }
+  // The order in which the agents were planned.
+  std::vector<std::size_t> plan_delays(std::vector<std::size_t> order) {
+    PcrUnsolved why{};
+    const auto status = F::plan_delays(at(), order.data(), order.size(), own->room.data(), own->room.size(), &why);
+    if (status == PCR_STATUS_NO_PLAN) throw Unsolved("plan_delays", why);
+    return pcr::check("plan_delays", status), order;
+  }
+
+  std::vector<typename F::Passing> passings(std::size_t agent) const {
+    return list<typename F::Passing>("passings", [&](auto... out) { return F::passings(at(), agent, out...); });
+  }
+  void orders_as_planned() {
+    PcrRefused why{};
+    settle("orders_as_planned", F::orders_as_planned(at(), &why), why);
+  }
+  void decide(std::size_t ego, std::size_t by, std::uint8_t to) { pcr::check("decide", F::decide(at(), ego, by, to)); }
+  void decide_at(std::size_t region, std::size_t ego, std::uint8_t pass) {
+    pcr::check("decide_at", F::decide_at(at(), region, ego, pass));
+  }
+  void report(std::size_t agent, const Progress &where) { pcr::check("report", F::report(at(), agent, &where)); }
+  typename F::Hold hold(std::size_t agent) const {
+    typename F::Hold found;
+    return pcr::check("hold", F::hold(at(), agent, &found)), found;
+  }
+  void check(const Tolerances &accepted) {
+    PcrRefused why{};
+    settle("check", F::check(at(), &accepted, &why), why);
+  }
+  // `prefer` is empty, or has PCR_FIRST or PCR_SECOND of every agent.
+  void admit(std::size_t agent, const Agent &by, const Progress &where, const Tolerances &accepted,
+             const std::vector<std::uint8_t> &prefer = {}) {
+    if (!prefer.empty() && prefer.size() != size()) throw Error("admit", PCR_STATUS_BAD_ORDER);
+    PcrRefused why{};
+    const auto wanted = prefer.empty() ? nullptr : prefer.data();
+    settle("admit", F::admit(at(), agent, &by, &where, &accepted, wanted, &why), why);
+  }
+  void passed() { pcr::check("passed", F::passed(at())); }
+};
+
+using Fleet = BasicFleet<Double>;
+using FleetF32 = BasicFleet<Single>;
+using FleetQ16 = BasicFleet<Fixed>;
+
+} // namespace pcr
+#endif // PCR_HPP

@@ -1,0 +1,118 @@
+//! Conflicts of motions, and what resolves them.
+
+use super::number::{Real, S, plain};
+use super::points::{Room, ask, change, given, interval, number, range};
+use super::types::{PcrConflict, PcrFleet, PcrInterval, PcrMet, PcrMotion};
+use crate::memory::{Stack, places};
+use crate::status::{PcrStatus, PcrUnsolved};
+use pcr_core::{Conflict, Encounter, earliest_start, first_conflict, first_overlap, safe_intervals};
+
+fn record(conflict: &Conflict<S>) -> PcrConflict {
+    PcrConflict {
+        time: interval(conflict.time),
+        length: interval(conflict.length),
+        other_length: interval(conflict.other_length),
+        depth: plain(conflict.depth),
+        touching: conflict.touching,
+    }
+}
+
+/// The conflicts of two agents on their motions, in order of time from the first start of any agent to the last arrival,
+/// and their count. It asks the motions, not the table.
+#[unsafe(export_name = name!("fleet_conflicts"))]
+pub extern "C" fn pcr_fleet_conflicts(
+    place: Option<&PcrFleet>,
+    ego: usize,
+    other: usize,
+    out: *mut PcrConflict,
+    capacity: usize,
+    count: Option<&mut usize>,
+) -> PcrStatus {
+    ask(place, |fleet| {
+        let room = Room::new(out, capacity, count)?;
+        let encounter = Encounter::new(fleet.motion(ego)?, fleet.motion(other)?);
+        room.fill(encounter.conflicts(fleet.duration()).map(|conflict| record(&conflict)))
+    })
+}
+
+/// The earliest conflict of an agent with any other, from the first start of any agent to the last arrival, and whether
+/// there is one. Mere touches are passed over, unless they are asked for: plans make agents touch on purpose.
+#[unsafe(export_name = name!("fleet_first_conflict"))]
+pub extern "C" fn pcr_fleet_first_conflict(
+    place: Option<&PcrFleet>,
+    ego: usize,
+    touches: bool,
+    out: Option<&mut PcrMet>,
+    found: Option<&mut bool>,
+) -> PcrStatus {
+    ask(place, |fleet| {
+        let (out, found) = (given(out)?, given(found)?);
+        let (motion, during) = (fleet.motion(ego)?, fleet.duration());
+        let row = fleet.table().row(fleet.motions(), ego)?;
+        let met = if touches { first_conflict(motion, row, during) } else { first_overlap(motion, row, during) };
+        *found = met.is_some();
+        if let Some(met) = met {
+            *out = PcrMet { other: met.other, conflict: record(&met.conflict) };
+        }
+        Ok(())
+    })
+}
+
+/// The least delay of an agent's start, from `from` on (s), with which it meets none of the others, each moving as it does
+/// now. `PCR_STATUS_NO_PLAN` where no delay helps. `pcr_fleet_delay` makes it so.
+#[unsafe(export_name = name!("fleet_earliest_start"))]
+pub extern "C" fn pcr_fleet_earliest_start(
+    place: Option<&PcrFleet>,
+    agent: usize,
+    from: Real,
+    delay: Option<&mut Real>,
+) -> PcrStatus {
+    ask(place, |fleet| {
+        let (delay, from) = (given(delay)?, number(from)?);
+        let row = fleet.table().row(fleet.motions(), agent)?;
+        *delay = plain(earliest_start(row, from).ok_or(PcrStatus::NoPlan)?);
+        Ok(())
+    })
+}
+
+/// The times in an interval (s) at which no other agent is in the way on a part of the ego's path (m), wherever on it the ego
+/// is, and how many intervals there are. It asks the motions, not the table.
+#[unsafe(export_name = name!("fleet_safe_intervals"))]
+pub extern "C" fn pcr_fleet_safe_intervals(
+    place: Option<&PcrFleet>,
+    ego: usize,
+    length: PcrInterval,
+    during: PcrInterval,
+    out: *mut PcrInterval,
+    capacity: usize,
+    count: Option<&mut usize>,
+) -> PcrStatus {
+    ask(place, |fleet| {
+        let room = Room::new(out, capacity, count)?;
+        let (length, during) = (range(length)?, range(during)?);
+        room.fill(safe_intervals(fleet.motions(), ego, length, during)?.map(interval))
+    })
+}
+
+/// Delays the starts of all agents so that none overlaps another, each as little as those before it in the order allow.
+/// `order` lists each agent once, the highest priority first, and comes back as it was used. `room` is for a motion an agent,
+/// and free afterwards. Where there is no plan, nobody is delayed and `why` tells who is in the way; it may be null.
+#[unsafe(export_name = name!("fleet_plan_delays"))]
+pub extern "C" fn pcr_fleet_plan_delays(
+    place: Option<&mut PcrFleet>,
+    order: *mut usize,
+    count: usize,
+    room: *mut PcrMotion,
+    room_count: usize,
+    why: Option<&mut PcrUnsolved>,
+) -> PcrStatus {
+    change(place, |fleet| {
+        let (order, room) = (given(places(order, count))?, given(Stack::new(room, room_count))?);
+        fleet.plan(room, order).map_err(|(status, unsolved)| {
+            if let (Some(why), Some(unsolved)) = (why, unsolved) {
+                *why = unsolved.into();
+            }
+            status
+        })
+    })
+}

@@ -1,0 +1,169 @@
+//! `pcr-core` for WebAssembly: a fleet of up to 24 agents, its regions, maps, conflicts, plans and holds. No heap, no imports: the
+//! module asks for nothing, and any host that runs WebAssembly can load it.
+//!
+//! The caller writes numbers to [`pcr_input`], calls [`pcr_build`], then asks. Answers are rows of numbers at [`pcr_output`], all
+//! `f64`; the number of rows is what the call returns. A negative number says that there is no answer, and [`pcr_message`] why.
+//! An empty answer (0 rows) always means that there is nothing. Agents are counted from 0 in numbers, from 1 in messages.
+//!
+//! ```text
+//! pcr_input()                          -> address of 24 rows of pcr_stride() numbers, an agent each:
+//!                                         x, y, heading, radius, start, v_max, a_max, number of legs, then two a leg:
+//!                                         length, 0 for a line; radius, sweep (left is positive) for an arc
+//! pcr_build(agents)                    -> regions      reads them and computes the table
+//! pcr_regions()                        -> rows of 8    ego, other, times, lengths of the ego, lengths of the other (from, to)
+//! pcr_map(ego, from, step, times)      -> rows of 4    number of the time, other, lengths that are forbidden then (from, to)
+//! pcr_conflicts()                      -> rows of 10   both agents, times, depth, 1 if they but touch, lengths of both
+//! pcr_places(time)                     -> rows of 6    x, y, heading, travelled length, length of the path, arrival
+//! pcr_plan()                           -> rows of 1    delay of each agent's start so that nobody collides
+//! pcr_holds(time)                      -> rows of 1    how far each may go in the order of the motions, if the others stop now
+//! pcr_first(), pcr_last()              -> first start, last arrival; NaN without a fleet
+//! pcr_output()                         -> address of the answer
+//! pcr_message(), pcr_message_length()  -> address and length of the last message, UTF-8
+//! ```
+//!
+//! Units: metres, seconds, radians. `bindings/web/regions.mjs` is a program to begin with. The numbers are those of the library on
+//! any other machine, bit for bit: `bindings/web/check.sh` compares them with the tool's.
+#![cfg_attr(target_arch = "wasm32", no_std)]
+
+pub mod agents;
+pub mod fleet;
+pub mod message;
+
+use agents::{AGENTS, Input, STRIDE};
+use core::cell::UnsafeCell;
+use core::fmt::Write;
+use fleet::{Fleet, Memory, Rows};
+use heapless::String;
+use message::Fault;
+
+#[cfg(all(target_arch = "wasm32", not(test)))]
+#[panic_handler]
+fn panicked(_: &core::panic::PanicInfo<'_>) -> ! {
+    core::arch::wasm32::unreachable()
+}
+
+/// What a module has one of.
+struct State {
+    input: Input,
+    rows: Rows,
+    message: String<256>,
+}
+
+/// It is used by one thread: WebAssembly without the threads proposal has no others, and elsewhere (in tests) the exports must not
+/// be called from several threads.
+struct Single<T>(UnsafeCell<T>);
+
+// SAFETY: see above; no export calls another one while it holds a reference.
+unsafe impl<T> Sync for Single<T> {}
+
+static STATE: Single<State> =
+    Single(UnsafeCell::new(State { input: [0.0; AGENTS * STRIDE], rows: Rows::EMPTY, message: String::new() }));
+static MEMORY: Single<Memory> = Single(UnsafeCell::new(Memory::NEW));
+static FLEET: Single<Option<Fleet<'static>>> = Single(UnsafeCell::new(None));
+
+fn with<T>(act: impl FnOnce(&mut Fleet<'static>, &mut Input, &mut Rows, &mut String<256>) -> T) -> T {
+    // SAFETY: the only references, for as long as the export runs.
+    let (State { input, rows, message }, fleet) = unsafe { (&mut *STATE.0.get(), &mut *FLEET.0.get()) };
+    // SAFETY: taken once, when there is no fleet yet, and kept by the fleet for ever.
+    let fleet = fleet.get_or_insert_with(|| Fleet::new(unsafe { &mut *MEMORY.0.get() }));
+    act(fleet, input, rows, message)
+}
+
+/// The number of rows, or -1 and a message.
+fn answer(ask: impl FnOnce(&mut Fleet<'static>, &Input, &mut Rows) -> Result<usize, Fault>) -> i32 {
+    with(|fleet, input, rows, message| {
+        message.clear();
+        match ask(fleet, input, rows) {
+            Ok(rows) => i32::try_from(rows).unwrap_or(i32::MAX),
+            Err(fault) => {
+                // A message that does not fit is cut; none is longer than the room.
+                let _ = write!(message, "{fault}");
+                -1
+            }
+        }
+    })
+}
+
+/// Where agents are written.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_input() -> *mut f64 {
+    with(|_, input, _, _| input.as_mut_ptr())
+}
+
+/// Numbers of an agent.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_stride() -> u32 {
+    STRIDE as u32
+}
+
+/// Where answers are read.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_output() -> *const f64 {
+    with(|_, _, rows, _| rows.numbers().as_ptr())
+}
+
+/// Where the last message is.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_message() -> *const u8 {
+    with(|_, _, _, message| message.as_ptr())
+}
+
+/// Bytes of the last message; 0 after an answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_message_length() -> u32 {
+    with(|_, _, _, message| message.len() as u32)
+}
+
+/// Reads the agents and computes their regions.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_build(agents: u32) -> i32 {
+    answer(|fleet, input, _| fleet.build(input, agents as usize))
+}
+
+/// All regions.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_regions() -> i32 {
+    answer(|fleet, _, rows| fleet.regions(rows))
+}
+
+/// The collision map of an agent.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_map(ego: u32, from: f64, step: f64, times: u32) -> i32 {
+    answer(|fleet, _, rows| fleet.map(rows, ego as usize, from, step, times as usize))
+}
+
+/// The conflicts of all pairs.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_conflicts() -> i32 {
+    answer(|fleet, _, rows| fleet.conflicts(rows))
+}
+
+/// Where all agents are at a time.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_places(time: f64) -> i32 {
+    answer(|fleet, _, rows| fleet.places(rows, time))
+}
+
+/// Start delays without conflicts.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_plan() -> i32 {
+    answer(|fleet, _, rows| fleet.plan(rows))
+}
+
+/// How far each agent may go.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_holds(time: f64) -> i32 {
+    answer(|fleet, _, rows| fleet.holds(rows, time))
+}
+
+/// The first start \[s\]; NaN without a fleet.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_first() -> f64 {
+    with(|fleet, _, _, _| fleet.span().map_or(f64::NAN, |span| span.lo))
+}
+
+/// The last arrival \[s\]; NaN without a fleet.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_last() -> f64 {
+    with(|fleet, _, _, _| fleet.span().map_or(f64::NAN, |span| span.hi))
+}

@@ -1,0 +1,84 @@
+//! What the module refuses, and that an answer of no rows means that there is nothing.
+
+use pcr_web::agents::{AGENTS, Input, LEGS, STRIDE};
+use pcr_web::fleet::{Fleet, Memory, Rows};
+use pcr_web::message::Fault;
+
+/// Two that cross, 4 m before them.
+fn crossing() -> Box<Input> {
+    let mut input = Box::new([0.0; AGENTS * STRIDE]);
+    input[..10].copy_from_slice(&[-4.0, 0.0, 0.0, 0.4, 0.0, 1.0, 0.5, 1.0, 8.0, 0.0]);
+    let turned = [0.0, -4.0, std::f64::consts::FRAC_PI_2, 0.4, 0.0, 1.0, 0.5, 1.0, 8.0, 0.0];
+    input[STRIDE..STRIDE + 10].copy_from_slice(&turned);
+    input
+}
+
+fn fleet() -> Fleet<'static> {
+    // As large as the tables of the module: on a stack of its own there is no room for it.
+    std::thread::Builder::new()
+        .stack_size(16 << 20)
+        .spawn(|| Box::leak(Box::new(Memory::NEW)))
+        .and_then(|thread| thread.join().map_err(|_| std::io::Error::other("no memory")))
+        .map(|memory| Fleet::new(memory))
+        .expect("memory for a test")
+}
+
+fn asked(ask: impl FnOnce(&mut Fleet<'static>, &mut Rows) + Send + 'static) {
+    let run = move || ask(&mut fleet(), &mut Box::new(Rows::EMPTY));
+    std::thread::Builder::new().stack_size(32 << 20).spawn(run).expect("a thread").join().expect("no panic");
+}
+
+#[test]
+fn a_crossing_has_a_region_a_conflict_and_a_plan() {
+    asked(|fleet, rows| {
+        assert_eq!(fleet.build(&crossing(), 2), Ok(1));
+        assert_eq!(fleet.regions(rows), Ok(2));
+        assert_eq!(fleet.conflicts(rows), Ok(1));
+        assert_eq!(fleet.holds(rows, 0.0), Err(Fault::Refused(pcr_core::Refused::Meeting([0, 1]))));
+        assert_eq!(fleet.plan(rows), Ok(2));
+        let delays = rows.numbers().to_vec();
+        assert!(delays.iter().any(|&delay| delay > 0.5));
+        // The table is that of the fleet again.
+        assert_eq!(fleet.regions(rows), Ok(2));
+        let mut later = crossing();
+        (later[4], later[STRIDE + 4]) = (delays[0], delays[1]);
+        assert_eq!(fleet.build(&later, 2), Ok(1));
+        assert_eq!(fleet.conflicts(rows), Ok(0));
+        assert_eq!(fleet.holds(rows, 0.0), Ok(2));
+        assert_eq!(rows.numbers().iter().filter(|hold| hold.is_finite()).count(), 1);
+    });
+}
+
+#[test]
+fn what_is_no_fleet_is_refused_and_leaves_nobody() {
+    asked(|fleet, rows| {
+        let wrong = |place: usize, value: f64| {
+            let mut input = crossing();
+            input[place] = value;
+            input
+        };
+        for (place, value) in [
+            (0, f64::NAN),
+            (3, 0.0),
+            (3, f64::INFINITY),
+            (5, -1.0),
+            (7, 0.5),
+            (7, LEGS as f64 + 1.0),
+            (7, -1.0),
+            (8, -2.0),
+        ] {
+            assert!(fleet.build(&crossing(), 2).is_ok());
+            assert!(fleet.build(&wrong(place, value), 2).is_err(), "{place}: {value}");
+            // There is nobody of whom "no conflict" could be said.
+            assert_eq!(
+                [fleet.map(rows, 0, 0.0, 1.0, 10), fleet.conflicts(rows), fleet.regions(rows)],
+                [Err(Fault::NotBuilt); 3]
+            );
+        }
+        assert_eq!(fleet.build(&crossing(), AGENTS + 1), Err(Fault::Agents(AGENTS + 1)));
+        assert!(fleet.build(&crossing(), 2).is_ok());
+        assert_eq!(fleet.map(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::Mismatch::NoSuchAgent(2))));
+        assert_eq!(fleet.map(rows, 0, f64::NAN, 1.0, 10), Err(Fault::Question("the time")));
+        assert_eq!(fleet.map(rows, 0, 5.0, 0.0, usize::MAX >> 40), Err(Fault::Rows));
+    });
+}
