@@ -51,7 +51,7 @@ fn suffices(name: &str, format: Format, text: &str, radius: f64, settings: &Sett
     let run = run(&imported, &rules, 1000, 7);
     assert!(run.contacts.is_empty(), "{name}: {:?}", run.contacts);
     assert_eq!(run.missions, 1000, "{name}: {run:?}");
-    assert!(run.pairs > 500 && run.refused > 100, "{name}: hardly anybody met: {run:?}");
+    assert!(run.pairs > 200 && run.refused > 100, "{name}: hardly anybody met: {run:?}");
 }
 
 #[test]

@@ -20,6 +20,9 @@ const NEEDLESS: &str = "#e07b00";
 /// Needless pairs that are drawn at most: more than that is a net.
 const MOST: usize = 400;
 
+/// Height of a line of the legend \[px\].
+const LINE: f64 = 15.0;
+
 /// Places of edges by their names.
 fn places(imported: &Imported) -> HashMap<String, usize> {
     imported.layout.edges.iter().enumerate().map(|(k, edge)| (edge.id.to_string(), k)).collect()
@@ -78,7 +81,7 @@ pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> Strin
     let on_level = |edge: usize| layout.edges.get(edge).is_some_and(|edge| layout.is_on(edge, ground.level));
     let level = layout.levels.get(ground.level).map_or("", String::as_str);
     let title = format!("{}, audit of {}", ground.title(), audit.exclusions);
-    ground.picture_with(&title, 18.0, |svg, frame| {
+    ground.picture_with(&title, 18.0 + 2.0 * LINE, |svg, frame| {
         let metre = 1.0 / frame.x.units_per_pixel();
         let wide = Pixels((0.5 * audit.vehicle.radius * metre).max(2.0));
         let line: [(&str, &dyn Display); 3] =
@@ -118,12 +121,14 @@ pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> Strin
         }
         svg.end();
         let [left, _, _, bottom] = frame.edges;
-        let legend = format!(
-            "{} groups in colours; red: {} pairs that can touch (large: apart); orange: {} pairs excluded in vain",
-            rules.groups.len(),
-            audit.gaps.len(),
-            audit.needless.len()
-        );
-        svg.label([left, bottom + super::axis::ROOM_BELOW + 8.0], "start", &[], &legend);
+        let legend = [
+            format!("colours: {} groups of the file", rules.groups.len()),
+            format!("red: {} pairs that can touch; large ones share no node", audit.gaps.len()),
+            format!("orange: {} pairs excluded in vain", audit.needless.len()),
+        ];
+        for (k, line) in legend.iter().enumerate() {
+            let below = super::axis::ROOM_BELOW + 8.0 + LINE * k as f64;
+            svg.label([left, bottom + below], "start", &[], line);
+        }
     })
 }
