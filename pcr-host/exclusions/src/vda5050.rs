@@ -38,7 +38,7 @@ fn messages(value: &Value) -> Vec<&Value> {
 }
 
 /// The map of a level.
-fn map<'a>(layout: &'a Layout, level: usize) -> &'a str {
+fn map(layout: &Layout, level: usize) -> &str {
     match layout.levels.get(level).map_or("", String::as_str) {
         "" if layout.name.is_empty() => "map",
         "" => &layout.name,
