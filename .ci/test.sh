@@ -3,9 +3,15 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+# A part, and how long it took: in all, and of the cores' time by programs and by the system.
+timed() {
+  local TIMEFORMAT="-- $1 took %0R s; of the cores' time %0U s and %0S s"
+  time "$1"
+}
 
 step() { printf '\n== %s\n' "$*"; }
 
@@ -37,15 +43,19 @@ docs() {
 tests() {
   step "tests: optimized, overflow checks and assertions on, methods of other libraries in comparisons"
   peer_libraries
-  cargo test --workspace --profile checked --features pcr-tests/peers --locked
+  local options=(--workspace --profile checked --features pcr-tests/peers --locked)
+  # Not the examples: the lints have checked that they compile, and those that are run are named.
+  cargo test "${options[@]}" --lib --bins --tests
+  cargo test "${options[@]}" --doc
   step "plans of 100000 random fleets by either method, checked by the oracle"
-  # Built with the tests; `cargo run` would build what it depends on with other features.
+  local example examples=(fleet_server late_robots no_fpu)
+  # Not `cargo run`, which would build what it depends on with other features.
+  cargo build "${options[@]}" "${examples[@]/#/--example=}" --example=fleets
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
   step "the examples of the libraries"
-  local example
-  for example in fleet_server late_robots no_fpu; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
+  for example in "${examples[@]}"; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
   step "benchmarks, one pass each, as the tests are built"
-  cargo bench --workspace --bench '*' --profile checked --features pcr-tests/peers --locked -- --test
+  cargo bench "${options[@]}" --bench '*' -- --test
 }
 
 # Files that are written for openTCS, against its schema.
@@ -62,8 +72,7 @@ schemas() {
 # A browser for the pages; a package of Debian, where there is none.
 browser() {
   command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null && return
-  echo "installing chromium"
-  apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends chromium >/dev/null
+  .ci/install.sh chromium
 }
 
 pages() {
@@ -79,6 +88,34 @@ web() {
   browser
   cargo build --workspace --profile checked --features pcr-tests/peers --locked
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+}
+
+python() {
+  step "the Python package"
+  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+}
+
+# The crates that could be published: licences, a README and all that they need are in them.
+packages() {
+  step "packages, built and tested outside of the workspace"
+  local target=${CARGO_TARGET_DIR:-target} crates=() crate
+  for crate in $(sed -n '/^members/,/^\]/s/^ *"\(.*\)",/\1/p' Cargo.toml); do
+    grep -q '^publish = false' "$crate/Cargo.toml" || crates+=("$(sed -n 's/^name = "\(.*\)"/\1/p' "$crate/Cargo.toml" | head -1)")
+  done
+  rm -rf "$target/package"
+  # shellcheck disable=SC2046
+  cargo package $(printf -- '-p %s ' "${crates[@]}") --locked --allow-dirty --no-verify
+  local archive file
+  for crate in "${crates[@]}"; do
+    archive=$(ls "$target/package/$crate"-[0-9]*.crate)
+    for file in README.md LICENSE-MIT LICENSE-APACHE Cargo.toml; do
+      tar -tf "$archive" | grep "/$file\$" >/dev/null || { echo "$crate has no $file" >&2; return 1; }
+    done
+    tar -C "$target/package" -xf "$archive"
+  done
+  # What is recorded for the proofs is compared in the repository, where the proofs are.
+  (cd "$target/package"/pcr-core-*[0-9] && CARGO_TARGET_DIR=.. cargo test -q --lib --examples --features std -- --skip recorded::)
 }
 
 instructions() {
@@ -97,7 +134,6 @@ sets_of() {
 }
 
 features() {
-  peer_libraries
   local crate set
   for crate in pcr-core pcr-fixed; do
     step "$crate with each set of features, and without any"
@@ -107,11 +143,10 @@ features() {
     done
     cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
   done
-  step "each part of the host alone, without features and with all of them"
+  step "each part of the host alone, with the features that it names itself"
   for crate in pcr-formats pcr-planning pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
     echo "$crate"
     cargo clippy -q -p $crate --locked --no-default-features -- -D warnings
-    cargo clippy -q -p $crate --locked --all-features -- -D warnings
   done
   step "defmt::Format on all public types"
   local source name missing=""
@@ -145,15 +180,7 @@ peer_libraries() {
     pkg-config --exists $library 2>/dev/null || packages+=(lib$library-dev)
   done
   if [ ${#packages[@]} = 0 ]; then return; fi
-  if [ "$(id -u)" != 0 ] || ! command -v apt-get >/dev/null; then
-    echo "missing for comparisons: ${packages[*]}" >&2
-    return 1
-  fi
-  echo "installing ${packages[*]}"
-  # Another installation may hold the lock for a while.
-  local apt=(apt-get -o DPkg::Lock::Timeout=600)
-  "${apt[@]}" update >/dev/null
-  "${apt[@]}" install -y --no-install-recommends "${packages[@]}" >/dev/null
+  .ci/install.sh "${packages[@]}"
 }
 
 no_std() {
@@ -195,8 +222,29 @@ fuzz() {
   fuzz/run.sh
 }
 
+# Everything, in two lanes: much of the second one waits for one thing at a time (a link, an emulator), and nothing that it
+# builds is in a folder that the first one builds in. What it prints comes when it is done, or when it fails.
+everything() {
+  local part log failed=0
+  log=$(mktemp)
+  set -m # a process group of its own, that is ended as a whole
+  .ci/test.sh no_std c firmware instructions fuzz packages >"$log" 2>&1 &
+  beside=$!
+  set +m
+  trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
+  for part in style docs features tests pages web schemas python proofs; do
+    kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
+    timed "$part"
+  done
+  wait "$beside" || failed=$?
+  trap - EXIT
+  cat "$log"
+  rm "$log"
+  return "$failed"
+}
+
 # shellcheck disable=SC2048
-for part in ${*:-style docs features no_std c firmware tests pages web schemas instructions fuzz proofs}; do
-  "$part"
+for part in ${*:-everything}; do
+  timed "$part"
 done
-step "all passed"
+step "passed: ${*:-everything}"

@@ -6,13 +6,9 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 
-if ! command -v valgrind >/dev/null; then
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || { echo "no valgrind: install it" >&2; exit 1; }
-  echo "installing valgrind"
-  apt-get update -qq && apt-get install -qq -y --no-install-recommends valgrind >/dev/null
-fi
-cargo build --quiet --locked --profile bench -p pcr-benches --example work
-work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release/examples/work
+command -v valgrind >/dev/null || ../.ci/install.sh valgrind
+cargo build --quiet --locked --profile bench -p pcr-benches --bin work
+work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release/work
 
 counted() { valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work" "$@" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'; }
 
@@ -37,6 +33,9 @@ figure() {
     figure pairs $fleet "when agents are in contact, pair by pair"
   done
   figure exchange table6-100 "exchange of one agent"
+  figure certify paper12 "proof of the table"
+  figure motions paper12 "proof of the motions, or a contact of each pair"
+  figure certify table6-100 "proof of the table"
 } | tee /dev/stderr >instructions.new
 
 if [ "${UPDATE:-}" = 1 ]; then

@@ -37,5 +37,5 @@ for run in "${jobs[@]}"; do
   esac
   if [ ${#seeds[@]} -gt 0 ]; then cp "${seeds[@]}" "$corpus"; fi
   # Without AddressSanitizer, which takes longer to build: the crates forbid unsafe code.
-  cargo +nightly fuzz run --sanitizer none "$target" "$corpus" -- -runs="$runs" -seed=1 -timeout=20 -max_len=10000
+  cargo +nightly fuzz run --sanitizer none "$target" "$corpus" -- -runs="$runs" -seed=1 -timeout=600 -max_len=10000
 done

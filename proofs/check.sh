@@ -7,16 +7,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 export RUSTUP_AUTO_INSTALL=0
 
-install() {
-  if [ "$(id -u)" != 0 ] || ! command -v apt-get >/dev/null; then return 1; fi
-  echo "installing $1"
-  { apt-get update && apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "$1"; } >/dev/null 2>&1
-}
-command -v python3 >/dev/null || install python3
-command -v gappa >/dev/null || install gappa || { echo "Gappa is missing: https://gappa.gitlabpages.inria.fr" >&2; exit 1; }
+command -v python3 >/dev/null || .ci/install.sh python3
+command -v gappa >/dev/null || .ci/install.sh gappa || { echo "Gappa is missing: https://gappa.gitlabpages.inria.fr" >&2; exit 1; }
 if ! python3 -c 'import z3' 2>/dev/null; then
   echo "installing z3-solver"
-  python3 -m pip install -q z3-solver 2>/dev/null || install python3-z3 || { echo "z3 for Python is missing" >&2; exit 1; }
+  python3 -m pip install -q z3-solver 2>/dev/null || .ci/install.sh python3-z3 || { echo "z3 for Python is missing" >&2; exit 1; }
   python3 -c 'import z3'
 fi
 

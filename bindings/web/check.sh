@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 tool=$(realpath "${1:?usage: $0 PCR}")
 target=${CARGO_TARGET_DIR:-target}
-command -v node >/dev/null || { apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends nodejs >/dev/null; }
+command -v node >/dev/null || .ci/install.sh nodejs
 
 firmware/cross.sh wasm32-unknown-unknown build --profile web --locked -p pcr-web
 module=$target/wasm32-unknown-unknown/web/pcr_web.wasm

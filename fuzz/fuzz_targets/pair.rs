@@ -15,13 +15,16 @@ fn audit<S: Format>(ego: &Disc, other: &Disc) {
     let (ego, other) = (ego.rounded::<S>(), other.rounded::<S>());
     match Audit::<S>::new(&ego, &other) {
         Err(refused) => assert!(refused.starts_with("refused"), "{refused}"),
-        Ok(audit) => audit.all(EFFORT, 6, &mut Seen::default()).unwrap_or_else(|violation| panic!("{}: {violation}", S::NAME)),
+        Ok(audit) => {
+            audit.all(EFFORT, 6, &mut Seen::default()).unwrap_or_else(|violation| panic!("{}: {violation}", S::NAME))
+        }
     }
 }
 
 fuzz_target!(|bytes: &[u8]| {
     // Two bytes a face, evenly in [0, 1).
-    let mut faces: Vec<f64> = bytes.chunks_exact(2).map(|pair| f64::from(u16::from_le_bytes([pair[0], pair[1]])) / 65536.0).collect();
+    let mut faces: Vec<f64> =
+        bytes.chunks_exact(2).map(|pair| f64::from(u16::from_le_bytes([pair[0], pair[1]])) / 65536.0).collect();
     faces.resize(FACES, 0.5);
     let (ego, other) = pair(&mut Dice::new(faces));
     audit::<f64>(&ego, &other);

@@ -3,9 +3,9 @@
 
 use libfuzzer_sys::fuzz_target;
 use pcr_fixed::{Q12, Q16, Q20};
+use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
 use pcr_planning::fleet::Format;
 use pcr_planning::regions::{Answer, Request};
-use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
 
 fn answer<S: Format>(scenario: &Scenario) {
     match Answer::of::<S>(scenario, Request { slices: Some(3), ..Request::default() }) {
@@ -38,7 +38,8 @@ fuzz_target!(|bytes: &[u8]| {
             }
             assert_eq!(again.agents.len(), scenario.agents.len());
             // Full turns are one segment each.
-            let segments: f64 = scenario.agents.iter().flat_map(|agent| &agent.path).map(|part| 1.0 + part.length()).sum();
+            let segments: f64 =
+                scenario.agents.iter().flat_map(|agent| &agent.path).map(|part| 1.0 + part.length()).sum();
             // An outline is computed with as up to 64 discs.
             let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
             if scenario.agents.len() <= 4 && segments < if outlined { 20.0 } else { 1e3 } {

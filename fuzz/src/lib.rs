@@ -1,9 +1,9 @@
 //! What the targets of the importers share.
 
-use pcr_planning::fleet::Fleet;
 use pcr_formats::import::{Format, Imported, Options, Warnings, layout, scenario, vehicle};
-use pcr_planning::locks::Locks;
 use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::Fleet;
+use pcr_planning::locks::Locks;
 
 /// Agents, edges and segments up to which what a file becomes is computed with: a run stays short.
 const MOST: usize = 24;

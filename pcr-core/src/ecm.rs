@@ -1,18 +1,17 @@
 //! The extended collision map: all collision regions of a fleet, both directions of every pair.
 
+mod fill;
 #[cfg(feature = "std")]
 mod grow;
+mod known;
 
-use crate::bits::{self, Ones};
 use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
 use crate::pair::Pair;
 use crate::pieces::{List, NONE, Piece, Pieces};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
-use crate::segment::ROW;
-use core::cell::Cell;
-use core::ops::Range;
+use known::Known;
 
 /// Entry of the table: a region of an unordered pair of agents. 8 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -81,31 +80,6 @@ pub struct Ecm<S, R, P> {
     fleet: Known,
     /// The agent whose regions these are, if they are those of one.
     only: Option<usize>,
-}
-
-/// The agents that a table knows: how many, and the sum of their checksums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Known {
-    agents: usize,
-    sum: u32,
-}
-
-impl Known {
-    const NOBODY: Self = Self { agents: 0, sum: 0 };
-
-    fn all<'m, S: Scalar + 'm>(fleet: impl IntoIterator<Item = &'m Motion<'m, S>>) -> Self {
-        (0_usize..).zip(fleet).fold(Self::NOBODY, |known, (agent, motion)| known.with(agent, motion))
-    }
-
-    fn with<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
-        let sum = self.sum.wrapping_add(motion.digest(agent));
-        Self { agents: self.agents.wrapping_add(1), sum }
-    }
-
-    fn without<S: Scalar>(self, agent: usize, motion: &Motion<'_, S>) -> Self {
-        let sum = self.sum.wrapping_sub(motion.digest(agent));
-        Self { agents: self.agents.wrapping_sub(1), sum }
-    }
 }
 
 #[cfg(feature = "defmt")]
@@ -344,115 +318,5 @@ where
         }
         self.fleet = Known::all(&*fleet);
         Ok(outcome?)
-    }
-
-    /// Computes all regions, or those of a row, of a fleet.
-    fn compute(&mut self, fleet: &[Motion<'_, S>], add: impl Fn(&mut Self) -> Result<(), Full>) -> Result<(), Full> {
-        self.clear();
-        match add(self) {
-            Ok(()) => self.fleet = Known::all(fleet),
-            Err(full) => {
-                self.clear();
-                return Err(full);
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds the regions of an agent with all others, or nothing.
-    fn add_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
-        let mut partners = [0..agent, agent.saturating_add(1)..fleet.len()].into_iter();
-        let added = partners.try_for_each(|partners| self.add_pairs(fleet, agent, partners));
-        if added.is_err() {
-            self.take_out(agent);
-        }
-        added
-    }
-
-    /// Adds the regions of an agent with others, all of them before or after it in the fleet.
-    fn add_pairs(&mut self, fleet: &[Motion<'_, S>], agent: usize, partners: Range<usize>) -> Result<(), Full> {
-        let (Some(own), Some(others)) = (fleet.get(agent), fleet.get(partners.clone())) else {
-            return Ok(());
-        };
-        let swept = own.swept();
-        for (row, begin) in others.chunks(ROW).zip(partners.step_by(ROW)) {
-            for place in Ones(bits::row(row.iter().map(|other| swept.meets(other.swept())))) {
-                let (Some(other), partner) = (row.get(place as usize), begin.wrapping_add(place as usize)) else {
-                    break;
-                };
-                let lower = partner < agent;
-                let (agents, first, second) =
-                    if lower { ([partner, agent], other, own) } else { ([agent, partner], own, other) };
-                self.add_pair(agents, Pair::new(first, second))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Where there is no room, some regions of the pair may stay behind: the caller takes out one of the agents, or all.
-    fn add_pair(&mut self, agents: [usize; 2], pair: Pair<'_, S>) -> Result<(), Full> {
-        if let Err(full) = pair.find(&mut self.pieces) {
-            let no_storage_helps = self.pieces.pair_is_full();
-            self.pieces.take_back();
-            return Err(if no_storage_helps { Full::Pair(agents) } else { full });
-        }
-        if self.pieces.first_pending() == NONE {
-            return Ok(());
-        }
-        // A table that is built from scratch grows at its end.
-        let entries = self.entries();
-        let at_end = entries.last().is_none_or(|last| last.agents() < agents);
-        let mut index = if at_end { entries.len() } else { entries.partition_point(|region| region.agents() < agents) };
-        while let Some(head) = self.pieces.take_region() {
-            if let Err(full) = self.insert_entry(index, agents, head) {
-                self.pieces.release(head);
-                self.pieces.take_back();
-                return Err(full);
-            }
-            // There is an entry at this index: no saturation.
-            index = index.saturating_add(1);
-        }
-        Ok(())
-    }
-
-    fn insert_entry(&mut self, index: usize, agents: [usize; 2], head: u32) -> Result<(), Full> {
-        let [Ok(first), Ok(second)] = agents.map(u16::try_from) else {
-            return Err(Full::Agents);
-        };
-        let len = self.len.saturating_add(1);
-        let behind = self.regions.as_mut().get_mut(index..len).ok_or(Full::Regions)?;
-        // Every entry from here on moves up by one place.
-        let places = Cell::from_mut(behind).as_slice_of_cells();
-        for neighbours in places.windows(2).rev() {
-            if let [place, next] = neighbours {
-                next.set(place.get());
-            }
-        }
-        if let Some(place) = places.first() {
-            place.set(Region { agents: [first, second], head });
-        }
-        self.len = len;
-        Ok(())
-    }
-
-    /// Removes the entries of an agent, and gives their pieces back.
-    fn take_out(&mut self, agent: usize) {
-        let mut kept = 0_usize;
-        for index in 0..self.len {
-            let regions = self.regions.as_mut();
-            let Some(&region) = regions.get(index) else {
-                break;
-            };
-            if region.agents().contains(&agent) {
-                self.pieces.release(region.head);
-            } else {
-                if let Some(place) = regions.get_mut(kept) {
-                    *place = region;
-                }
-                // Never above `index`: it cannot saturate, but the compiler does not see it.
-                kept = kept.saturating_add(1);
-            }
-        }
-        self.len = kept;
     }
 }

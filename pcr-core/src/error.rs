@@ -159,6 +159,11 @@ pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result
     Ok(value)
 }
 
+/// NaN: it is neither above nor below anything. A query must not take that for "not in contact".
+pub(crate) fn is_no_number<S: crate::Scalar>(value: S) -> bool {
+    !(value <= S::ZERO || value > S::ZERO)
+}
+
 /// `value` if it is in range and not negative.
 pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }

@@ -180,14 +180,15 @@ impl<S: Scalar> Interval<S> {
         self.lo + (self.hi - self.lo).half()
     }
 
-    /// The ends limited to what constructors accept, beyond which nobody moves; one that is no number is without limit.
+    /// The ends limited to what constructors accept, beyond which nobody moves, in order; one that is no number is without limit.
     pub(crate) fn limited(self) -> Self {
         let end = |end: S, beyond: S| if -S::LIMIT <= end && end <= S::LIMIT { end } else { beyond };
         let (lo, hi) = (
             if self.lo > S::LIMIT { S::LIMIT } else { -S::LIMIT },
             if self.hi < -S::LIMIT { -S::LIMIT } else { S::LIMIT },
         );
-        Self { lo: end(self.lo, lo), hi: end(self.hi, hi) }
+        let (lo, hi) = (end(self.lo, lo), end(self.hi, hi));
+        Self { lo: lo.min(hi), hi: hi.max(lo) }
     }
 
     /// What it shares with one that it meets.

@@ -18,6 +18,7 @@
 //! pieces     their fixed-capacity store                     Piece
 //! region     connected regions in path-time space (t, l)    RegionRef
 //! ecm        all regions of a fleet                         Ecm
+//! overlaps   those of two agents alone                      overlaps
 //! query      conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
 //! orders     who passes whom, kept whatever the delays     Orders, Hold
 //! plan       start delays and speeds by priorities          plan_delays, plan_speed, plan_speeds
@@ -49,6 +50,7 @@ pub mod internals;
 mod intervals;
 mod motion;
 mod orders;
+mod overlaps;
 mod pair;
 mod path;
 mod pieces;
@@ -65,6 +67,7 @@ pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::Motion;
 pub use orders::{Brakes, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
+pub use overlaps::overlaps;
 pub use pair::footprint::Share;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;

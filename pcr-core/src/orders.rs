@@ -5,7 +5,8 @@
 //! brakes      stopping ways                                         Brakes
 //! order       who passes first                                      Pass, Order, Progress
 //! table       the orders of a fleet, kept                           Orders
-//! check       whether everybody can finish                          Orders::check, Refused
+//! refused     why orders are refused                                Refused
+//! check       whether everybody can finish                          Orders::check
 //! admit       orders for a new path                                 Orders::admit
 //! ```
 
@@ -14,11 +15,13 @@ mod brakes;
 mod check;
 mod hold;
 mod order;
+mod refused;
 mod table;
 
 pub use admit::Mission;
 pub use brakes::Brakes;
-pub use check::{Reach, Refused, Tolerances};
+pub use check::{Reach, Tolerances};
 pub use hold::Hold;
 pub use order::{Order, Pass, Progress};
+pub use refused::Refused;
 pub use table::Orders;

@@ -5,6 +5,8 @@
 //! delays      who starts when, moving as before                  plan_delays
 //! times       sets of times of fixed capacity                    (internal)
 //! lattice     the motions among which a speed plan is chosen     Drive
+//! station     what is remembered of a place along the path       Station
+//! outcome     a speed plan, or why there is none                 SpeedPlan
 //! search      the fastest of them that meets nobody              (internal)
 //! tighten     its waits made as short as contacts allow          (internal)
 //! speed       both                                               plan_speed
@@ -14,14 +16,18 @@
 mod delays;
 mod lattice;
 mod order;
+mod outcome;
 mod search;
 mod speed;
 mod speeds;
+mod station;
 mod tighten;
 mod times;
 
 pub use delays::plan_delays;
 pub use lattice::Drive;
 pub use order::Unsolved;
-pub use speed::{NoSpeedPlan, SpeedPlan, Station, plan_speed};
+pub use outcome::{NoSpeedPlan, SpeedPlan};
+pub use speed::plan_speed;
 pub use speeds::plan_speeds;
+pub use station::Station;

@@ -1,5 +1,6 @@
 //! Collision regions in path-time space: what an agent must keep out of (Eq. 38).
 
+use crate::error::is_no_number;
 use crate::geometry::Interval;
 use crate::intervals::union;
 use crate::motion::Motion;
@@ -155,7 +156,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 
     /// The lengths along the ego's path inside the region at a time \[m\], as disjoint intervals in increasing
     /// order, rounded outward. Before the other agent sets off and after its arrival this is the strip of the
-    /// agent standing there.
+    /// agent standing there. At a time that is no number it is all of the region.
     ///
     /// Cost: two to three times the pieces of the region, for each interval.
     pub fn slice_at(&self, time: S) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
@@ -163,9 +164,10 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         union(self.intervals(self.other_motion().length_at(time)))
     }
 
-    /// Whether the ego at this length of its path \[m\] overlaps the other agent at this time \[s\] in this region.
+    /// Whether the ego at this length of its path \[m\] overlaps the other agent at this time \[s\] in this region. What is no
+    /// number cannot be told to be free.
     pub fn contains(&self, time: S, length: S) -> bool {
-        self.covers(length, self.other_motion().length_at(time))
+        is_no_number(length) || self.covers(length, self.other_motion().length_at(time))
     }
 
     /// Whether a length of the ego's path and one of the other's belong to the region.
@@ -227,7 +229,9 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
     fn intervals(&self, at: S) -> Slices<'a, S> {
         let Self { pair, ref pieces, transposed, .. } = *self;
-        Slices { pair, pieces: pieces.clone(), transposed, at, range: self.length(), rest: None }
+        let range = self.length();
+        // Of what is no number nothing can be told: no part of the region is free.
+        Slices { pair, pieces: pieces.clone(), transposed, at, range, rest: is_no_number(at).then_some(range) }
     }
 }
 
@@ -240,7 +244,7 @@ struct Slices<'a, S: Scalar> {
     at: S,
     /// Length range of the region.
     range: Interval<S>,
-    /// The second interval of the last piece.
+    /// The second interval of the last piece, or what is there whatever the pieces are.
     rest: Option<Interval<S>>,
 }
 

@@ -270,6 +270,10 @@ pub trait Angle<S: Scalar>:
     const ZERO: Self;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
+    /// Whether a heading of so many turns still has a direction that is right: any, where angles are modulo one turn.
+    fn is_in_range(self) -> bool {
+        true
+    }
     /// The angle that an arc of this length and radius subtends. The radius is positive, the length that of one turn
     /// at most.
     fn subtended(length: S, radius: S) -> Self;

@@ -90,13 +90,15 @@ impl<S: Scalar> Segment<S> {
     /// The line of length 0 at which a path begins.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], also for a heading of so many turns that its direction is no longer right:
+    /// beyond 1024 rad in `f32`, 2²⁴ rad in `f64`.
     pub fn standing(pose: Pose<S>) -> Result<Self, Invalid> {
         in_range(pose.position.x, "x")?;
         in_range(pose.position.y, "y")?;
         if !pose.heading.is_finite() {
             return Err(Invalid::NonFinite("heading"));
         }
+        heading_in_range::<S>(pose.heading)?;
         Ok(Self {
             start: pose.position,
             end: pose.position,
@@ -135,8 +137,8 @@ impl<S: Scalar> Segment<S> {
     /// The arc of this radius \[m\] and length \[m\] that continues the path at the end of `self`.
     ///
     /// # Errors
-    /// As [`Segment::then_line`], [`Invalid::OutOfRange`] also for the diameter and the box of the arc (from half a turn
-    /// on that of its circle), [`Invalid::NonPositive`] and [`Invalid::TooSmall`] for the radius and
+    /// As [`Segment::then_line`], [`Invalid::OutOfRange`] also for the diameter, the box of the arc (from half a turn
+    /// on that of its circle) and the heading at its end, as in [`Segment::standing`], [`Invalid::NonPositive`] and [`Invalid::TooSmall`] for the radius and
     /// [`Invalid::SweepOverOneTurn`].
     pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
         error::radius(radius)?;
@@ -166,13 +168,14 @@ impl<S: Scalar> Segment<S> {
     /// path sets off in another heading. A disc does not move while it turns, so that a turn takes no length.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`].
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] for the heading after it, as in [`Segment::standing`].
     pub fn turned(mut self, by: S::Angle) -> Result<Self, Invalid> {
         if !by.is_finite() {
             return Err(Invalid::NonFinite("turn"));
         }
         let (heading, rounding) = self.heading_at_end.sum(by);
         (self.heading_at_end, self.rest.heading) = heading.sum(rounding + self.rest.heading);
+        heading_in_range::<S>(self.heading_at_end)?;
         Ok(self)
     }
 
@@ -222,6 +225,7 @@ impl<S: Scalar> Segment<S> {
         in_range(self.bounds.x.lo.min(-self.bounds.x.hi), "x")?;
         in_range(self.bounds.y.lo.min(-self.bounds.y.hi), "y")?;
         in_range(self.to, "length of the path")?;
+        heading_in_range::<S>(self.heading_at_end)?;
         Ok(self)
     }
 
@@ -308,6 +312,10 @@ impl<S: Scalar> Segment<S> {
     }
 }
 
+fn heading_in_range<S: Scalar>(heading: S::Angle) -> Result<(), Invalid> {
+    if heading.is_in_range() { Ok(()) } else { Err(Invalid::OutOfRange("heading")) }
+}
+
 #[cfg(all(test, feature = "libm"))]
 mod tests {
     use super::*;
@@ -337,6 +345,21 @@ mod tests {
         assert_eq!((next.start, next.from), (line.end, 2.0));
         assert!((next.end.x - 2.0).abs() < 1e-15 && (next.end.y - 3.0).abs() < 1e-15);
         assert_eq!(line.turned(Radians(f64::NAN)), Err(Invalid::NonFinite("turn")));
+    }
+
+    #[test]
+    fn headings_of_too_many_turns_are_refused() {
+        let at =
+            |heading: f32| Segment::standing(Pose { position: Point::new(0.0_f32, 0.0), heading: Radians(heading) });
+        assert!(at(-1_024.0).is_ok());
+        assert_eq!(at(1_024.1), Err(Invalid::OutOfRange("heading")));
+        let last = at(1_023.0).unwrap();
+        assert_eq!(last.turned(Radians(2.0)), Err(Invalid::OutOfRange("heading")));
+        assert!(last.turned(Radians(-2.0)).is_ok());
+        assert_eq!(last.then_arc(1.0, Turn::Left, 2.0), Err(Invalid::OutOfRange("heading")));
+        assert!(last.then_arc(1.0, Turn::Right, 2.0).is_ok());
+        let pose = Pose { position: Point::new(0.0, 0.0), heading: Radians(1.7e7) };
+        assert_eq!(Segment::<f64>::standing(pose), Err(Invalid::OutOfRange("heading")));
     }
 
     #[test]

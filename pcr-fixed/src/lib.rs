@@ -39,6 +39,7 @@ mod product;
 mod q;
 mod ramp;
 mod roots;
+mod scalar;
 mod scaled;
 mod sine;
 mod trigonometry;

@@ -75,8 +75,18 @@ fn show(what: &str, counts: &Counts, elapsed: Duration) {
     let _ = match (counts.done.load(Ordering::Relaxed), counts.total.load(Ordering::Relaxed)) {
         (0, 0) => write!(io::stderr(), "\r\x1b[K{what} ({seconds} s)"),
         (done, 0) => write!(io::stderr(), "\r\x1b[K{what}: {done} ({seconds} s)"),
-        (done, total) => write!(io::stderr(), "\r\x1b[K{what}: {done} of {total} ({seconds} s)"),
+        (done, total) => {
+            let rest = remaining(done, total, elapsed).map_or(String::new(), |rest| format!(", {rest} s to go"));
+            let (share, rate) = (done.saturating_mul(100) / total, done as f64 / elapsed.as_secs_f64());
+            write!(io::stderr(), "\r\x1b[K{what}: {done} of {total} ({share} %, {rate:.0} a second, {seconds} s{rest})")
+        }
     };
+}
+
+/// Seconds that the rest takes if it takes as long as what is done; nothing before a hundredth is.
+fn remaining(done: usize, total: usize, elapsed: Duration) -> Option<u64> {
+    let left = total.saturating_sub(done) as f64;
+    (done >= total / 100 && done > 0).then(|| (elapsed.as_secs_f64() * left / done as f64).ceil() as u64)
 }
 
 impl Drop for Progress {
@@ -85,5 +95,16 @@ impl Drop for Progress {
             drop(stop);
             let _ = watch.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_takes_as_long_as_what_is_done() {
+        let after = |done| remaining(done, 1000, Duration::from_secs(10));
+        assert_eq!([after(9), after(10), after(250), after(1000)], [None, Some(990), Some(30), Some(0)]);
     }
 }

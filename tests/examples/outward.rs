@@ -6,6 +6,7 @@
 //!
 //! Prints the seed of every violation; the exit status is 1 if there was one, 2 for wrong arguments.
 
+use pcr_tests::arguments::Arguments;
 use pcr_tests::outward::{FORMATS, Tally, run_on_all_processors};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -15,44 +16,11 @@ const PROGRESS: u64 = 1_000_000;
 /// Violations that are printed of each format, but for those of its last batch.
 const PRINTED: usize = 50;
 
-struct Arguments {
-    pairs: u64,
-    seed: u64,
-    format: Option<String>,
-}
-
-fn arguments() -> Result<Arguments, String> {
-    let mut found = Arguments { pairs: 1_000_000, seed: 1, format: None };
-    let mut rest = std::env::args().skip(1);
-    while let Some(name) = rest.next() {
-        let value = rest.next().ok_or(format!("{name} needs a value"))?;
-        let number = || value.parse().map_err(|_| format!("{name} {value}: not a number"));
-        match name.as_str() {
-            "--pairs" => found.pairs = number()?,
-            "--seed" => found.seed = number()?,
-            "--format" => found.format = Some(value),
-            _ => return Err(format!("{name}: allowed are --pairs, --seed and --format")),
-        }
-    }
-    if let Some(format) = &found.format
-        && !FORMATS.iter().any(|(name, _)| name == format)
-    {
-        let known: Vec<_> = FORMATS.iter().map(|(name, _)| *name).collect();
-        return Err(format!("--format {format}: known are {known:?}"));
-    }
-    Ok(found)
-}
-
 fn main() -> ExitCode {
-    let Arguments { pairs, seed, format } = match arguments() {
-        Ok(arguments) => arguments,
-        Err(why) => {
-            eprintln!("{why}");
-            return ExitCode::from(2);
-        }
-    };
+    let given = Arguments::of_process(&[("pairs", 1_000_000), ("seed", 1)], FORMATS.iter().map(|(name, _)| *name));
+    let (pairs, seed) = (given.number("pairs"), given.number("seed"));
     let mut violated = false;
-    for (name, run) in FORMATS.iter().filter(|(name, _)| format.as_ref().is_none_or(|format| format == name)) {
+    for (name, run) in FORMATS.iter().filter(|(name, _)| given.wants(name)) {
         let start = Instant::now();
         let total = run_on_all_processors(*run, seed, pairs, |batch: &Tally, total: &Tally| {
             if total.violations.len() <= PRINTED + batch.violations.len() {

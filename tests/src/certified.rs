@@ -46,10 +46,29 @@ impl Total for Proofs {
 }
 
 impl Proofs {
+    /// The headings of [`Proofs::row`].
+    pub const HEADINGS: &str = "| format | refuted | pairs | proved | undecided | refused by the format | pieces | most steps for one \
+                                pair of segments |\n|---|---|---|---|---|---|---|---|";
+
+    /// A row of the table in `docs/errors.md`.
+    pub fn row(&self, format: &str) -> String {
+        let Self { proved, refused, pieces, most, refuted, undecided, .. } = self;
+        let numbers = [refuted.len() as u64, self.cases(), *proved, undecided.len() as u64, *refused, *pieces, *most];
+        let numbers: Vec<String> = numbers.iter().map(|&number| grouped(number)).collect();
+        format!("| <a id=\"c-{format}\"></a>`{format}` | {} |", numbers.join(" | "))
+    }
+
     /// All of them.
     pub fn cases(&self) -> u64 {
         self.proved + self.refused + (self.refuted.len() + self.undecided.len()) as u64
     }
+}
+
+/// A number with a comma between groups of three digits.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
+    groups.collect::<Vec<_>>().join(",")
 }
 
 impl fmt::Display for Proofs {
@@ -116,3 +135,17 @@ pub const FORMATS: &[(&str, Run)] = &[
     (Q16::NAME, run::<Q16>),
     (Q12::NAME, run::<Q12>),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_one_of_a_table() {
+        let proofs = Proofs { proved: 1_234_567, refused: 12, undecided: vec![String::new()], ..Proofs::default() };
+        let row = "| <a id=\"c-q16\"></a>`q16` | 0 | 1,234,580 | 1,234,567 | 1 | 12 | 0 | 0 |";
+        assert_eq!(proofs.row("q16"), row);
+        let columns = |line: &str| line.matches('|').count();
+        assert!(Proofs::HEADINGS.lines().all(|line| columns(line) == columns(&proofs.row("q16"))));
+    }
+}

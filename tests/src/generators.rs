@@ -6,12 +6,11 @@ mod cases;
 mod dice;
 mod relations;
 mod tangencies;
-mod tangent;
 
 pub use cases::{Case, case};
 pub use dice::{Dice, FACES};
 pub use relations::{RELATIONS, Relation};
-pub use tangent::inner_tangent;
+pub use tangencies::inner_tangent;
 
 use crate::disc::{Disc, Drive, Leg};
 use crate::outward::neighbour;

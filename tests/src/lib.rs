@@ -1,6 +1,7 @@
 //! What the tests of pcr share: cases, generators of cases that aim at degeneracies, and an oracle that knows nothing
 //! but the definition of a collision region.
 
+pub mod arguments;
 pub mod audit;
 pub mod certified;
 pub mod clearance;
@@ -31,3 +32,8 @@ pub struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/cookbook.md")]
 pub struct Cookbook;
+
+/// The example of the core's package runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../pcr-core/README.md")]
+pub struct Core;

@@ -146,20 +146,21 @@ impl Total for Tally {
 
 /// The same on all processors. What a batch of the cases has come to is told beside the sum of those that were done.
 pub fn run_on_all_processors<T: Total>(
-    run: fn(u64, u64) -> T,
+    run: impl Fn(u64, u64) -> T + Sync,
     first: u64,
     count: u64,
     tell: impl Fn(&T, &T) + Sync,
 ) -> T {
-    const BATCH: u64 = 1_000;
+    // Few are long ones.
+    let size = (count / 64).clamp(1, 1_000);
     let (next, total) = (AtomicU64::new(0), Mutex::new(T::default()));
     let work = || {
         loop {
-            let done = next.fetch_add(BATCH, Ordering::Relaxed);
+            let done = next.fetch_add(size, Ordering::Relaxed);
             if done >= count {
                 break;
             }
-            let batch = run(first.wrapping_add(done), BATCH.min(count - done));
+            let batch = run(first.wrapping_add(done), size.min(count - done));
             let mut total = total.lock().expect("no thread panics with it");
             total.add(&batch);
             tell(&batch, &total);

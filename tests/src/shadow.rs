@@ -3,7 +3,8 @@
 //! The generic kernels of the library run on it as they are. Each operation rounds as the format does and encloses the exact
 //! result in an interval of `f64`, rounded outward; comparisons look at the format's own value. How far the two are apart is
 //! then what rounding has done along the very branches that were taken. A root of a quadratic is told as it is: it is to be
-//! held against the geometry that it stands for, at which it is exact input ([`Number::exact`]).
+//! held against the geometry that it stands for, at which it is exact input ([`Number::exact`]). One that is real by its doubt
+//! alone is marked: its exact value may be anything ([`Number::is_doubted`]).
 
 mod enclosure;
 mod formats;
@@ -76,6 +77,11 @@ impl<X: Shadowed> Number<X> {
     /// A number of the format as exact input.
     pub fn exact(value: X::S) -> Self {
         Self { value, exact: Enclosure::at(X::number(value)) }
+    }
+
+    /// Whether it comes from a root that only a doubt has made real.
+    pub fn is_doubted(self) -> bool {
+        self.error() == f64::INFINITY
     }
 
     /// How far the value is from the exact one, at most.
@@ -159,17 +165,24 @@ impl<X: Shadowed> Scalar for Number<X> {
         Self { value, exact: squares.exact / (a.exact + b.exact) }
     }
     fn quadratic_roots(b: Self, g: Product<X>, doubt: Product<X>) -> Option<[Self; 2]> {
-        Some(X::S::quadratic_roots(b.value, g.value, doubt.value)?.map(Self::exact))
+        let roots = X::S::quadratic_roots(b.value, g.value, doubt.value)?;
+        let real = X::S::quadratic_roots(b.value, g.value, Wide::ZERO).is_some();
+        Some(roots.map(|value| if real { Self::exact(value) } else { Self { value, exact: Enclosure::ALL } }))
     }
     fn half_tangent_roots(
         equations: impl Iterator<Item = [Product<X>; 4]>,
         sector: Sector<Sine<X>>,
         mut found: impl FnMut(Turned<X>),
     ) {
-        let equations = equations.map(|equation| equation.map(|coefficient| coefficient.value));
         let [from, middle] = [sector.from, sector.middle].map(|direction| direction.map(|sine| sine.value));
         let sector = Sector { from, middle, least: sector.least.value };
-        X::S::half_tangent_roots(equations, sector, |angle| found(Turned::exact(angle)));
+        for [a, b, g, doubt] in equations.map(|equation| equation.map(|coefficient| coefficient.value)) {
+            let mut real = 0;
+            X::S::half_tangent_roots([[a, b, g, Wide::ZERO]].into_iter(), Sector::all(sector.from), |_| real += 1);
+            X::S::half_tangent_roots([[a, b, g, doubt]].into_iter(), sector, |value| {
+                found(if real > 0 { Turned::exact(value) } else { Turned { value, exact: Enclosure::ALL } });
+            });
+        }
     }
     fn chord(radius: Self, half: Turned<X>, right: bool, direction: [Sine<X>; 2]) -> [Self; 2] {
         let values = X::S::chord(radius.value, half.value, right, direction.map(|sine| sine.value));

@@ -1,10 +1,10 @@
 //! Start delays: every region forbids the interval that the definition forbids, and known answers.
 
 use pcr_core::{Encounter, Interval, RegionRef, earliest_start, union};
-use pcr_fixed::Q16;
+use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
-use pcr_tests::generators::driven_pairs;
+use pcr_tests::generators::{Dice, drive, driven_pairs, leg};
 use pcr_tests::oracle::Pair;
 use pcr_tests::settings::settings;
 use proptest::prelude::*;
@@ -125,6 +125,57 @@ proptest! {
     fn regions_forbid_what_the_definition_forbids_q16((pair, drives) in driven_pairs()) {
         audited::<Q16>([&pair.0, &pair.1], &drives)?;
     }
+}
+
+/// A contact counts for the region that covers its middle or its deepest point. One that none covers is a touch: what is
+/// in contact for sure belongs to a region (docs/errors.md).
+fn contacts_have_a_region<S: Format>(cases: u64) {
+    let (mut contacts, mut touches) = (0_u32, 0_u32);
+    for seed in 0..cases {
+        let dice = &mut Dice::seeded(seed);
+        let mut driven = || {
+            let start = [dice.range(-3.0, 3.0), dice.range(-3.0, 3.0), dice.range(-PI, PI)];
+            let legs = (0..1 + dice.below(3)).map(|_| leg(dice)).collect();
+            let disc = Disc { radius: dice.range(0.05, 0.5), start, legs };
+            let drive = drive(dice, disc.length());
+            (disc, drive, dice.range(0.0, 5.0))
+        };
+        let pair = [driven(), driven()];
+        let Some(courses) = pair.iter().map(Course::<S>::rounded).collect::<Option<Vec<_>>>() else { continue };
+        let fleet: Vec<_> = courses.iter().map(|(course, _)| course.motion()).collect();
+        let ecm = build_ecm(&fleet).expect("a small table");
+        let regions = || ecm.pair(&fleet, 0, 1).expect("the table of the fleet");
+        let resolution = S::tolerance(fleet[0].time().hi.max(fleet[1].time().hi)).to_f64();
+        // Where they only just meet, and a little before.
+        let ends = regions().flat_map(|region| [region.forbidden_delays().lo, region.forbidden_delays().hi]);
+        let slips = [-1e3, -30.0, -8.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 8.0, 30.0, 1e3];
+        for delay in ends.flat_map(|end| slips.map(|slip| end + S::from_f64(slip * resolution))) {
+            let Ok(ego) = fleet[0].delayed(delay) else { continue };
+            let encounter = Encounter::new(&ego, &fleet[1]);
+            for conflict in encounter.conflicts(encounter.time()) {
+                let covered = |time| regions().any(|region| region.contains(time, ego.length_at(time)));
+                contacts += 1;
+                if !covered(conflict.time.middle()) && !covered(conflict.deepest.time) {
+                    touches += 1;
+                    // A quarter of the tolerance is what a distance may be off.
+                    let error = encounter.tolerance().to_f64() / 4.0;
+                    assert!(conflict.touching && conflict.depth.to_f64() <= error, "seed {seed}: {conflict:?}");
+                }
+            }
+        }
+    }
+    println!("{}: {contacts} contacts, {touches} of no region", S::NAME);
+    assert!(contacts > 100, "{contacts}");
+}
+
+#[test]
+fn a_contact_of_no_region_is_a_touch() {
+    let cases = if cfg!(optimized) { 3_000 } else { 100 };
+    contacts_have_a_region::<f64>(cases);
+    contacts_have_a_region::<f32>(cases);
+    contacts_have_a_region::<Q12>(cases);
+    contacts_have_a_region::<Q16>(cases);
+    contacts_have_a_region::<Q20>(cases);
 }
 
 fn line(start: [f64; 3], length: f64, speed: f64) -> Course<f64> {

@@ -109,6 +109,32 @@ fn head_on_agents_are_named() {
     assert_eq!(delays(&[line([0.0, 0.0, 0.0], 4.0)], &mut [3]), Err(Unsolved::NoSuchAgent(3)));
 }
 
+/// Nobody would look out for an agent that is left out.
+#[test]
+fn an_order_lists_every_agent_once() {
+    let courses = [line([-2.0, 0.0, 0.0], 4.0), line([0.0, -2.0, PI / 2.0], 4.0), line([9.0, 9.0, 0.0], 4.0)];
+    let fleet: Vec<_> = courses.iter().map(Course::motion).collect();
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let orders: [(&[usize], _); 6] = [
+        (&[], Unsolved::NotOnce(0)),
+        (&[0, 1], Unsolved::NotOnce(2)),
+        (&[2, 0], Unsolved::NotOnce(1)),
+        (&[0, 1, 1], Unsolved::NotOnce(1)),
+        (&[0, 1, 2, 0], Unsolved::NotOnce(0)),
+        (&[0, 1, 3], Unsolved::NoSuchAgent(3)),
+    ];
+    for (order, refused) in orders {
+        let mut plan = fleet.clone();
+        assert_eq!(delays(&courses, &mut order.to_vec()), Err(refused), "{order:?}");
+        let mut profiles = vec![Profile::<f64, 16>::standing(); 3];
+        let (mut order, mut stations) = (order.to_vec(), vec![Station::EMPTY; 100]);
+        let speeds = plan_speeds(&ecm, &fleet, &mut plan, &mut order, &mut profiles, &mut stations);
+        assert_eq!(speeds, Err(refused), "{order:?}");
+    }
+    let text = Unsolved::NotOnce(2).to_string();
+    assert_eq!(text, "the order of priorities does not list agent 2 of the fleet once");
+}
+
 #[test]
 fn an_agent_in_the_way_of_another_goes_first() {
     // Agent 0 passes over the start of agent 1, which leaves to the side.

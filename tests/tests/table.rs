@@ -124,7 +124,7 @@ fn the_table_of_another_fleet_is_refused() {
         assert_eq!(ecm.row(fleet, 0).err(), Some(Mismatch::OtherFleet), "{why}");
         assert_eq!(ecm.pair(fleet, 0, 1).err(), Some(Mismatch::OtherFleet), "{why}");
         assert_eq!(ecm.regions(fleet).err(), Some(Mismatch::OtherFleet), "{why}");
-        let (mut plan, mut order) = (fleet.to_vec(), [0]);
+        let (mut plan, mut order) = (fleet.to_vec(), (0..fleet.len()).collect::<Vec<_>>());
         let refused = Err(Unsolved::Table(Mismatch::OtherFleet));
         assert_eq!(plan_delays(&ecm, fleet, &mut plan, &mut order), refused, "{why}");
     };

@@ -2,13 +2,17 @@
 //!
 //! ```text
 //! pcr-link table FORMAT              the table that the demo prints, computed here
+//! pcr-link certify                   proves the table that it prints, from the standard input
 //! pcr-link serial FORMAT COMMAND...  talks to the supervisor over the standard streams of COMMAND and checks its answers
+//! pcr-link passing FORMAT RUNS [COMMAND...]  random fleets under way on a bad line: no two discs touch; f32 or q16
 //! ```
 //!
 //! Numbers are compared bit by bit: the closed forms are the same code on the same operations everywhere.
 
+mod passing;
 mod serial;
 
+use pcr_certify::table::{Checker, Margin};
 use pcr_core::{Ecm, Piece, Region};
 use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
 use pcr_supervisor::{Agent, Number, Step, Store, dump};
@@ -19,6 +23,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
+        ["certify"] => certify(&io::read_to_string(io::stdin())?),
+        ["passing", "f32", runs, ref command @ ..] => pass::<f32>(runs, command),
+        ["passing", "q16", runs, ref command @ ..] => pass::<pcr_fixed::Q16>(runs, command),
         [what, "f32", ref rest @ ..] => run(what, &scenario::float::AGENTS, rest),
         [what, "micro", ref rest @ ..] => run(what, &scenario::micro::AGENTS, rest),
         [what, "q12", ref rest @ ..] => run(what, &scenario::q12::AGENTS, rest),
@@ -28,8 +35,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-const USAGE: &str =
-    "usage: pcr-link table FORMAT | pcr-link serial FORMAT COMMAND...; formats: f32, micro, q12, q16, q20";
+const USAGE: &str = "usage: pcr-link table FORMAT | pcr-link certify | pcr-link serial FORMAT COMMAND... | pcr-link passing FORMAT RUNS [COMMAND...]; \
+     formats: f32, micro, q12, q16, q20";
+
+/// Random fleets under way, with a supervisor here or behind a command.
+fn pass<S: passing::Rounded>(runs: &str, command: &[&str]) -> Result<(), Box<dyn Error>> {
+    let seeds = 0..runs.parse()?;
+    let tally = if command.is_empty() {
+        passing::runs::<S>(seeds.clone(), false, || Ok(Box::new(passing::here::<S>())))?
+    } else {
+        passing::runs::<S>(seeds.clone(), false, || Ok(Box::new(serial::Remote::<S>::start(command)?)))?
+    };
+    println!("{tally}");
+    // Whoever looks at no hold meets somebody: the check can fail.
+    let reckless = (0..100)
+        .filter(|&seed| passing::runs::<S>(seed..seed + 1, true, || Ok(Box::new(passing::here::<S>()))).is_err());
+    let reckless = reckless.count();
+    println!("of 100 runs without holds, {reckless} end in a contact");
+    if reckless > 20 && tally.orders > 0 { Ok(()) } else { Err("the runs prove nothing".into()) }
+}
 
 fn run<S: Number>(what: &str, agents: BuiltIn<S>, rest: &[&str]) -> Result<(), Box<dyn Error>> {
     match (what, rest) {
@@ -62,5 +86,25 @@ fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
         out.write_all(dump::region(&region).as_bytes())?;
     }
     writeln!(out, "{} regions, {} pieces", ecm.len(), ecm.pieces())?;
-    Ok(())
+    let mut written = Ok(());
+    dump::table(&fleet, &ecm, |line| {
+        if written.is_ok() {
+            written = out.write_all(line);
+        }
+    })?;
+    Ok(written?)
+}
+
+/// Proves that no contact is missing from the table in a text, as `pcr certify --table` does.
+fn certify(text: &str) -> Result<(), Box<dyn Error>> {
+    let table = pcr_certify::dump::decode(text)?;
+    let found = Checker::new(&table)?.check(Margin::Needed)?;
+    match found.refuted.first().or(found.undecided.first()) {
+        Some(witness) => Err(format!("not proved: {witness:?}").into()),
+        None if found.pieces == 0 => Err("there is nothing in the table".into()),
+        None => {
+            println!("proved: {} agents, {} pieces, {} regions in time", table.agents.len(), found.pieces, found.times);
+            Ok(())
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Talks to a supervisor and checks what it says against the same computation here.
 
+use crate::passing::Supervisor;
 use crate::{BuiltIn, store};
 use pcr_core::{Ecm, Limits, Motion, Piece, Region, earliest_start};
 use pcr_supervisor::frame::{self, Damage, Reads, Receiver, Tag, VERSION};
@@ -8,6 +9,7 @@ use pcr_supervisor::scenario::{AGENTS, PIECES, REGIONS};
 use pcr_supervisor::{Agent, Answer, Client, Event, Number, Request, Step};
 use std::error::Error;
 use std::io::{Read, Write};
+use std::marker::PhantomData;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
@@ -114,6 +116,44 @@ impl Link {
     }
 }
 
+/// A supervisor behind a serial line, as robots have it.
+pub(crate) struct Remote<S> {
+    link: Link,
+    /// Greetings of the host's own.
+    marks: u16,
+    format: PhantomData<S>,
+}
+
+impl<S> Remote<S> {
+    pub(crate) fn start(command: &[&str]) -> Result<Self, Box<dyn Error>> {
+        Ok(Self { link: Link::start(command)?, marks: 0, format: PhantomData })
+    }
+}
+
+impl<S: Number> Supervisor for Remote<S> {
+    /// The answer to a greeting behind the bytes tells that they were read.
+    fn exchange(&mut self, bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
+        self.marks = self.marks.wrapping_add(1);
+        let mark = Tag { who: u16::MAX, sequence: self.marks, place: Tag::REQUEST };
+        let greeting = frame::encode(mark, &Request::<S>::Hello).ok_or("a greeting is too long")?;
+        // A zero ends whatever was cut off.
+        self.link.send(&[bytes, &[0], &greeting].concat())?;
+        let (mut said, mut frame, mut receiver) = (Vec::new(), Vec::new(), Receiver::new(Reads::Answers));
+        for _ in 0..PATIENCE {
+            while let Some(byte) = self.link.byte()? {
+                frame.push(byte);
+                let Some(answer) = receiver.take::<Answer<S>>(byte) else { continue };
+                let tag = answer.map_err(|damage| format!("a damaged answer: {damage:?}"))?.tag;
+                if (tag.who, tag.sequence) == (mark.who, mark.sequence) {
+                    return Ok(said);
+                }
+                said.append(&mut frame);
+            }
+        }
+        Err("the supervisor does not answer".into())
+    }
+}
+
 impl Drop for Link {
     fn drop(&mut self) {
         // It never ends by itself.
@@ -166,7 +206,7 @@ fn greet<S: Number>(link: &mut Link) -> Result<(), Box<dyn Error>> {
 
 /// Damaged frames are refused by name, and the next good one is understood.
 fn damage<S: Number>(link: &mut Link) -> Result<(), Box<dyn Error>> {
-    let tag = Tag { sequence: 7, place: Tag::REQUEST };
+    let tag = Tag { who: Tag::PLANNER, sequence: 7, place: Tag::REQUEST };
     let good = frame::encode(tag, &Request::<S>::Hello).ok_or("a greeting is too long")?;
     let other = frame::encode_version(VERSION + 1, tag, &Request::<S>::Hello).ok_or("a greeting is too long")?;
     let mut flipped = good.clone();

@@ -28,6 +28,7 @@ pub enum Event<S: Number> {
 /// One who asks.
 #[derive(Debug)]
 pub struct Client {
+    who: u16,
     receiver: Receiver,
     request: Vec<u8, MAX_FRAME>,
     /// Of the request.
@@ -49,10 +50,20 @@ impl Default for Client {
 }
 
 impl Client {
-    /// One who has asked nothing yet; [`Request::Hello`] comes first.
+    /// Who plans, and has asked nothing yet; [`Request::Hello`] comes first.
     pub const fn new() -> Self {
+        Self::of(Tag::PLANNER)
+    }
+
+    /// A robot of this index. It may ask what changes no fleet ([`Request::is_of_robots`]), in any order.
+    pub const fn robot(agent: u16) -> Self {
+        Self::of(agent.saturating_add(1))
+    }
+
+    const fn of(who: u16) -> Self {
         let receiver = Receiver::new(Reads::Answers);
         Self {
+            who,
             receiver,
             request: Vec::new(),
             sequence: 0,
@@ -67,9 +78,11 @@ impl Client {
     /// Begins a request, whose [`Client::frame`] is then to be sent. `false`, and nothing begun, where it is too long for a
     /// frame. Whoever gives a request up before its last answer waits until nothing of it can be under way, and greets.
     pub fn ask<S: Number>(&mut self, request: &Request<S>) -> bool {
-        let greeting = *request == Request::Hello;
+        let greeting = self.who != Tag::PLANNER || *request == Request::Hello;
         let sequence = if greeting { self.greetings } else { self.next };
-        let Some(frame) = frame::encode(Tag { sequence, place: Tag::REQUEST }, request) else { return false };
+        let Some(frame) = frame::encode(Tag { who: self.who, sequence, place: Tag::REQUEST }, request) else {
+            return false;
+        };
         let number = if greeting { &mut self.greetings } else { &mut self.next };
         *number = after(sequence);
         (self.request, self.sequence, self.greeting) = (frame, sequence, greeting);
@@ -92,13 +105,14 @@ impl Client {
     pub fn take<S: Number>(&mut self, byte: u8) -> Option<Event<S>> {
         // What is damaged is missing later on.
         let Frame { tag, message: answer, .. } = self.receiver.take::<Answer<S>>(byte)?.ok()?;
-        if !self.waiting {
+        let own = tag.who == self.who || matches!(answer, Answer::Refused(Refusal::Frame(_)));
+        if !self.waiting || !own {
             return None;
         }
         if matches!(answer, Answer::Refused(Refusal::Frame(_))) {
             return Some(Event::Again);
         }
-        let greets = matches!(answer, Answer::Hello { .. });
+        let greets = self.who != Tag::PLANNER || matches!(answer, Answer::Hello { .. });
         if tag.sequence != self.sequence || greets != self.greeting {
             return None;
         }

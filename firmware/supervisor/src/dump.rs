@@ -1,10 +1,12 @@
-//! The table as text: a line a region, in thousandths for people and in bits for comparison.
+//! The table as text: a line a region, in thousandths for people and in bits for comparison; and all of it in bits, with the paths and
+//! motions it is of, for `pcr certify --table` (docs/certificates.md has the format).
 //!
 //! Written with integers only: the machinery of `core::fmt` would cost more flash than everything else here.
 
+use crate::frame::CRC;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::RegionRef;
+use pcr_core::{Curve, Ecm, Interval, Mismatch, Motion, Piece, PieceRef, Region, RegionRef, Share, Turn, excess};
 
 /// Bytes of the longest line.
 const WIDTH: usize = 120;
@@ -47,6 +49,21 @@ impl Line {
         self
     }
 
+    /// Adds a space and a count.
+    fn count(self, count: usize) -> Self {
+        self.text(b" ").integer(count as u32, 0)
+    }
+
+    /// Adds numbers, each a space and its bits.
+    fn numbers<S: Number>(self, numbers: &[S]) -> Self {
+        numbers.iter().fold(self, |line, number| line.text(b" ").bits(number.bits()))
+    }
+
+    /// Adds both ends of each interval.
+    fn ranges<S: Number>(self, ranges: &[Interval<S>]) -> Self {
+        ranges.iter().fold(self, |line, range| line.numbers(&[range.lo, range.hi]))
+    }
+
     fn digits(mut self, value: u32, decimals: usize, negative: bool, width: usize) -> Self {
         let mut reversed: Vec<u8, 13> = Vec::new();
         let mut rest = value;
@@ -87,4 +104,71 @@ pub fn region<S: Number>(region: &RegionRef<'_, S>) -> Line {
     let line = ends.iter().fold(line, |line, end| line.thousandths(end.thousandths(), 10));
     let line = ends.iter().fold(line.text(b"   "), |line, end| line.text(b" ").bits(end.bits()));
     line.text(b"\n")
+}
+
+/// All of a table in bits, line by line.
+///
+/// # Errors
+/// [`Mismatch`] where it is not the table of the fleet.
+pub fn table<S: Number, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>>(
+    fleet: &[Motion<'_, S>],
+    table: &Ecm<S, R, P>,
+    mut print: impl FnMut(&[u8]),
+) -> Result<(), Mismatch> {
+    let mut check = CRC.digest();
+    let mut send = |line: Line| {
+        let line = line.text(b"\n");
+        check.update(line.as_bytes());
+        print(line.as_bytes());
+    };
+    send(Line::default().text(b"pcr-table 1 ").text(S::NAME.as_bytes()).count(fleet.len()));
+    fleet.iter().for_each(|motion| agent(motion, &mut send));
+    for (i, first) in fleet.iter().enumerate() {
+        for (j, second) in fleet.iter().enumerate().skip(i.saturating_add(1)) {
+            let count = table.pair(fleet, i, j)?.fold(0_usize, |count, _| count.saturating_add(1));
+            send(Line::default().text(b"pair").count(i).count(j).count(count).numbers(&[excess(first, second)]));
+            for region in table.pair(fleet, i, j)? {
+                let count = region.pieces().fold(0_usize, |count, _| count.saturating_add(1));
+                let lengths = [region.length(), region.other_length()];
+                let times = [region.clone().swapped().time(), region.time()];
+                send(Line::default().text(b"region").count(count).ranges(&lengths).ranges(&times));
+                region.pieces().for_each(|own| send(piece(&own)));
+            }
+        }
+    }
+    let end = Line::default().text(b"end ").bits(check.finalize()).text(b"\n");
+    print(end.as_bytes());
+    Ok(())
+}
+
+/// An agent with the lines and arcs of its path, and its phases.
+fn agent<S: Number>(motion: &Motion<'_, S>, send: &mut impl FnMut(Line)) {
+    let (path, phases) = (motion.path(), motion.profile().phases());
+    let (segments, start) = (path.segments(), path.point_at(S::ZERO));
+    let line = Line::default().text(b"agent").count(segments.len()).count(phases.len());
+    let line = line.numbers(&[motion.radius(), start.x, start.y]).text(b" ");
+    let heading = segments.first().map_or(0, |first| S::angle_bits(first.heading_at(S::ZERO)));
+    send(line.bits(heading).numbers(&[motion.time().lo, motion.lag(), motion.time_excess()]));
+    let ends = segments.iter().skip(1).map(|next| next.from()).chain([path.length()]);
+    for (segment, to) in segments.iter().zip(ends) {
+        let line = match segment.curve() {
+            Curve::Line => Line::default().text(b"line"),
+            Curve::Arc { radius, turn: Turn::Left } => Line::default().text(b"left").numbers(&[radius]),
+            Curve::Arc { radius, turn: Turn::Right } => Line::default().text(b"right").numbers(&[radius]),
+        };
+        send(line.numbers(&[segment.length(), segment.from(), to]));
+    }
+    for phase in phases {
+        send(Line::default().text(b"phase").ranges(&[phase.time(), phase.length()]).numbers(&phase.speed()));
+    }
+}
+
+fn piece<S: Number>(piece: &PieceRef<'_, S>) -> Line {
+    let line = piece.segments.iter().fold(Line::default().text(b"piece"), |line, segment| line.count(*segment));
+    let share: &[u8] = match piece.share {
+        Share::Only => b" only",
+        Share::Start => b" start",
+        Share::End => b" end",
+    };
+    line.text(share).ranges(&[piece.length, piece.other_length])
 }

@@ -2,7 +2,7 @@
 
 use crate::agent::{Agent, Step};
 use heapless::Vec;
-use pcr_core::{Curve, Interval, Invalid, Motion, PathRef, Phase, Profile, ProfileRef, Scalar, Segment};
+use pcr_core::{Curve, Interval, Invalid, Limits, Motion, PathRef, Phase, Pose, Profile, ProfileRef, Scalar, Segment};
 
 /// The motions of up to `A` agents.
 pub type Motions<'a, S, const A: usize> = Vec<Motion<'a, S>, A>;
@@ -15,12 +15,14 @@ pub struct Store<S: Scalar, const A: usize, const N: usize> {
     segments: Vec<Segment<S>, N>,
 }
 
+/// An agent whose segments are placed.
 #[derive(Debug)]
-struct Parts<S> {
+pub(crate) struct Parts<S> {
     /// The first of its segments, and how many there are.
     begin: u16,
     segments: u16,
     phases: Vec<Phase<S>, 3>,
+    limits: Limits<S>,
     radius: S,
     start: S,
 }
@@ -87,13 +89,32 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     /// # Errors
     /// As [`Store::add`], and [`Rejected::NoSuchAgent`]; the fleet is then as it was.
     pub fn replace<P: AsRef<[Step<S>]>>(&mut self, index: usize, agent: &Agent<S, P>) -> Result<(), Rejected> {
+        let staged = self.stage(agent)?;
+        self.settle(index, staged)
+    }
+
+    /// Places an agent beside all others; it is none of them before [`Store::settle`], and [`Store::unstage`] takes it away.
+    pub(crate) fn stage<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, Invalid> {
         let begin = self.segments.len();
-        let parts = self.parts(agent).inspect_err(|_| self.segments.truncate(begin))?;
+        self.parts(agent).inspect_err(|_| self.segments.truncate(begin))
+    }
+
+    pub(crate) fn unstage(&mut self, staged: &Parts<S>) {
+        self.segments.truncate(usize::from(staged.begin));
+    }
+
+    /// The motion of an agent that was staged.
+    pub(crate) fn staged<'a>(&'a self, staged: &'a Parts<S>) -> Result<Motion<'a, S>, Invalid> {
+        staged.motion(&self.segments)
+    }
+
+    /// Puts an agent that was staged in the place of one.
+    pub(crate) fn settle(&mut self, index: usize, staged: Parts<S>) -> Result<(), Rejected> {
         let Some(place) = self.agents.get_mut(index) else {
-            self.segments.truncate(begin);
+            self.unstage(&staged);
             return Err(Rejected::NoSuchAgent(index));
         };
-        let before = core::mem::replace(place, parts);
+        let before = core::mem::replace(place, staged);
         self.forget(before.begin, before.segments);
         Ok(())
     }
@@ -147,7 +168,8 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         // There are at most 65535.
         let [begin, end] = [begin, self.segments.len()].map(|place| place as u16);
         let segments = end.saturating_sub(begin);
-        Ok(Parts { begin, segments, phases, radius: agent.radius, start: agent.start_time })
+        let (limits, radius, start) = (agent.limits, agent.radius, agent.start_time);
+        Ok(Parts { begin, segments, phases, limits, radius, start })
     }
 
     /// Lets an agent set off later by `delay` \[s\]; when it moves then.
@@ -161,6 +183,24 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
             parts.start = time.lo;
         }
         Ok(time)
+    }
+
+    /// An agent as it came: the same path of the same bits comes of it.
+    ///
+    /// # Errors
+    /// [`Rejected::NoSuchAgent`], and [`Invalid::Full`] for more lines and arcs than an agent has that is sent.
+    pub fn agent(&self, index: usize) -> Result<Agent<S>, Rejected> {
+        let parts = self.agents.get(index).ok_or(Rejected::NoSuchAgent(index))?;
+        let [begin, count] = [parts.begin, parts.segments].map(usize::from);
+        let segments = self.segments.get(begin..begin.saturating_add(count)).unwrap_or_default();
+        let first = segments.first().ok_or(Invalid::Full("segment"))?;
+        let start = Pose { position: first.point_at(S::ZERO), heading: first.heading_at(S::ZERO) };
+        let mut path = Vec::new();
+        for segment in segments {
+            let step = Step { curve: segment.curve(), length: segment.length() };
+            path.push(step).map_err(|_| Invalid::Full("step"))?;
+        }
+        Ok(Agent { radius: parts.radius, start_time: parts.start, limits: parts.limits, start, path })
     }
 
     /// The motions of all agents.

@@ -1,12 +1,12 @@
 //! Frames on a serial line: one message each, found again after noise, checked, versioned.
 //!
 //! ```text
-//! 0  COBS( version  sequence  place  postcard message ...  CRC-32 )  0
+//! 0  COBS( version  who  sequence  place  postcard message ...  CRC-32 )  0
 //! ```
 //!
 //! COBS (Cheshire and Baker 1999) takes the zeros out of a frame, so that a zero begins and ends it: noise before a frame
-//! does it no harm, and a receiver is in step after the first zero. Numbers have their low byte first. An answer has the
-//! sequence number of its request, and its place among the answers to it; a request has [`Tag::REQUEST`] for a place. The
+//! does it no harm, and a receiver is in step after the first zero. Numbers have their low byte first. An answer has who
+//! asked, the sequence number of the request, and its place among the answers to it; a request has [`Tag::REQUEST`] for a place. The
 //! check has 32 bits because 16 let one damaged frame of 65,536 through. A new version may change everything behind the
 //! first byte; within a version, kinds of messages are only ever added.
 
@@ -15,16 +15,16 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Version of the protocol.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;
 
 /// Longest frame before it is encoded: header, message, check.
 pub const MAX_PLAIN: usize = 192;
 /// Longest frame on the line: one more byte for COBS, and the zeros around it.
 pub const MAX_FRAME: usize = MAX_PLAIN + 3;
 
-const HEADER: usize = 5;
+const HEADER: usize = 7;
 const CHECK: usize = 4;
-const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+pub(crate) const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 // COBS adds one byte up to this length.
 const _: () = assert!(MAX_PLAIN <= 254);
@@ -32,6 +32,8 @@ const _: () = assert!(MAX_PLAIN <= 254);
 /// Where a message belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tag {
+    /// Who asks, or is answered: [`Tag::PLANNER`], or a robot, 1 more than its index. Each counts requests by itself.
+    pub who: u16,
     /// Number of the request.
     pub sequence: u16,
     /// Place among the answers to it.
@@ -41,6 +43,8 @@ pub struct Tag {
 impl Tag {
     /// The place of a request.
     pub const REQUEST: u16 = u16::MAX;
+    /// Who plans: the one whose requests change the fleet.
+    pub const PLANNER: u16 = 0;
 }
 
 /// A frame that was received.
@@ -80,8 +84,8 @@ pub fn encode<T: Serialize>(tag: Tag, message: &T) -> Option<Vec<u8, MAX_FRAME>>
 pub fn encode_version<T: Serialize>(version: u8, tag: Tag, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
     let mut plain = [0; MAX_PLAIN];
     let (header, rest) = plain.split_first_chunk_mut::<HEADER>()?;
-    let [[a, b], [c, d]] = [tag.sequence, tag.place].map(u16::to_le_bytes);
-    *header = [version, a, b, c, d];
+    let [[a, b], [c, d], [e, f]] = [tag.who, tag.sequence, tag.place].map(u16::to_le_bytes);
+    *header = [version, a, b, c, d, e, f];
     let length = postcard::to_slice(message, rest).ok()?.len().checked_add(HEADER)?;
     let check = CRC.checksum(plain.get(..length)?).to_le_bytes();
     plain.get_mut(length..)?.first_chunk_mut::<CHECK>()?.clone_from(&check);
@@ -170,16 +174,16 @@ impl Receiver {
         if CRC.checksum(content) != check {
             return Err(Damage::Check);
         }
-        let (&[version, a, b, c, d], message) = content.split_first_chunk::<HEADER>().ok_or(Damage::TooShort)?;
+        let (&[version, a, b, c, d, e, f], message) = content.split_first_chunk::<HEADER>().ok_or(Damage::TooShort)?;
         if version != VERSION {
             return Err(Damage::Version(version));
         }
-        let [sequence, place] = [[a, b], [c, d]].map(u16::from_le_bytes);
+        let [who, sequence, place] = [[a, b], [c, d], [e, f]].map(u16::from_le_bytes);
         if (place == Tag::REQUEST) != (self.reads == Reads::Requests) {
             return Ok(None);
         }
         match postcard::take_from_bytes(message) {
-            Ok((message, [])) => Ok(Some(Frame { tag: Tag { sequence, place }, check, message })),
+            Ok((message, [])) => Ok(Some(Frame { tag: Tag { who, sequence, place }, check, message })),
             _ => Err(Damage::Message),
         }
     }

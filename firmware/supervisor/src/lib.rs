@@ -8,9 +8,12 @@
 //! fleet      storage for the motions of a fleet, without a heap          Store
 //! message    requests and answers, regions as they are sent              Request, Answer
 //! frame      their bytes on the line: COBS, check, version               Frame, Receiver
+//! table      what a supervisor keeps of its fleet                        Table
+//! traffic    the same with orders, for robots under way                  Traffic
 //! service    answers requests                                            Service
 //! session    does each once, whatever the line does to them              Session
 //! client     who asks                                                    Client
+//! robot      keeps the orders of one robot, and computes its hold        Briefing, Robot
 //! scenario   the paper's 12 agents, in each format                       (generated)
 //! dump       the table as text                                           region
 //! ```
@@ -23,14 +26,20 @@ pub mod fleet;
 pub mod frame;
 pub mod message;
 pub mod number;
+pub mod robot;
 pub mod scenario;
 pub mod service;
 pub mod session;
+pub mod table;
+pub mod traffic;
 
 pub use agent::{Agent, Step};
 pub use client::{Client, Event};
 pub use fleet::{Motions, Store};
 pub use message::{Answer, Request};
 pub use number::Number;
+pub use robot::{Briefing, Robot};
 pub use service::Service;
 pub use session::Session;
+pub use table::Table;
+pub use traffic::Traffic;

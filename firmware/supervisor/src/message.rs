@@ -1,12 +1,12 @@
 //! What the two ends of the line say to each other. Within a version of the protocol, kinds are only ever added, at the
 //! end of each list.
 
-use crate::agent::Agent;
+use crate::agent::{Agent, MAX_STEPS, Step};
 use crate::fleet::Rejected;
 use crate::frame::Damage;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Encounter, Full, Interval, Invalid, Mismatch, Motion, PieceRef, RegionRef};
+use pcr_core::{Encounter, Full, Interval, Invalid, Limits, Mismatch, Motion, Pass, PieceRef, Refused, RegionRef};
 use serde::{Deserialize, Serialize};
 
 /// A request to the supervisor. Each is answered before the next is read.
@@ -39,24 +39,82 @@ pub enum Request<S: Number> {
         /// The agent.
         agent: u16,
     },
-    /// Put another agent in the place of one. [`Answer::Fleet`].
+    /// Put another agent in the place of one; its regions are computed anew, if there is a table. [`Answer::Fleet`].
     Replace {
         /// Its place.
         agent: u16,
         /// The other agent.
         with: Agent<S>,
     },
-    /// Remove an agent; those behind it move up by one place. [`Answer::Fleet`].
+    /// Remove an agent; those behind it move up by one place, and the table, if there is one, serves on. [`Answer::Fleet`].
     Remove {
         /// The agent.
         agent: u16,
     },
+    /// Let all set off, in the order in which their motions pass one another: from now on until [`Request::Clear`] the fleet
+    /// changes by [`Request::Admit`] only. All stand at the starts of their paths. [`Answer::Edition`].
+    Order(Terms<S>),
+    /// Where a robot is; sent as often as it likes, the more often the less it waits. An [`Answer::Place`] for each robot that
+    /// it has to wait for, and [`Answer::Go`].
+    Report {
+        /// The robot.
+        agent: u16,
+        /// That of the orders which it has.
+        edition: Edition,
+        /// Where it is on its path \[m\].
+        at: Interval<S>,
+    },
+    /// The orders of a robot: an [`Answer::Member`] for itself and each robot with which it has regions, by index, an
+    /// [`Answer::Passing`] for each of these regions, and [`Answer::Orders`].
+    Orders {
+        /// The robot.
+        agent: u16,
+    },
+    /// Give a robot that is at the end of its path another one, which begins there, with orders so that everybody can finish.
+    /// [`Answer::Edition`].
+    Admit {
+        /// The robot.
+        agent: u16,
+        /// Direction in which it sets off: it may turn round where it stands.
+        heading: S::Angle,
+        /// Largest speed and acceleration.
+        limits: Limits<S>,
+        /// The path.
+        path: Vec<Step<S>, MAX_STEPS>,
+    },
+}
+
+/// What holds while robots are under way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Terms<S: Number> {
+    /// Number of the run, not 0, and another one than that of any run whose robots may still be about.
+    pub run: u16,
+    /// How far beyond its last place a robot may be sent \[m\]: more than it goes until it is heard again, and a stopping way.
+    /// What is far ahead can still be given to others.
+    pub horizon: S,
+    /// So far the lower end of a robot's place may be behind it when it stands \[m\].
+    pub width: S,
+}
+
+/// Which orders these are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Edition {
+    /// Number of the run; 0 is none.
+    pub run: u16,
+    /// How often orders have changed in it.
+    pub number: u16,
 }
 
 impl<S: Number> Request<S> {
     /// Whether it may change the fleet or its table; it has one answer then.
     pub fn changes(&self) -> bool {
-        !matches!(self, Self::Hello | Self::Row { .. } | Self::Conflicts)
+        !matches!(self, Self::Hello | Self::Row { .. } | Self::Conflicts) && !self.is_of_robots()
+    }
+
+    /// Whether a robot may ask it, with numbers of its own: to do it twice, late or in another order does no harm.
+    pub fn is_of_robots(&self) -> bool {
+        matches!(self, Self::Hello | Self::Report { .. } | Self::Orders { .. })
     }
 }
 
@@ -81,7 +139,8 @@ pub enum Answer<S: Number> {
     },
     /// It is done.
     Done,
-    /// There are so many agents now, and no table of them.
+    /// There are so many agents now. Their table is there if it was before a [`Request::Replace`] or [`Request::Remove`] and has
+    /// room.
     Fleet {
         /// Number of agents.
         agents: u16,
@@ -113,12 +172,69 @@ pub enum Answer<S: Number> {
         /// From setting off to arrival \[s\].
         time: Interval<S>,
     },
+    /// The orders that count from now on.
+    Edition(Edition),
+    /// A robot has got so far at least.
+    Place {
+        /// The robot.
+        agent: u16,
+        /// That of the orders by which it goes.
+        edition: Edition,
+        /// Length along its path \[m\].
+        at: S,
+    },
+    /// A robot may go so far if its hold allows it: it never goes beyond the furthest that it was given.
+    Go {
+        /// The robot.
+        agent: u16,
+        /// That of its orders.
+        edition: Edition,
+        /// Length along its path \[m\].
+        to: S,
+    },
+    /// A robot whose way crosses that of the one that asks, or that one itself.
+    Member {
+        /// The robot.
+        agent: u16,
+        /// That of these orders.
+        edition: Edition,
+        /// Its disc and path, and the limits that it was planned with.
+        with: Agent<S>,
+    },
+    /// The next region of the robot, by the other one as in a row, and whether it passes it first.
+    Passing {
+        /// The other robot.
+        other: u16,
+        /// That of these orders.
+        edition: Edition,
+        /// As the robot sees it that asks.
+        pass: Pass,
+        /// Where the region begins on its path \[m\]: both ends compute the same.
+        from: S,
+    },
+    /// All orders of a robot were sent.
+    Orders {
+        /// The robot.
+        agent: u16,
+        /// Which they are.
+        edition: Edition,
+        /// [`Edition::number`] with which it got its path.
+        path: u16,
+    },
 }
 
 impl<S: Number> Answer<S> {
     /// Whether more answers to the same request follow.
     pub fn goes_on(&self) -> bool {
-        matches!(self, Self::Region(_) | Self::Piece(_) | Self::Conflict(_))
+        matches!(
+            self,
+            Self::Region(_)
+                | Self::Piece(_)
+                | Self::Conflict(_)
+                | Self::Place { .. }
+                | Self::Member { .. }
+                | Self::Passing { .. }
+        )
     }
 }
 
@@ -225,6 +341,47 @@ pub enum Refusal {
     NotComputed,
     /// However late the agent sets off, it meets another one.
     NoPlan,
+    /// This supervisor has no memory for orders.
+    NoOrders,
+    /// Robots are under way, and the fleet does not change but by [`Request::Admit`].
+    Running,
+    /// No robots are under way.
+    NotRunning,
+    /// Terms are out of range, or the number of the run is that of the last one.
+    Terms,
+    /// Orders have changed: [`Request::Orders`] tells which they are.
+    Edition(Edition),
+    /// The place of a robot is none on its path, or beyond what it was given.
+    Beyond {
+        /// The robot.
+        agent: u16,
+    },
+    /// The robot is not known to be at the end of its path.
+    NotThere {
+        /// The robot.
+        agent: u16,
+    },
+    /// By their motions two agents meet, or pass so near that it cannot be told who is first.
+    Meeting([u16; 2]),
+    /// The first would wait for the second for ever.
+    Stuck([u16; 2]),
+    /// The second is in the way of the first, whoever of them goes first.
+    Blocked([u16; 2]),
+    /// A robot may greet, report, and ask for its orders.
+    Robot,
+}
+
+impl From<Refused> for Refusal {
+    fn from(refused: Refused) -> Self {
+        match refused {
+            Refused::Meeting(agents) => Self::Meeting(agents.map(short)),
+            Refused::Stuck { agent, by, .. } | Refused::Late { agent, by, .. } => Self::Stuck([agent, by].map(short)),
+            Refused::Blocked { agent, by } => Self::Blocked([agent, by].map(short)),
+            Refused::Full(full) => full.into(),
+            Refused::Mismatch(mismatch) => mismatch.into(),
+            _ => Self::TableFull(Room::Other),
+        }
+    }
 }
 
 /// What of a table is full.

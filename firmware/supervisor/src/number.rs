@@ -8,8 +8,12 @@ use serde::de::DeserializeOwned;
 pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + DeserializeOwned {
     /// Name in commands and expected files.
     const NAME: &'static str;
+    /// One metre, one second.
+    const ONE: Self;
     /// The bits of the number: what is compared between machines.
     fn bits(self) -> u32;
+    /// The bits of an angle.
+    fn angle_bits(angle: Self::Angle) -> u32;
     /// Thousandths, rounded to nearest: what people read.
     fn thousandths(self) -> i32;
 }
@@ -17,8 +21,12 @@ pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + Dese
 #[cfg(feature = "float")]
 impl Number for f32 {
     const NAME: &'static str = "f32";
+    const ONE: Self = 1.0;
     fn bits(self) -> u32 {
         self.to_bits()
+    }
+    fn angle_bits(angle: Self::Angle) -> u32 {
+        angle.0.bits()
     }
     fn thousandths(self) -> i32 {
         (self * 1000.0 + if self < 0.0 { -0.5 } else { 0.5 }) as i32
@@ -28,8 +36,12 @@ impl Number for f32 {
 #[cfg(feature = "micromath")]
 impl Number for pcr_core::scalar::Micro {
     const NAME: &'static str = "micro";
+    const ONE: Self = Self(1.0);
     fn bits(self) -> u32 {
         self.0.to_bits()
+    }
+    fn angle_bits(angle: Self::Angle) -> u32 {
+        angle.0.bits()
     }
     fn thousandths(self) -> i32 {
         self.0.thousandths()
@@ -41,8 +53,12 @@ macro_rules! fixed {
     ($($format:ident, $name:literal, $fraction_bits:literal;)*) => {
         $(impl Number for pcr_fixed::$format {
             const NAME: &'static str = $name;
+            const ONE: Self = Self::ONE;
             fn bits(self) -> u32 {
                 self.to_bits().cast_unsigned()
+            }
+            fn angle_bits(angle: Self::Angle) -> u32 {
+                angle.to_bits().cast_unsigned()
             }
             fn thousandths(self) -> i32 {
                 // What a table holds is far below the millions where this would wrap.

@@ -1,31 +1,48 @@
 //! The supervisor itself: keeps a fleet and its table, and answers requests.
 
-use crate::agent::{Agent, Step};
-use crate::fleet::{Motions, Store};
-use crate::message::{Answer, ConflictRecord, PieceRecord, Refusal, RegionRecord, Request, short, text};
+use crate::agent::{Agent, MAX_STEPS, Step};
+use crate::fleet::{Motions, Parts, Store};
+use crate::message::{
+    Answer, ConflictRecord, Edition, PieceRecord, Refusal, RegionRecord, Request, Terms, short, text,
+};
 use crate::number::Number;
-use pcr_core::{Ecm, Full, Interval, Motion, Piece, Region, earliest_start};
+use crate::table::Table;
+use heapless::Vec;
+use pcr_core::{Ecm, Interval, Limits, Piece, Pose, Region, Unchanged, earliest_start};
+
+pub use crate::table::Regions;
 
 /// A fleet and its table, made to be a `static`: at most `A` agents with `N` segments in all, those of an agent that comes
-/// in the place of another one included while both are there, `R` regions and `P` pieces of them.
+/// in the place of another one included while both are there, `R` regions and `P` pieces of them. Without orders, or with them
+/// where the table is a [`Traffic`](crate::Traffic).
 #[derive(Debug)]
-pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> {
+pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, const P: usize, T = Regions<S, R, P>> {
     fleet: Store<S, A, N>,
-    table: Ecm<S, [Region; R], [Piece<S>; P]>,
-    /// Whether the table is that of the fleet.
-    computed: bool,
+    table: T,
     built_in: &'static [Agent<S, &'static [Step<S>]>],
 }
 
 impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P> {
-    /// No agents yet, and a fleet to load.
+    /// No agents yet, a fleet to load, and no orders.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
-        // A row is all of it at most, and each record of it has its place in 16 bits.
-        const { assert!(R + P < u16::MAX as usize, "places are sent in 16 bits") };
-        let table = Ecm::new([Region::EMPTY; R], [Piece::EMPTY; P]);
-        Self { fleet: Store::new(), table, computed: false, built_in }
+        Self::with(Ecm::new([Region::EMPTY; R], [Piece::EMPTY; P]), built_in)
     }
+}
 
+impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P, T> {
+    /// No agents yet, a fleet to load, and this table.
+    pub const fn with(table: T, built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
+        // A row is all of it at most, and each record of it has its place in 16 bits.
+        const { assert!(R + P + A < u16::MAX as usize, "places are sent in 16 bits") };
+        Self { fleet: Store::new(), table, built_in }
+    }
+}
+
+impl<S, T, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P, T>
+where
+    S: Number,
+    T: Table<S, R, P>,
+{
     // What it calls is not inlined: the stack of the one would lie under that of the other.
     /// Answers a request: one call of `send` for each answer. `next` is the sequence number that a greeting tells.
     pub fn answer(&mut self, request: Request<S>, next: u16, mut send: impl FnMut(Answer<S>)) {
@@ -42,6 +59,17 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
                 self.clear();
                 Ok(Answer::Done)
             }
+            // Robots go by what they were told.
+            Request::Add(_)
+            | Request::Load
+            | Request::Replan { .. }
+            | Request::Replace { .. }
+            | Request::Remove { .. }
+            | Request::Order(_)
+                if self.table.is_running() =>
+            {
+                Err(Refusal::Running)
+            }
             Request::Add(agent) => self.add(&agent),
             Request::Load => self.load(),
             Request::Compute => self.compute(),
@@ -50,19 +78,20 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
             Request::Replan { agent } => self.replan(usize::from(agent)).map(|time| Answer::Replanned { agent, time }),
             Request::Replace { agent, with } => self.replace(usize::from(agent), &with),
             Request::Remove { agent } => self.remove(usize::from(agent)),
+            Request::Order(terms) => self.order(terms),
+            Request::Report { agent, edition, at } => self.report(usize::from(agent), edition, at, &mut send),
+            Request::Orders { agent } => self.orders(usize::from(agent), &mut send),
+            Request::Admit { agent, heading, limits, path } => self.admit(usize::from(agent), heading, limits, path),
         };
         send(outcome.unwrap_or_else(Answer::Refused));
     }
 
     fn clear(&mut self) {
-        self.computed = false;
         self.table.clear();
         self.fleet.clear();
     }
 
-    /// What is told of a fleet that has changed.
-    fn changed(&mut self) -> Answer<S> {
-        self.computed = false;
+    fn agents(&self) -> Answer<S> {
         Answer::Fleet { agents: short(self.fleet.len()) }
     }
 
@@ -70,7 +99,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
     fn add<Q: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, Q>) -> Result<Answer<S>, Refusal> {
         let index = self.fleet.len();
         self.fleet.add(agent).map_err(|invalid| Refusal::agent(index, invalid))?;
-        Ok(self.changed())
+        Ok(self.agents())
     }
 
     #[inline(never)]
@@ -81,39 +110,112 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
         if loaded.is_err() {
             self.clear();
         }
-        loaded.map(|()| self.changed())
+        loaded.map(|()| self.agents())
     }
 
     #[inline(never)]
     fn replace(&mut self, index: usize, agent: &Agent<S>) -> Result<Answer<S>, Refusal> {
-        self.fleet.replace(index, agent).map_err(|rejected| Refusal::change(index, rejected))?;
-        Ok(self.changed())
+        let staged = self.fleet.stage(agent).map_err(|invalid| Refusal::agent(index, invalid))?;
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        let motion = self.fleet.staged(&staged).map_err(|invalid| Refusal::agent(index, invalid))?;
+        // Whose table it was not, or where there is no room, there is none of the new fleet.
+        let _: Result<(), Unchanged> = self.table.replace(&mut motions, index, motion);
+        drop(motions);
+        self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
+        Ok(self.agents())
     }
 
     #[inline(never)]
     fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        // Whose table it was not, it is not now.
+        let _ = self.table.erase(&motions, index);
+        drop(motions);
         self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
-        Ok(self.changed())
+        Ok(self.agents())
+    }
+
+    /// Computes the table, if it is not that of the fleet already.
+    #[inline(never)]
+    fn compute(&mut self) -> Result<Answer<S>, Refusal> {
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        if self.table.regions().regions(&motions).is_err() {
+            self.table.fill(&motions)?;
+        }
+        let table = self.table.regions();
+        Ok(Answer::Computed { regions: short(table.len()), pieces: short(table.pieces()) })
     }
 
     #[inline(never)]
-    fn compute(&mut self) -> Result<Answer<S>, Refusal> {
-        self.computed = false;
+    fn order(&mut self, terms: Terms<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
-        fill(&mut self.table, &motions)?;
-        drop(motions);
-        self.computed = true;
-        Ok(Answer::Computed { regions: short(self.table.len()), pieces: short(self.table.pieces()) })
+        self.table.order(&motions, terms).map(Answer::Edition)
     }
 
-    /// Puts the motions of the fleet, whose table there is and that has this agent, where they are to be.
-    fn put_computed<'a>(&'a self, agent: usize, motions: &mut Motions<'a, S, A>) -> Result<(), Refusal> {
+    #[inline(never)]
+    fn report(
+        &mut self,
+        agent: usize,
+        edition: Edition,
+        at: Interval<S>,
+        send: &mut impl FnMut(Answer<S>),
+    ) -> Result<Answer<S>, Refusal> {
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        self.table.report(&motions, agent, edition, at, send)
+    }
+
+    #[inline(never)]
+    fn orders(&self, agent: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        let with = |agent| self.fleet.agent(agent).map_err(|rejected| Refusal::change(agent, rejected));
+        self.table.orders(&motions, agent, with, send)
+    }
+
+    /// A path that begins where the one that the robot has ends.
+    #[inline(never)]
+    fn admit(
+        &mut self,
+        index: usize,
+        heading: S::Angle,
+        limits: Limits<S>,
+        path: Vec<Step<S>, MAX_STEPS>,
+    ) -> Result<Answer<S>, Refusal> {
+        let agent = {
+            let mut motions = Motions::new();
+            put(&self.fleet, &mut motions)?;
+            self.table.arrived(&motions, index)?;
+            let before = motions.get(index).ok_or(Refusal::NoSuchAgent { agent: short(index) })?;
+            let position = before.path().point_at(before.path().length());
+            let (radius, start_time) = (before.radius(), before.time().lo);
+            Agent { radius, start_time, limits, start: Pose { position, heading }, path }
+        };
+        let staged = self.fleet.stage(&agent).map_err(|invalid| Refusal::agent(index, invalid))?;
+        let admitted = self.exchange(index, &staged);
+        if admitted.is_err() {
+            self.fleet.unstage(&staged);
+        }
+        let edition = admitted?;
+        self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
+        Ok(Answer::Edition(edition))
+    }
+
+    fn exchange(&mut self, index: usize, staged: &Parts<S>) -> Result<Edition, Refusal> {
+        let mut motions = Motions::new();
+        put(&self.fleet, &mut motions)?;
+        let motion = self.fleet.staged(staged).map_err(|invalid| Refusal::agent(index, invalid))?;
+        self.table.admit(&mut motions, index, motion)
+    }
+
+    /// Puts the motions of the fleet, which has this agent, where they are to be.
+    fn put_of<'a>(&'a self, agent: usize, motions: &mut Motions<'a, S, A>) -> Result<(), Refusal> {
         if agent >= self.fleet.len() {
             return Err(Refusal::NoSuchAgent { agent: short(agent) });
-        }
-        if !self.computed {
-            return Err(Refusal::NotComputed);
         }
         put(&self.fleet, motions)
     }
@@ -122,8 +224,8 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
     #[inline(never)]
     fn replan(&mut self, agent: usize) -> Result<Interval<S>, Refusal> {
         let mut motions = Motions::new();
-        self.put_computed(agent, &mut motions)?;
-        let delay = earliest_start(self.table.row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
+        self.put_of(agent, &mut motions)?;
+        let delay = earliest_start(self.table.regions().row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
         drop(motions);
         // The table is of paths: it stays as it is.
         self.fleet.delay(agent, delay).map_err(|rejected| Refusal::change(agent, rejected))
@@ -132,9 +234,9 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
     #[inline(never)]
     fn row(&self, ego: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
-        self.put_computed(ego, &mut motions)?;
+        self.put_of(ego, &mut motions)?;
         let mut count = 0_u16;
-        for region in self.table.row(&motions, ego)? {
+        for region in self.table.regions().row(&motions, ego)? {
             send(Answer::Region(RegionRecord::of(&region)));
             region.pieces().for_each(|piece| send(Answer::Piece(PieceRecord::of(&piece))));
             count = count.saturating_add(1);
@@ -165,13 +267,4 @@ fn put<'a, S: Number, const A: usize, const N: usize>(
     motions: &mut Motions<'a, S, A>,
 ) -> Result<(), Refusal> {
     fleet.put_motions(motions).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
-}
-
-// By itself, with a stack of its own.
-#[inline(never)]
-fn fill<S: Number, const R: usize, const P: usize>(
-    table: &mut Ecm<S, [Region; R], [Piece<S>; P]>,
-    fleet: &[Motion<'_, S>],
-) -> Result<(), Full> {
-    table.fill(fleet)
 }

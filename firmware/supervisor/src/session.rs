@@ -3,13 +3,15 @@
 //!
 //! Requests are numbered: 1 is the first after power-up, and after 65535 comes 2, so that a supervisor that has started
 //! anew is noticed. The next number is done, the last one again is answered again, every other is refused
-//! ([`Refusal::Sequence`]). A greeting is answered whatever its number is, and uses none up. 0 is that of a damaged frame.
+//! ([`Refusal::Sequence`]). What robots ask is done whatever its number is: it may be done twice, late and in any order
+//! ([`Request::is_of_robots`]). A greeting is answered whatever its number is, and uses none up. 0 is that of a damaged frame.
 
 use crate::agent::{Agent, Step};
 use crate::frame::{self, Reads, Receiver, Tag};
 use crate::message::{Answer, Refusal, Request};
 use crate::number::Number;
-use crate::service::Service;
+use crate::service::{Regions, Service};
+use crate::table::Table;
 
 /// The sequence number after this one.
 pub const fn after(sequence: u16) -> u16 {
@@ -21,8 +23,8 @@ pub const fn after(sequence: u16) -> u16 {
 
 /// A [`Service`] behind a line, made to be a `static`.
 #[derive(Debug)]
-pub struct Session<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> {
-    service: Service<S, A, N, R, P>,
+pub struct Session<S: Number, const A: usize, const N: usize, const R: usize, const P: usize, T = Regions<S, R, P>> {
+    service: Service<S, A, N, R, P, T>,
     receiver: Receiver,
     last: Option<Last<S>>,
 }
@@ -38,26 +40,51 @@ struct Last<S: Number> {
 }
 
 impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P> {
-    /// No agents yet, and a fleet to load.
+    /// No agents yet, a fleet to load, and no orders.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
-        Self { service: Service::new(built_in), receiver: Receiver::new(Reads::Requests), last: None }
+        Self::of(Service::new(built_in))
     }
+}
 
+impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P, T> {
+    /// This service.
+    pub const fn of(service: Service<S, A, N, R, P, T>) -> Self {
+        Self { service, receiver: Receiver::new(Reads::Requests), last: None }
+    }
+}
+
+impl<S, T, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P, T>
+where
+    S: Number,
+    T: Table<S, R, P>,
+{
     /// Takes a byte from the line: one call of `send` for each frame to be sent.
     pub fn take(&mut self, byte: u8, send: impl FnMut(&[u8])) {
         let Some(received) = self.receiver.take::<Request<S>>(byte) else { return };
-        let mut replies = Replies { tag: Tag { sequence: 0, place: 0 }, send };
+        let mut replies = Replies { tag: Tag { who: Tag::PLANNER, sequence: 0, place: 0 }, send };
         match received {
             Err(damage) => replies.send(&Answer::<S>::Refused(Refusal::Frame(damage))),
             Ok(frame) => {
-                replies.tag.sequence = frame.tag.sequence;
-                self.done(frame.tag.sequence, frame.check, frame.message, &mut replies);
+                (replies.tag.who, replies.tag.sequence) = (frame.tag.who, frame.tag.sequence);
+                if frame.tag.who == Tag::PLANNER {
+                    self.done(frame.tag.sequence, frame.check, frame.message, &mut replies);
+                } else if frame.message.is_of_robots() {
+                    let next = self.next();
+                    self.service.answer(frame.message, next, |each| replies.send(&each));
+                } else {
+                    replies.send(&Answer::<S>::Refused(Refusal::Robot));
+                }
             }
         }
     }
 
+    /// The number of the planner's next request.
+    fn next(&self) -> u16 {
+        self.last.as_ref().map_or(1, |last| after(last.sequence))
+    }
+
     fn done(&mut self, sequence: u16, check: u32, request: Request<S>, replies: &mut Replies<impl FnMut(&[u8])>) {
-        let next = self.last.as_ref().map_or(1, |last| after(last.sequence));
+        let next = self.next();
         let answer = match &self.last {
             _ if request == Request::Hello => None,
             Some(last) if (last.sequence, last.check) == (sequence, check) => last.answer.clone(),

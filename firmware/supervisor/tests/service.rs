@@ -64,12 +64,8 @@ fn without_a_table_of_the_fleet_there_are_no_regions_and_no_plan() {
     for ask in &asks {
         assert_eq!(answer(&mut service, ask.clone()), refused(Refusal::NotComputed), "never computed");
     }
-    let changes = [
-        (Request::Add(agent(1.0)), Answer::Fleet { agents: 3 }),
-        (Request::Replace { agent: 1, with: agent(1.0) }, Answer::Fleet { agents: 2 }),
-        (Request::Remove { agent: 1 }, Answer::Fleet { agents: 1 }),
-        (Request::Load, Answer::Fleet { agents: 2 }),
-    ];
+    let changes =
+        [(Request::Add(agent(1.0)), Answer::Fleet { agents: 3 }), (Request::Load, Answer::Fleet { agents: 2 })];
     for (change, expected) in changes {
         let mut service = crossing();
         assert_eq!(row(&mut service, 0).len(), 3, "a region, its piece, the end");
@@ -125,6 +121,46 @@ fn a_replaced_and_a_removed_agent_leave_the_table_of_those_that_are_there() {
     assert_eq!(answer(&mut service, Request::Replace { agent: 1, with: b }), Answer::Fleet { agents: 3 });
     assert_eq!(answer(&mut service, Request::Remove { agent: 1 }), Answer::Fleet { agents: 2 });
     assert_eq!(table(&mut service, 2), table(&mut fleet(&[a, c]), 2), "fewer");
+}
+
+#[test]
+fn a_table_goes_on_when_an_agent_is_replaced_or_removed() {
+    let rows = |service: &mut Small, agents: u16| (0..agents).flat_map(|ego| row(service, ego)).collect::<Vec<_>>();
+    let change = |request: Request<f32>, agents: u16, fleet: &[Agent<f32>]| {
+        let mut service = crossing();
+        assert_eq!(answer(&mut service, request.clone()), Answer::Fleet { agents });
+        let mut fresh = Small::new(&[]);
+        fleet.iter().for_each(|agent| drop(answers(&mut fresh, Request::Add(agent.clone()))));
+        let before = rows(&mut service, agents);
+        let computed = answer(&mut service, Request::Compute);
+        assert_eq!(answer(&mut fresh, Request::Compute), computed, "{request:?}");
+        assert_eq!((rows(&mut service, agents), rows(&mut fresh, agents)), (before.clone(), before), "{request:?}");
+    };
+    change(Request::Replace { agent: 1, with: agent(1.0) }, 2, &[agent(0.0), agent(1.0)]);
+    change(Request::Replace { agent: 0, with: agent(1.0) }, 2, &[agent(1.0), agent(FRAC_PI_2)]);
+    change(Request::Remove { agent: 0 }, 1, &[agent(FRAC_PI_2)]);
+    // Where the new agent's regions have no room, there is no table, and it is said which room.
+    let mut service = Service::<f32, 3, 6, 1, 8>::new(&[]);
+    let mut said = Vec::new();
+    let aside = Agent { start: Pose { position: Point::new(-2.0, 9.0), heading: Radians(0.0) }, ..agent(0.0) };
+    for request in [
+        Request::Add(agent(0.0)),
+        Request::Add(agent(FRAC_PI_2)),
+        Request::Add(aside),
+        Request::Compute,
+        Request::Replace { agent: 2, with: agent(1.0) },
+        Request::Row { ego: 0 },
+        Request::Compute,
+    ] {
+        service.answer(request, 1, |answer| said.push(answer));
+    }
+    let expected = [
+        Answer::Computed { regions: 1, pieces: 1 },
+        Answer::Fleet { agents: 3 },
+        refused(Refusal::NotComputed),
+        refused(Refusal::TableFull(Room::Regions)),
+    ];
+    assert_eq!(said[3..], expected);
 }
 
 #[test]

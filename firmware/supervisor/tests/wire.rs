@@ -1,15 +1,15 @@
 //! What goes over the line: every kind of message comes back as it was, and so many bytes does a region take.
 
-use pcr_core::{Curve, Interval, Limits, Point, Pose, Turn};
+use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Turn};
 use pcr_supervisor::agent::MAX_STEPS;
 use pcr_supervisor::frame::{self, Damage, Frame, Reads, Receiver, Tag};
-use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, Room, text};
+use pcr_supervisor::message::{ConflictRecord, Edition, PieceRecord, Reason, Refusal, RegionRecord, Room, Terms, text};
 use pcr_supervisor::{Agent, Answer, Number, Request, Step};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Debug;
 
-const TAG: Tag = Tag { sequence: 900, place: 9 };
+const TAG: Tag = Tag { who: 3, sequence: 900, place: 9 };
 
 fn there_and_back<T: Serialize + DeserializeOwned + PartialEq + Debug>(message: T) -> usize {
     let bytes = frame::encode(TAG, &message).expect("a message fits a frame");
@@ -45,11 +45,11 @@ fn piece<S: Number>(number: impl Fn(f64) -> S) -> PieceRecord<S> {
 #[test]
 fn a_region_takes_so_many_bytes_on_the_wire() {
     let float = |value: f64| value as f32;
-    assert_eq!(there_and_back(Answer::Region(region(float))), 42);
-    assert_eq!(there_and_back(Answer::Piece(piece(float))), 31);
+    assert_eq!(there_and_back(Answer::Region(region(float))), 44);
+    assert_eq!(there_and_back(Answer::Piece(piece(float))), 33);
     let fixed = |value: f64| pcr_fixed::Q16::from_f64(value).expect("in range");
-    assert_eq!(there_and_back(Answer::Region(region(fixed))), 37);
-    assert_eq!(there_and_back(Answer::Piece(piece(fixed))), 27);
+    assert_eq!(there_and_back(Answer::Region(region(fixed))), 39);
+    assert_eq!(there_and_back(Answer::Piece(piece(fixed))), 29);
 }
 
 #[test]
@@ -72,6 +72,19 @@ fn every_message_comes_back_as_it_was() {
     }
     there_and_back(Request::<f32>::Row { ego: 65535 });
     there_and_back(Request::<f32>::Replan { agent: 3 });
+    let edition = Edition { run: 65535, number: 65535 };
+    there_and_back(Request::Order(Terms { run: 65535, horizon: 2.5_f32, width: 0.0 }));
+    there_and_back(Request::<f32>::Orders { agent: 65535 });
+    there_and_back(Request::Report { agent: 65535, edition, at: Interval::new(0.5_f32, 1.5) });
+    for answer in [
+        Answer::Edition(edition),
+        Answer::Place { agent: 65535, edition, at: 2.5_f32 },
+        Answer::Go { agent: 65535, edition, to: 2.5 },
+        Answer::Passing { other: 65535, edition, pass: Pass::Second, from: 2.5 },
+        Answer::Orders { agent: 65535, edition, path: 65535 },
+    ] {
+        there_and_back(answer);
+    }
     let range = Interval::new(0.0, 1.0);
     there_and_back(Answer::Replanned { agent: 3, time: Interval::new(2.5_f32, 20.25) });
     let conflict =
@@ -94,6 +107,17 @@ fn every_message_comes_back_as_it_was() {
         Refusal::NoSuchAgent { agent: 65535 },
         Refusal::NotComputed,
         Refusal::NoPlan,
+        Refusal::NoOrders,
+        Refusal::Running,
+        Refusal::NotRunning,
+        Refusal::Terms,
+        Refusal::Edition(edition),
+        Refusal::Beyond { agent: 65535 },
+        Refusal::NotThere { agent: 65535 },
+        Refusal::Meeting([65535; 2]),
+        Refusal::Stuck([65535; 2]),
+        Refusal::Blocked([65535; 2]),
+        Refusal::Robot,
     ] {
         there_and_back(Answer::<f32>::Refused(refusal));
     }
@@ -103,13 +127,20 @@ fn every_message_comes_back_as_it_was() {
 fn largest_agent() {
     let most = pcr_fixed::Q16::from_bits(i32::MIN);
     let step = Step { curve: Curve::Arc { radius: most, turn: Turn::Right }, length: most };
-    let agent = Agent {
+    let agent: Agent<pcr_fixed::Q16> = Agent {
         radius: most,
         start_time: most,
         limits: Limits { speed: most, acceleration: most },
         start: Pose { position: Point::new(most, most), heading: pcr_fixed::Turns::from_bits(-(1 << 30)) },
         path: [step; MAX_STEPS].into_iter().collect(),
     };
+    there_and_back(Answer::Member {
+        agent: 65535,
+        edition: Edition { run: 65535, number: 65535 },
+        with: agent.clone(),
+    });
+    let (heading, limits, path) = (agent.start.heading, agent.limits, agent.path.clone());
+    there_and_back(Request::Admit { agent: 65535, heading, limits, path });
     there_and_back(Request::Replace { agent: 65535, with: agent });
     let range = Interval::new(most, most);
     let record = RegionRecord {

@@ -7,7 +7,7 @@ use crate::error::Full;
 use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::scalar::Scalar;
-use std::vec;
+use std::collections::TryReserveError;
 use std::vec::Vec;
 
 impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
@@ -17,10 +17,13 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
     /// that for 16 regions and 32 pieces an agent, more than the fleets of `docs/evaluation.md` need.
     ///
     /// # Errors
-    /// [`Full::Pair`] and [`Full::Agents`], which no storage helps.
+    /// [`Full::Pair`] and [`Full::Agents`], which no storage helps; [`Full::Regions`] and [`Full::Pieces`] where there is no more
+    /// memory.
     pub fn grown(fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let room = fleet.len().saturating_add(1).saturating_mul(16);
-        let mut ecm = Self::new(vec![Region::EMPTY; room], vec![Piece::EMPTY; room.saturating_mul(2)]);
+        let mut ecm = Self::new(Vec::new(), Vec::new());
+        lengthened(&mut ecm.regions, room, Region::EMPTY).map_err(|_| Full::Regions)?;
+        lengthened(ecm.pieces.storage(), room.saturating_mul(2), Piece::EMPTY).map_err(|_| Full::Pieces)?;
         while let Err(full) = ecm.fill(fleet) {
             ecm.grow(full)?;
         }
@@ -49,17 +52,22 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
     /// ```
     ///
     /// # Errors
-    /// What no storage helps: all but [`Full::Regions`] and [`Full::Pieces`], as it came.
+    /// What no storage helps, as it came: all but [`Full::Regions`] and [`Full::Pieces`], and those where there is no more memory.
     pub fn grow(&mut self, full: Full) -> Result<(), Full> {
-        fn doubled<T: Clone>(storage: &mut Vec<T>, empty: T) {
-            let room = storage.len().saturating_add(1).saturating_mul(2);
-            storage.resize(room, empty);
-        }
+        let twice = |room: usize| room.saturating_add(1).saturating_mul(2);
+        let (regions, pieces) = (twice(self.regions.len()), twice(self.pieces.storage().len()));
         match full {
-            Full::Regions => doubled(&mut self.regions, Region::EMPTY),
-            Full::Pieces => doubled(self.pieces.storage(), Piece::EMPTY),
+            Full::Regions => lengthened(&mut self.regions, regions, Region::EMPTY),
+            Full::Pieces => lengthened(self.pieces.storage(), pieces, Piece::EMPTY),
             _ => return Err(full),
         }
-        Ok(())
+        .map_err(|_| full)
     }
+}
+
+/// A storage of this length, if there is memory for it: a failed allocation would end the program.
+fn lengthened<T: Clone>(storage: &mut Vec<T>, room: usize, empty: T) -> Result<(), TryReserveError> {
+    storage.try_reserve_exact(room.saturating_sub(storage.len()))?;
+    storage.resize(room, empty);
+    Ok(())
 }

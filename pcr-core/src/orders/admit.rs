@@ -8,8 +8,9 @@
 use crate::ecm::Region;
 use crate::error::{Full, Mismatch, Unchanged};
 use crate::motion::Motion;
-use crate::orders::check::{Reach, Refused, Tolerances};
+use crate::orders::check::{Reach, Tolerances};
 use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::refused::Refused;
 use crate::orders::table::Orders;
 use crate::pieces::Piece;
 use crate::region::RegionRef;

@@ -100,9 +100,9 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn hold(&self, from: S, other_from: S) -> Hold<S> {
-        // Nobody is beyond the end of its path, whatever rounding says.
-        let from = from.min(self.ego_motion().path().length());
-        let other_from = other_from.min(self.other_motion().path().length());
+        // Nobody is beyond the ends of its path, whatever rounding says; what is no number may be the start.
+        let from = S::ZERO.max(from).min(self.ego_motion().path().length());
+        let other_from = S::ZERO.max(other_from).min(self.other_motion().path().length());
         let mut hold = Hold::Free;
         for piece in self.pieces() {
             // It holds no less than its least length.

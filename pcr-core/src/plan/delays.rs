@@ -3,7 +3,7 @@
 use crate::ecm::{Ecm, Region};
 use crate::motion::Motion;
 use crate::pieces::Piece;
-use crate::plan::order::{Blocked, Unsolved, in_order, separated, verified};
+use crate::plan::order::{Blocked, Unsolved, complete, in_order, separated, verified};
 use crate::query::earliest_start;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -11,12 +11,12 @@ use crate::scalar::Scalar;
 /// Delays the starts of the agents so that none collides, and puts the motions into `plan`, in the order of the
 /// fleet. It begins with motions of the same agents: those of the fleet, or an earlier plan.
 ///
-/// `order` lists the agents by priority, the highest first; nobody looks out for agents that are not in it, and nobody checks
-/// them: their motions in `plan` stay as they were. It may come back changed: agents that could not start otherwise are moved up, at most as often as there are agents in it.
+/// `order` lists each agent of the fleet once, by priority, the highest first. It may come back changed: agents that could not
+/// start otherwise are moved up, at most as often as there are agents.
 /// Plan with radii that are larger by [`Encounter::tolerance`](crate::Encounter::tolerance), so that agents of the true
 /// radii do not even touch.
 ///
-/// Cost: for each agent that of [`earliest_start`] for its row, and again for those after one that is moved.
+/// Cost: a comparison a pair of agents, and for each agent that of [`earliest_start`] for its row, and again for those after one that is moved.
 ///
 /// The plan is checked as a whole before it is returned: no overlap is deeper than the tolerance.
 ///
@@ -33,6 +33,7 @@ where
     R: AsRef<[Region]>,
     P: AsRef<[Piece<S>]>,
 {
+    complete(order, fleet.len())?;
     in_order(order, |before, agent| {
         let (Some(&motion), Some(planned)) = (fleet.get(agent), plan.get_mut(agent)) else {
             return Err(Blocked::Never(Unsolved::NoSuchAgent(agent)));

@@ -31,6 +31,8 @@ pub enum Unsolved {
     Full(usize),
     /// There is no such agent, or not as many plans as motions.
     NoSuchAgent(usize),
+    /// The order does not list this agent once: nobody would look out for one that is left out.
+    NotOnce(usize),
     /// The table is not that of the fleet, or the motions that the plan begins with are not.
     Table(Mismatch),
 }
@@ -51,6 +53,7 @@ impl core::fmt::Display for Unsolved {
             Self::Overlap([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap by the plan"),
             Self::Full(agent) => write!(f, "there is no room for a plan of agent {agent} of the fleet"),
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
+            Self::NotOnce(agent) => write!(f, "the order of priorities does not list agent {agent} of the fleet once"),
             Self::Table(mismatch) => mismatch.fmt(f),
         }
     }
@@ -70,6 +73,18 @@ impl From<Mismatch> for Blocked {
     fn from(mismatch: Mismatch) -> Self {
         Self::Never(mismatch.into())
     }
+}
+
+/// Refuses an order that is not one of so many agents: who is left out would be planned by nobody and looked out for by nobody.
+pub(super) fn complete(order: &[usize], agents: usize) -> Result<(), Unsolved> {
+    if let Some(&agent) = order.iter().find(|&&agent| agent >= agents) {
+        return Err(Unsolved::NoSuchAgent(agent));
+    }
+    let listed = |agent: usize| {
+        let mut places = order.iter().filter(move |&&other| other == agent);
+        places.next().is_some() && places.next().is_none()
+    };
+    (0..agents).find(|&agent| !listed(agent)).map_or(Ok(()), |agent| Err(Unsolved::NotOnce(agent)))
 }
 
 /// Plans the agents of an order, each after those before it; the order may change.

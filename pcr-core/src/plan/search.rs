@@ -3,7 +3,8 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::plan::lattice::{LEVELS, Lattice, SLABS, borders};
-use crate::plan::speed::{NoSpeedPlan, SpeedPlan, Station};
+use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
+use crate::plan::station::Station;
 use crate::plan::times::Times;
 use crate::profile::{Phase, Profile};
 use crate::region::RegionRef;

@@ -14,116 +14,13 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::plan::lattice::{Drive, LEVELS, Lattice};
+use crate::plan::lattice::{Drive, Lattice};
+use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::search::{Search, stands};
-use crate::plan::times::Times;
+use crate::plan::station::Station;
 use crate::profile::Profile;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
-
-/// A border of two cells of the path, or one of its ends: a place of the storage of [`plan_speed`].
-#[derive(Clone, Debug)]
-pub struct Station<S> {
-    /// Length along the path \[m\].
-    pub(super) length: S,
-    /// When the agent can be here with each speed \[s\].
-    pub(super) reached: [Times<S>; LEVELS],
-    /// Place of the speed that was chosen.
-    pub(super) level: usize,
-    /// When the agent goes on from here \[s\].
-    pub(super) leaves: S,
-}
-
-#[cfg(feature = "defmt")]
-impl<S: Scalar + defmt::Format> defmt::Format for Station<S> {
-    fn format(&self, f: defmt::Formatter<'_>) {
-        defmt::write!(f, "station at {} m, left at {} s", self.length, self.leaves);
-    }
-}
-
-impl<S: Scalar> Station<S> {
-    /// A free place.
-    pub const EMPTY: Self =
-        Self { length: S::ZERO, reached: [const { Times::NONE }; LEVELS], level: 0, leaves: S::ZERO };
-
-    /// The times at a speed. At the ends of the path there is one speed only, in any place.
-    pub(super) fn reached(&self, level: usize) -> Option<&Times<S>> {
-        self.reached.get(level).or(self.reached.first())
-    }
-
-    pub(super) fn reached_mut(&mut self, level: usize) -> Option<&mut Times<S>> {
-        if level < LEVELS { self.reached.get_mut(level) } else { self.reached.first_mut() }
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.reached.iter_mut().for_each(Times::clear);
-    }
-}
-
-impl<S: Scalar> Default for Station<S> {
-    fn default() -> Self {
-        Self::EMPTY
-    }
-}
-
-/// A speed profile and the time at which it begins.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct SpeedPlan<S: Scalar, const N: usize> {
-    /// When the agent sets off \[s\].
-    pub start: S,
-    /// How it moves then.
-    pub profile: Profile<S, N>,
-}
-
-impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
-    /// When the agent arrives \[s\].
-    pub fn end(&self) -> S {
-        self.start + self.profile.as_profile().duration()
-    }
-}
-
-/// Why there is no speed plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum NoSpeedPlan<S> {
-    /// This agent is met while the ego stands at its start, before it may set off; or as it sets off, if it is in motion.
-    AtStart(usize),
-    /// The goal is never free for good because of this agent.
-    AtGoal(usize),
-    /// No motion leads further than about this length \[m\], because of this agent.
-    Beyond {
-        /// Length along the path \[m\].
-        length: S,
-        /// Index of the other agent in the fleet.
-        other: usize,
-    },
-    /// The drive is not valid, the speeds at the ends are too far apart for the path, there are too few stations, the
-    /// profile has too few phases, or it takes longer than the format can tell.
-    Invalid(Invalid),
-}
-
-impl<S> From<Invalid> for NoSpeedPlan<S> {
-    fn from(invalid: Invalid) -> Self {
-        Self::Invalid(invalid)
-    }
-}
-
-// The length is not told: what writes floating point can panic, for all that a linker knows.
-impl<S> core::fmt::Display for NoSpeedPlan<S> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::AtStart(other) => write!(f, "agent {other} of the fleet is met at the start"),
-            Self::AtGoal(other) => write!(f, "agent {other} of the fleet blocks the goal for good"),
-            Self::Beyond { other, .. } => write!(f, "agent {other} of the fleet blocks the way on"),
-            Self::Invalid(invalid) => write!(f, "{invalid}"),
-        }
-    }
-}
-
-impl<S: core::fmt::Debug> core::error::Error for NoSpeedPlan<S> {}
 
 /// The earliest arrival of an agent along its path that meets none of the regions: those of its row in the table, or of
 /// some of the others, each of whom moves as its motion says. Path, radius and earliest start are those of `ego`; its

@@ -5,8 +5,10 @@ use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::plan::delays::earliest;
 use crate::plan::lattice::Drive;
-use crate::plan::order::{Blocked, Unsolved, in_order, separated, verified};
-use crate::plan::speed::{NoSpeedPlan, Station, plan_speed};
+use crate::plan::order::{Blocked, Unsolved, complete, in_order, separated, verified};
+use crate::plan::outcome::NoSpeedPlan;
+use crate::plan::speed::plan_speed;
+use crate::plan::station::Station;
 use crate::profile::Profile;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -40,6 +42,7 @@ where
     P: AsRef<[Piece<S>]>,
 {
     let mut profiles = profiles.into_iter();
+    complete(order, fleet.len())?;
     in_order(order, |before, agent| {
         let (Some(&motion), Some(planned)) = (fleet.get(agent), plan.get_mut(agent)) else {
             return Err(Blocked::Never(Unsolved::NoSuchAgent(agent)));

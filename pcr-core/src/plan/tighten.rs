@@ -3,8 +3,8 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::search::Search;
-use crate::plan::speed::{NoSpeedPlan, SpeedPlan};
 use crate::profile::{Phase, Profile};
 use crate::query::{Met, first_conflict};
 use crate::region::RegionRef;

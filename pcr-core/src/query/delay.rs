@@ -92,7 +92,8 @@ impl<S: Scalar> RegionRef<'_, S> {
         let all = Interval::new(encounter.time().lo.max(from), encounter.time().hi);
         let (own, their) = (times(ego, part, all)?, times(other, self.other_length(), all)?);
         let during = Interval::new(own.lo.max(their.lo), own.hi.min(their.hi));
-        // A contact is connected, hence part of one region; at a grazing one only its deepest point may be inside.
+        // A contact is connected, hence part of one region; at a grazing one only its deepest point may be inside. No region
+        // covers what is not within R, so that a contact of none is a touch, within what `Encounter::new` adds to R.
         let covers = |time: S| self.covers(ego.length_at(time), other.length_at(time));
         let belongs = |contact: &Interval<S>| covers(contact.middle()) || covers(encounter.closest(*contact).time);
         let mut contacts = (during.lo <= during.hi).then(|| encounter.contacts(during)).into_iter().flatten();

@@ -54,7 +54,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 
 /// The least further wait of the ego at a length of its path \[m\], limited to it, from `from` \[s\] on, after which it goes on by its motion and
 /// meets none of the regions: those of its row in the table, or of some of the others. At the length 0 it is a delay of
-/// the start. `None` where no wait helps, or the agent is in someone's way before. Whether it can stop there is not asked: a
+/// the start. `None` where no wait helps, for what is no number or beyond [`Scalar::LIMIT`], or where the agent is in someone's way before. Whether it can stop there is not asked: a
 /// motion that is at rest at this length can.
 ///
 /// Where the motion itself waits at this length, that wait comes before. Where the length cuts a region in two, a wait that
@@ -86,7 +86,7 @@ pub fn earliest_departure<'a, S: Scalar>(
     if length <= S::ZERO {
         return earliest_start(regions, from);
     }
-    let from = in_range(from, "wait").ok()?;
+    let (length, from) = (in_range(length, "length").ok()?, in_range(from, "wait").ok()?);
     let wait = settle(regions.clone(), from, |region, wait| region.next_free_after(length, wait))?;
     let longest = regions.map(|region| region.longest_wait(length)).fold(S::LIMIT, S::min);
     (wait <= S::ZERO || wait <= longest).then_some(wait)

@@ -156,9 +156,11 @@ fn encounters<'a, S: Scalar>(
     Ok(others.map(move |(_, other)| Encounter::new(own, other)))
 }
 
-/// The part of a path, limited to it: an end that is off by a rounding is on it.
+/// The part of a path, limited to it: an end that is off by a rounding is on it. One that is no number is an end of the path,
+/// and what is between the ends counts whichever is the larger.
 fn on_path<S: Scalar>(motion: &Motion<'_, S>, part: Interval<S>) -> Interval<S> {
-    Interval::new(motion.path().length().min(part.lo), S::ZERO.max(part.hi))
+    let (from, to) = (S::ZERO.max(part.lo), motion.path().length().min(part.hi));
+    Interval::new(from.min(to), from.max(to))
 }
 
 /// The part of a segment between these lengths of its path, if there is any.

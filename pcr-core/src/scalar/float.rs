@@ -40,7 +40,7 @@ impl<T: Neg<Output = T>> Neg for Radians<T> {
 }
 
 macro_rules! impl_float {
-    ($t:ident, bits: $bits:ident, limit: $limit:literal, least: $least:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
+    ($t:ident, bits: $bits:ident, limit: $limit:literal, heading: $heading:literal, least: $least:literal, split: $split:literal, tolerance: $tolerance:literal, sqrt: $sqrt:path) => {
         impl Scalar for $t {
             type Wide = $t;
             type Unit = $t;
@@ -193,6 +193,9 @@ macro_rules! impl_float {
             fn is_finite(self) -> bool {
                 self.0.is_finite()
             }
+            fn is_in_range(self) -> bool {
+                self.0.abs() <= $heading
+            }
             fn subtended(length: $t, radius: $t) -> Self {
                 Radians(length / radius)
             }
@@ -238,8 +241,8 @@ macro_rules! impl_float {
 const SLACK: u8 = 64;
 
 // `tolerance` 2^-32 and 2^-16 of the extent; `split` is 1 more than the power of 2 that halves a significand.
-impl_float!(f64, bits: u64, limit: 1e12, least: 1e-75, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
-impl_float!(f32, bits: u32, limit: 1e6, least: 1e-9, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
+impl_float!(f64, bits: u64, limit: 1e12, heading: 16_777_216.0, least: 1e-75, split: 134_217_729.0, tolerance: 2.328_306_436_538_696_3e-10, sqrt: sqrt_f64);
+impl_float!(f32, bits: u32, limit: 1e6, heading: 1_024.0, least: 1e-9, split: 4_097.0, tolerance: 1.525_878_9e-5, sqrt: sqrt_f32);
 
 #[cfg(feature = "std")]
 extern crate std;

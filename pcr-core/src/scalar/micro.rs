@@ -166,6 +166,9 @@ impl Angle<Micro> for Radians<Micro> {
     fn is_finite(self) -> bool {
         self.0.0.is_finite()
     }
+    fn is_in_range(self) -> bool {
+        self.0.0.abs() <= 1_024.0
+    }
     fn subtended(length: Micro, radius: Micro) -> Self {
         Radians(Micro(length.0 / radius.0))
     }

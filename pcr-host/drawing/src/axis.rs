@@ -107,6 +107,9 @@ pub(super) const TICK_SIZE: f64 = 10.0;
 /// Size of the titles of axes \[px\].
 pub(super) const AXIS_SIZE: f64 = 11.0;
 
+/// Room above a plot for its title \[px\].
+pub(super) const ROOM_ABOVE: f64 = 26.0;
+
 /// Room below a plot for its axis \[px\].
 pub(super) const ROOM_BELOW: f64 = 36.0;
 

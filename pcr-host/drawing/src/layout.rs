@@ -3,8 +3,7 @@
 //! The corridor that a disc sweeps is the stroke of its path with round ends, as wide as the disc: SVG draws it exactly. That of a
 //! footprint is the union of those of its discs.
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, at_least_visible, room_at_left};
-use super::map::ROOM_ABOVE;
+use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
 use super::svg::{PathData, Pixels, Svg};
 use pcr_core::Interval;
 use pcr_formats::import::{Edge, Imported, Layout, Node};

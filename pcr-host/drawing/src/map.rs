@@ -4,16 +4,13 @@
 mod legend;
 mod names;
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, room_at_left};
+use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
 use super::contour::is_thin;
 use super::scene::{Scene, Shape};
 use super::svg::{PathData, Pixels, Svg};
 pub(super) use legend::Legend;
 pub(super) use names::places;
 use pcr_core::Interval;
-
-/// Room above a plot for its title \[px\].
-pub(super) const ROOM_ABOVE: f64 = 26.0;
 
 /// Part of the time span that is shown before the first start and after the last arrival, for strips.
 const MARGIN: f64 = 0.045;

@@ -1,7 +1,7 @@
 //! The collision map of an agent over what samples say of it (paper Fig. 13).
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, room_at_left};
-use super::map::{ROOM_ABOVE, spans};
+use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
+use super::map::spans;
 use super::scene::Scene;
 use super::svg::{PathData, Pixels, Svg};
 use pcr_core::Interval;

@@ -1,7 +1,7 @@
 //! The workspace beside the extended collision map of the agent with the most regions.
 
-use super::axis::{Frame, ROOM_BELOW, room_at_left};
-use super::map::{self, Legend, ROOM_ABOVE};
+use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
+use super::map::{self, Legend};
 use super::scene::Scene;
 use super::svg::Svg;
 use super::workspace;

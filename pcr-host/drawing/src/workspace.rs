@@ -1,8 +1,7 @@
 //! The workspace (paper Fig. 10): all paths with the discs at their starts and ends, in metres.
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_BELOW, at_least_visible, room_at_left};
+use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
 use super::labels::{Labels, SPACING};
-use super::map::ROOM_ABOVE;
 use super::scene::Scene;
 use super::svg::{PathData, Pixels, Svg, text_width};
 use pcr_core::{Bounds, Curve, Interval, Motion, Pose, Segment, Turn};

@@ -224,9 +224,8 @@ fn write_blocks(
         edits.replace(from..range.end + offset, "");
     }
     // Blocks come before the visual layout and the properties of the model.
-    let after = |names: &[&str]| {
-        root.children().filter(|child| child.is_element() && names.contains(&child.tag_name().name())).next_back()
-    };
+    let after =
+        |names: &[&str]| root.children().rfind(|child| child.is_element() && names.contains(&child.tag_name().name()));
     let last = kept.last().copied().or_else(|| after(&["location", "locationType", "vehicle", "path", "point"]));
     let Some(last) = last else { return };
     let at = last.range().end + offset;
@@ -285,7 +284,7 @@ fn write_envelopes(
         }
         // Before them come boxes and operations, in this order.
         let before = ["maxVehicleBoundingBox", "peripheralOperation", "vehicleEnvelope"];
-        let last = element.children().filter(|child| before.contains(&child.tag_name().name())).next_back();
+        let last = element.children().rfind(|child| before.contains(&child.tag_name().name()));
         let first = element.children().find(Node::is_element);
         match (last, first) {
             (Some(last), _) => edits.insert(last.range().end + offset, envelope),

@@ -43,8 +43,15 @@ const DEEPEST: usize = 64;
 pub(crate) const QUOTED: usize = 40;
 
 /// The value in a text.
+#[cfg(test)]
 pub(crate) fn parse(text: &str) -> Result<Json, SyntaxError> {
-    let mut parser = Parser { text, at: 0, line: 1, line_start: 0 };
+    parse_listing(text, "", &mut |_| {})
+}
+
+/// The value in a text; the elements of the array that is its member `list` are handed to `take` one after the other and are not
+/// in it, so that no tree of a long list is held.
+pub(crate) fn parse_listing(text: &str, list: &str, take: &mut dyn FnMut(Json)) -> Result<Json, SyntaxError> {
+    let mut parser = Parser { text, at: 0, line: 1, line_start: 0, list, take };
     let value = parser.value(0)?;
     match parser.peek() {
         None => Ok(value),
@@ -52,16 +59,19 @@ pub(crate) fn parse(text: &str) -> Result<Json, SyntaxError> {
     }
 }
 
-struct Parser<'t> {
+struct Parser<'t, 'l> {
     text: &'t str,
     /// Byte that is read next; always at the border of a character.
     at: usize,
     line: usize,
     /// First byte of the line.
     line_start: usize,
+    /// The member of the outermost object whose elements go here.
+    list: &'l str,
+    take: &'l mut dyn FnMut(Json),
 }
 
-impl<'t> Parser<'t> {
+impl<'t> Parser<'t, '_> {
     fn value(&mut self, depth: usize) -> Result<Json, SyntaxError> {
         let next = self.peek();
         let line = self.line;
@@ -70,26 +80,40 @@ impl<'t> Parser<'t> {
                 return Err(self.error(format!("arrays and objects nested more than {DEEPEST} deep")));
             }
             Some('{') => Data::Object(self.members(depth)?),
-            Some('[') => Data::Array(self.elements(depth)?),
+            Some('[') => {
+                let mut elements = Vec::new();
+                self.elements(depth, |_, element| elements.push(element))?;
+                Data::Array(elements)
+            }
             Some('"') => Data::Text(self.string()?),
             _ => self.word()?,
         };
         Ok(Json { line, data })
     }
 
-    fn elements(&mut self, depth: usize) -> Result<Vec<Json>, SyntaxError> {
-        let mut elements = Vec::new();
+    fn elements(&mut self, depth: usize, mut take: impl FnMut(&mut Self, Json)) -> Result<(), SyntaxError> {
         self.advance(1);
         if self.accept(']') {
-            return Ok(elements);
+            return Ok(());
         }
         loop {
-            elements.push(self.value(depth + 1)?);
+            let element = self.value(depth + 1)?;
+            take(self, element);
             if self.accept(']') {
-                return Ok(elements);
+                return Ok(());
             }
             self.expect(',', "`,` or `]`")?;
         }
+    }
+
+    /// A member of an object, or an empty array in place of the list whose elements are taken.
+    fn member(&mut self, key: &str, depth: usize) -> Result<Json, SyntaxError> {
+        if depth > 0 || key != self.list || self.peek() != Some('[') {
+            return self.value(depth + 1);
+        }
+        let line = self.line;
+        self.elements(depth + 1, |parser, element| (parser.take)(element))?;
+        Ok(Json { line, data: Data::Array(Vec::new()) })
     }
 
     fn members(&mut self, depth: usize) -> Result<Vec<(String, Json)>, SyntaxError> {
@@ -104,7 +128,8 @@ impl<'t> Parser<'t> {
             }
             let key = self.string()?;
             self.expect(':', "`:`")?;
-            members.push((key, self.value(depth + 1)?));
+            let value = self.member(&key, depth)?;
+            members.push((key, value));
             if self.accept('}') {
                 return Ok(members);
             }

@@ -14,17 +14,25 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// # Errors
 /// Those of the file system; then the file is as it was before. One that is there and must not be written to stays, too.
 pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    stream(file, |out| out.write_all(content.as_ref()))
+}
+
+/// The same with what is written bit by bit.
+///
+/// # Errors
+/// As [`write`], and what `fill` refuses.
+pub fn stream<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -> Result<T, E>) -> Result<T, E> {
     let target = followed(file)?;
     match fs::metadata(&target) {
-        Ok(old) if old.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "a folder")),
-        Ok(old) if !old.is_file() => OpenOptions::new().write(true).open(&target)?.write_all(content.as_ref()),
+        Ok(old) if old.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "a folder").into()),
+        Ok(old) if !old.is_file() => fill(&mut OpenOptions::new().write(true).open(&target)?),
         Ok(old) => {
             // Its folder would let it be replaced even where it is read-only.
             OpenOptions::new().write(true).open(&target)?;
-            replace(&target, Some(&old), content.as_ref())
+            replace(&target, Some(&old), fill)
         }
-        Err(error) if error.kind() == io::ErrorKind::NotFound => replace(&target, None, content.as_ref()),
-        Err(error) => Err(error),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => replace(&target, None, fill),
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -55,21 +63,28 @@ fn followed(file: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many links"))
 }
 
-fn replace(target: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
+fn replace<T, E: From<io::Error>>(
+    target: &Path,
+    old: Option<&Metadata>,
+    fill: impl FnOnce(&mut File) -> Result<T, E>,
+) -> Result<T, E> {
     if target.file_name().is_none() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file").into());
     }
     let folder = match target.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
     let (temporary, file) = temporary(folder)?;
-    let done = fill(file, old, content).and_then(|()| fs::rename(&temporary, target));
+    let done = filled(file, old, fill).and_then(|done| {
+        fs::rename(&temporary, target)?;
+        Ok(done)
+    });
     match done {
-        Ok(()) => {
+        Ok(done) => {
             // That the new name is on the disk, too. Where folders cannot be opened or synced, it gets there in time.
             let _ = File::open(folder).and_then(|folder| folder.sync_all());
-            Ok(())
+            Ok(done)
         }
         Err(error) => {
             let _ = fs::remove_file(&temporary);
@@ -78,12 +93,17 @@ fn replace(target: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<
     }
 }
 
-fn fill(mut file: File, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
+fn filled<T, E: From<io::Error>>(
+    mut file: File,
+    old: Option<&Metadata>,
+    fill: impl FnOnce(&mut File) -> Result<T, E>,
+) -> Result<T, E> {
     if let Some(old) = old {
         file.set_permissions(old.permissions())?;
     }
-    file.write_all(content)?;
-    file.sync_all()
+    let done = fill(&mut file)?;
+    file.sync_all()?;
+    Ok(done)
 }
 
 /// A new file in a folder, which stays there only if the program is killed.

@@ -51,7 +51,7 @@ pub use decode::LENGTH_TOLERANCE;
 pub use decode::speed_after;
 pub use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
-pub(crate) use labels::label;
+pub use labels::label;
 pub use labels::{LONGEST_LABEL, Labels};
 pub use load::Load;
 pub use parts::Part;

@@ -47,6 +47,11 @@ struct Stretch {
 }
 
 impl Disced {
+    /// The same disc of an agent so many places further.
+    pub(crate) fn moved(self, places: usize) -> Self {
+        Self { agent: self.agent + places, ..self }
+    }
+
     /// Lengths on the path of the agent, outward, of lengths on that of the disc.
     pub fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
         let [lo, hi] = self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths));

@@ -3,7 +3,7 @@
 //! All numbers are those that the library holds: nothing is rounded or computed again here.
 
 use crate::fleet::{Fleet, Format, HostEcm};
-use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Segment, Share, Table, Travel};
+use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Region, Segment, Share, Table, Travel};
 use pcr_core::{Curve, Interval, Motion, Turn, excess};
 
 /// A motion: `heading` is that at the start of its path, `turns` its turns in place, each before the segment of this place.
@@ -37,7 +37,12 @@ pub fn agent<S: Format>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turn
             segments: segments.collect(),
             rounding: S::EPSILON * path.length().to_f64(),
         },
-        travel: Some(Travel { start: motion.time().lo.to_f64(), phases: phases.collect(), lag: motion.lag().to_f64() }),
+        travel: Some(Travel {
+            start: motion.time().lo.to_f64(),
+            phases: phases.collect(),
+            lag: motion.lag().to_f64(),
+            time_excess: motion.time_excess().to_f64(),
+        }),
     }
 }
 
@@ -69,8 +74,12 @@ pub fn table<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>], ecm: &Hos
 }
 
 fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 2]) -> Pair {
-    let mut pieces = Vec::new();
+    let (mut regions, mut pieces) = (Vec::new(), Vec::new());
     for (number, region) in ecm.pair(motions, i, j).expect("the table of the fleet").enumerate() {
+        regions.push(Region {
+            lengths: [ends_of(region.length()), ends_of(region.other_length())],
+            times: Some([ends_of(region.clone().swapped().time()), ends_of(region.time())]),
+        });
         pieces.extend(region.pieces().map(|piece| Piece {
             segments: piece.segments,
             lengths: [ends_of(piece.length), ends_of(piece.other_length)],
@@ -82,5 +91,5 @@ fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 
             region: number,
         }));
     }
-    Pair { agents: [i, j], excess: excess(&motions[i], &motions[j]).to_f64(), pieces }
+    Pair { agents: [i, j], excess: excess(&motions[i], &motions[j]).to_f64(), regions, pieces }
 }

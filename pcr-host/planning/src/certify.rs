@@ -7,6 +7,7 @@ mod motions;
 pub use motions::{Contact, Proof};
 
 use pcr_certify::data::Table;
+use pcr_certify::dump;
 use pcr_certify::pair::{Findings, Promise};
 use pcr_certify::table::{Checker, Margin};
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,8 @@ pub struct Certified {
     pub segment_pairs: usize,
     /// Pieces of the table.
     pub pieces: usize,
+    /// Regions of which the times were looked at.
+    pub times: usize,
     /// Evaluations of the bounds on a pair of parts of segments.
     pub steps: usize,
     /// The largest margin \[ε\] at which all contacts are covered, if asked for.
@@ -57,7 +60,7 @@ pub struct Point {
     pub in_excess: f64,
 }
 
-/// The tables in an answer of `pcr regions --certificate`; what else is there does not count.
+/// The tables in an answer of `pcr regions --certificate`, of which nothing else counts, or that which a microcontroller prints.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Dump {
     /// Name of the scenario.
@@ -67,13 +70,17 @@ pub struct Dump {
 }
 
 impl Dump {
-    /// Reads one from a file.
+    /// Reads one from a file: JSON, or the text that a microcontroller prints.
     ///
     /// # Errors
     /// What is wrong with the file.
     pub fn read(file: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
-        serde_json::from_str(&text).map_err(|error| error.to_string())
+        if text.trim_start().starts_with('{') {
+            return serde_json::from_str(&text).map_err(|error| error.to_string());
+        }
+        let name = file.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Ok(Self { name, certificate: vec![dump::decode(&text)?] })
     }
 }
 
@@ -99,6 +106,8 @@ impl Certified {
                     Promise::Covered => "contact outside of all pieces",
                     Promise::Shared => "contact in a piece that does not show it",
                     Promise::Near => "told, but no contact",
+                    Promise::Timed => "contact outside of the time of its region",
+                    Promise::Prompt => "time told that is too far from the region",
                 },
                 i: id(witness.agents[0]),
                 j: id(witness.agents[1]),
@@ -120,6 +129,7 @@ impl Certified {
             discs: table.agents.len(),
             segment_pairs: findings.segments,
             pieces: findings.pieces,
+            times: findings.times,
             steps: findings.steps,
             margin,
             refuted: points(&findings.refuted),
@@ -136,6 +146,7 @@ impl Certified {
             discs: 0,
             segment_pairs: 0,
             pieces: 0,
+            times: 0,
             steps: 0,
             margin: None,
             refuted: Vec::new(),

@@ -5,9 +5,13 @@
 
 use crate::bodies::{Bodies, Disced};
 use crate::certify::Proof;
-use crate::fleet::{Format, Refused};
+use crate::fleet::Format;
+use crate::memory::{self, Held};
+use crate::regions::{Failure, Told};
+use crate::rows::{Grid, grown};
 use pcr_core::{Encounter, Interval, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Conflicts of one scenario, or why there is no answer.
@@ -71,51 +75,34 @@ impl Verdict {
     /// The conflicts of a scenario, computed in the format `S`.
     ///
     /// # Errors
-    /// [`Refused`] where a value does not fit the format.
-    pub fn of<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Refused> {
+    /// [`Failure`] where a value does not fit the format, or memory does not hold the answer.
+    pub fn of<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
+        Self::watched::<S>(scenario, closest, &|_, _| {})
+    }
+
+    /// The same, telling how many agents of how many are done.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
         let Bodies { fleet, discs, .. } = Bodies::<S>::new(scenario)?;
         let motions = fleet.motions();
-        let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
-        let mut agents: Vec<(u64, Vec<Body<'_, S>>)> =
-            scenario.agents.iter().map(|agent| (agent.id, Vec::new())).collect();
-        for body in discs.iter().zip(&motions) {
-            if let Some((_, bodies)) = agents.get_mut(body.0.agent) {
-                bodies.push(body);
-            }
+        let pairs = Pairs::new(scenario, &discs, &motions);
+        let count = pairs.agents.len();
+        if closest {
+            let all = count as u64 * count.saturating_sub(1) as u64 / 2;
+            let what = || format!("how near all {all} pairs come");
+            memory::ask(all.saturating_mul(size_of::<Closest>() as u64), what)?;
         }
-        agents.sort_by_key(|&(id, _)| id);
-        let pairs = agents.iter().enumerate().flat_map(|(k, a)| agents[k + 1..].iter().map(move |b| (a, b)));
-        let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
-        for ((i, first), (j, second)) in pairs {
-            let mut found: Vec<Conflict> = Vec::new();
-            let mut closest_of: Option<Closest> = None;
-            for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
-                let [own_time, their_time] = [own, other].map(|(disc, motion)| disc.time(motion, time));
-                let time = Interval { lo: own_time.lo.max(their_time.lo), hi: own_time.hi.min(their_time.hi) };
-                if time.lo > time.hi {
-                    continue;
-                }
-                let encounter = Encounter::new(own.1, other.1);
-                found.extend(encounter.conflicts(time).map(|conflict| Conflict {
-                    i: *i,
-                    j: *j,
-                    t: ends(conflict.time),
-                    depth: conflict.depth.to_f64(),
-                    l_i: own.0.on_agent(ends(conflict.length)),
-                    l_j: other.0.on_agent(ends(conflict.other_length)),
-                    touching: conflict.touching,
-                }));
-                if closest {
-                    let approach = encounter.closest(time);
-                    let clearance = (approach.separation - encounter.radius()).to_f64();
-                    if closest_of.is_none_or(|closest| clearance < closest.clearance) {
-                        let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
-                        closest_of = Some(Closest { i: *i, j: *j, t, separation, clearance });
-                    }
-                }
+        let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), Held::default());
+        for first in (0..count).step_by(STRETCH) {
+            let stretch = first..count.min(first + STRETCH);
+            let found: Vec<_> = stretch.clone().into_par_iter().map(|k| pairs.of(k, closest)).collect();
+            for (found, near) in found {
+                held.extend(&mut conflicts, found, 0, "conflicts")?;
+                nearest.extend(near);
             }
-            conflicts.extend(if first.len() * second.len() > 1 { joined(found) } else { found });
-            nearest.extend(closest_of);
+            told(stretch.end, count);
         }
         // Stable: those that begin together stay in the order of the agents.
         conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
@@ -134,7 +121,7 @@ impl Verdict {
     ///
     /// # Errors
     /// As [`Verdict::of`].
-    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Refused> {
+    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
         let certificate = Some(Proof::of::<S>(scenario)?);
         Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
     }
@@ -155,6 +142,105 @@ impl Verdict {
 
 /// A disc of an agent, and its motion.
 type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
+
+/// Agents that are looked at between two words on how far it is.
+const STRETCH: usize = 1024;
+
+/// The agents by their numbers, and who may come near whom.
+struct Pairs<'a, S: Format> {
+    agents: Vec<(u64, Vec<Body<'a, S>>)>,
+    /// Their places in the scenario.
+    ranks: Vec<usize>,
+    grid: Grid,
+    discs: &'a [Disced],
+    /// From the first start to the last arrival \[s\].
+    time: Interval<S>,
+}
+
+impl<'a, S: Format> Pairs<'a, S> {
+    fn new(scenario: &Scenario, discs: &'a [Disced], motions: &'a [Motion<'a, S>]) -> Self {
+        let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        let mut order: Vec<usize> = (0..scenario.agents.len()).collect();
+        order.sort_by_key(|&agent| scenario.agents[agent].id);
+        let mut ranks = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);
+        let mut agents: Vec<(u64, Vec<Body<'a, S>>)> =
+            order.iter().map(|&agent| (scenario.agents[agent].id, Vec::new())).collect();
+        for body in discs.iter().zip(motions) {
+            agents[ranks[body.0.agent]].1.push(body);
+        }
+        let grid = Grid::new(motions.iter().map(area).collect());
+        Self { agents, ranks, grid, discs, time }
+    }
+
+    /// The agents after one that may come near it.
+    fn after(&self, agent: usize) -> Vec<usize> {
+        let (mut near, mut after) = (Vec::new(), Vec::new());
+        for (_, motion) in &self.agents[agent].1 {
+            self.grid.meeting(&area(motion), &mut near);
+            after.extend(near.iter().map(|&disc| self.ranks[self.discs[disc as usize].agent]));
+        }
+        after.retain(|&other| other > agent);
+        after.sort_unstable();
+        after.dedup();
+        after
+    }
+
+    /// The conflicts of an agent with those after it; with `closest` how near each of them comes.
+    fn of(&self, agent: usize, closest: bool) -> (Vec<Conflict>, Vec<Closest>) {
+        let others = if closest { (agent + 1..self.agents.len()).collect() } else { self.after(agent) };
+        let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
+        for other in others {
+            let (found, near) = encounters(&self.agents[agent], &self.agents[other], self.time, closest);
+            conflicts.extend(found);
+            nearest.extend(near);
+        }
+        (conflicts, nearest)
+    }
+}
+
+/// Where a disc is in contact with nothing that is not there, too.
+fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
+    let reach = (motion.radius() + Encounter::new(motion, motion).tolerance()).to_f64();
+    grown(motion, reach)
+}
+
+/// The conflicts of two agents, and how near they come if asked for.
+fn encounters<S: Format>(
+    (i, first): &(u64, Vec<Body<'_, S>>),
+    (j, second): &(u64, Vec<Body<'_, S>>),
+    time: Interval<S>,
+    closest: bool,
+) -> (Vec<Conflict>, Option<Closest>) {
+    let mut found: Vec<Conflict> = Vec::new();
+    let mut closest_of: Option<Closest> = None;
+    for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
+        let [own_time, their_time] = [own, other].map(|(disc, motion)| disc.time(motion, time));
+        let time = Interval { lo: own_time.lo.max(their_time.lo), hi: own_time.hi.min(their_time.hi) };
+        if time.lo > time.hi {
+            continue;
+        }
+        let encounter = Encounter::new(own.1, other.1);
+        found.extend(encounter.conflicts(time).map(|conflict| Conflict {
+            i: *i,
+            j: *j,
+            t: ends(conflict.time),
+            depth: conflict.depth.to_f64(),
+            l_i: own.0.on_agent(ends(conflict.length)),
+            l_j: other.0.on_agent(ends(conflict.other_length)),
+            touching: conflict.touching,
+        }));
+        if closest {
+            let approach = encounter.closest(time);
+            let clearance = (approach.separation - encounter.radius()).to_f64();
+            if closest_of.is_none_or(|closest| clearance < closest.clearance) {
+                let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
+                closest_of = Some(Closest { i: *i, j: *j, t, separation, clearance });
+            }
+        }
+    }
+    (if first.len() * second.len() > 1 { joined(found) } else { found }, closest_of)
+}
 
 /// Times that are one but for rounding \[s\].
 const NEAR: f64 = 1e-9;

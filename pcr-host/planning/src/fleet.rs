@@ -8,6 +8,7 @@ pub(crate) mod speed;
 #[cfg(test)]
 mod tests;
 
+use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
@@ -158,6 +159,16 @@ impl<S: Format> Fleet<S> {
         let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
         debug_assert_eq!(motions.len(), self.agents.len());
         motions
+    }
+
+    /// The motion of one agent.
+    pub(crate) fn motion(&self, agent: usize) -> Option<Motion<'_, S>> {
+        self.agents.get(agent)?.motion().ok()
+    }
+
+    /// Adds the agents of another one behind its own.
+    pub(crate) fn append(&mut self, other: Self) {
+        self.agents.extend(other.agents);
     }
 
     /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.
@@ -340,6 +351,10 @@ pub(crate) fn table_of<S: Scalar>(
     agent: usize,
     [regions, pieces]: [usize; 2],
 ) -> Result<HostEcm<S>, Full> {
+    let room = |full| move |_: memory::TooLarge| full;
+    let [region, piece] = [size_of::<Region>(), size_of::<Piece<S>>()].map(|size| size as u64);
+    memory::for_list(regions, region).map_err(room(Full::Regions))?;
+    memory::for_list(pieces, piece).map_err(room(Full::Pieces))?;
     let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
     while let Err(full) = ecm.fill_row(motions, agent) {
         ecm.grow(full)?;

@@ -9,6 +9,8 @@
 //! rows         regions of fleets of any size, an agent at a time     Row, Grid
 //! check        the conflicts of the motions as given                 Verdict
 //! locks        which edges of a layout exclude one another           Locks
+//! memory       what cannot be held is refused                        TooLarge
+//! checksum     of files that are read in parts
 //! nodes        what a layout holds                                   Listing
 //! plan         delays without conflicts                              Plan
 //! traffic      random missions on a layout, and their plan           Traffic
@@ -22,9 +24,11 @@ pub mod bodies;
 pub mod certificate;
 pub mod certify;
 pub mod check;
+mod checksum;
 pub mod fleet;
 pub mod lifelong;
 pub mod locks;
+pub mod memory;
 pub mod nodes;
 pub mod plan;
 pub mod random;

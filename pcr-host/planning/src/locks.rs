@@ -7,17 +7,21 @@
 //! overlap are joined, so that the locks of two edges are apart. A vehicle that stops or turns at a node is at the end of an edge, so
 //! that nodes are part of their edges; on their own they can be asked for.
 
+mod index;
 mod rides;
+mod sweep;
+mod table;
 
-use crate::bodies::Bodies;
-use crate::fleet::build_ecm;
+use crate::memory;
+pub use index::{Index, IndexError, Partner, write_index};
 use pcr_formats::footprint::Disc;
-use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout, Node};
+use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, Scenario};
 use rides::Ride;
 pub use rides::{Rides, corridor};
 use serde::Serialize;
-use std::collections::BTreeMap;
+pub use sweep::{Found, Sweep, Told};
+pub use table::{Change, Table};
 
 /// The locks of a layout for a vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -77,43 +81,49 @@ pub struct NodeLock {
     pub edge_length: [f64; 2],
 }
 
-/// An edge or a node, with what a vehicle sweeps there.
-struct Place<'a> {
-    at: At<'a>,
-    rides: Vec<Ride>,
-}
-
-#[derive(Clone, Copy)]
-enum At<'a> {
-    Edge(&'a Edge),
-    Node(&'a Node),
-}
-
-impl At<'_> {
-    fn id(&self) -> &Id {
-        match self {
-            Self::Edge(edge) => &edge.id,
-            Self::Node(node) => &node.id,
-        }
-    }
-}
-
-/// Lengths of two edges at which vehicles may touch.
-type Extents = [[f64; 2]; 2];
+/// Lengths of two edges at which vehicles may touch \[m\].
+pub type Extents = [[f64; 2]; 2];
 
 impl Locks {
     /// The locks of a layout for its vehicle; with `nodes`, what standing at a node blocks as well, in any heading.
     ///
-    /// Cost: a box test a pair of discs on the edges of one level, and a microsecond for each pair of segments that meet.
+    /// Cost: less than a microsecond for each pair of straight segments whose boxes meet, on each core.
     ///
     /// # Errors
-    /// [`ImportError`] for more than 65535 discs on the edges (and nodes) of one level, or coordinates beyond what can be computed with.
+    /// [`ImportError`] for coordinates beyond what can be computed with, and for a table that memory does not hold.
     pub fn of(imported: &Imported, nodes: bool) -> Result<Self, ImportError> {
-        let layout = &imported.layout;
-        let rides = Rides::new(imported);
+        Self::watched(imported, nodes, &|_, _| {})
+    }
+
+    /// The same, telling how many pairs of how many have been looked at.
+    ///
+    /// # Errors
+    /// As [`Locks::of`].
+    pub fn watched(imported: &Imported, nodes: bool, told: Told<'_>) -> Result<Self, ImportError> {
+        let sweep = Sweep::new(imported, nodes)?;
+        let mut locks = Self::head(imported, nodes);
+        let mut held = 0;
+        sweep.each(told, <[Found]>::to_vec, |found| {
+            // Two names a lock.
+            held += found.len() as u64 * (size_of::<Lock>() + 64) as u64;
+            if held > memory::STEP {
+                let count = locks.locks.len();
+                memory::ask(held + 2 * (count * size_of::<Lock>()) as u64, || format!("a table of over {count} locks"))
+                    .map_err(|large| ImportError::new(large.to_string()))?;
+                held = 0;
+            }
+            found.iter().for_each(|found| locks.add(&sweep, found));
+            Ok::<(), ImportError>(())
+        })?;
+        Ok(locks)
+    }
+
+    /// The table without its locks.
+    pub fn head(imported: &Imported, nodes: bool) -> Self {
+        let (layout, rides) = (&imported.layout, Rides::new(imported));
         let vehicle = rides.vehicle();
         let footprint = vehicle.footprint.as_ref();
-        let mut locks = Self {
+        Self {
             layout: layout.name.clone(),
             vehicle: LockVehicle {
                 name: vehicle.name.clone(),
@@ -125,38 +135,24 @@ impl Locks {
             nodes: nodes.then(Vec::new),
             node_pairs: nodes.then(Vec::new),
             warnings: layout.warnings.iter().cloned().chain(rounded(layout)).collect(),
-        };
-        for level in 0..layout.levels.len() {
-            locks.add(&places(layout, &rides, level, nodes))?;
         }
-        locks.locks.sort_by(|a, b| {
-            let lengths = |lock: &Lock| [lock.a_length[0], lock.b_length[0]];
-            let ids = (&a.a, &a.b).cmp(&(&b.a, &b.b));
-            ids.then(lengths(a)[0].total_cmp(&lengths(b)[0])).then(lengths(a)[1].total_cmp(&lengths(b)[1]))
-        });
-        // Two that are both on two levels.
-        locks.locks.dedup();
-        Ok(locks)
     }
 
-    fn add(&mut self, places: &[Place<'_>]) -> Result<(), ImportError> {
-        for ([a, b], extents) in extents(places)? {
-            let [Some(a), Some(b)] = [places.get(a), places.get(b)] else { continue };
-            let (a_id, b_id) = (a.at.id(), b.at.id());
-            for [a_length, b_length] in joined(extents) {
-                let (a_id, b_id) = (a_id.clone(), b_id.clone());
-                match (a.at, b.at) {
-                    (At::Edge(_), At::Edge(_)) => self.locks.push(Lock { a: a_id, b: b_id, a_length, b_length }),
-                    (At::Edge(_), At::Node(_)) => {
-                        let lock = NodeLock { node: b_id, edge: a_id, edge_length: a_length };
-                        self.nodes.get_or_insert_default().push(lock);
-                    }
-                    // Edges come before nodes.
-                    (At::Node(_), _) => self.node_pairs.get_or_insert_default().push([a_id, b_id]),
-                }
+    fn add(&mut self, sweep: &Sweep, &Found { places: [a, b], lengths: [a_length, b_length] }: &Found) {
+        let [(Some(a_id), a_edge), (Some(b_id), b_edge)] =
+            [a, b].map(|place| (sweep.ids().get(place).cloned(), sweep.is_edge(place)))
+        else {
+            return;
+        };
+        match (a_edge, b_edge) {
+            (true, true) => self.locks.push(Lock { a: a_id, b: b_id, a_length, b_length }),
+            (true, false) => {
+                let lock = NodeLock { node: b_id, edge: a_id, edge_length: a_length };
+                self.nodes.get_or_insert_default().push(lock);
             }
+            // Edges come before nodes.
+            (false, _) => self.node_pairs.get_or_insert_default().push([a_id, b_id]),
         }
-        Ok(())
     }
 }
 
@@ -169,21 +165,6 @@ fn rounded(layout: &Layout) -> Option<String> {
     ))
 }
 
-/// The edges of a level, one that leads from level to level on both, and its nodes if asked for.
-fn places<'a>(layout: &'a Layout, rides: &Rides<'_>, level: usize, nodes: bool) -> Vec<Place<'a>> {
-    let edges = layout.edges.iter().filter(|edge| layout.is_on(edge, level));
-    let mut places: Vec<Place<'_>> = edges.map(|edge| Place { at: At::Edge(edge), rides: rides.on(edge) }).collect();
-    places.sort_by(|a, b| a.at.id().cmp(b.at.id()));
-    if nodes {
-        let there = layout.nodes.iter().enumerate().filter(|(_, node)| node.level == level);
-        let mut there: Vec<Place<'_>> =
-            there.map(|(k, node)| Place { at: At::Node(node), rides: vec![rides.at(k)] }).collect();
-        there.sort_by(|a, b| a.at.id().cmp(b.at.id()));
-        places.extend(there);
-    }
-    places
-}
-
 /// What vehicles sweep on all edges and nodes of each level, as the agents whose regions the locks are made of: what has to be certified
 /// of a table of locks.
 ///
@@ -194,42 +175,21 @@ pub fn scenarios(imported: &Imported) -> Result<Vec<Scenario>, ImportError> {
     let levels = layout.levels.iter().enumerate();
     levels
         .map(|(level, name)| {
-            let places = places(layout, &rides, level, true);
-            let rides: Vec<&Ride> = places.iter().flat_map(|place| &place.rides).collect();
+            let mut edges: Vec<&Edge> = layout.edges.iter().filter(|edge| layout.is_on(edge, level)).collect();
+            edges.sort_by(|a, b| a.id.cmp(&b.id));
+            let mut nodes: Vec<usize> = (0..layout.nodes.len()).filter(|&k| layout.nodes[k].level == level).collect();
+            nodes.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
+            let there = edges.into_iter().flat_map(|edge| rides.on(edge)).chain(nodes.into_iter().map(|k| rides.at(k)));
+            let rides: Vec<Ride> = there.collect();
             Ok(Scenario { name: format!("{} {name}", layout.name).trim().to_owned(), ..scenario(&rides)? })
         })
         .collect()
 }
 
 /// The rides as agents.
-fn scenario(rides: &[&Ride]) -> Result<Scenario, ImportError> {
+fn scenario(rides: &[Ride]) -> Result<Scenario, ImportError> {
     let agents = rides.iter().enumerate().map(|(k, ride)| Agent { id: k as u64, ..ride.agent.clone() });
     import::checked(&Scenario::new("", agents.collect()))
-}
-
-/// Of every two places, the first one before the second, the extents of the regions of their discs.
-fn extents(places: &[Place<'_>]) -> Result<BTreeMap<[usize; 2], Vec<Extents>>, ImportError> {
-    let refused = |problem: &dyn ToString| ImportError::new(problem.to_string());
-    let rides: Vec<(usize, &Ride)> =
-        places.iter().enumerate().flat_map(|(k, place)| place.rides.iter().map(move |ride| (k, ride))).collect();
-    let scenario = scenario(&rides.iter().map(|&(_, ride)| ride).collect::<Vec<_>>())?;
-    let Bodies { fleet, discs, .. } = Bodies::<f64>::new(&scenario).map_err(|problem| refused(&problem))?;
-    let motions = fleet.motions();
-    let ecm = build_ecm(&motions).map_err(|full| refused(&full))?;
-    let mut extents: BTreeMap<[usize; 2], Vec<Extents>> = BTreeMap::new();
-    for (k, disc) in discs.iter().enumerate() {
-        for region in ecm.row(&motions, k).expect("the table of the fleet").filter(|region| region.other() > k) {
-            let Some(other) = discs.get(region.other()) else { continue };
-            let [Some((a, own)), Some((b, their))] = [rides.get(disc.agent), rides.get(other.agent)] else { continue };
-            if a != b {
-                let range = |interval: pcr_core::Interval<f64>| [interval.lo, interval.hi];
-                let lengths = own.on_edge(disc.on_agent(range(region.length())));
-                let other_lengths = their.on_edge(other.on_agent(range(region.other_length())));
-                extents.entry([*a, *b]).or_default().push([lengths, other_lengths]);
-            }
-        }
-    }
-    Ok(extents)
 }
 
 /// The hulls of those that overlap, again and again until all are apart.

@@ -5,17 +5,19 @@
 
 mod outlines;
 mod record;
+mod sheet;
 
 use crate::bodies::{Bodies, Disced};
 use crate::certificate;
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
+use crate::memory::TooLarge;
 use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
 use pcr_formats::footprint::Disc;
 use pcr_formats::scenario::{Agent, Labels, Scenario};
-use record::Work;
 pub use record::{Descriptor, Piece, Region, Slice};
 use serde::Serialize;
+pub use sheet::{Sheet, Told};
 use std::fmt;
 
 /// Regions of one scenario, or why there are none.
@@ -93,6 +95,8 @@ pub enum Failure {
     NoSuchLabel(String, Vec<String>),
     /// Several agents have the label asked for.
     Ambiguous(String, Vec<u64>),
+    /// The memory does not hold what was asked for.
+    TooLarge(TooLarge),
 }
 
 impl fmt::Display for Failure {
@@ -102,6 +106,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Refused(refused) => refused.fmt(f),
             Self::Full(full) => full.fmt(f),
+            Self::TooLarge(too_large) => too_large.fmt(f),
             Self::Overfull([i, j]) => write!(
                 f,
                 "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
@@ -137,6 +142,12 @@ impl From<Refused> for Failure {
     }
 }
 
+impl From<TooLarge> for Failure {
+    fn from(too_large: TooLarge) -> Self {
+        Self::TooLarge(too_large)
+    }
+}
+
 impl From<Full> for Failure {
     fn from(full: Full) -> Self {
         Self::Full(full)
@@ -154,6 +165,9 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
             [Some(i), Some(j)] => Failure::Overfull([i, j]),
             _ => Failure::Full(full),
         },
+        Full::Regions | Full::Pieces => {
+            TooLarge::of(format!("the table of all pairs of {} discs", motions.len())).into()
+        }
         _ => Failure::Full(full),
     })
 }
@@ -201,49 +215,9 @@ impl Answer {
     /// The regions of a scenario, computed in the format `S`.
     ///
     /// # Errors
-    /// [`Failure`] where a value does not fit the format, or the agent asked for is not there.
+    /// [`Failure`] where a value does not fit the format, the agent asked for is not there, or memory does not hold all regions.
     pub fn of<S: Format>(scenario: &Scenario, request: Request) -> Result<Self, Failure> {
-        let ids: Vec<u64> = scenario.agents.iter().map(|agent| agent.id).collect();
-        if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
-            return Err(Failure::NoSuchAgent(asked, ids));
-        }
-        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
-        let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
-        let motions = fleet.motions();
-        let regions = |motions: &[Motion<'_, S>]| -> Result<Vec<Region>, Failure> {
-            let ecm = table(&discs, motions)?;
-            let work = Work { ids: &ids, fleet: &fleet, motions, ecm: &ecm, slices: request.slices };
-            let mut regions: Vec<Region> = if outlined {
-                outlines::regions(&work, &owners, request.agent)
-            } else {
-                let egos = (0..ids.len()).filter(|&ego| request.agent.is_none_or(|asked| ids.get(ego) == Some(&asked)));
-                egos.flat_map(|ego| work.row(ego)).collect()
-            };
-            regions.sort_by(|a, b| {
-                let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
-                (a.i, a.j).cmp(&(b.i, b.j)).then(starts)
-            });
-            Ok(regions)
-        };
-        let inflated: Vec<_> = motions.iter().map(|motion| motion.inflated()).collect();
-        let margins = motions.iter().any(|motion| motion.margin() > S::ZERO);
-        let margin_regions = margins.then(|| regions(&inflated)).transpose()?;
-        Ok(Self {
-            name: scenario.name.clone(),
-            labels: Labels::of(scenario),
-            scalar: S::NAME,
-            regions: regions(&motions)?,
-            margin_regions,
-            footprints: scenario
-                .agents
-                .iter()
-                .enumerate()
-                .flat_map(|(place, agent)| Cover::of(agent, place, &owners))
-                .collect(),
-            warnings: scenario.warnings.clone(),
-            certificate: request.certificate.then(|| table_of::<S>(scenario)).transpose()?,
-            error: None,
-        })
+        Sheet::<S>::new(scenario, request)?.answer(&|_, _| {})
     }
 
     /// No regions, and why.
@@ -264,10 +238,10 @@ impl Answer {
 
 impl Cover {
     /// Those of an agent, for each stretch of its path with another outline, and the discs that they became.
-    fn of(agent: &Agent, place: usize, owners: &[Disced]) -> Vec<Self> {
+    fn of(agent: &Agent, own: &[Disced]) -> Vec<Self> {
         let covers = agent.outlines().into_iter().filter_map(|outline| {
             let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
-            let own = owners.iter().filter(|disc| disc.agent == place && disc.first() == outline.segments[0]);
+            let own = own.iter().filter(|disc| disc.first() == outline.segments[0]);
             let growth = own.map(|disc| disc.growth).fold(0.0, f64::max);
             let footprint = outline.footprint?;
             let (overhang, discs) = (footprint.overhang(), footprint.discs().to_vec());

@@ -4,26 +4,34 @@ mod certified;
 pub mod columns;
 mod conflicts;
 pub mod figures;
+mod lifelong;
 mod locks;
 mod nodes;
 mod overview;
 mod plans;
+mod rows;
 mod simulation;
 mod table;
 mod traffic;
 
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
+pub use columns::ROW_BYTES;
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
-pub use locks::{LOCKS_HEADER, locks_csv, locks_table};
+pub use lifelong::{LIFELONG_CSV_HEADER, lifelong_csv, lifelong_table};
+pub use locks::{
+    EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, locks_csv, locks_lines, locks_table,
+};
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
 pub use plans::{PLAN_CSV_HEADER, plan_csv, plan_table};
+pub use rows::{Unprinted, sheet_csv, sheet_json};
 pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;
 pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
 use crate::certify::Certified;
 use crate::check::Verdict;
+use crate::lifelong::Lifelong;
 use crate::locks::Locks;
 use crate::nodes::Listing;
 use crate::plan::Plan;
@@ -65,6 +73,9 @@ impl Document for Locks {
 impl Document for Traffic {
     const FORMAT: &'static str = "pcr-traffic";
 }
+impl Document for Lifelong {
+    const FORMAT: &'static str = "pcr-lifelong";
+}
 impl Document for Listing<'_> {
     const FORMAT: &'static str = "pcr-nodes";
 }
@@ -94,15 +105,19 @@ pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types
 /// # Errors
 /// Those of the writer.
 pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
-    let name = quoted(&answer.name);
-    let contact = answer.regions.iter().map(|region| (region, 0));
-    let margin = answer.margin_regions.iter().flatten().map(|region| (region, 1));
-    for (region, margin) in contact.chain(margin) {
+    csv_rows(&answer.name, &answer.labels, &answer.regions, false, out)?;
+    csv_rows(&answer.name, &answer.labels, answer.margin_regions.as_deref().unwrap_or_default(), true, out)
+}
+
+/// Some of its lines.
+fn csv_rows(name: &str, labels: &Labels, regions: &[Region], margin: bool, out: &mut impl Write) -> io::Result<()> {
+    let (name, margin) = (quoted(name), u8::from(margin));
+    for region in regions {
         let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;
         let (open_start, open_end) = (u8::from(region.open_start), u8::from(region.open_end));
         let crossings = crossings(region);
         let types = types(region);
-        let [a, b] = [i, j].map(|id| quoted(answer.labels.get(*id)));
+        let [a, b] = [i, j].map(|id| quoted(labels.get(*id)));
         write!(out, "{name},{i},{j},{t_a},{t_b},{l_a},{l_b},{open_start},{open_end},{types},{crossings},{margin}")?;
         writeln!(out, ",{a},{b}")?;
     }

@@ -13,23 +13,25 @@ use crate::fleet::{Format, HostEcm, table_of};
 use pcr_core::{Full, Mismatch, Motion, RegionRef, excess};
 use rayon::prelude::*;
 
-/// The regions of an agent with those after it.
+/// The regions of an agent with others, those after it or all.
 #[derive(Debug)]
 pub struct Row<'a, S: Format> {
-    /// The agent, then those that come near it, in increasing order.
+    /// The agent and those that come near it, in increasing order.
     agents: Vec<u32>,
+    /// Where the agent is among them.
+    place: usize,
     motions: Vec<Motion<'a, S>>,
     table: HostEcm<S>,
 }
 
 impl<S: Format> Default for Row<'_, S> {
     fn default() -> Self {
-        Self { agents: Vec::new(), motions: Vec::new(), table: HostEcm::new(Vec::new(), Vec::new()) }
+        Self { agents: Vec::new(), place: 0, motions: Vec::new(), table: HostEcm::new(Vec::new(), Vec::new()) }
     }
 }
 
 impl<'a, S: Format> Row<'a, S> {
-    /// The row of `ego` with these agents.
+    /// The row of `ego` with these agents, which are in increasing order.
     ///
     /// # Errors
     /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 32767 pieces.
@@ -44,24 +46,41 @@ impl<'a, S: Format> Row<'a, S> {
 
     /// Becomes the row of `ego` with these agents, in the storage that it has.
     fn fill(&mut self, motions: &[Motion<'a, S>], ego: usize, others: &[u32]) -> Result<(), Full> {
+        // In the order of the fleet, so that its pairs are computed as in the table of all.
+        self.place = others.partition_point(|&other| (other as usize) < ego);
+        let (before, after) = others.split_at(self.place);
         self.agents.clear();
+        self.agents.extend_from_slice(before);
         self.agents.push(ego as u32);
-        self.agents.extend_from_slice(others);
+        self.agents.extend_from_slice(after);
         self.motions.clear();
         self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
-        match self.table.fill_row(&self.motions, 0) {
+        let filled = match self.table.fill_row(&self.motions, self.place) {
             Err(Full::Regions | Full::Pieces) => {
                 let agents = self.agents.len();
-                self.table = table_of(&self.motions, 0, [2 * agents, 3 * agents])?;
-                Ok(())
+                table_of(&self.motions, self.place, [2 * agents, 3 * agents]).map(|table| self.table = table)
             }
             done => done,
-        }
+        };
+        filled.map_err(|full| match full {
+            Full::Pair(places) => Full::Pair(places.map(|place| self.agents.get(place).map_or(0, |&it| it as usize))),
+            full => full,
+        })
     }
 
-    /// Numbers in the fleet: the agent, then those that come near it.
+    /// Numbers in the fleet of the agent and those that come near it, in increasing order.
     pub fn agents(&self) -> &[u32] {
         &self.agents
+    }
+
+    /// Where the agent of the row is among [`Row::agents`], and its number in the table.
+    pub fn place(&self) -> usize {
+        self.place
+    }
+
+    /// The motions of these agents.
+    pub fn motions(&self) -> &[Motion<'a, S>] {
+        &self.motions
     }
 
     /// The table of these agents, which are numbered from 0 there.
@@ -89,7 +108,11 @@ pub fn grid<S: Format>(motions: &[Motion<'_, S>]) -> Grid {
 
 /// The area that a disc can come to: left, bottom, right and top \[m\].
 pub fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
-    let reach = motion.radius().to_f64() + excess(motion, motion).to_f64();
+    grown(motion, motion.radius().to_f64() + excess(motion, motion).to_f64())
+}
+
+/// The box of a path, grown by a reach \[m\].
+pub(crate) fn grown<S: Format>(motion: &Motion<'_, S>, reach: f64) -> [f64; 4] {
     let bounds = motion.bounds();
     let [left, bottom, right, top] = [bounds.x.lo, bounds.y.lo, bounds.x.hi, bounds.y.hi].map(S::to_f64);
     [left - reach, bottom - reach, right + reach, top + reach]
@@ -110,12 +133,22 @@ impl<'m, 'a, S: Format> Walk<'m, 'a, S> {
         Self { motions, grid, near: Vec::new(), row: Row::default() }
     }
 
-    /// The row of an agent.
+    /// The row of an agent with those after it.
     ///
     /// # Errors
     /// As [`Row::new`].
     pub fn row(&mut self, ego: usize) -> Result<&Row<'a, S>, Full> {
         self.grid.after(ego, &mut self.near);
+        self.row.fill(self.motions, ego, &self.near)?;
+        Ok(&self.row)
+    }
+
+    /// The row of an agent with all others.
+    ///
+    /// # Errors
+    /// As [`Row::new`].
+    pub fn whole(&mut self, ego: usize) -> Result<&Row<'a, S>, Full> {
+        self.grid.around(ego, &mut self.near);
         self.row.fill(self.motions, ego, &self.near)?;
         Ok(&self.row)
     }

@@ -31,7 +31,8 @@ Examples:
   pcr certify fleet.json --limit               and how much farther than needed contacts are covered
   pcr certify site.lif.json --radius 0.6       the table of locks of a layout
   pcr regions fleet.json --json --certificate > table.json
-  pcr certify --table table.json               a table as it is held, by whatever has made it, from its numbers alone";
+  pcr certify --table table.json               a table as it is held, by whatever has made it, from its numbers alone
+  pcr certify --table console.txt              one that a microcontroller has printed";
 
 /// Prove that no contact is missing from a table of regions or locks, or show one that is
 ///
@@ -43,7 +44,7 @@ pub(super) struct Arguments {
     /// Scenario, or a layout, whose locks are certified, edges and nodes; standard input if left out or `-`
     #[arg(conflicts_with = "table")]
     file: Option<PathBuf>,
-    /// A table as `pcr regions --certificate` prints it
+    /// A table as `pcr regions --certificate` prints it, or the firmware
     #[arg(long, value_name = "FILE", conflicts_with = "scalar")]
     table: Option<PathBuf>,
     #[command(flatten)]
@@ -51,7 +52,7 @@ pub(super) struct Arguments {
     /// Add how far beyond contact everything is covered, in parts of the bound (takes a dozen times as long)
     #[arg(long)]
     limit: bool,
-    /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]

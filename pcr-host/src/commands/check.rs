@@ -6,9 +6,12 @@ use super::{CONFLICTS, Form, Printed, Stop};
 use clap::Args;
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
+use pcr_planning::certify::Proof;
 use pcr_planning::check::Verdict;
-use pcr_planning::regions::Failure;
-use pcr_planning::report;
+use pcr_planning::fleet::Format;
+use pcr_planning::memory;
+use pcr_planning::regions::{Failure, Told};
+use pcr_planning::report::{self, Unprinted};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -43,7 +46,7 @@ pub(super) struct Arguments {
     /// Have it proved by a checker that shares nothing with the search for conflicts (not in CSV)
     #[arg(long)]
     certify: bool,
-    /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]
@@ -58,7 +61,8 @@ impl Arguments {
         if self.certify && self.printed.form() == Form::Csv {
             return Err(Stop::arguments("--certify is for --format json and table"));
         }
-        let work = Check { scalar: self.scalar, closest: self.closest, certify: self.certify };
+        let work =
+            Check { form: self.printed.form(), scalar: self.scalar, closest: self.closest, certify: self.certify };
         let found = run(&work, self.files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
@@ -66,37 +70,37 @@ impl Arguments {
 
 /// `pcr check`.
 struct Check {
+    form: Form,
     scalar: Number,
     closest: bool,
     certify: bool,
 }
 
+impl Check {
+    fn verdict<S: Format>(&self, scenario: &Scenario, told: Told<'_>) -> Result<Verdict, Failure> {
+        let certificate = self.certify.then(|| Proof::of::<S>(scenario)).transpose()?;
+        Ok(Verdict { certificate, ..Verdict::watched::<S>(scenario, self.closest, told)? })
+    }
+}
+
 impl Work for Check {
-    type Answer = Verdict;
     const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
 
-    fn answer(&self, scenario: &Scenario) -> Result<Verdict, Failure> {
-        let verdict = if self.certify {
-            with_scalar!(self.scalar, S => Verdict::certified::<S>(scenario, self.closest))
-        } else {
-            with_scalar!(self.scalar, S => Verdict::of::<S>(scenario, self.closest))
-        };
-        Ok(verdict?)
-    }
-
-    fn refused(&self, name: &str, error: String) -> Verdict {
-        Verdict::refused(name, error)
-    }
-
-    fn found(&self, verdict: &Verdict) -> bool {
-        !verdict.conflicts.is_empty() || verdict.certificate.as_ref().is_some_and(|proof| proof.verdict != "proved")
-    }
-
-    fn print(&self, verdict: &Verdict, format: Form, out: &mut impl Write) -> io::Result<()> {
-        match format {
-            Form::Table => report::conflicts_table(verdict, out),
-            Form::Json => report::json(verdict, out),
-            Form::Csv => report::conflicts_csv(verdict, out),
+    fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
+        let verdict = with_scalar!(self.scalar, S => self.verdict::<S>(scenario, told))?;
+        match self.form {
+            Form::Table => {
+                let count = verdict.conflicts.len() + verdict.closest.as_ref().map_or(0, Vec::len);
+                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} rows"))?;
+                report::conflicts_table(&verdict, out)?;
+            }
+            Form::Json => report::json(&verdict, out)?,
+            Form::Csv => report::conflicts_csv(&verdict, out)?,
         }
+        Ok(!verdict.conflicts.is_empty() || verdict.certificate.is_some_and(|proof| proof.verdict != "proved"))
+    }
+
+    fn refuse(&self, name: &str, error: String, out: &mut impl Write) -> io::Result<()> {
+        report::json(&Verdict::refused(name, error), out)
     }
 }

@@ -16,10 +16,9 @@ use std::process::ExitCode;
 
 /// Exclusions, as they stand in files of fleets.
 #[derive(Args)]
-#[command(next_help_heading = "Files that fleets load")]
 pub(super) struct Asked {
     /// Write the layout to the file of --output, with what keeps its vehicles apart
-    #[arg(long, value_enum, value_name = "FORMAT", requires = "output")]
+    #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes"])]
     write: Option<Target>,
     /// Cut edges (lanes, zones) into equal parts no longer than this before
     #[arg(long, value_name = "LENGTH", value_parser = length, requires = "write")]
@@ -28,7 +27,7 @@ pub(super) struct Asked {
     #[arg(long, value_name = "KEY", requires = "write")]
     envelopes: Option<String>,
     /// Tell what can touch though vehicles keep to what the layout, or FILE, says; exit status 1 if anything can
-    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with = "write")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes"])]
     audit: Option<Option<PathBuf>>,
 }
 

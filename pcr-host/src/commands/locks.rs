@@ -1,15 +1,19 @@
 //! `pcr locks`.
 
 use super::exclusions::Asked;
+use super::printed::notes;
 use super::sources::{layout, source};
 use super::{Form, Printed, Stop};
+use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
-use pcr_formats::import::Options;
-use pcr_planning::locks::Locks;
-use pcr_planning::report;
+use pcr_formats::import::{ImportError, Options};
+use pcr_formats::output;
+use pcr_planning::locks::{Index, IndexError, Locks, Sweep, Told, write_index};
+use pcr_planning::memory::{self, TooLarge};
+use pcr_planning::report::{self, EdgeLocks, LocksUnprinted};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const STATUSES: &str = "\
@@ -23,6 +27,8 @@ const EXAMPLES: &str = "\
 Examples:
   pcr locks warehouse.geojson --radius 0.4                      the table of locks of a nav2 route graph
   pcr locks warehouse.geojson --radius 0.4 -o locks             and a page in which an edge shows what it blocks
+  pcr locks roadmap.xml --radius 0.5 --index roadmap.locks      a table of any size in a file
+  pcr locks roadmap.locks --edge e17                            what an edge shares its time with, from that file
   pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
   pcr locks warehouse.geojson --radius 0.4 --write nav2 -o guarded.geojson     and edges to be closed, into the file
   pcr locks plant.xml --radius 0.5 --audit -o audit             what the blocks of the file do not keep apart";
@@ -31,13 +37,22 @@ Examples:
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// The layout; standard input if left out or `-`
+    /// The layout; standard input if left out or `-`. With --edge also a file that --index has written
     layout: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,
     /// Add what a vehicle blocks that stands at a node
     #[arg(long)]
     nodes: bool,
+    /// Print JSON Lines, a lock a line, for tables of any size
+    #[arg(long, conflicts_with_all = ["format", "json", "output"])]
+    lines: bool,
+    /// Only what an edge (or a node) shares its time with
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
+    edge: Option<String>,
+    /// Write the locks to this file instead, in which --edge finds an edge without reading the others
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["lines", "output", "edge", "format", "json"])]
+    index: Option<PathBuf>,
     /// Draw the layout with its locks to this directory as well; with --write the file to be written
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -49,22 +64,97 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = &source(self.layout)?;
+        let file = &source(self.layout.clone())?;
         if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref()) {
             return done;
         }
+        if let Some(edge) = &self.edge {
+            return self.of_edge(file, edge);
+        }
+        if Index::is_one(file) {
+            return Err(Stop::wrong(file, "this is a table of locks already; say which --edge it is asked for"));
+        }
         let imported = layout(file, &self.import, "locks", false)?;
-        let locks = Locks::of(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
+        let progress = Progress::new(format!("{}: pairs of edges", file.display()));
+        let told: Told<'_> = &|done, total| progress.set(done, total);
+        let wrong = |error: ImportError| Stop::wrong(file, error);
+        if let Some(index) = &self.index {
+            let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
+            let written = output::stream(index, |out| write_index(&sweep, out, told));
+            let records = written.map_err(|error| match error {
+                IndexError::Import(error) => wrong(error),
+                IndexError::Io(error) => Stop::not_written(index, &error),
+                damaged @ IndexError::Damaged(_) => Stop::wrong(index, damaged),
+            })?;
+            drop(progress);
+            let names = sweep.ids().len();
+            writeln!(notes(), "{}: {names} edges and nodes, {records} records of locks", index.display())?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        let mut out = self.printed.out(false);
+        let form = self.printed.form();
+        if self.lines || (form == Form::Csv && self.output.is_none()) {
+            let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
+            let printed = match self.lines {
+                true => report::locks_lines(&Locks::head(&imported, self.nodes), &sweep, told, &mut out),
+                false => report::locks_csv(&sweep, told, &mut out),
+            };
+            printed.map_err(|unprinted| match unprinted {
+                LocksUnprinted::Import(error) => wrong(error),
+                LocksUnprinted::Output(error) => error.into(),
+            })?;
+            out.flush()?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        let locks = Locks::watched(&imported, self.nodes, told).map_err(wrong)?;
+        drop(progress);
         if let Some(directory) = &self.output {
             picture::write_locks(&imported, &locks, directory).map_err(|error| Stop::not_written(directory, &error))?;
         }
-        let mut out = self.printed.out(false);
-        match self.printed.form() {
-            Form::Table => report::locks_table(&locks, &mut out)?,
+        match form {
+            Form::Table => {
+                let count = locks.locks.len();
+                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} locks"))
+                    .map_err(too_large)?;
+                report::locks_table(&locks, &mut out)?;
+            }
             Form::Json => report::json(&locks, &mut out)?,
-            Form::Csv => report::locks_csv(&locks, &mut out)?,
+            Form::Csv => {
+                let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
+                if let Err(LocksUnprinted::Output(error)) = report::locks_csv(&sweep, &|_, _| {}, &mut out) {
+                    return Err(error.into());
+                }
+            }
         }
         out.flush()?;
         Ok(ExitCode::SUCCESS)
     }
+
+    /// The locks of one edge, of a layout or from a file that has them.
+    fn of_edge(&self, file: &Path, edge: &str) -> Result<ExitCode, Stop> {
+        let partners = if Index::is_one(file) {
+            let wrong = |error: IndexError| Stop::wrong(file, error);
+            Index::open(file).map_err(wrong)?.of(edge).map_err(wrong)?
+        } else {
+            let imported = layout(file, &self.import, "locks", false)?;
+            let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
+            sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?
+        };
+        let Some(partners) = partners else {
+            return Err(Stop::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
+        };
+        let locks = EdgeLocks { edge: edge.to_owned(), partners };
+        let mut out = self.printed.out(false);
+        match self.printed.form() {
+            Form::Table => report::edge_table(&locks, &mut out)?,
+            Form::Json => report::json(&locks, &mut out)?,
+            Form::Csv => report::edge_csv(&locks, &mut out)?,
+        }
+        out.flush()?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+fn too_large(large: TooLarge) -> Stop {
+    Stop::arguments(format!("{large}; --lines, --format csv and --index print tables of any size"))
 }

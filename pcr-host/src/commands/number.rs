@@ -6,6 +6,8 @@ use clap::ValueEnum;
 pub(super) enum Number {
     F64,
     F32,
+    #[cfg(feature = "micromath")]
+    Micro,
     Q16,
     Q20,
     Q12,
@@ -21,6 +23,11 @@ macro_rules! with_scalar {
             }
             Number::F32 => {
                 type $scalar = f32;
+                $body
+            }
+            #[cfg(feature = "micromath")]
+            Number::Micro => {
+                type $scalar = pcr_core::scalar::Micro;
                 $body
             }
             Number::Q16 => {

@@ -6,8 +6,10 @@ use super::{Form, Printed, STATUSES, Stop};
 use clap::Args;
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::regions::{Answer, Failure, Request, find};
-use pcr_planning::report;
+use pcr_planning::fleet::Format;
+use pcr_planning::memory;
+use pcr_planning::regions::{Answer, Request, Sheet, Told, find};
+use pcr_planning::report::{self, Unprinted};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -42,7 +44,7 @@ pub(super) struct Arguments {
     /// Add the table as it is held, path by path and piece by piece, for `pcr certify --table` (JSON only)
     #[arg(long)]
     certificate: bool,
-    /// Number format: floating point, or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]
@@ -58,42 +60,54 @@ impl Arguments {
             return Err(Stop::arguments("--certificate is for --format json"));
         }
         let slices = self.slices.map(|slices| slices as usize);
-        let work = Regions { scalar: self.scalar, agent: self.agent, slices, certificate: self.certificate };
+        let (form, certificate) = (self.printed.form(), self.certificate);
+        let work = Regions { form, scalar: self.scalar, agent: self.agent, slices, certificate };
         run(&work, self.files, &self.import, &self.printed).map(|_| ExitCode::SUCCESS)
     }
 }
 
+/// Pairs of discs near one another up to which an answer is held before it is printed: one that there is not is then not begun.
+const HELD: usize = 100_000;
+
 /// `pcr regions`.
 struct Regions {
+    form: Form,
     scalar: Number,
     agent: Option<String>,
     slices: Option<usize>,
     certificate: bool,
 }
 
-impl Work for Regions {
-    type Answer = Answer;
-    const CSV_HEADER: &'static str = report::CSV_HEADER;
-
-    fn answer(&self, scenario: &Scenario) -> Result<Answer, Failure> {
+impl Regions {
+    fn print_in<S: Format>(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<(), Unprinted> {
         let agent = self.agent.as_deref().map(|asked| find(scenario, asked)).transpose()?;
         let request = Request { agent, slices: self.slices, certificate: self.certificate };
-        with_scalar!(self.scalar, S => Answer::of::<S>(scenario, request))
-    }
-
-    fn refused(&self, name: &str, error: String) -> Answer {
-        with_scalar!(self.scalar, S => Answer::refused::<S>(name, error))
-    }
-
-    fn found(&self, _: &Answer) -> bool {
-        false
-    }
-
-    fn print(&self, answer: &Answer, format: Form, out: &mut impl Write) -> io::Result<()> {
-        match format {
-            Form::Table => report::table(answer, out),
-            Form::Json => report::json(answer, out),
-            Form::Csv => report::csv(answer, out),
+        let sheet = Sheet::<S>::new(scenario, request)?;
+        let large = sheet.near() > HELD;
+        match self.form {
+            Form::Csv if large => report::sheet_csv(&sheet, told, out),
+            Form::Json if large => report::sheet_json(&sheet, told, out),
+            Form::Csv => Ok(report::csv(&sheet.answer(told)?, out)?),
+            Form::Json => Ok(report::json(&sheet.answer(told)?, out)?),
+            Form::Table => {
+                let answer = sheet.answer(told)?;
+                let count = answer.regions.len() + answer.margin_regions.as_ref().map_or(0, Vec::len);
+                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} regions"))?;
+                Ok(report::table(&answer, out)?)
+            }
         }
+    }
+}
+
+impl Work for Regions {
+    const CSV_HEADER: &'static str = report::CSV_HEADER;
+
+    fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
+        with_scalar!(self.scalar, S => self.print_in::<S>(scenario, told, out))?;
+        Ok(false)
+    }
+
+    fn refuse(&self, name: &str, error: String, out: &mut impl Write) -> io::Result<()> {
+        report::json(&with_scalar!(self.scalar, S => Answer::refused::<S>(name, error)), out)
     }
 }

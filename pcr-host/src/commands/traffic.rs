@@ -2,10 +2,11 @@
 
 use super::printed::notes;
 use super::sources::{layout, source};
-use super::{Form, Printed, STATUSES, Stop, map, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, map, write_to};
 use clap::Args;
 use pcr_drawing::Ground;
 use pcr_formats::import::Options;
+use pcr_planning::lifelong::{self, Delays, Lifelong, Method};
 use pcr_planning::report;
 use pcr_planning::traffic::{Request, Traffic};
 use std::io::Write;
@@ -15,7 +16,16 @@ use std::process::ExitCode;
 const EXAMPLES: &str = "\
 Examples:
   pcr traffic warehouse.geojson --agents 50 --seed 1 --radius 0.4              who waits how long, and the throughput
-  pcr traffic warehouse.geojson --agents 50 --seed 1 --radius 0.4 -o traffic   and scenarios and pictures in traffic/";
+  pcr traffic warehouse.geojson --agents 50 --seed 1 --radius 0.4 -o traffic   and scenarios and pictures in traffic/
+  pcr traffic warehouse.geojson --hours 1 --agents 10 --radius 0.4             robots that get mission after mission
+  pcr traffic warehouse.geojson --hours 1 --agents 10 --radius 0.4 --compare   the same with locks and with start delays";
+
+const STATUSES: &str = "\
+Exit status:
+  0  done
+  1  with --hours: a contact, or one that could not be ruled out, or a robot that waits for ever
+  2  wrong arguments, or a layout that cannot be read or was refused
+  3  the output could not be written";
 
 /// Plan random missions on a layout: who waits, how many missions an hour
 #[derive(Args)]
@@ -23,12 +33,24 @@ Examples:
 pub(super) struct Arguments {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
-    /// Agents, a mission each
+    /// Agents, a mission each; with --hours one after the other
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u16).range(1..))]
     agents: u16,
     /// Another number gives other missions
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Run the fleet for so many hours, with delays: throughput, waits, proof that nobody touches
+    #[arg(long, value_name = "H", value_parser = hours, conflicts_with = "output")]
+    hours: Option<f64>,
+    /// The same missions and delays also with locks and with start delays
+    #[arg(long, requires = "hours")]
+    compare: bool,
+    /// Part of the time for which robots are stopped at random [default: 0.02]
+    #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
+    stopped: Option<f64>,
+    /// Part of their speed that robots lose at most [default: 0.05]
+    #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
+    slip: Option<f64>,
     #[command(flatten)]
     printed: Printed,
     /// Write the missions (missions.json), the plan (plan.json) and pictures of it to this directory as well
@@ -42,6 +64,23 @@ impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let file = &source(self.layout)?;
         let imported = layout(file, &self.import, "traffic", true)?;
+        if let Some(hours) = self.hours {
+            let usual = Delays::default();
+            let request = lifelong::Request {
+                agents: self.agents.into(),
+                duration: 3600.0 * hours,
+                delays: Delays {
+                    stopped: self.stopped.unwrap_or(usual.stopped),
+                    slip: self.slip.unwrap_or(usual.slip),
+                    ..usual
+                },
+                seed: self.seed,
+                method: Method::Orders,
+            };
+            let methods: &[Method] = if self.compare { &Method::ALL } else { &[Method::Orders] };
+            let answer = Lifelong::of(&imported, request, methods).map_err(|problem| Stop::wrong(file, problem))?;
+            return print(&self.printed, &answer);
+        }
         let request = Request { agents: self.agents.into(), seed: self.seed };
         let (traffic, [missions, plan]) =
             Traffic::of(&imported, request).map_err(|failure| Stop::wrong(file, failure))?;
@@ -59,5 +98,32 @@ impl Arguments {
             write_to(&directory.join("plan.json"), &plan.to_json())?;
         }
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+fn print(printed: &Printed, answer: &Lifelong) -> Result<ExitCode, Stop> {
+    let mut out = printed.out(false);
+    match printed.form() {
+        Form::Table => report::lifelong_table(answer, &mut out)?,
+        Form::Json => report::json(answer, &mut out)?,
+        Form::Csv => report::lifelong_csv(answer, &mut out)?,
+    }
+    out.flush()?;
+    Ok(if answer.is_sound() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
+}
+
+/// Above 0, up to a week.
+fn hours(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(hours) if hours > 0.0 && hours <= 168.0 => Ok(hours),
+        _ => Err("a number above 0 and up to 168 is expected".into()),
+    }
+}
+
+/// Of a whole, less than nine tenths.
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(part) if (0.0..0.9).contains(&part) => Ok(part),
+        _ => Err("a number from 0 to less than 0.9 is expected".into()),
     }
 }

@@ -6,21 +6,19 @@ use crate::progress::Progress;
 use pcr_formats::import::Options;
 use pcr_formats::input::Lines;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::regions::Failure;
+use pcr_planning::regions::Told;
+use pcr_planning::report::Unprinted;
 use std::io::{self, BufReader, IsTerminal, Write};
 use std::path::PathBuf;
 
 /// What a command makes of each scenario that comes in.
 pub(super) trait Work {
-    type Answer;
     /// The first line of the output as CSV.
     const CSV_HEADER: &'static str;
-    fn answer(&self, scenario: &Scenario) -> Result<Self::Answer, Failure>;
-    /// The answer to what is no scenario.
-    fn refused(&self, name: &str, error: String) -> Self::Answer;
-    /// Whether it is what the exit status tells.
-    fn found(&self, answer: &Self::Answer) -> bool;
-    fn print(&self, answer: &Self::Answer, format: Form, out: &mut impl Write) -> io::Result<()>;
+    /// Prints the answer, and tells whether it is what the exit status tells.
+    fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted>;
+    /// Prints the answer to what is no scenario, as JSON.
+    fn refuse(&self, name: &str, error: String, out: &mut impl Write) -> io::Result<()>;
 }
 
 /// What came of some scenarios.
@@ -50,15 +48,12 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
             continue;
         }
         tally.read += 1;
-        match one(work, source, import) {
-            Ok(answer) => {
-                tally.found |= work.found(&answer);
-                work.print(&answer, form, &mut out)?;
-            }
+        match one(work, source, import, &mut out) {
+            Ok(found) => tally.found |= found,
             Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                 tally.refused += 1;
                 if form == Form::Json {
-                    work.print(&work.refused(&source.stem(), message.clone()), form, &mut out)?;
+                    work.refuse(&source.stem(), message.clone(), &mut out)?;
                 }
                 complain(&message);
             }
@@ -74,10 +69,13 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
     }
 }
 
-fn one<W: Work>(work: &W, source: &Source, import: &Options) -> Result<W::Answer, Stop> {
+fn one<W: Work>(work: &W, source: &Source, import: &Options, out: &mut impl Write) -> Result<bool, Stop> {
     let scenario = source.scenario(import)?;
-    let _progress = Progress::new(format!("{}: {} agents", source.file().display(), scenario.agents.len()));
-    work.answer(&scenario).map_err(|failure| Stop::wrong(source.file(), failure))
+    let progress = Progress::new(format!("{}: {} agents", source.file().display(), scenario.agents.len()));
+    work.print(&scenario, &|done, total| progress.set(done, total), out).map_err(|unprinted| match unprinted {
+        Unprinted::Failure(failure) => Stop::wrong(source.file(), failure),
+        Unprinted::Output(error) => error.into(),
+    })
 }
 
 /// Scenarios from standard input, each answered before the next one is read.
@@ -93,20 +91,25 @@ fn lines<W: Work>(
     let before = tally.read;
     for line in Lines::new(BufReader::new(io::stdin().lock())) {
         let line = line?;
-        let outcome = line.scenario.and_then(|mut scenario| {
-            scenario.give_margin(margin.unwrap_or(0.0));
-            let failed = |failure| (scenario.name.clone(), format!("line {}: {failure}", line.number));
-            work.answer(&scenario).map_err(failed)
-        });
-        match outcome {
-            Ok(answer) => {
-                tally.found |= work.found(&answer);
-                work.print(&answer, form, out)?;
+        let outcome = match line.scenario {
+            Ok(mut scenario) => {
+                scenario.give_margin(margin.unwrap_or(0.0));
+                match work.print(&scenario, &|_, _| {}, out) {
+                    Ok(found) => Ok(found),
+                    Err(Unprinted::Failure(failure)) => {
+                        Err((scenario.name, format!("line {}: {failure}", line.number)))
+                    }
+                    Err(Unprinted::Output(error)) => return Err(error.into()),
+                }
             }
+            Err(refused) => Err(refused),
+        };
+        match outcome {
+            Ok(found) => tally.found |= found,
             Err((name, error)) => {
                 tally.refused += 1;
                 match form {
-                    Form::Json => work.print(&work.refused(&name, error), form, out)?,
+                    Form::Json => work.refuse(&name, error, out)?,
                     Form::Table | Form::Csv => complain(&format!("standard input: {error}")),
                 }
             }

@@ -20,10 +20,12 @@ pub enum Angle {
 /// A line or an arc of a path.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Segment {
     /// Length \[m\].
     pub length: f64,
-    /// Radius of an arc \[m\], positive where it turns left, negative where it turns right; none of a line.
+    /// Radius of an arc \[m\], positive where it turns left, negative where it turns right; none of a line, which a file has to say.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "Option::deserialize"))]
     pub radius: Option<f64>,
     /// By how much the agent turns in place before it, turn by turn.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
@@ -37,6 +39,7 @@ pub struct Segment {
 /// A path: where it starts, and its segments, each from the end of the one before in its direction.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Path {
     /// Abscissa and ordinate of the start \[m\].
     pub start: [f64; 2],
@@ -51,6 +54,7 @@ pub struct Path {
 /// Motion at constant acceleration through the times and lengths at both of its ends, with the speed at the slower one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Phase {
     /// Times since the start of the motion \[s\].
     pub time: [f64; 2],
@@ -63,6 +67,7 @@ pub struct Phase {
 /// When an agent is where on its path.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Travel {
     /// When it sets off \[s\].
     pub start: f64,
@@ -70,11 +75,14 @@ pub struct Travel {
     pub phases: Vec<Phase>,
     /// What the travelled length at a time may be off by the rounding of times \[m\].
     pub lag: f64,
+    /// By how much the end of a time range that is told may be too far out \[s\].
+    pub time_excess: f64,
 }
 
 /// A disc on a path.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Agent {
     /// Number, for messages. Agents with the same number are discs of one body.
     pub id: u64,
@@ -103,6 +111,7 @@ pub enum Share {
 /// A part of a collision region: a rectangle of lengths along both paths, on one segment of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Piece {
     /// Places of the segments in their paths.
     pub segments: [usize; 2],
@@ -110,25 +119,41 @@ pub struct Piece {
     pub lengths: [[f64; 2]; 2],
     /// Share of what is covered of the segment of the first agent.
     pub share: Share,
-    /// Number of its region among those of the pair.
+    /// Place of its region among those of the pair.
     pub region: usize,
+}
+
+/// What is told of a region: all that its pieces hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct Region {
+    /// From and to, along the path of the first and of the second agent \[m\].
+    pub lengths: [[f64; 2]; 2],
+    /// From when to when the first agent is at its lengths, and the second one at its own \[s\]; none where the agents have no motion.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "Option::deserialize"))]
+    pub times: Option<[[f64; 2]; 2]>,
 }
 
 /// Two agents and the pieces of their regions.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Pair {
     /// Places of the agents, the first one first.
     pub agents: [usize; 2],
     /// By how much the radius of the regions may be too large: ε \[m\].
     pub excess: f64,
-    /// In no order.
+    /// Regions.
+    pub regions: Vec<Region>,
+    /// Pieces of all regions, in no order.
     pub pieces: Vec<Piece>,
 }
 
 /// A table of collision regions: every two agents that are not discs of one body are a pair of it.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Table {
     /// The discs.
     pub agents: Vec<Agent>,

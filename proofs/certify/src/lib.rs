@@ -11,17 +11,21 @@
 //! plane      lines and arcs, parts of them, distances from a point          bounds of lemma 3
 //! cell       all of a part farther than, or within, so much of another      lemmas 3 and 5
 //! data       what is read: paths, motions, pieces
+//! dump       the same from the text that a microcontroller prints
 //! path       segments in the plane
 //! pair       the pieces of two segments: C-rect and C4                       lemma 2
 //! shares     one of two intervals: C-share                                  lemma 4
+//! travel     the travelled length over time, as the phases say
+//! regions    what is told of all pieces together: lengths and times         lemma 7
 //! table      all pairs; the margin
+//! mover      an agent in the plane over time
 //! motion     discs that never touch
 //! ```
 //!
 //! Why that proves what it says is in `docs/certificates.md` of the repository, with the lemmas by these numbers.
 //!
 //! ```
-//! use pcr_certify::data::{Agent, Angle, Pair, Path, Piece, Segment, Share, Table};
+//! use pcr_certify::data::{Agent, Angle, Pair, Path, Piece, Region, Segment, Share, Table};
 //! use pcr_certify::table::{Checker, Margin};
 //!
 //! // Two lines that cross at right angles, discs of 0.25 m: contact wherever l² + s² <= 0.5², from the crossing.
@@ -40,7 +44,8 @@
 //! let verdict = |reach: f64| {
 //!     let lengths = [[1.0 - reach, 1.0 + reach]; 2];
 //!     let pieces = vec![Piece { segments: [0, 0], lengths, share: Share::Only, region: 0 }];
-//!     let pairs = vec![Pair { agents: [0, 1], excess: 1e-3, pieces }];
+//!     let regions = vec![Region { lengths, times: None }];
+//!     let pairs = vec![Pair { agents: [0, 1], excess: 1e-3, regions, pieces }];
 //!     let table = Table { agents: agents.clone(), pairs };
 //!     Checker::new(&table)?.check(Margin::Needed)
 //! };
@@ -57,10 +62,14 @@
 pub mod ball;
 pub mod cell;
 pub mod data;
+pub mod dump;
 pub mod motion;
+pub mod mover;
 pub mod pair;
 pub mod path;
 pub mod plane;
+pub mod regions;
 pub mod shares;
 pub mod table;
+pub mod travel;
 pub mod twofold;

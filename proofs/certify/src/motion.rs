@@ -9,219 +9,12 @@
 //!
 //! (the square of the polynomial of second order, its term |q|²τ⁴/4 left out). Before that, whatever the agents do, `|r| - (v + v') k`.
 //! What neither settles is cut: where a phase or a segment ends, then in half.
-//!
-//! The motion is what the phases say: constant acceleration through times and lengths at both ends, with the speed at the
-//! slower one. Where one phase or segment gives way to the next is rounded to an `f64`; how far an agent may have gone on by
-//! then along the wrong one is part of the bound.
 
 use crate::ball::{Ball, Real, Tri};
-use crate::data::{Agent, Phase};
-use crate::path::{Stretch, stretches};
-use crate::plane::{Carrier, Vector};
+use crate::mover::{Course, Leg};
+
+pub use crate::mover::Mover;
 use crate::twofold::Twofold;
-
-/// An agent between two times, in one phase and on one segment.
-#[derive(Clone, Debug)]
-struct Leg {
-    exact: Course<Twofold>,
-    near: Course<f64>,
-    /// Largest speed \[m/s\].
-    speed: f64,
-    /// Curvature \[1/m\].
-    curvature: f64,
-    /// How far the agent may be from where this says \[m\].
-    off: f64,
-}
-
-/// A carrier, and the length along it over time.
-#[derive(Clone, Copy, Debug)]
-struct Course<R> {
-    carrier: Carrier<R>,
-    /// Time at the slow end \[s\], length along the carrier there \[m\], speed there and acceleration in the direction of time.
-    time: Ball<R>,
-    length: Ball<R>,
-    speed: Ball<R>,
-    acceleration: Ball<R>,
-}
-
-/// Position, velocity and acceleration.
-type State<R> = [Vector<R>; 3];
-
-impl<R: Real> Course<R> {
-    fn of(course: &Course<Twofold>) -> Self {
-        Self {
-            carrier: Carrier::of(course.carrier),
-            time: Ball::of(course.time),
-            length: Ball::of(course.length),
-            speed: Ball::of(course.speed),
-            acceleration: Ball::of(course.acceleration),
-        }
-    }
-
-    fn at(&self, time: Ball<R>) -> State<R> {
-        let since = time - self.time;
-        let length = self.length + (self.speed + (self.acceleration * since).half()) * since;
-        let speed = self.speed + self.acceleration * since;
-        let (place, along) = (self.carrier.point(length), self.carrier.direction(length));
-        let straight = along.times(self.acceleration);
-        let acceleration = match self.carrier {
-            Carrier::Line { .. } => straight,
-            Carrier::Circle { radius, left, .. } => {
-                let inward = if left { along.left() } else { along.left().times(Ball::from(-1.0)) };
-                straight + inward.times(speed * speed / radius)
-            }
-        };
-        [place, along.times(speed), acceleration]
-    }
-}
-
-/// An agent in motion.
-#[derive(Clone, Debug)]
-pub struct Mover {
-    id: u64,
-    radius: f64,
-    /// Each from its time on \[s\]; the first one from the beginning of time.
-    legs: Vec<(f64, Leg)>,
-    speed: f64,
-    /// When it is there at all \[s\].
-    time: [f64; 2],
-    /// From setting off to arrival \[s\].
-    moves: [f64; 2],
-}
-
-/// The phase as a motion along the path: time, length, speed and acceleration at its slow end.
-fn slow_end(phase: &Phase, start: Twofold) -> [Ball<Twofold>; 4] {
-    let number = Ball::<Twofold>::from;
-    let slow = usize::from(phase.speed[1] < phase.speed[0]);
-    let sign = if slow == 0 { 1.0 } else { -1.0 };
-    let duration = number(phase.time[1]) - number(phase.time[0]);
-    let way = number(phase.length[1]) - number(phase.length[0]);
-    let speed = number(phase.speed[slow]);
-    // way = speed · duration + acceleration · duration² / 2
-    let gain = if duration.is_positive().is_certain() {
-        (way - speed * duration) * number(2.0) / (duration * duration)
-    } else {
-        number(0.0)
-    };
-    let time = Ball { mid: start, err: 0.0 } + number(phase.time[slow]);
-    [time, number(phase.length[slow]), speed, gain * number(sign)]
-}
-
-impl Mover {
-    /// An agent that is there for so long \[s\].
-    ///
-    /// # Errors
-    /// What is wrong with its path, or that it has no motion.
-    pub fn new(agent: &Agent, time: [f64; 2]) -> Result<Self, String> {
-        let stretches = stretches(&agent.path)?;
-        let travel = agent.travel.as_ref().ok_or("no motion")?;
-        let start = Twofold::from(travel.start);
-        let numbers =
-            travel.phases.iter().flat_map(|phase| phase.time.into_iter().chain(phase.length).chain(phase.speed));
-        if !numbers.chain([travel.start, agent.radius]).all(|number| number.abs() < 1e15) {
-            return Err("a number of the motion is out of range".into());
-        }
-        let mut legs: Vec<(f64, Leg)> = Vec::new();
-        let stands = |stretch: &Stretch, at: Twofold| {
-            let zero = Ball::from(0.0);
-            let course = Course {
-                carrier: stretch.placed.exact,
-                time: zero,
-                length: exact(at),
-                speed: zero,
-                acceleration: zero,
-            };
-            Leg { exact: course, near: Course::of(&course), speed: 0.0, curvature: 0.0, off: 0.0 }
-        };
-        let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return Err("no segments".into()) };
-        legs.push((f64::NEG_INFINITY, stands(first, Twofold::ZERO)));
-        let (mut arrival, mut reached) = (travel.start, [0.0, 0.0]);
-        for phase in &travel.phases {
-            let [time, length] = [phase.time, phase.length];
-            if time[0] != reached[0] || length[0] != reached[1] || time[1] < time[0] || length[1] < length[0] {
-                return Err("a phase does not begin where the one before ends".into());
-            }
-            if phase.speed.iter().any(|&speed| speed < 0.0) {
-                return Err("a speed below 0".into());
-            }
-            reached = [time[1], length[1]];
-            let ends = time.map(|time| (start + Twofold::from(time)).to_f64());
-            if time[0] < time[1] {
-                add_legs(&mut legs, &stretches, phase, start, ends);
-            }
-            arrival = ends[1];
-        }
-        let end = last.before + last.placed.length;
-        let gap = (end - Twofold::from(reached[1])).abs().to_f64();
-        legs.push((arrival, stands(last, last.placed.length)));
-        // A length beyond the end of the path is none: the agent is at its end.
-        legs.iter_mut().for_each(|(_, leg)| leg.off += gap);
-        let speed = legs.iter().map(|(_, leg)| leg.speed).fold(0.0, f64::max);
-        Ok(Self { id: agent.id, radius: agent.radius, legs, speed, time, moves: [travel.start, arrival] })
-    }
-
-    fn leg(&self, time: f64) -> usize {
-        self.legs.partition_point(|(from, _)| *from <= time).saturating_sub(1)
-    }
-}
-
-fn exact(value: Twofold) -> Ball<Twofold> {
-    Ball { mid: value, err: 0.0 }
-}
-
-/// The legs of a phase: one on each segment.
-fn add_legs(legs: &mut Vec<(f64, Leg)>, stretches: &[Stretch], phase: &Phase, start: Twofold, ends: [f64; 2]) {
-    let [time, length, speed, acceleration] = slow_end(phase, start);
-    let [lo, hi] = phase.length;
-    let at = |t: f64| {
-        let since = Ball::from(t) - time;
-        length + (speed + (acceleration * since).half()) * since
-    };
-    // The speed at the other end follows from the rest; it may differ from the one told by rounding.
-    let told = phase.time.map(|t| exact(start) + Ball::from(t));
-    let [a, b, c, d] = [told[0], told[1], Ball::from(ends[0]), Ball::from(ends[1])]
-        .map(|t: Ball<Twofold>| (speed + acceleration * (t - time)).abs());
-    let top = a.max(b).max(c.max(d));
-    let top = (top.to_f64() + top.err) * (1.0 + f64::EPSILON);
-    let mut from = ends[0];
-    for (place, stretch) in stretches.iter().enumerate() {
-        let (before, after) = (stretch.before, stretch.before + stretch.placed.length);
-        let last = place + 1 == stretches.len();
-        if (after <= Twofold::from(lo) && !last) || (before >= Twofold::from(hi) && place > 0 && from >= ends[1]) {
-            continue;
-        }
-        // When it leaves the segment, about: where the length passes its end.
-        let to = if last || after >= Twofold::from(hi) { ends[1] } else { crossing(&at, after, [from, ends[1]]) };
-        let beyond = |past: Ball<Twofold>| (past.to_f64() + past.err).max(0.0);
-        let over = beyond(exact(before) - at(from)).max(beyond(at(to) - exact(after)));
-        let early = beyond(Ball::from(phase.time[0]) + exact(start) - Ball::from(from));
-        let late = beyond(Ball::from(to) - exact(start) - Ball::from(phase.time[1]));
-        let course =
-            Course { carrier: stretch.placed.exact, time, length: length - exact(before), speed, acceleration };
-        let curvature = match course.carrier {
-            Carrier::Line { .. } => 0.0,
-            Carrier::Circle { radius, .. } => (1.0 / radius.to_f64()) * (1.0 + f64::EPSILON),
-        };
-        let off = 2.0 * over + 2.0 * top * (early.max(late));
-        legs.push((from, Leg { exact: course, near: Course::of(&course), speed: top, curvature, off }));
-        from = to;
-        if from >= ends[1] {
-            break;
-        }
-    }
-}
-
-/// A time at which a length that does not decrease passes a value, about.
-fn crossing(at: &impl Fn(f64) -> Ball<Twofold>, value: Twofold, [mut lo, mut hi]: [f64; 2]) -> f64 {
-    for _ in 0..64 {
-        let middle = 0.5 * (lo + hi);
-        if middle <= lo || middle >= hi {
-            break;
-        }
-        if at(middle).mid < value { lo = middle } else { hi = middle }
-    }
-    hi
-}
 
 /// Two discs in contact, or so near that rounding does not tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -356,7 +149,7 @@ impl Both<'_> {
             let third = legs.iter().fold(number(0.0), |sum, leg| {
                 let (bend, speed) = (number(leg.curvature), number(leg.speed));
                 let gain = number({
-                    let acceleration = leg.exact.acceleration.abs();
+                    let acceleration = leg.exact.ramp.acceleration.abs();
                     (acceleration.to_f64() + acceleration.err) * (1.0 + f64::EPSILON)
                 });
                 sum + bend * bend * speed * speed * speed + number(3.0) * bend * speed * gain
@@ -391,7 +184,7 @@ fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Angle, Path, Segment, Travel};
+    use crate::data::{Agent, Angle, Path, Phase, Segment, Travel};
 
     /// An agent that goes from rest to rest in two ramps.
     fn agent(id: u64, start: [f64; 2], heading: f64, parts: &[(f64, Option<f64>)], at: f64, top: f64) -> Agent {
@@ -410,7 +203,7 @@ mod tests {
             Phase { time: [half, 2.0 * half], length: [0.5 * from, from], speed: [top, 0.0] },
         ];
         let path = Path { start, heading: Angle::Radians(heading), segments, rounding: 1e-14 };
-        Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0 }) }
+        Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0, time_excess: 0.0 }) }
     }
 
     fn movers(agents: &[Agent]) -> Vec<Mover> {
@@ -465,7 +258,7 @@ mod tests {
     #[test]
     fn agents_that_stand_touch_or_do_not() {
         let stands = |id, x| Agent {
-            travel: Some(Travel { start: 3.0, phases: Vec::new(), lag: 0.0 }),
+            travel: Some(Travel { start: 3.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 }),
             ..agent(id, [x, 0.0], 0.3, &[(0.0, None)], 0.0, 1.0)
         };
         let found = |x| meetings(&movers(&[stands(1, 0.0), stands(2, x)]));

@@ -16,6 +16,10 @@ pub enum Promise {
     Shared,
     /// No length is told that is farther than R + ε from all lengths of the other path told with it (C4).
     Near,
+    /// Whenever an agent is at a contact of a region, that is within the time told of the region (E_t).
+    Timed,
+    /// No time is told that is farther out than stated from when the agent is at its lengths (E_t).
+    Prompt,
 }
 
 /// Where a promise is broken, or may be.
@@ -46,6 +50,8 @@ pub struct Findings {
     pub segments: usize,
     /// Pieces.
     pub pieces: usize,
+    /// Regions whose times were looked at.
+    pub times: usize,
 }
 
 impl Findings {
@@ -56,6 +62,7 @@ impl Findings {
         self.steps += other.steps;
         self.segments += other.segments;
         self.pieces += other.pieces;
+        self.times += other.times;
     }
 }
 
@@ -185,7 +192,7 @@ impl Segments<'_> {
 
     /// Keeps what is not proved.
     #[expect(clippy::too_many_arguments, reason = "what a witness is made of")]
-    fn note(
+    pub fn note(
         &self,
         outcome: Outcome,
         promise: Promise,
@@ -203,8 +210,18 @@ impl Segments<'_> {
     }
 }
 
-/// The segments of a piece, its lengths along them, and its share.
-pub type Placed = ([usize; 2], [[Twofold; 2]; 2], Share);
+/// A piece on its segments.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    /// Places of the segments in their paths.
+    pub segments: [usize; 2],
+    /// Lengths along the segments.
+    pub lengths: [[Twofold; 2]; 2],
+    /// Its share.
+    pub share: Share,
+    /// Place of its region.
+    pub region: usize,
+}
 
 /// The pieces of a pair by their segments, as lengths along these.
 ///
@@ -225,8 +242,8 @@ pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Pla
         if piece.share != Share::Only && stretches[0][piece.segments[0]].turns_left().is_none() {
             return Err("a piece that stands for one of two intervals of a line".into());
         }
-        placed.push((piece.segments, lengths, piece.share));
+        placed.push(Placed { segments: piece.segments, lengths, share: piece.share, region: piece.region });
     }
-    placed.sort_by_key(|(segments, ..)| *segments);
+    placed.sort_by_key(|piece| piece.segments);
     Ok(placed)
 }

@@ -34,6 +34,17 @@ impl Stretch {
         }
     }
 
+    /// What of the segment lies between lengths along the path that need be no numbers of the table; none, if nothing does.
+    pub fn common(&self, [lo, hi]: [Twofold; 2]) -> Option<[Twofold; 2]> {
+        let (from, to) = (Twofold::from(self.from), Twofold::from(self.to));
+        let along = |length: Twofold| (length - from).clamp(Twofold::ZERO, self.placed.length);
+        if hi < from || to < lo {
+            return None;
+        }
+        // All of it, whatever the sum of lengths is rounded to.
+        Some([along(lo), if hi < to { along(hi) } else { self.placed.length }])
+    }
+
     /// Whether a length along the path is on the segment.
     pub fn holds(&self, length: f64) -> bool {
         self.from <= length && length <= self.to
@@ -120,7 +131,8 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
         }
         for (end, exact) in [(segment.from, before), (segment.to, before + length)] {
             let off = (Twofold::from(end) - exact).abs().to_f64();
-            if off > path.rounding {
+            // Whatever is no number is wrong.
+            if off.partial_cmp(&path.rounding).is_none_or(std::cmp::Ordering::is_gt) {
                 return Err(wrong(format!("its lengths along the path are off by {off:e} m")));
             }
         }
@@ -140,7 +152,7 @@ fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
     if segment.radius.is_some_and(|radius| segment.length > 7.0 * radius.abs()) {
         return Err("more than one turn".into());
     }
-    if segment.from != sum || segment.to < segment.from {
+    if segment.from != sum || segment.to.is_nan() || segment.to < segment.from {
         return Err("it does not begin where the one before ends".into());
     }
     Ok(())
@@ -161,6 +173,27 @@ mod tests {
     fn a_range_holds_all_of_a_segment_whose_ends_are_the_same_number() {
         let tiny = &arcs(1, 1e-9, 1e-16, |_| 0.0)[0];
         assert_eq!(tiny.range([0.0, 0.0]), [Twofold::ZERO, Twofold::from(1e-16)]);
+    }
+
+    #[test]
+    fn what_is_no_number_is_no_path() {
+        let segment = Segment { length: 1.0, radius: None, turns: vec![], from: 0.0, to: 1.0 };
+        let path = Path { start: [0.0; 2], heading: Angle::Turns(0.0), segments: vec![segment], rounding: 0.0 };
+        assert!(stretches(&path).is_ok());
+        let wrong = |change: &dyn Fn(&mut Path)| {
+            let mut other = path.clone();
+            change(&mut other);
+            stretches(&other).is_err()
+        };
+        for nothing in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
+            assert!(wrong(&|path| path.start[1] = nothing));
+            assert!(wrong(&|path| path.heading = Angle::Turns(nothing)));
+            assert!(wrong(&|path| path.segments[0].length = nothing));
+            assert!(wrong(&|path| path.segments[0].radius = Some(nothing)));
+            assert!(wrong(&|path| path.segments[0].from = nothing));
+            assert!(wrong(&|path| path.segments[0].to = nothing));
+        }
+        assert!(wrong(&|path| path.rounding = f64::NAN));
     }
 
     #[test]

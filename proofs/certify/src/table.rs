@@ -5,7 +5,10 @@ use crate::cell::Both;
 use crate::data::{Agent, Pair, Table};
 use crate::pair::{Findings, Radii, Segments, pieces_of};
 use crate::path::{Stretch, stretches};
+use crate::regions;
+use crate::travel;
 use crate::twofold::Twofold;
+use std::collections::{HashMap, HashSet};
 
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +46,8 @@ impl<'a> Checker<'a> {
             if !numbers.iter().all(|&number| (0.0..1e15).contains(&number)) {
                 return Err(wrong("a radius, rounding or lag is out of range".into()));
             }
+            agent.travel.as_ref().map_or(Ok(()), travel::checked).map_err(wrong)?;
+            let wrong = |problem: String| format!("agent {} (place {place}): {problem}", agent.id);
             Ok(Placed { agent, stretches: stretches(&agent.path).map_err(wrong)? })
         });
         let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs };
@@ -52,24 +57,27 @@ impl<'a> Checker<'a> {
 
     fn all_pairs_are_there(&self) -> Result<(), String> {
         let count = self.agents.len();
-        let mut there = vec![false; count * count];
+        let id = |place: usize| self.agents[place].agent.id;
+        let mut there = HashSet::with_capacity(self.pairs.len());
         for pair in self.pairs {
             let [a, b] = pair.agents;
-            if a == b || a >= count || b >= count || std::mem::replace(&mut there[a.min(b) * count + a.max(b)], true) {
+            if a == b || a >= count || b >= count || id(a) == id(b) || !there.insert([a.min(b), a.max(b)]) {
                 return Err(format!("the pair of places {a} and {b} is none, or there twice"));
             }
             if !(pair.excess > 0.0 && pair.excess < 1e15) {
                 return Err(format!("the excess of places {a} and {b} is out of range"));
             }
         }
-        for a in 0..count {
-            for b in a + 1..count {
-                if !there[a * count + b] && self.agents[a].agent.id != self.agents[b].agent.id {
-                    return Err(format!("the pair of places {a} and {b} is missing"));
-                }
-            }
+        let mut bodies: HashMap<u64, usize> = HashMap::new();
+        (0..count).for_each(|place| *bodies.entry(id(place)).or_default() += 1);
+        let pairs_of = |discs: usize| discs * discs.saturating_sub(1) / 2;
+        if there.len() == pairs_of(count) - bodies.values().map(|&discs| pairs_of(discs)).sum::<usize>() {
+            return Ok(());
         }
-        Ok(())
+        let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+        let missing = all.into_iter().find(|&[a, b]| id(a) != id(b) && !there.contains(&[a, b]));
+        let [a, b] = missing.unwrap_or_default();
+        Err(format!("the pair of places {a} and {b} is missing"))
     }
 
     /// Checks every pair.
@@ -113,15 +121,19 @@ impl<'a> Checker<'a> {
         let mut findings = Findings::default();
         for (i, own) in first.iter().enumerate() {
             for (j, other) in second.iter().enumerate() {
-                let begin = pieces.partition_point(|(segments, ..)| *segments < [i, j]);
-                let those = pieces[begin..].iter().take_while(|(segments, ..)| *segments == [i, j]);
+                let begin = pieces.partition_point(|piece| piece.segments < [i, j]);
+                let those = pieces[begin..].iter().take_while(|piece| piece.segments == [i, j]);
                 let mut segments = Segments {
                     stretches: [own, other],
                     whole: [wholes[a][i].clone(), wholes[b][j].clone()],
-                    pieces: those.map(|(_, lengths, share)| (*lengths, *share)).collect(),
+                    pieces: those.map(|piece| (piece.lengths, piece.share)).collect(),
                 };
                 segments.check(pair, &radii, tells, &mut findings);
             }
+        }
+        if tells {
+            let agents = [self.agents[a].agent, self.agents[b].agent];
+            regions::check(agents, [first, second], pair, &pieces, &radii, &mut findings).map_err(named)?;
         }
         Ok(findings)
     }
@@ -133,18 +145,26 @@ impl<'a> Checker<'a> {
     /// # Errors
     /// As [`Checker::check`].
     pub fn margin(&self) -> Result<Option<(f64, usize)>, String> {
+        self.margin_below(f64::INFINITY)
+    }
+
+    /// As [`Checker::margin`], where it is below `known`; none where it is not, which takes one check.
+    ///
+    /// # Errors
+    /// As [`Checker::check`].
+    pub fn margin_below(&self, known: f64) -> Result<Option<(f64, usize)>, String> {
         const STEPS: u32 = 12;
         let wholes = self.wholes();
         let holds = |pair: &Pair, part: f64| {
             let found = self.pair(pair, &wholes, self.radii(pair, Margin::Epsilons(part)), false);
             found.map(|found| found.refuted.is_empty() && found.undecided.is_empty())
         };
-        let mut least: Option<(f64, usize)> = None;
+        let (mut least, mut place_of_least) = (known, None);
         for (place, pair) in self.pairs.iter().enumerate() {
-            if pair.pieces.is_empty() || least.map_or(Ok(false), |(least, _)| holds(pair, least))? {
+            if pair.pieces.is_empty() || (least < f64::INFINITY && holds(pair, least)?) {
                 continue;
             }
-            let (mut lo, mut hi) = (-1.0, 1.0);
+            let (mut lo, mut hi) = (-1.0, least.min(1.0));
             if !holds(pair, lo)? {
                 return Ok(Some((f64::NEG_INFINITY, place)));
             }
@@ -152,8 +172,8 @@ impl<'a> Checker<'a> {
                 let middle = 0.5 * (lo + hi);
                 if holds(pair, middle)? { lo = middle } else { hi = middle }
             }
-            least = Some((lo, place));
+            (least, place_of_least) = (lo, Some(place));
         }
-        Ok(least)
+        Ok(place_of_least.map(|place| (least, place)))
     }
 }

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A mutant is on if the variable `MUTANT` holds its number when the tests run: another comparison, `+` for `-`, `*` for
-//! `/`, `&&` for `||`, a condition or a truth value turned round, a statement left out. Constants, patterns, macros and tests are left
-//! alone. `SKIP` lists numbers that do not compile.
+//! `/`, `&&` for `||`, `&` for `|`, `min` for `max`, `any` for `all`, a half, a double or an absolute value left out, a
+//! condition or a truth value turned round, a statement left out. Constants, patterns, macros and tests are left alone. `SKIP` lists numbers that do not compile.
 
 use quote::{ToTokens, quote};
 use std::collections::HashSet;
@@ -45,6 +45,8 @@ fn others(op: &BinOp) -> Vec<BinOp> {
         BinOp::Ne(_) => vec![parse_quote!(==)],
         BinOp::And(_) => vec![parse_quote!(||)],
         BinOp::Or(_) => vec![parse_quote!(&&)],
+        BinOp::BitAnd(_) => vec![parse_quote!(|)],
+        BinOp::BitOr(_) => vec![parse_quote!(&)],
         BinOp::Add(_) => vec![parse_quote!(-)],
         BinOp::Sub(_) => vec![parse_quote!(+)],
         BinOp::Mul(_) => vec![parse_quote!(/)],
@@ -52,6 +54,29 @@ fn others(op: &BinOp) -> Vec<BinOp> {
         BinOp::AddAssign(_) => vec![parse_quote!(-=)],
         BinOp::SubAssign(_) => vec![parse_quote!(+=)],
         _ => Vec::new(),
+    }
+}
+
+/// What may be meant instead of a call: another method, or none.
+fn other_call(call: &syn::ExprMethodCall) -> Option<(&'static str, Expr)> {
+    let other = |name: &str| {
+        let method = syn::Ident::new(name, call.method.span());
+        Expr::MethodCall(syn::ExprMethodCall { method, ..call.clone() })
+    };
+    let receiver = || (*call.receiver).clone();
+    match (call.method.to_string().as_str(), call.args.len()) {
+        ("half", 0) => Some(("without half", receiver())),
+        ("double", 0) => Some(("without double", receiver())),
+        ("abs", 0) => Some(("without abs", receiver())),
+        ("widen", 2) => Some(("without widen", receiver())),
+        ("limited", 0) => Some(("without limited", receiver())),
+        ("min", 1) => Some(("max for min", other("max"))),
+        ("max", 1) => Some(("min for max", other("min"))),
+        ("any", 1) => Some(("all for any", other("all"))),
+        ("all", 1) => Some(("any for all", other("any"))),
+        ("is_some", 0) => Some(("is_none for is_some", other("is_none"))),
+        ("is_none", 0) => Some(("is_some for is_none", other("is_some"))),
+        _ => None,
     }
 }
 
@@ -83,6 +108,26 @@ impl VisitMut for Mutator {
     }
 
     fn visit_item_const_mut(&mut self, _: &mut syn::ItemConst) {}
+
+    fn visit_item_static_mut(&mut self, _: &mut syn::ItemStatic) {}
+
+    fn visit_impl_item_const_mut(&mut self, _: &mut syn::ImplItemConst) {}
+
+    fn visit_trait_item_const_mut(&mut self, _: &mut syn::TraitItemConst) {}
+
+    fn visit_expr_const_mut(&mut self, _: &mut syn::ExprConst) {}
+
+    fn visit_item_fn_mut(&mut self, item: &mut syn::ItemFn) {
+        if item.sig.constness.is_none() && !is_test(&item.attrs) {
+            visit_mut::visit_item_fn_mut(self, item);
+        }
+    }
+
+    fn visit_impl_item_fn_mut(&mut self, item: &mut syn::ImplItemFn) {
+        if item.sig.constness.is_none() {
+            visit_mut::visit_impl_item_fn_mut(self, item);
+        }
+    }
 
     fn visit_item_impl_mut(&mut self, item: &mut syn::ItemImpl) {
         // Names and orders for messages and heaps aside, what formats is not of interest.
@@ -117,6 +162,11 @@ impl VisitMut for Mutator {
                     let what = format!("{} for {}", op.to_token_stream(), binary.op.to_token_stream());
                     let mutant = Expr::Binary(syn::ExprBinary { op, ..binary.clone() });
                     *expr = self.or(at, &what, mutant, expr.clone());
+                }
+            }
+            Expr::MethodCall(call) => {
+                if let Some((what, mutant)) = other_call(&call) {
+                    *expr = self.or(at, what, mutant, expr.clone());
                 }
             }
             Expr::Unary(syn::ExprUnary { op: UnOp::Not(_) | UnOp::Neg(_), expr: inner, .. }) => {
@@ -166,11 +216,18 @@ fn main() {
     let switch = quote! {
         #[doc(hidden)]
         pub mod mutant_switch {
-            static ON: std::sync::LazyLock<Option<u32>> =
-                std::sync::LazyLock::new(|| std::env::var("MUTANT").ok()?.parse().ok());
+            extern crate std;
+            use core::sync::atomic::{AtomicU32, Ordering};
+            static ON: AtomicU32 = AtomicU32::new(u32::MAX);
             /// Whether the mutant of this number is on.
+            #[inline]
             pub fn on(number: u32) -> bool {
-                *ON == Some(number)
+                let mut chosen = ON.load(Ordering::Relaxed);
+                if chosen == u32::MAX {
+                    chosen = std::env::var("MUTANT").ok().and_then(|number| number.parse().ok()).unwrap_or(0);
+                    ON.store(chosen, Ordering::Relaxed);
+                }
+                chosen == number
             }
         }
     };

@@ -36,16 +36,41 @@ pub(super) fn inside(dice: &mut Dice) -> Pair {
             _ => dice.range(0.0, 1.0),
         };
     let combined = if dice.chance(0.3) { bend + ring } else { (bend - ring).max(0.01 * bend) };
-    let ring = (bend - combined).abs();
     let digit = [f64::EPSILON * bend, 6e-8 * bend, 1e-6, 1.5e-5, 2.5e-4][dice.below(5)];
     let off = digit * dice.range(-12.0, 12.0);
+    let (own, other) = touching([bend, combined], off, dice);
+    let away = match dice.below(3) {
+        0 => [0.0; 3],
+        1 => [dice.range(-5.0, 5.0), dice.range(-5.0, 5.0), 0.0],
+        _ => [dice.range(-100.0, 100.0), dice.range(-100.0, 100.0), dice.range(-PI, PI)],
+    };
+    let (own, other) = (moved(&own, away), moved(&other, away));
+    if dice.chance(0.5) { (own, other) } else { (other, own) }
+}
+
+/// The same of about a `size` \[m\], give or take 6 `slack` \[m\], R = ϱ (1 - q) or ϱ (1 + q) with q from 1e-4 to 0.6: where
+/// rounding is amplified most.
+pub fn inner_tangent(size: f64, slack: f64, dice: &mut Dice) -> Pair {
+    let bend = size * dice.range(0.3, 3.0);
+    let q = dice.magnitude(1e-4, 0.6);
+    let combined = if dice.chance(0.8) { bend * (1.0 - q) } else { bend * (1.0 + q) };
+    let off = slack * dice.range(-6.0, 6.0);
+    let (own, other) = touching([bend, combined], off, dice);
+    let away = [dice.range(-3.0, 3.0) * size, dice.range(-3.0, 3.0) * size, dice.range(-PI, PI)];
+    let (own, other) = (moved(&own, away), moved(&other, away));
+    if dice.chance(0.5) { (own, other) } else { (other, own) }
+}
+
+/// A disc on an arc of radius `bend` about the origin, and one whose path comes as near to the origin, or as far, as their radii
+/// together differ from that, and by `off` more \[m\].
+fn touching([bend, combined]: [f64; 2], off: f64, dice: &mut Dice) -> Pair {
     let share = dice.range(0.1, 0.9);
-    // About the centre of the arc, which starts anywhere on its circle.
+    // The arc starts anywhere on its circle.
     let (from, sweep) = (dice.range(-PI, PI), dice.sweep());
     let on = [bend * from.cos(), bend * from.sin(), from + FRAC_PI_2];
     let own = Disc { radius: share * combined, start: on, legs: vec![Leg::arc(bend, sweep)] };
     // The other path, at its place nearest to the centre or farthest from it: there it goes straight up at x = `way`.
-    let way = ring + off;
+    let way = (bend - combined).abs() + off;
     let (before, after) = (dice.range(0.0, 1.5) * bend, dice.range(0.01, 1.5) * bend);
     let legs = match dice.below(3) {
         0 => vec![Leg::Line(before + after)],
@@ -65,12 +90,5 @@ pub(super) fn inside(dice: &mut Dice) -> Pair {
     };
     let other = Disc { radius: combined - share * combined, start, legs };
     let turned = dice.range(-PI, PI);
-    let other = moved(&other, [0.0, 0.0, turned]);
-    let away = match dice.below(3) {
-        0 => [0.0; 3],
-        1 => [dice.range(-5.0, 5.0), dice.range(-5.0, 5.0), 0.0],
-        _ => [dice.range(-100.0, 100.0), dice.range(-100.0, 100.0), dice.range(-PI, PI)],
-    };
-    let (own, other) = (moved(&own, away), moved(&other, away));
-    if dice.chance(0.5) { (own, other) } else { (other, own) }
+    (own, moved(&other, [0.0, 0.0, turned]))
 }

@@ -253,18 +253,13 @@ impl Fleet {
         mut room: Stack<Motion<'static, S>>,
         order: &mut [usize],
     ) -> Result<(), (PcrStatus, Option<Unsolved>)> {
-        let agents = self.motions().len();
-        let listed =
-            |agent: usize| order.iter().filter(|&&other| other == agent).nth(1).is_none() && order.contains(&agent);
-        if order.len() != agents || !(0..agents).all(listed) {
-            return Err((PcrStatus::BadOrder, None));
-        }
         if !self.motions().iter().all(|&motion| room.push(motion)) {
             return Err((PcrStatus::NoRoom, None));
         }
         plan_delays(self.table(), self.motions.values(), room.values_mut(), order).map_err(
             |unsolved| match unsolved {
                 Unsolved::Table(mismatch) => (mismatch.into(), None),
+                Unsolved::NotOnce(_) | Unsolved::NoSuchAgent(_) => (PcrStatus::BadOrder, None),
                 unsolved => (PcrStatus::NoPlan, Some(unsolved)),
             },
         )?;

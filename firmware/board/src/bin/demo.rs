@@ -1,4 +1,5 @@
-//! Computes the paper's 12 agents into a table in a `static` and prints it: `cargo run --release`.
+//! Computes the paper's 12 agents into a table in a `static` and prints it: `cargo run --release`. What it prints can be certified:
+//! `pcr certify --table FILE`.
 #![no_std]
 #![no_main]
 
@@ -32,5 +33,6 @@ fn run() -> Option<()> {
     table.regions(&fleet).ok()?.for_each(|region| out::print(dump::region(&region).as_bytes()));
     let line = Line::default().integer(table.len() as u32, 0).text(b" regions, ").integer(table.pieces() as u32, 0);
     out::print(line.text(b" pieces\n").as_bytes());
+    dump::table(&fleet, table, out::print).ok()?;
     Some(())
 }

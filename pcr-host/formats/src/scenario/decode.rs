@@ -8,6 +8,7 @@ use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use crate::json::{self, Data, Json};
 use serde_json::Value;
 use std::collections::HashSet;
+use std::fmt;
 
 /// What a scenario file holds.
 const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
@@ -19,7 +20,7 @@ pub const LENGTH_TOLERANCE: f64 = 1e-6;
 /// 1 m/s if that is more): nine digits, which is what files carry.
 const SPEED_TOLERANCE: f64 = 1e-9;
 
-/// Agents, and segments of a path, that the core can number. An arc counts once for each turn begun.
+/// Segments of a path that the core can number. An arc counts once for each turn begun.
 const MOST: usize = u16::MAX as usize;
 
 /// What a scenario file says that it is, and the version of its fields.
@@ -36,11 +37,13 @@ impl Scenario {
         if text.trim().is_empty() {
             return Err(Place::default().error(1, "", "empty; a scenario is an object with a list of agents"));
         }
-        let json = json::parse(text).map_err(|error| {
+        // Agent by agent: the tree of a large fleet would take many times the memory of its text.
+        let mut agents = Agents::default();
+        let json = json::parse_listing(text, "agents", &mut |agent| agents.add(&agent)).map_err(|error| {
             let problem = format!("column {}: {}", error.column, error.problem);
             Place::default().error(error.line, "", problem)
         })?;
-        Self::decode(&json)
+        Self::decode(&json, agents)
     }
 
     /// The scenario in a JSON value.
@@ -48,10 +51,17 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::from_json`].
     pub fn from_value(value: &Value) -> Result<Self, ScenarioError> {
-        Self::decode(&Json::from(value))
+        let (json, mut agents) = (Json::from(value), Agents::default());
+        if let Data::Object(members) = &json.data
+            && let Some((_, Json { data: Data::Array(list), .. })) = members.iter().find(|(key, _)| key == "agents")
+        {
+            list.iter().for_each(|agent| agents.add(agent));
+        }
+        Self::decode(&json, agents)
     }
 
-    fn decode(json: &Json) -> Result<Self, ScenarioError> {
+    /// What a file holds beside its agents, with them.
+    fn decode(json: &Json, agents: Agents) -> Result<Self, ScenarioError> {
         let name = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "name"),
             _ => None,
@@ -60,7 +70,7 @@ impl Scenario {
             Some((_, Json { data: Data::Text(name), .. })) => name.clone(),
             _ => String::new(),
         };
-        match Self::agents(json).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
+        match Self::agents(json, agents).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
             Ok((agents, warnings)) => Ok(Self { name, agents, warnings }),
             Err(mut error) => {
                 error.scenario = name;
@@ -81,7 +91,7 @@ impl Scenario {
         fields.array("warnings")?.iter().map(text).collect()
     }
 
-    fn agents(json: &Json) -> Result<Vec<Agent>, ScenarioError> {
+    fn agents(json: &Json, agents: Agents) -> Result<Vec<Agent>, ScenarioError> {
         let fields = Place::default().fields(json, &FIELDS)?;
         match fields.get("format").map(|format| (format, &format.data)) {
             Some((_, Data::Text(format))) if format == FORMAT => {}
@@ -100,29 +110,49 @@ impl Scenario {
         {
             return Err(fields.unexpected("name", name, "a string"));
         }
-        let list = fields.array("agents")?;
-        if list.len() > MOST {
-            let problem = format!("{} agents; allowed are up to {MOST}", list.len());
-            return Err(fields.error(fields.line, "agents", problem));
+        fields.array("agents")?;
+        agents.fault.map_or(Ok(agents.all), Err)
+    }
+}
+
+/// The agents of a file, one after the other as they are read.
+#[derive(Default)]
+struct Agents {
+    all: Vec<Agent>,
+    ids: HashSet<u64>,
+    texts: HashSet<String>,
+    /// Whether ids are texts.
+    all_texts: Option<bool>,
+    /// What is wrong with the first one that is refused; those after it are not looked at.
+    fault: Option<ScenarioError>,
+}
+
+impl Agents {
+    fn add(&mut self, json: &Json) {
+        if self.fault.is_none()
+            && let Err(fault) = self.decode(json)
+        {
+            self.fault = Some(fault);
         }
-        let mut agents = Vec::with_capacity(list.len());
-        let (mut ids, mut texts, mut all_texts) = (HashSet::new(), HashSet::new(), None);
-        for (index, json) in list.iter().enumerate() {
-            let (agent, text) = Agent::decode(json, index)?;
+    }
+
+    fn decode(&mut self, json: &Json) -> Result<(), ScenarioError> {
+        let (agent, text) = Agent::decode(json, self.all.len())?;
+        let refused = |problem: &dyn fmt::Display| {
             let place = Place { agent: Some(format!("agent {}", agent.called())), part: None };
-            if text && !texts.insert(agent.label.clone()) {
-                return Err(place.error(json.line, "id", format!("{:?} is given to two agents", agent.label)));
-            }
-            if *all_texts.get_or_insert(text) != text {
-                let problem = "some ids are numbers and others texts; give numbers to all, and texts as labels";
-                return Err(place.error(json.line, "id", problem));
-            }
-            if !ids.insert(agent.id) {
-                return Err(place.error(json.line, "id", format!("{} is given to two agents", agent.id)));
-            }
-            agents.push(agent);
+            Err(place.error(json.line, "id", problem))
+        };
+        if text && !self.texts.insert(agent.label.clone()) {
+            return refused(&format_args!("{:?} is given to two agents", agent.label));
         }
-        Ok(agents)
+        if *self.all_texts.get_or_insert(text) != text {
+            return refused(&"some ids are numbers and others texts; give numbers to all, and texts as labels");
+        }
+        if !self.ids.insert(agent.id) {
+            return refused(&format_args!("{} is given to two agents", agent.id));
+        }
+        self.all.push(agent);
+        Ok(())
     }
 }
 

@@ -14,10 +14,27 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
+    place: Place,
+    field: Option<String>,
     message: String,
 }
 
 impl ScenarioError {
+    /// The agent that it is about, as messages name it: "agent 7".
+    pub fn agent(&self) -> Option<&str> {
+        self.place.agent.as_deref()
+    }
+
+    /// "segment" or "piece", and which one, counted from 1.
+    pub fn part(&self) -> Option<(&'static str, usize)> {
+        self.place.part
+    }
+
+    /// The field.
+    pub fn field(&self) -> Option<&str> {
+        self.field.as_deref()
+    }
+
     /// Line of the text, counted from 1. It is not part of the message.
     pub fn line(&self) -> usize {
         self.line
@@ -51,9 +68,10 @@ impl Place {
     pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
         let part = self.part.map(|(part, number)| format!("{part} {number}"));
         let field = Some(field.to_owned()).filter(|field| !field.is_empty());
-        let place: Vec<String> = [self.agent.clone(), part, field].into_iter().flatten().collect();
+        let place: Vec<String> = [self.agent.clone(), part, field.clone()].into_iter().flatten().collect();
         let colon = if place.is_empty() { "" } else { ": " };
-        ScenarioError { scenario: String::new(), line, message: format!("{}{colon}{problem}", place.join(", ")) }
+        let message = format!("{}{colon}{problem}", place.join(", "));
+        ScenarioError { scenario: String::new(), line, place: self.clone(), field, message }
     }
 
     pub(super) fn part(&self, name: &'static str, index: usize) -> Self {

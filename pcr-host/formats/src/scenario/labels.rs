@@ -57,6 +57,6 @@ pub(super) fn fault(label: &str) -> Option<String> {
 }
 
 /// Text from elsewhere as a label: without control characters, and not too long.
-pub(crate) fn label(text: &str) -> String {
+pub fn label(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(LONGEST_LABEL).collect()
 }

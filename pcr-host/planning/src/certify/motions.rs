@@ -97,6 +97,7 @@ impl Proof {
         };
         match (self.verdict, &self.error) {
             (_, Some(problem)) => format!("certificate: none, {problem}"),
+            ("proved", _) if self.pairs == 1 => "certificate: no contact at any time, proved (1 pair of discs)".into(),
             ("proved", _) => format!("certificate: no contact at any time, proved ({} pairs of discs)", self.pairs),
             ("contact", _) => format!("certificate: contact, {}", place(&self.contacts)),
             _ => format!("certificate: not decided, {}", place(&self.undecided)),

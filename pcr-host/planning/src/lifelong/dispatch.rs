@@ -1,205 +1,377 @@
-//! Ways and orders for a mission: some routes, ends and preferences are tried, and what lets everybody arrive soonest is taken.
+//! Ways and orders for a mission: some routes and ends are tried, orders by what is forecast, mended where somebody would wait for
+//! ever; what lets everybody arrive soonest is taken.
 
-use super::network::Network;
-use super::predict::Prediction;
+use super::Method;
+use super::book::{Book, Region};
+use super::forecast::{Forecast, Stuck, Trial};
 use super::robot::{Abilities, Robot};
-use super::way::Way;
-use super::{HostOrders, TOLERANCES, motions};
-use pcr_core::{Mission, Pass, Progress, Reach, Refused, RegionRef};
-use pcr_formats::import::Step;
+use super::routes::routes;
+use super::site::Site;
+use super::way::{Kept, Way};
+use std::cell::Cell;
 
-/// What a node with a robot that stands there costs a route \[m\].
-const TOLLS: [f64; 3] = [1e6, 20.0, 0.0];
+/// What a route costs more: past a robot that stands for good, and for each robot that comes the other way \[s\].
+const TOLLS: [[f64; 2]; 4] = [[f64::INFINITY, 0.0], [f64::INFINITY, 4.0], [f64::INFINITY, 15.0], [20.0, 4.0]];
 
 /// Ends that are tried for each route.
 const ENDS: usize = 2;
 
-/// Accepted candidates among which one is chosen.
-const CHOICES: usize = 6;
+/// Orders that are turned round in search of better ones.
+const TURNS: usize = 8;
 
-/// How a region's order is preferred: the time by which the other one has to be delayed less \[s\]; none lets everybody else go
-/// first.
-const BIASES: [Option<f64>; 3] = [Some(0.0), Some(15.0), None];
+/// Forecasts that a decision may make for orders that are mended.
+const FORECASTS: usize = 32;
 
-/// A way that was admitted.
-pub(super) struct Admitted<'a> {
-    pub(super) way: Way<'a>,
-    /// What is cut off from the way before \[m\].
-    pub(super) before: f64,
-    pub(super) orders: HostOrders,
-}
+/// Orders that are turned round where somebody would wait for ever.
+const REPAIRS: usize = 12;
+
+/// A robot with a start delay sets off in steps of \[s\], not later than \[s\].
+const DELAYS: (f64, u32) = (2.0, 60);
 
 /// What a decision is about.
 #[derive(Clone, Copy)]
-pub(super) struct Scene<'s, 'a> {
-    pub(super) network: &'s Network<'a>,
-    pub(super) robots: &'s [Robot<'a>],
-    pub(super) orders: &'s HostOrders,
+pub(super) struct Scene<'s> {
+    pub(super) site: &'s Site,
+    pub(super) robots: &'s [Robot],
+    pub(super) book: &'s Book,
     pub(super) abilities: &'s Abilities,
-    pub(super) radius: f64,
+    /// Nodes where robots may stand for good.
+    pub(super) ends: &'s [usize],
+    /// How many robots stand for good in the way of an atom.
+    pub(super) parked: &'s [u16],
+    pub(super) time: f64,
+    pub(super) method: Method,
 }
 
-/// Finds a way for a robot to a node and on to an end.
-///
-/// # Errors
-/// The last refusal, or nothing where there is no way at all.
-pub(super) fn dispatch<'a>(scene: Scene<'_, 'a>, agent: usize, goal: usize) -> Result<Admitted<'a>, Option<Refused>> {
-    let node = scene.turn_off(agent);
-    let routes = routes(scene.network, scene.robots, agent, node, goal);
-    scene.admitted(agent, routes.into_iter().map(|(route, goal)| (route, Some(goal))))
+/// A way that was admitted.
+#[derive(Debug)]
+pub(super) struct Admitted {
+    pub(super) way: Way,
+    /// What is cut off from the way before \[m\].
+    pub(super) before: f64,
+    pub(super) regions: Vec<Region>,
+    /// When it sets off \[s\].
+    pub(super) departs: f64,
+    /// Forecast, for comparison.
+    pub(super) cost: f64,
+    /// Atoms of the way before that it begins with.
+    pub(super) kept: usize,
 }
 
-/// Finds a way for a robot that stands in the way of another one's mission, to where it does not.
-pub(super) fn make_way<'a>(scene: Scene<'_, 'a>, robot: usize, other: usize, goal: usize) -> Option<Admitted<'a>> {
-    /// Nearest places that are tried.
-    const PLACES: usize = 8;
-    let Scene { network, robots, .. } = scene;
-    let occupied = ends_of_others(robots, robot);
-    let route = network.way(scene.turn_off(other), goal, &occupied, 0.0)?;
-    let free = |&node: &usize| {
-        occupied.iter().all(|&end| !network.collide(node, end)) && !route.iter().any(|&step| network.passes(step, node))
-    };
-    let from = scene.turn_off(robot);
-    let places = network.nodes.iter().copied().filter(|&node| node != from).filter(free);
-    let mut ways: Vec<Vec<Step<'a>>> = places.filter_map(|node| network.way(from, node, &occupied, 1e6)).collect();
-    ways.sort_by(|a, b| length(a).total_cmp(&length(b)));
-    ways.truncate(PLACES);
-    scene.admitted(robot, ways.into_iter().map(|way| (way, None))).ok()
+/// Why no way was admitted: who is in the way, if anybody is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Refused {
+    pub(super) by: Option<usize>,
 }
 
-impl<'a> Scene<'_, 'a> {
-    /// The node at which a robot can leave its way.
-    fn turn_off(&self, agent: usize) -> usize {
-        let robot = &self.robots[agent];
-        robot.way.kept(robot.at, robot.progress(self.abilities).stop).3
+/// A route, and after how many of its atoms the goal is.
+type Route = (Vec<usize>, Option<usize>);
+
+impl Scene<'_> {
+    /// Finds a way for a robot to a node and on to an end.
+    ///
+    /// # Errors
+    /// Who is in the way.
+    pub(super) fn dispatch(&self, robot: usize, goal: usize) -> Result<Admitted, Refused> {
+        let kept = self.kept(robot);
+        self.admitted(robot, &kept, self.candidates(robot, &kept, goal))
+    }
+
+    /// Finds a way for a robot that stands in the way of another one's mission, to where it does not.
+    pub(super) fn make_way(&self, robot: usize, other: usize, goal: usize) -> Option<Admitted> {
+        /// Nearest places that are tried.
+        const PLACES: usize = 6;
+        let from = self.kept(other);
+        let route = self.routes(other, &from, [20.0, 0.0], |node| node == goal, Some(goal), 1).pop()?;
+        let kept = self.kept(robot);
+        let here = self.robots[robot].way.end();
+        let clear = |node: usize| {
+            node != here
+                && self.is_free(robot, node)
+                && !self.site.collide(node, goal)
+                && !route.iter().any(|&atom| self.site.passes(atom, node))
+        };
+        let ends = self.routes(robot, &kept, TOLLS[0], |node| clear(node) && self.ends.contains(&node), None, PLACES);
+        let any = || self.routes(robot, &kept, TOLLS[0], clear, None, PLACES);
+        let found = if ends.is_empty() { any() } else { ends };
+        self.admitted(robot, &kept, found.into_iter().map(|route| (route, None)).collect()).ok()
+    }
+
+    /// Another way and other orders for a robot that has a mission, with which all are expected to arrive sooner by `gain` \[s\].
+    pub(super) fn better(&self, robot: usize, goal: usize, gain: f64) -> Option<Admitted> {
+        let now =
+            Trial { robots: self.robots, book: self.book, abilities: self.abilities, time: self.time, changed: None };
+        let cost = now.forecast().ok()?.cost;
+        self.dispatch(robot, goal).ok().filter(|found| found.cost + gain < cost)
+    }
+
+    fn kept(&self, robot: usize) -> Kept {
+        let it = &self.robots[robot];
+        it.way.kept(self.site, it.at, it.stop(self.abilities))
+    }
+
+    /// Whether nobody else stands for good where a robot would stand at a node.
+    fn is_free(&self, robot: usize, node: usize) -> bool {
+        let own = self.site.collide(self.robots[robot].way.end(), node);
+        let count = usize::from(self.parked[self.site.standing(node)]);
+        count <= usize::from(own)
+    }
+
+    /// Routes on from where a robot can leave its way.
+    fn routes(
+        &self,
+        robot: usize,
+        kept: &Kept,
+        [standing, coming]: [f64; 2],
+        asked: impl Fn(usize) -> bool,
+        towards: Option<usize>,
+        count: usize,
+    ) -> Vec<Vec<usize>> {
+        let heading = kept.atoms.last().and_then(|&last| self.site.atoms[last].headings).map(|headings| headings[1]);
+        self.onward(robot, kept.node, heading, [standing, coming], asked, towards, count)
+    }
+
+    fn onward(
+        &self,
+        robot: usize,
+        from: usize,
+        heading: Option<f64>,
+        [standing, coming]: [f64; 2],
+        asked: impl Fn(usize) -> bool,
+        towards: Option<usize>,
+        count: usize,
+    ) -> Vec<Vec<usize>> {
+        let end = self.robots[robot].way.end();
+        let toll = |atom: usize| {
+            let own = u16::from(self.site.covers(end).contains(&atom));
+            let parked = self.parked[atom].saturating_sub(own);
+            let mut toll = if parked > 0 { standing * f64::from(parked) } else { 0.0 };
+            if coming > 0.0
+                && let Some(back) = self.site.back[atom]
+            {
+                toll += coming * self.book.others_on(back, robot, self.robots).count() as f64;
+            }
+            toll
+        };
+        routes(self.site, self.abilities, from, heading, toll, asked, towards, count)
+    }
+
+    /// Routes to a goal and on to an end.
+    fn candidates(&self, robot: usize, kept: &Kept, goal: usize) -> Vec<Route> {
+        let mut found: Vec<Route> = Vec::new();
+        for tolls in TOLLS {
+            let Some(there) = self.routes(robot, kept, tolls, |node| node == goal, Some(goal), 1).pop() else {
+                continue;
+            };
+            let heading = there.last().or(kept.atoms.last()).and_then(|&last| self.site.atoms[last].headings);
+            let heading = heading.map(|headings| headings[1]);
+            let safe = |node: usize| self.is_free(robot, node) && self.ends.contains(&node);
+            let mut onward = self.onward(robot, goal, heading, tolls, safe, None, ENDS);
+            if onward.is_empty() {
+                // More robots than ends: wherever nobody stands.
+                onward = self.onward(robot, goal, heading, tolls, |node| self.is_free(robot, node), None, ENDS);
+            }
+            for end in onward {
+                let steps = there.len();
+                let way: Vec<usize> = there.iter().chain(&end).copied().collect();
+                if found.iter().all(|(other, _)| *other != way) {
+                    found.push((way, Some(steps)));
+                }
+            }
+        }
+        found
     }
 
     /// The way and orders with which all are expected to arrive soonest, of those that are admitted.
-    fn admitted(
-        &self,
-        agent: usize,
-        candidates: impl Iterator<Item = (Vec<Step<'a>>, Option<usize>)>,
-    ) -> Result<Admitted<'a>, Option<Refused>> {
-        let Self { network, robots, orders, abilities, radius } = *self;
-        let progress: Vec<Progress<f64>> = robots.iter().map(|robot| robot.progress(abilities)).collect();
-        let ways: Vec<&Way<'a>> = robots.iter().map(|robot| &robot.way).collect();
-        let robot = &robots[agent];
-        let (origin, kept, before, _) = robot.way.kept(robot.at, progress[agent].stop);
-        let prediction = Prediction::of(orders, &ways, robots, &progress, abilities);
-        let own = Progress {
-            at: pcr_core::Interval::new((robot.at - before).max(0.0), (robot.at - before).max(0.0)),
-            stop: (progress[agent].stop - before).max(0.0),
-        };
-        let mut refused = None;
-        let mut best: Option<(f64, Admitted<'a>)> = None;
-        let mut choices = 0;
+    fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Result<Admitted, Refused> {
+        let it = &self.robots[robot];
+        let base =
+            Trial { robots: self.robots, book: self.book, abilities: self.abilities, time: self.time, changed: None };
+        // The orders of all are sound before.
+        let base = base.forecast().unwrap_or_default();
+        let budget = &Cell::new(FORECASTS);
+        let mut refused = Refused::default();
+        let mut best: Option<Admitted> = None;
+        let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
         for (route, goal) in candidates {
-            let steps = kept.iter().chain(&route).copied().collect();
-            let Ok(way) = Way::new(network, origin, steps, radius, goal.map(|goal| kept.len() + goal)) else {
-                continue;
-            };
-            for bias in BIASES {
-                if choices >= CHOICES {
-                    break;
-                }
-                let mut trial = orders.clone();
-                let found = {
-                    let mut fleet = motions(&ways);
-                    let mut places = progress.clone();
-                    let mut reaches = vec![Reach::EMPTY; robots.len()];
-                    let mission = Mission { agent, motion: way.motion(), progress: own };
-                    let prefer =
-                        |region: &RegionRef<'_, f64>| preferred(region, &way, own.at.lo, &prediction, bias, abilities);
-                    trial.admit(&mut fleet, &mut places, mission, TOLERANCES, &mut reaches, prefer)
-                };
-                match found {
-                    Ok(()) => {
-                        choices += 1;
-                        let mut after = ways.clone();
-                        after[agent] = &way;
-                        let mut places = progress.clone();
-                        places[agent] = own;
-                        let sum = Prediction::of(&trial, &after, robots, &places, abilities).sum;
-                        if best.as_ref().is_none_or(|(least, _)| sum < *least) {
-                            best = Some((sum, Admitted { way: way.clone(), before, orders: trial }));
-                        }
-                    }
-                    Err(reason) => {
-                        refused = Some(reason);
-                        // No preference helps where nobody can wait.
-                        if matches!(reason, Refused::Blocked { .. }) {
-                            break;
-                        }
+            let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
+            let goal = goal.map(|goal| kept.atoms.len() + goal);
+            let way = Way::new(self.site, kept.from, &atoms, goal, self.abilities);
+            let regions = self.book.regions(self.site, self.robots, robot, &way, at);
+            let case = Case { scene: self, base: &base, robot, way: &way, at, stop, budget };
+            match case.solve(regions) {
+                Ok((regions, departs, cost)) => {
+                    if best.as_ref().is_none_or(|best| cost < best.cost) {
+                        let count = kept.atoms.len();
+                        best = Some(Admitted { way, before: kept.before, regions, departs, cost, kept: count });
                     }
                 }
+                Err(by) => refused = by,
             }
         }
-        best.map(|(_, admitted)| admitted).ok_or(refused)
+        let mut best = best.ok_or(refused)?;
+        if self.method == Method::Orders {
+            let case = Case { scene: self, base: &base, robot, way: &best.way, at, stop, budget };
+            (best.regions, best.cost) = case.improved(std::mem::take(&mut best.regions), best.cost);
+        }
+        Ok(best)
     }
 }
 
-/// Ways to the goal and on to an end, with the number of steps to the goal.
-fn routes<'a>(
-    network: &Network<'a>,
-    robots: &[Robot<'a>],
-    agent: usize,
-    node: usize,
-    goal: usize,
-) -> Vec<(Vec<Step<'a>>, usize)> {
-    let occupied = ends_of_others(robots, agent);
-    let free = |end: &usize| occupied.iter().all(|&other| !network.collide(*end, other));
-    let mut found: Vec<(Vec<Step<'a>>, usize)> = Vec::new();
-    for toll in TOLLS {
-        let Some(there) = network.way(node, goal, &occupied, toll) else { continue };
-        let mut onward: Vec<Vec<Step<'a>>> = network
-            .ends
-            .iter()
-            .copied()
-            .filter(free)
-            .filter_map(|end| network.way(goal, end, &occupied, toll))
-            .collect();
-        onward.sort_by(|a, b| length(a).total_cmp(&length(b)));
-        // More robots than ends: it stays.
-        if onward.is_empty() && free(&goal) {
-            onward.push(Vec::new());
-        }
-        for end in onward.into_iter().take(ENDS) {
-            let way: Vec<Step<'a>> = there.iter().chain(&end).copied().collect();
-            if found.iter().all(|(other, _)| *other != way) {
-                found.push((way, there.len()));
-            }
-        }
-    }
-    found
-}
-
-fn length(way: &[Step<'_>]) -> f64 {
-    way.iter().map(|step| step.edge.length()).sum()
-}
-
-/// Where all other robots are to stand in the end.
-fn ends_of_others(robots: &[Robot<'_>], agent: usize) -> Vec<usize> {
-    robots.iter().enumerate().filter(|(k, _)| *k != agent).map(|(_, robot)| robot.way.end()).collect()
-}
-
-/// Who should go first: who delays the other one less.
-fn preferred(
-    region: &RegionRef<'_, f64>,
-    way: &Way<'_>,
+/// One way of one robot.
+struct Case<'c> {
+    scene: &'c Scene<'c>,
+    base: &'c Forecast,
+    robot: usize,
+    way: &'c Way,
     at: f64,
-    prediction: &Prediction,
-    bias: Option<f64>,
-    abilities: &Abilities,
-) -> Pass {
-    let Some(bias) = bias else { return Pass::Second };
-    let own = |length: f64| {
-        let corners = way.corners.iter().filter(|corner| at <= corner.0 && corner.0 < length);
-        let turns: f64 = corners.map(|corner| abilities.turn(corner.1) + abilities.stop()).sum();
-        (length - at).max(0.0) / abilities.speed + turns
-    };
-    let other = |length: f64| prediction.time(region.other(), length, abilities);
-    let (length, other_length) = (region.length(), region.other_length());
-    let behind = (other(other_length.hi) - own(length.lo)).max(0.0);
-    let ahead = (own(length.hi) - other(other_length.lo)).max(0.0);
-    if ahead + bias < behind { Pass::First } else { Pass::Second }
+    stop: f64,
+    /// Forecasts that are left.
+    budget: &'c Cell<usize>,
+}
+
+impl Case<'_> {
+    fn solve(&self, regions: Vec<Region>) -> Result<(Vec<Region>, f64, f64), Refused> {
+        match self.scene.method {
+            Method::Orders => self.ordered(regions).map(|(regions, cost)| (regions, self.scene.time, cost)),
+            Method::RouteLocks => match regions.first() {
+                None => Ok((regions, self.scene.time, self.way.time(self.way.length()))),
+                Some(region) => Err(Refused { by: Some(region.robots[1]) }),
+            },
+            Method::EdgeLocks => Ok((Vec::new(), self.scene.time, self.way.time(self.way.length()))),
+            Method::StartDelays => self.delayed(regions),
+        }
+    }
+
+    fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
+        let Scene { robots, book, abilities, time, .. } = *self.scene;
+        let changed = Some((self.robot, self.way, self.at, departs, regions));
+        Trial { robots, book, abilities, time, changed }.forecast()
+    }
+
+    /// Which of the two can go first at a region: the robot, the other one.
+    fn sides(&self, region: &Region) -> [bool; 2] {
+        let other = &self.scene.robots[region.robots[1]];
+        let at = [self.at, other.at];
+        let stop = [self.stop, other.stop(self.scene.abilities)];
+        let lengths = [self.way.length(), other.way.length()];
+        [0, 1].map(|first| region.can_be_first(first, at, stop, lengths))
+    }
+
+    /// Orders by what is forecast, mended, and turned round where that is better.
+    fn ordered(&self, mut regions: Vec<Region>) -> Result<(Vec<Region>, f64), Refused> {
+        regions.sort_by(|a, b| a.hull[0].lo.total_cmp(&b.hull[0].lo));
+        let mut open = Vec::with_capacity(regions.len());
+        let mut late = 0.0;
+        for region in &mut regions {
+            let sides = self.sides(region);
+            let (ahead, behind) = self.waits(region, late);
+            region.first = match sides {
+                [true, true] => usize::from(ahead >= behind),
+                [true, false] => 0,
+                [false, true] => 1,
+                [false, false] => return Err(Refused { by: Some(region.robots[1]) }),
+            };
+            if region.first == 1 {
+                late += behind;
+            }
+            open.push(sides == [true, true]);
+        }
+        let forecast = self.repaired(&mut regions, &open)?;
+        Ok((regions, forecast.cost))
+    }
+
+    /// Turns orders round where all are expected to arrive sooner by that.
+    fn improved(&self, mut regions: Vec<Region>, mut cost: f64) -> (Vec<Region>, f64) {
+        let mut turns = 0;
+        for k in 0..regions.len() {
+            let (ahead, behind) = self.waits(&regions[k], 0.0);
+            let free = if regions[k].first == 0 { ahead == 0.0 } else { behind == 0.0 };
+            if turns >= TURNS || free || self.sides(&regions[k]) != [true; 2] {
+                continue;
+            }
+            turns += 1;
+            regions[k].first = 1 - regions[k].first;
+            match self.forecast(&regions, self.scene.time) {
+                Ok(other) if other.cost < cost => cost = other.cost,
+                _ => regions[k].first = 1 - regions[k].first,
+            }
+        }
+        (regions, cost)
+    }
+
+    /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
+    fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
+        let own =
+            |length: f64| (self.way.time(length.clamp(self.at, self.way.length())) - self.way.time(self.at)) + late;
+        let other = region.robots[1];
+        let way = &self.scene.robots[other].way;
+        let their = |length: f64| self.base.time(other, way, length.max(0.0));
+        let first = Cell::new(0.0_f64);
+        let second = Cell::new(0.0_f64);
+        for gate in region.gates_of(1) {
+            let opens = if gate.needs <= self.way.length() { own(gate.needs) } else { f64::INFINITY };
+            first.set(first.get().max(opens - their(gate.at)));
+        }
+        for gate in region.gates_of(0) {
+            let opens = if gate.needs <= way.length() { their(gate.needs) } else { f64::INFINITY };
+            second.set(second.get().max(opens - own(gate.at)));
+        }
+        (first.get(), second.get())
+    }
+
+    /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
+    fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Result<Forecast, Refused> {
+        let mut tried = vec![false; regions.len()];
+        let mut last = Refused::default();
+        for _ in 0..REPAIRS {
+            if self.budget.get() == 0 {
+                return Err(last);
+            }
+            self.budget.set(self.budget.get() - 1);
+            let stuck = match self.forecast(regions, self.scene.time) {
+                Ok(forecast) => return Ok(forecast),
+                Err(stuck) => stuck,
+            };
+            last.by = stuck.iter().find(|stuck| stuck.robot == self.robot).or(stuck.first()).map(|stuck| stuck.by);
+            let mendable = |first: usize| {
+                let places = stuck.iter().filter_map(|stuck| stuck.region);
+                places.into_iter().find(|&place| open[place] && !tried[place] && regions[place].first == first)
+            };
+            let Some(place) = mendable(0).or_else(|| mendable(1)) else { break };
+            tried[place] = true;
+            regions[place].first = 1 - regions[place].first;
+        }
+        for (region, open) in regions.iter_mut().zip(open) {
+            if *open {
+                region.first = 1;
+            }
+        }
+        self.forecast(regions, self.scene.time).map_err(|_| last)
+    }
+
+    /// The least start delay with which the robot waits for nobody and nobody for it, as all are expected to be.
+    fn delayed(&self, mut regions: Vec<Region>) -> Result<(Vec<Region>, f64, f64), Refused> {
+        let mut refused = Refused::default();
+        'delays: for k in 0..DELAYS.1 {
+            let late = DELAYS.0 * f64::from(k);
+            for region in &mut regions {
+                let (ahead, behind) = self.waits(region, late);
+                let sides = self.sides(region);
+                region.first = match (sides[0] && ahead <= 0.0, sides[1] && behind <= 0.0) {
+                    (true, _) => 0,
+                    (false, true) => 1,
+                    (false, false) => {
+                        refused.by = Some(region.robots[1]);
+                        continue 'delays;
+                    }
+                };
+            }
+            let departs = self.scene.time + late;
+            if let Ok(forecast) = self.forecast(&regions, departs) {
+                return Ok((regions, departs, forecast.cost));
+            }
+        }
+        Err(refused)
+    }
 }

@@ -1,33 +1,27 @@
-//! A robot on its way: it keeps its hold, stops at corners and turns, and is stopped at random.
+//! A robot on its way: it stops before its hold, at corners and goals, slips, and is stopped at random.
 
 use super::way::Way;
-use pcr_core::{Brakes, Interval, Progress};
 use pcr_formats::import::Vehicle;
 
-/// Time between two controls \[s\].
-pub(super) const STEP: f64 = 0.1;
-
 /// A robot stands so far before its hold at least, for rounding \[m\].
-const SHORT: f64 = 1e-6;
+pub(super) const SHORT: f64 = 1e-6;
 
-/// So near to where it stops a robot has arrived \[m\].
-const THERE: f64 = 1e-3;
-
-/// What a robot can do, and the time it takes.
+/// What a robot can do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Abilities {
     pub(super) speed: f64,
     pub(super) acceleration: f64,
     rotation: f64,
     rotation_acceleration: f64,
-    brakes: Brakes<f64>,
 }
 
 impl Abilities {
-    pub(super) fn of(vehicle: &Vehicle) -> Option<Self> {
-        let brakes = Brakes::new(vehicle.acceleration, STEP / 2.0).ok()?;
+    /// For robots that only stand.
+    pub(super) const NONE: Self = Self { speed: 1.0, acceleration: 1.0, rotation: 1.0, rotation_acceleration: 1.0 };
+
+    pub(super) fn of(vehicle: &Vehicle) -> Self {
         let Vehicle { speed, acceleration, rotation, rotation_acceleration, .. } = *vehicle;
-        Some(Self { speed, acceleration, rotation, rotation_acceleration, brakes })
+        Self { speed, acceleration, rotation, rotation_acceleration }
     }
 
     /// Time of a turn in place from rest to rest \[s\].
@@ -44,72 +38,123 @@ impl Abilities {
     pub(super) fn stop(&self) -> f64 {
         self.speed / self.acceleration
     }
+
+    /// Way to stop from a speed \[m\].
+    pub(super) fn braking(&self, speed: f64) -> f64 {
+        speed * speed / (2.0 * self.acceleration)
+    }
+}
+
+/// So long at constant acceleration, between these speeds, on this atom from this length on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Phase {
+    /// When it begins \[s\].
+    pub(super) time: f64,
+    pub(super) duration: f64,
+    pub(super) speed: [f64; 2],
 }
 
 /// A robot.
 #[derive(Clone, Debug)]
-pub(super) struct Robot<'a> {
-    pub(super) way: Way<'a>,
+pub(super) struct Robot {
+    pub(super) way: Way,
     /// Travelled length \[m\] and speed \[m/s\].
     pub(super) at: f64,
     pub(super) speed: f64,
     /// Corners that it has turned at.
     pub(super) turned: usize,
-    /// Rest of the turn that it is at \[s\].
+    /// Until when it turns \[s\].
     turning: f64,
     /// Until when it stands for no reason \[s\].
     pub(super) stopped_until: f64,
-    /// Node of its next goal that it has no way to yet, and since when it waits \[s\].
-    pub(super) wants: Option<(usize, f64)>,
+    /// Share of its speed that it loses for now.
+    pub(super) slip: f64,
+    /// Before this time it does not set off \[s\].
+    pub(super) departs: f64,
+    /// Since when it has not moved \[s\].
+    pub(super) still_since: f64,
+    /// What it has done, and on which atoms, since it was asked for that.
+    pub(super) done: Vec<Phase>,
+    pub(super) trail: Vec<usize>,
+    /// Atoms of its way that are in there.
+    entered: usize,
 }
 
-impl<'a> Robot<'a> {
-    pub(super) fn new(way: Way<'a>) -> Self {
-        Self { way, at: 0.0, speed: 0.0, turned: 0, turning: 0.0, stopped_until: 0.0, wants: None }
+impl Robot {
+    pub(super) fn new(way: Way) -> Self {
+        Self {
+            way,
+            at: 0.0,
+            speed: 0.0,
+            turned: 0,
+            turning: 0.0,
+            stopped_until: 0.0,
+            slip: 0.0,
+            departs: 0.0,
+            still_since: 0.0,
+            done: Vec::new(),
+            trail: Vec::new(),
+            entered: 0,
+        }
     }
 
-    /// What is known of it: all.
-    pub(super) fn progress(&self, abilities: &Abilities) -> Progress<f64> {
-        let stop = self.at + self.speed * self.speed / (2.0 * abilities.acceleration);
-        Progress { at: Interval::new(self.at, self.at), stop: stop.min(self.way.length()) }
+    /// Where it is at rest at the latest \[m\].
+    pub(super) fn stop(&self, abilities: &Abilities) -> f64 {
+        if self.speed > 0.0 { (self.at + abilities.braking(self.speed)).min(self.way.length()) } else { self.at }
     }
 
     /// Where it stops next by itself: a corner, the goal, or the end \[m\].
-    pub(super) fn next_stop(&self) -> f64 {
-        let corner = self.way.corners.get(self.turned).map_or(f64::INFINITY, |corner| corner.0);
+    fn next_stop(&self) -> f64 {
+        let corner = self.way.corners.get(self.turned).map_or(f64::INFINITY, |corner| corner.at);
         corner.min(self.way.goal.unwrap_or(f64::INFINITY)).min(self.way.length())
     }
 
-    /// Beyond what a hold matters for the next step \[m\].
-    pub(super) fn horizon(&self, abilities: &Abilities) -> f64 {
-        let speed = self.speed + abilities.acceleration * STEP;
-        self.at + speed * STEP + speed * speed / (2.0 * abilities.acceleration) + 2.0 * SHORT
+    /// Beyond what a hold does not matter for the next step \[m\].
+    pub(super) fn horizon(&self, abilities: &Abilities, step: f64) -> f64 {
+        let speed = (self.speed + abilities.acceleration * step).min(abilities.speed);
+        self.at + speed * step + abilities.braking(speed) + 2.0 * SHORT
     }
 
-    /// Goes on for a step, so that it can stop before this length; returns whether it is at its goal.
-    pub(super) fn drive(&mut self, hold: f64, time: f64, abilities: &Abilities) -> bool {
-        if self.turning > 0.0 {
-            self.turning -= STEP;
-            return false;
-        }
+    /// Goes on for a step, so that it can stop before this length; returns whether it has come to its goal.
+    pub(super) fn drive(&mut self, hold: f64, time: f64, step: f64, abilities: &Abilities) -> bool {
         let next = self.next_stop();
-        let left = next.min(hold - SHORT) - self.at;
-        let wanted = abilities.brakes.speed(left - 0.5 * self.speed * STEP).min(abilities.speed);
-        let wanted = if self.stopped_until > time { 0.0 } else { wanted };
-        let change = abilities.acceleration * STEP;
-        let speed = wanted.clamp((self.speed - change).max(0.0), self.speed + change);
-        let stopping = self.speed * self.speed / (2.0 * abilities.acceleration);
-        let way = if speed == 0.0 { stopping } else { 0.5 * (self.speed + speed) * STEP };
-        (self.at, self.speed) = ((self.at + way).min(self.way.length()), speed);
-        if next - self.at > THERE || self.speed > change {
+        let waits = self.turning > time || self.departs > time;
+        let left = if waits { 0.0 } else { next.min(hold - SHORT) - self.at };
+        let stopped = self.stopped_until > time;
+        let limit = self.way.speeds[self.way.atom(self.at.max(1e-12))].min(abilities.speed) * (1.0 - self.slip);
+        let phases =
+            pace(self.speed, if stopped { 0.0 } else { limit }, left, self.slower_ahead(abilities), step, abilities);
+        let mut begin = time;
+        let before = self.at;
+        for (duration, to) in phases {
+            if duration > 0.0 {
+                self.at += 0.5 * (self.speed + to) * duration;
+                self.record(begin, duration, to);
+                begin += duration;
+                self.speed = to;
+            }
+        }
+        if self.speed == 0.0 && before < self.at {
+            // A stop is where it was to be, but for rounding.
+            let aim = before + left;
+            if (aim - self.at).abs() < 1e-9 {
+                self.at = aim;
+            }
+        }
+        self.at = self.at.min(self.way.length());
+        self.enter();
+        if self.at > before {
+            self.still_since = time + step;
+        }
+        if self.speed > 0.0 || next - self.at > 1e-9 || waits {
             return false;
         }
-        self.speed = 0.0;
-        if let Some(&(corner, angle)) = self.way.corners.get(self.turned)
-            && corner <= next
+        self.at = next;
+        if let Some(corner) = self.way.corners.get(self.turned)
+            && corner.at <= next
         {
             self.turned += 1;
-            self.turning = abilities.turn(angle);
+            self.turning = time + step + corner.turn;
         }
         let arrived = self.way.goal.is_some_and(|goal| goal <= next);
         if arrived {
@@ -118,16 +163,95 @@ impl<'a> Robot<'a> {
         arrived
     }
 
+    /// Notes the atoms that it has come to.
+    fn enter(&mut self) {
+        while self.entered < self.way.atoms.len() && self.at > self.way.offsets[self.entered] {
+            self.trail.push(self.way.atoms[self.entered]);
+            self.entered += 1;
+        }
+    }
+
+    /// What it has done since it was asked last, and on which atoms, from which length of the first one on \[m\].
+    pub(super) fn report(&mut self, since: f64) -> (Vec<Phase>, Vec<usize>, f64) {
+        let last = self.trail.last().copied();
+        let told = (std::mem::take(&mut self.done), std::mem::take(&mut self.trail), since);
+        // At the start of a new way it is on no atom of that yet.
+        if self.entered > 0 {
+            self.trail.extend(last);
+        }
+        told
+    }
+
+    /// A phase from now on; one that goes on as the last one makes that longer.
+    fn record(&mut self, time: f64, duration: f64, to: f64) {
+        if let Some(last) = self.done.last_mut() {
+            let alike = |a: f64, b: f64| (a - b).abs() < 1e-12;
+            if last.speed == [self.speed; 2] && alike(self.speed, to) {
+                last.duration = time + duration - last.time;
+                return;
+            }
+        }
+        self.done.push(Phase { time, duration, speed: [self.speed, to] });
+    }
+
+    /// Where it has to be slower, and how fast it may be there.
+    fn slower_ahead(&self, abilities: &Abilities) -> Option<(f64, f64)> {
+        let k = self.way.atom(self.at.max(1e-12));
+        let reach = self.at + 2.0 * abilities.braking(abilities.speed);
+        let ahead = (k + 1..self.way.atoms.len()).take_while(|&next| self.way.offsets[next] <= reach);
+        let slower = ahead.filter(|&next| self.way.speeds[next] < self.way.speeds[k]);
+        slower.map(|next| (self.way.offsets[next] - self.at, self.way.speeds[next])).next()
+    }
+
     /// Takes another way, the first `before` metres of the old one being cut off.
-    pub(super) fn take(&mut self, way: Way<'a>, before: f64) {
-        self.at = (self.at - before).max(0.0);
+    pub(super) fn take(&mut self, way: Way, before: f64) {
+        self.at -= before;
+        self.entered = usize::from(self.at > 0.0);
         // Where it stands at a corner the turn is still to be done.
-        self.turned = way.corners.iter().filter(|corner| corner.0 < self.at - THERE).count();
+        self.turned = way.corners.iter().filter(|corner| corner.at < self.at).count();
         self.way = way;
     }
 
     /// Whether it stands at the end of its way.
     pub(super) fn has_arrived(&self) -> bool {
-        self.speed == 0.0 && self.way.length() - self.at <= THERE
+        self.speed == 0.0 && self.at >= self.way.length()
     }
+}
+
+/// Durations and speeds after them of a step that leaves room to stop after `left` metres.
+fn pace(
+    speed: f64,
+    limit: f64,
+    left: f64,
+    slower: Option<(f64, f64)>,
+    step: f64,
+    abilities: &Abilities,
+) -> [(f64, f64); 2] {
+    let braking = abilities.acceleration;
+    let change = braking * step;
+    if left <= 0.0 && speed == 0.0 {
+        return [(step, 0.0), (0.0, 0.0)];
+    }
+    // It can stop within the step exactly there.
+    if 0.5 * speed * step >= left {
+        let duration = (2.0 * left / speed).max(speed / braking);
+        if duration <= step {
+            return [(duration, 0.0), (step - duration, 0.0)];
+        }
+    }
+    // (v + v') dt / 2 + v'² / 2a = left
+    let fastest = |left: f64, then: f64| {
+        let half = 0.5 * braking * step;
+        -half + (half * half + 2.0 * braking * (left - 0.5 * speed * step) + then * then).max(0.0).sqrt()
+    };
+    let mut wanted = limit.min(fastest(left, 0.0));
+    if let Some((distance, then)) = slower {
+        wanted = wanted.min(fastest(distance, then).max(then));
+    }
+    let to = wanted.clamp((speed - change).max(0.0), speed + change).max(0.0);
+    if to == 0.0 && speed > 0.0 {
+        let duration = (speed / braking).min(step);
+        return [(duration, 0.0), (step - duration, 0.0)];
+    }
+    [(step, to), (0.0, to)]
 }

@@ -1,145 +1,140 @@
-//! The path of a robot from node to node, and where it has to stop on it.
+//! The path of a robot from node to node, where it stops on it, and when it would be where with nobody in its way.
 
-use super::network::Network;
-use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, Turn};
-use pcr_formats::import::Step;
-use pcr_formats::scenario::PathSegment;
-use pcr_formats::scenario::Placed;
-use std::f64::consts::{PI, TAU};
+use super::robot::Abilities;
+use super::site::{Site, wrapped};
 
 /// Angles below are no corner \[rad\].
-const STRAIGHT: f64 = 1e-9;
+const STRAIGHT: f64 = 1e-6;
+
+/// A place where a robot stops and turns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// \[m\]
+    pub(super) at: f64,
+    /// Time that the turn takes \[s\].
+    pub(super) turn: f64,
+}
 
 /// A path, and what a robot does on it.
 #[derive(Clone, Debug)]
-pub(super) struct Way<'a> {
-    segments: Vec<Segment<f64>>,
-    length: f64,
-    /// At 1 m/s: lengths are times.
-    phases: Vec<Phase<f64>>,
-    radius: f64,
-    /// Where it begins.
-    from: usize,
-    steps: Vec<Step<'a>>,
-    /// Length after each step \[m\].
-    after: Vec<f64>,
-    /// Lengths at which the robot stops and turns, and by how much \[m, rad\].
-    pub(super) corners: Vec<(f64, f64)>,
+pub(super) struct Way {
+    pub(super) atoms: Vec<usize>,
+    /// Length before each atom, and that of all \[m\].
+    pub(super) offsets: Vec<f64>,
+    /// Largest speed on each atom \[m/s\].
+    pub(super) speeds: Vec<f64>,
+    /// When each atom is left for, and the end reached \[s\].
+    times: Vec<f64>,
+    pub(super) corners: Vec<Corner>,
     /// Length at which the goal is, if it is still ahead \[m\].
     pub(super) goal: Option<f64>,
+    end: usize,
 }
 
-impl<'a> Way<'a> {
+impl Way {
     /// A robot that stands at a node.
-    pub(super) fn standing(network: &Network<'a>, node: usize, radius: f64) -> Result<Self, Invalid> {
-        Self::new(network, node, Vec::new(), radius, None)
+    pub(super) fn standing(site: &Site, node: usize) -> Self {
+        Self::new(site, node, &[], None, &Abilities::NONE)
     }
 
-    /// Along these steps; the goal is after so many of them.
-    pub(super) fn new(
-        network: &Network<'a>,
-        from: usize,
-        steps: Vec<Step<'a>>,
-        radius: f64,
-        goal: Option<usize>,
-    ) -> Result<Self, Invalid> {
-        let mut shapes: Vec<Placed> = Vec::new();
-        let (mut corners, mut after, mut length) = (Vec::new(), Vec::new(), 0.0);
-        for step in &steps {
-            for placed in step.curve().into_iter().filter(|placed| placed.shape.length() > 0.0) {
-                let turn = shapes.last().map_or(0.0, |last| wrapped(placed.heading - last.heading_at_end()));
+    /// Along these atoms; the goal is after so many of them.
+    pub(super) fn new(site: &Site, from: usize, atoms: &[usize], goal: Option<usize>, abilities: &Abilities) -> Self {
+        let atoms = if atoms.is_empty() { vec![site.standing(from)] } else { atoms.to_vec() };
+        let goal = goal.map(|goal| if site.atoms[atoms[0]].edge.is_some() { goal } else { 0 });
+        let mut offsets = vec![0.0];
+        let (mut corners, mut times, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut length, mut time) = (0.0, 0.0);
+        let mut heading = None;
+        for (k, &place) in atoms.iter().enumerate() {
+            let atom = &site.atoms[place];
+            let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
+            let stops = goal == Some(k);
+            if f64::abs(turn) > STRAIGHT {
+                corners.push(Corner { at: length, turn: abilities.turn(turn) });
+                time += abilities.turn(turn);
+            }
+            if f64::abs(turn) > STRAIGHT || stops {
+                time += abilities.stop();
+            }
+            for pair in atom.shapes.windows(2) {
+                let turn = wrapped(pair[1].heading - pair[0].heading_at_end());
                 if turn.abs() > STRAIGHT {
-                    corners.push((length, turn));
-                }
-                length += placed.shape.length();
-                // Lines that go on straight are one: fewer pieces.
-                match (shapes.last_mut(), placed.shape) {
-                    (Some(Placed { shape: PathSegment::Line { length: last }, .. }), PathSegment::Line { length })
-                        if turn.abs() <= STRAIGHT =>
-                    {
-                        *last += length;
-                    }
-                    _ => shapes.push(placed),
+                    let within: f64 = atom
+                        .shapes
+                        .iter()
+                        .take_while(|shape| **shape != pair[1])
+                        .map(|shape| shape.shape.length())
+                        .sum();
+                    corners.push(Corner { at: length + within, turn: abilities.turn(turn) });
                 }
             }
-            after.push(length);
+            times.push(time);
+            speeds.push(atom.speed);
+            length += atom.length;
+            if atom.length > 0.0 {
+                time += atom.length / atom.speed;
+            }
+            heading = atom.headings.map(|headings| headings[1]).or(heading);
+            offsets.push(length);
         }
-        let segments = path(shapes, network.at(from))?;
-        let length = PathRef::new(&segments)?.length();
-        let phases = if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() };
-        let goal = goal.map(|goal| goal.checked_sub(1).map_or(0.0, |last| after[last]));
-        let way = Self { segments, length, phases, radius, from, steps, after, corners, goal };
-        way.try_motion().map(|_| ())?;
-        Ok(way)
-    }
-
-    fn try_motion(&self) -> Result<Motion<'_, f64>, Invalid> {
-        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, self.radius, 0.0)
-    }
-
-    /// For the table.
-    pub(super) fn motion(&self) -> Motion<'_, f64> {
-        self.try_motion().expect("checked by the constructor")
+        times.push(time);
+        let goal = goal.map(|goal| offsets[goal]);
+        let end = site.atoms[atoms[atoms.len() - 1]].ends[1];
+        Self { atoms, offsets, speeds, times, corners, goal, end }
     }
 
     pub(super) fn length(&self) -> f64 {
-        self.length
+        self.offsets[self.atoms.len()]
+    }
+
+    /// When it would be at a length, from its start \[s\].
+    pub(super) fn time(&self, length: f64) -> f64 {
+        let k = self.atom(length);
+        let beyond = length - self.offsets[k];
+        if beyond > 0.0 { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
+    }
+
+    /// The atom in which a length is, the earlier one at a node.
+    pub(super) fn atom(&self, length: f64) -> usize {
+        self.offsets.partition_point(|&offset| offset < length).saturating_sub(1).min(self.atoms.len() - 1)
     }
 
     /// Where the robot is after so much \[m\].
-    pub(super) fn point(&self, length: f64) -> [f64; 2] {
-        let point = self.motion().path().point_at(length);
-        [point.x, point.y]
+    pub(super) fn point(&self, site: &Site, length: f64) -> [f64; 2] {
+        let k = self.atom(length);
+        site.atoms[self.atoms[k]].point(length - self.offsets[k])
     }
 
     /// The last node.
     pub(super) fn end(&self) -> usize {
-        self.steps.last().map_or(self.from, |step| step.target())
+        self.end
     }
 
-    /// The steps that are kept if another way is to begin at the first node from `stop` on, for a robot that is at `at` \[m\]: where they
-    /// begin, what was before that, and the node where they end.
-    pub(super) fn kept(&self, at: f64, stop: f64) -> (usize, Vec<Step<'a>>, f64, usize) {
-        let last = self.after.iter().position(|&after| after >= stop - 1e-9).map_or(self.steps.len(), |k| k + 1);
-        let first = self.after.iter().position(|&after| after >= at - 1e-9).unwrap_or(0).min(last);
-        let before = first.checked_sub(1).map_or(0.0, |before| self.after[before]);
-        let steps = self.steps[first..last].to_vec();
-        let origin = steps.first().map_or(self.from, |step| step.origin());
-        let node = steps.last().map_or(origin, |step| step.target());
-        (origin, steps, before, node)
-    }
-}
-
-fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
-}
-
-/// The segments, with turns in place where the shapes meet at an angle.
-fn path(shapes: Vec<Placed>, at: [f64; 2]) -> Result<Vec<Segment<f64>>, Invalid> {
-    let heading = shapes.first().map_or(0.0, |first| first.heading);
-    let start = shapes.first().map_or(at, |first| first.at);
-    let mut last = Segment::standing(Pose { position: Point::new(start[0], start[1]), heading: Radians(heading) })?;
-    let mut segments: Vec<Segment<f64>> = Vec::new();
-    let mut heading = heading;
-    for placed in shapes {
-        let turn = wrapped(placed.heading - heading);
-        if turn != 0.0 {
-            last = last.turned(Radians(turn))?;
-            if let Some(before) = segments.last_mut() {
-                *before = last;
-            }
+    /// What is kept if another way is to begin at the first node from `stop` on, for a robot that is at `at` \[m\].
+    pub(super) fn kept(&self, site: &Site, at: f64, stop: f64) -> Kept {
+        let count = self.atoms.len();
+        // At a node, and at rest there, it begins afresh.
+        if let Some(k) = self.offsets.iter().position(|&offset| offset == at && offset == stop) {
+            let k = k.min(count);
+            let node = if k == count { self.end } else { site.atoms[self.atoms[k]].ends[0] };
+            return Kept { from: node, atoms: Vec::new(), before: at, node };
         }
-        last = match placed.shape {
-            PathSegment::Line { length } => last.then_line(length)?,
-            PathSegment::Arc { radius, sweep } => {
-                last.then_arc(radius, if sweep > 0.0 { Turn::Left } else { Turn::Right }, radius * sweep.abs())?
-            }
-        };
-        heading = placed.heading_at_end();
-        segments.push(last);
+        let first = self.atom(at);
+        let last = self.offsets.iter().position(|&offset| offset >= stop).unwrap_or(count).clamp(first + 1, count);
+        let atoms = self.atoms[first..last].to_vec();
+        let node = site.atoms[self.atoms[last - 1]].ends[1];
+        Kept { from: site.atoms[self.atoms[first]].ends[0], atoms, before: self.offsets[first], node }
     }
-    if segments.is_empty() {
-        segments.push(last);
-    }
-    Ok(segments)
+}
+
+/// The part of a way that cannot be changed any more.
+#[derive(Clone, Debug)]
+pub(super) struct Kept {
+    /// Node where it begins.
+    pub(super) from: usize,
+    pub(super) atoms: Vec<usize>,
+    /// Length of the old way before it \[m\].
+    pub(super) before: f64,
+    /// Node where it ends.
+    pub(super) node: usize,
 }

@@ -17,11 +17,12 @@ const ROUNDING: f64 = 1e-12;
 pub struct Ride {
     /// Who travels it.
     pub agent: Agent,
-    lengths: Lengths,
+    pub(crate) lengths: Lengths,
 }
 
 /// What lengths on the path of an agent are on the edge.
-enum Lengths {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Lengths {
     Same,
     /// Of an edge of this length \[m\], from its other end.
     Reversed(f64),
@@ -29,18 +30,21 @@ enum Lengths {
     At(f64),
 }
 
-impl Ride {
+impl Lengths {
     /// Lengths on the edge, outward, of lengths on the path of the agent.
-    pub fn on_edge(&self, [lo, hi]: [f64; 2]) -> [f64; 2] {
-        match self.lengths {
-            Lengths::Same => [lo, hi],
-            Lengths::Reversed(length) => {
-                let slack = ROUNDING * (1.0 + length);
-                [length - hi - slack, length - lo + slack].map(|l| l.clamp(0.0, length))
-            }
-            Lengths::At(length) => [length; 2],
+    pub(crate) fn on_edge(self, lengths: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Same => lengths,
+            Self::Reversed(length) => reversed(length, lengths),
+            Self::At(length) => [length; 2],
         }
     }
+}
+
+/// Lengths from the other end of an edge of this length \[m\], outward.
+pub(crate) fn reversed(length: f64, [lo, hi]: [f64; 2]) -> [f64; 2] {
+    let slack = ROUNDING * (1.0 + length);
+    [length - hi - slack, length - lo + slack].map(|l| l.clamp(0.0, length))
 }
 
 /// All rides on the edges of a layout.
@@ -56,8 +60,10 @@ impl<'a> Rides<'a> {
     pub fn new(Imported { layout, vehicle }: &'a Imported) -> Self {
         let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(vehicle.margin));
         let vehicle = Vehicle { radius: vehicle.radius + vehicle.margin, footprint, margin: 0.0, ..vehicle.clone() };
-        let mut headings = vec![<[Vec<f64>; 2]>::default(); layout.nodes.len()];
-        for step in layout.edges.iter().flat_map(ways) {
+        // A disc is the same in every heading.
+        let turning = if vehicle.footprint.is_some() { &layout.edges[..] } else { &[] };
+        let mut headings = vec![<[Vec<f64>; 2]>::default(); if turning.is_empty() { 0 } else { layout.nodes.len() }];
+        for step in turning.iter().flat_map(ways) {
             let Some([start, end]) = ends(step) else { continue };
             for (node, side, end) in [(step.target(), 0, end), (step.origin(), 1, start)] {
                 if let Some(sides) = headings.get_mut(node) {

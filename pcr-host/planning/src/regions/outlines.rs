@@ -18,9 +18,12 @@ const NEAR: f64 = 1e-9;
 
 /// A region of two discs.
 struct Part<'a, S: Format> {
+    work: &'a Work<'a, S>,
     region: RegionRef<'a, S>,
-    /// Places of the discs.
-    discs: [usize; 2],
+    /// Places of the discs in the row.
+    places: [usize; 2],
+    /// The discs.
+    discs: [&'a Disced; 2],
     /// Whether it goes on before and after the motion of the other agent.
     open: [bool; 2],
     time: [f64; 2],
@@ -63,16 +66,20 @@ fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// The regions of a table of discs by the agents whose they are, of all or of the agent asked for.
-pub(super) fn regions<S: Format>(work: &Work<'_, S>, discs: &[Disced], asked: Option<u64>) -> Vec<Region> {
+/// The regions of an agent, from the rows of its discs, by the other agent.
+pub(super) fn regions<S: Format>(rows: &[(Work<'_, S>, usize)], discs: &[Disced], ids: &[u64]) -> Vec<Region> {
     let mut pairs: BTreeMap<[usize; 2], Vec<Part<'_, S>>> = BTreeMap::new();
-    let id = |agent: usize| work.ids.get(agent).copied().unwrap_or_default();
-    for (place, own) in discs.iter().enumerate().filter(|(_, disc)| asked.is_none_or(|asked| id(disc.agent) == asked)) {
-        for region in work.ecm.row(work.motions, place).expect("the table of the fleet") {
-            let Some(other) = discs.get(region.other()).filter(|other| other.agent != own.agent) else { continue };
+    let id = |agent: usize| ids.get(agent).copied().unwrap_or_default();
+    for (work, place) in rows {
+        let Some(own) = discs.get(work.in_fleet(*place)) else { continue };
+        for region in work.ecm.row(work.motions, *place).expect("the table of the row") {
+            let other = discs.get(work.in_fleet(region.other()));
+            let Some(other) = other.filter(|other| other.agent != own.agent) else { continue };
             let (time, length) = (region.time(), region.length());
             let part = Part {
-                discs: [place, region.other()],
+                work,
+                places: [*place, region.other()],
+                discs: [own, other],
                 open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
                 time: [time.lo.to_f64(), time.hi.to_f64()],
                 length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
@@ -84,7 +91,7 @@ pub(super) fn regions<S: Format>(work: &Work<'_, S>, discs: &[Disced], asked: Op
     }
     let unions = pairs.into_iter().flat_map(|([ego, other], parts)| {
         let components = components(&parts).into_iter();
-        components.map(|parts| union(work, discs, [id(ego), id(other)], &parts)).collect::<Vec<_>>()
+        components.map(|parts| union([id(ego), id(other)], &parts)).collect::<Vec<_>>()
     });
     unions.collect()
 }
@@ -121,11 +128,11 @@ fn components<'p, 'a, S: Format>(parts: &'p [Part<'a, S>]) -> Vec<Vec<&'p Part<'
     components.into_values().collect()
 }
 
-fn union<S: Format>(work: &Work<'_, S>, discs: &[Disced], [i, j]: [u64; 2], parts: &[&Part<'_, S>]) -> Region {
+fn union<S: Format>([i, j]: [u64; 2], parts: &[&Part<'_, S>]) -> Region {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let t = parts.iter().fold(none, |range, part| hull(range, part.time));
     let l = parts.iter().fold(none, |range, part| hull(range, part.length));
-    let slices = work.slices.map(|slices| {
+    let slices = parts.first().and_then(|part| part.work.slices).map(|slices| {
         let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
         times.map(|t| Slice { t, l: merged(parts.iter().flat_map(|part| part.slice(t)).collect()) }).collect()
     });
@@ -136,7 +143,7 @@ fn union<S: Format>(work: &Work<'_, S>, discs: &[Disced], [i, j]: [u64; 2], part
         l,
         open_start: parts.iter().any(|part| part.open[0]),
         open_end: parts.iter().any(|part| part.open[1]),
-        pieces: pieces(work, discs, parts),
+        pieces: pieces(parts),
         slices,
     }
 }
@@ -155,21 +162,19 @@ fn merged(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// One for each pair of segments of the agents; the crossings of their discs are none of theirs.
-fn pieces<S: Format>(work: &Work<'_, S>, discs: &[Disced], parts: &[&Part<'_, S>]) -> Vec<Piece> {
+fn pieces<S: Format>(parts: &[&Part<'_, S>]) -> Vec<Piece> {
     let mut pieces: BTreeMap<[Option<usize>; 2], Piece> = BTreeMap::new();
     for part in parts {
-        let [own, other] = part.discs.map(|disc| discs.get(disc));
-        let on = |disc: Option<&Disced>, lengths: [f64; 2]| disc.map_or(lengths, |disc| disc.on_agent(lengths));
-        for piece in work.region(part.discs[0], part.discs[1], &part.region).pieces {
-            let segment = |disc: Option<&Disced>, number: Option<usize>| {
-                disc?.segment(number?.checked_sub(1)?).map(|segment| segment + 1)
-            };
+        let [own, other] = part.discs;
+        for piece in part.work.region(part.places[0], part.places[1], &part.region).pieces {
+            let segment =
+                |disc: &Disced, number: Option<usize>| disc.segment(number?.checked_sub(1)?).map(|segment| segment + 1);
             let segments = [segment(own, piece.i_segment), segment(other, piece.j_segment)];
             let piece = Piece {
                 i_segment: segments[0],
                 j_segment: segments[1],
-                i_length: on(own, piece.i_length),
-                j_length: on(other, piece.j_length),
+                i_length: own.on_agent(piece.i_length),
+                j_length: other.on_agent(piece.j_length),
                 ..piece
             };
             let there = pieces.entry(segments).or_insert_with(|| piece.clone());

@@ -83,10 +83,26 @@ pub struct Slice {
     pub l: Vec<[f64; 2]>,
 }
 
-/// A table, and what its regions are described with.
+impl Region {
+    /// What it takes beside itself \[bytes\].
+    pub(super) fn bytes(&self) -> u64 {
+        /// Of an allocation, and of the two letters of a type.
+        const SMALLEST: usize = 32;
+        let crossings: usize = self.pieces.iter().map(|piece| piece.crossings.len()).sum();
+        let covered: usize = self.slices.iter().flatten().map(|slice| slice.l.len()).sum();
+        let slices = self.slices.as_ref().map_or(0, Vec::len);
+        let pieces = self.pieces.len() * (size_of::<Piece>() + 2 * SMALLEST) + crossings * size_of::<Descriptor>();
+        (SMALLEST + pieces + slices * (size_of::<Slice>() + SMALLEST) + covered * 16) as u64
+    }
+}
+
+/// A row of a table, and what its regions are described with.
 pub(super) struct Work<'a, S: Format> {
+    /// Numbers of the agents of the fleet.
     pub(super) ids: &'a [u64],
     pub(super) fleet: &'a Fleet<S>,
+    /// Places in the fleet of the agents of the row, which the table numbers from 0.
+    pub(super) agents: &'a [u32],
     pub(super) motions: &'a [Motion<'a, S>],
     pub(super) ecm: &'a HostEcm<S>,
     pub(super) slices: Option<usize>,
@@ -179,7 +195,7 @@ impl<S: Format> Work<'_, S> {
             let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
             times.map(|time| slice(region, S::from_f64(time))).collect()
         });
-        let id = |agent: usize| self.ids.get(agent).copied().unwrap_or_default();
+        let id = |agent: usize| self.ids.get(self.in_fleet(agent)).copied().unwrap_or_default();
         Region {
             i: id(ego),
             j: id(other),
@@ -194,7 +210,13 @@ impl<S: Format> Work<'_, S> {
 
     /// Numbers in the scenario of a segment of each path.
     fn segments(&self, ego: usize, other: usize, [i, j]: [usize; 2]) -> [Option<usize>; 2] {
-        [self.fleet.source(ego, i), self.fleet.source(other, j)].map(|source| source.map(|index| index + 1))
+        let source = |agent, segment| self.fleet.source(self.in_fleet(agent), segment).map(|index| index + 1);
+        [source(ego, i), source(other, j)]
+    }
+
+    /// Place in the fleet of an agent of the row; one that the row does not have is none of the fleet either.
+    pub(super) fn in_fleet(&self, agent: usize) -> usize {
+        self.agents.get(agent).map_or(usize::MAX, |&agent| agent as usize)
     }
 }
 

@@ -36,12 +36,16 @@ pub fn certified_table(certified: &Certified, out: &mut impl Write) -> io::Resul
     if let Some(error) = &certified.error {
         return writeln!(out, "{name}: {error}");
     }
-    let Certified { discs, segment_pairs, pieces, steps, .. } = certified;
+    let counted = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+    let counts = [
+        counted(certified.discs, "disc", "discs"),
+        counted(certified.segment_pairs, "pair of segments", "pairs of segments"),
+        counted(certified.pieces, "piece", "pieces"),
+        counted(certified.times, "region in time", "regions in time"),
+        counted(certified.steps, "step", "steps"),
+    ];
     let verdict = certified.verdict.unwrap_or("refused");
-    writeln!(
-        out,
-        "{name}: {verdict}; {discs} discs, {segment_pairs} pairs of segments, {pieces} pieces, {steps} steps"
-    )?;
+    writeln!(out, "{name}: {verdict}; {}", counts.join(", "))?;
     if let Some(margin) = certified.margin {
         writeln!(out, "Contacts are covered up to the combined radius and {margin:.3} of the bound ε.")?;
     }

@@ -2,6 +2,9 @@
 
 use std::io::{self, Write};
 
+/// What a row of a table takes while the widths of its columns are not known \[bytes\]: up to eleven cells, each a text.
+pub const ROW_BYTES: u64 = 800;
+
 /// Rows of cells, each column as wide as its widest cell.
 pub struct Columns {
     widths: Vec<usize>,

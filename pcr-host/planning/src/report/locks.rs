@@ -1,32 +1,160 @@
 //! Tables of locks, for programs and for reading.
 
 use super::columns::Columns;
-use super::{printable, quoted};
-use crate::locks::Locks;
+use super::{Document, json, printable, quoted};
+use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
+use pcr_formats::import::{Id, ImportError};
+use serde::Serialize;
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 /// The header line of [`locks_csv`].
 pub const LOCKS_HEADER: &str = "a,b,a_from,a_to,b_from,b_to\n";
 
-/// A line a lock. A node is `node` and its name, as `a`, and has no lengths.
+/// Why locks were not printed, or not to their end.
+#[derive(Debug)]
+pub enum LocksUnprinted {
+    /// There are none.
+    Import(ImportError),
+    /// The output cannot be written.
+    Output(io::Error),
+}
+
+impl From<ImportError> for LocksUnprinted {
+    fn from(error: ImportError) -> Self {
+        Self::Import(error)
+    }
+}
+
+impl From<io::Error> for LocksUnprinted {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+/// A line a lock. A node is `node` and its name, as `a`, and has no lengths. More than ten million are in the order of
+/// [`Sweep::each`].
+///
+/// # Errors
+/// Those of the writer, and of [`Sweep::each`].
+pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
+    out.write_all(LOCKS_HEADER.as_bytes())?;
+    let name = |(place, id): (usize, &Id)| {
+        let kind = if sweep.is_edge(place) { "" } else { "node " };
+        quoted(&format!("{kind}{id}")).into_owned()
+    };
+    let names: Vec<String> = sweep.ids().iter().enumerate().map(name).collect();
+    let lines = |found: &[Found]| {
+        let mut text = String::with_capacity(100 * found.len());
+        for Found { places: [a, b], lengths: [own, other] } in found {
+            let ([a_from, a_to], [b_from, b_to]) = (own, other);
+            // Writing to a `String` does not fail.
+            let _ = match (sweep.is_edge(*a), sweep.is_edge(*b)) {
+                (true, true) => writeln!(text, "{},{},{a_from},{a_to},{b_from},{b_to}", names[*a], names[*b]),
+                (true, false) => writeln!(text, "{},{},,,{a_from},{a_to}", names[*b], names[*a]),
+                (false, _) => writeln!(text, "{},{},,,,", names[*a], names[*b]),
+            };
+        }
+        text
+    };
+    sweep.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+}
+
+/// What [`locks_lines`] begins with.
+#[derive(Serialize)]
+struct Head<'a> {
+    layout: &'a str,
+    vehicle: &'a LockVehicle,
+    warnings: &'a [String],
+}
+
+impl Document for Head<'_> {
+    const FORMAT: &'static str = "pcr-lock-lines";
+}
+
+/// JSON Lines: what the table is, then a line a lock as in the document `pcr-locks`, then how many there were: what has no such
+/// line was cut off.
+///
+/// # Errors
+/// As [`locks_csv`].
+pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
+    json(&Head { layout: &head.layout, vehicle: &head.vehicle, warnings: &head.warnings }, out)?;
+    let names: Vec<String> =
+        sweep.ids().iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(io::Error::from)?;
+    let lines = |found: &[Found]| {
+        let mut text = String::with_capacity(150 * found.len());
+        for Found { places: [a, b], lengths: [[a_from, a_to], [b_from, b_to]] } in found {
+            let (a_name, b_name) = (&names[*a], &names[*b]);
+            let _ = match (sweep.is_edge(*a), sweep.is_edge(*b)) {
+                (true, true) => writeln!(
+                    text,
+                    r#"{{"a":{a_name},"b":{b_name},"a_length":[{a_from:?},{a_to:?}],"b_length":[{b_from:?},{b_to:?}]}}"#
+                ),
+                (true, false) => {
+                    writeln!(text, r#"{{"node":{b_name},"edge":{a_name},"edge_length":[{a_from:?},{a_to:?}]}}"#)
+                }
+                (false, _) => writeln!(text, r#"{{"nodes":[{a_name},{b_name}]}}"#),
+            };
+        }
+        (found.len(), text)
+    };
+    let mut count = 0;
+    sweep.each(told, lines, |(lines, text)| {
+        count += lines;
+        Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?)
+    })?;
+    Ok(writeln!(out, r#"{{"locks":{count}}}"#)?)
+}
+
+/// What an edge shares its time with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EdgeLocks {
+    /// The edge, or the node.
+    pub edge: String,
+    /// By edges, then nodes.
+    pub partners: Vec<Partner>,
+}
+
+impl Document for EdgeLocks {
+    const FORMAT: &'static str = "pcr-edge-locks";
+}
+
+/// The header line of [`edge_csv`].
+pub const EDGE_HEADER: &str = "edge,other,from,to,other_from,other_to\n";
+
+/// A line a lock of an edge.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn locks_csv(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
-    out.write_all(LOCKS_HEADER.as_bytes())?;
-    for lock in &locks.locks {
-        let [a, b] = [&lock.a, &lock.b].map(|id| quoted(&id.to_string()).into_owned());
-        let ([a_from, a_to], [b_from, b_to]) = (lock.a_length, lock.b_length);
-        writeln!(out, "{a},{b},{a_from},{a_to},{b_from},{b_to}")?;
-    }
-    for lock in locks.nodes.iter().flatten() {
-        let [from, to] = lock.edge_length;
-        writeln!(out, "{},{},,,{from},{to}", quoted(&format!("node {}", lock.node)), quoted(&lock.edge.to_string()))?;
-    }
-    for [a, b] in locks.node_pairs.iter().flatten() {
-        writeln!(out, "{},{},,,,", quoted(&format!("node {a}")), quoted(&format!("node {b}")))?;
+pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(EDGE_HEADER.as_bytes())?;
+    let edge = quoted(&locks.edge);
+    for Partner { name, node, own: [from, to], other: [other_from, other_to] } in &locks.partners {
+        let name = format!("{}{name}", if *node { "node " } else { "" });
+        writeln!(out, "{edge},{},{from},{to},{other_from},{other_to}", quoted(&name))?;
     }
     Ok(())
+}
+
+/// The locks of an edge in columns, lengths outward to the millimetre.
+///
+/// # Errors
+/// Those of the writer.
+pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "{}: {} locks", printable(&locks.edge), locks.partners.len())?;
+    let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
+    for Partner { name, node, own, other } in &locks.partners {
+        let name = format!("{}{name}", if *node { "node " } else { "" });
+        columns.row([vec![printable(&name)], range(*own).to_vec(), range(*other).to_vec()].concat());
+    }
+    columns.write(out)
+}
+
+/// Lengths outward to the millimetre.
+fn range([from, to]: [f64; 2]) -> [String; 2] {
+    // What rounding adds is no millimetre.
+    let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
+    [format!("{from:.3}"), format!("{to:.3}")]
 }
 
 /// The locks in columns, lengths outward to the millimetre.
@@ -44,11 +172,6 @@ pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
         (discs, radius) => format!("an outline of {discs} discs within {radius:.3} m"),
     };
     writeln!(out, "{}: {count} of {pairs} of edges, {vehicle}", printable(name))?;
-    let range = |[from, to]: [f64; 2]| {
-        // What rounding adds is no millimetre.
-        let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
-        [format!("{from:.3}"), format!("{to:.3}")]
-    };
     let text = |id: &dyn ToString| printable(&id.to_string());
     if !locks.locks.is_empty() {
         let mut columns = Columns::new(&["<a", "<b", "a from [m]", "to", "b from [m]", "to"]);

@@ -1,6 +1,8 @@
 //! Which boxes meet: an even grid, each box in all cells that it covers. Cells are as large as the boxes are on average, so
 //! that a box of a fleet of constant density has a constant number of neighbours, wherever it is.
 
+use rayon::prelude::*;
+
 /// Cells for each box at most: long boxes cannot fill the memory.
 const CELLS: f64 = 4.0;
 
@@ -86,8 +88,13 @@ impl Grid {
     /// The boxes that meet one, in increasing order. O(boxes in the cells that it covers).
     pub fn near(&self, b: &Box) -> Vec<u32> {
         let mut near = Vec::new();
-        self.find(b, 0, &mut near);
+        self.meeting(b, &mut near);
         near
+    }
+
+    /// The same in place of what is in `near`.
+    pub fn meeting(&self, b: &Box, near: &mut Vec<u32>) {
+        self.find(b, 0, near);
     }
 
     /// The boxes from a place on that meet one, in increasing order.
@@ -105,6 +112,24 @@ impl Grid {
             near.extend(members.iter().copied().filter(|&member| meets(&self.boxes[member as usize])));
         }
         near.sort_unstable();
+    }
+
+    /// The other boxes that meet this one, in increasing order, in place of what is in `near`.
+    pub fn around(&self, place: usize, near: &mut Vec<u32>) {
+        match self.boxes.get(place) {
+            Some(b) => self.find(b, 0, near),
+            None => near.clear(),
+        }
+        near.retain(|&other| other as usize != place);
+    }
+
+    /// How many others meet each box: what a pass over all of them looks at. O(boxes in the cells that they cover), on all cores.
+    pub fn counts(&self) -> Vec<u32> {
+        let count = |near: &mut Vec<u32>, place: usize| {
+            self.around(place, near);
+            near.len() as u32
+        };
+        (0..self.boxes.len()).into_par_iter().map_init(Vec::new, count).collect()
     }
 
     /// The boxes after this one that meet it, in increasing order, in place of what is in `near`.

@@ -1,11 +1,16 @@
 //! Does one job again and again, for profilers: `work JOB FLEET TIMES`.
 //!
 //! The jobs are `table` (all regions of the fleet), `exchange` (those of its first agent), `conflicts` (when agents are in
-//! contact) and `pairs` (the same without a broad phase, pair by pair). Fleets are `scattered`, 100 agents that cannot meet,
+//! contact), `pairs` (the same without a broad phase, pair by pair), `certify` (the proof of the table) and `motions` (the proof that
+//! nobody meets, or where). Fleets are `scattered`, 100 agents that cannot meet,
 //! and the files of `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
 
 use pcr_benches::{Storage, boxes, fleet, scattered};
+use pcr_certify::motion::{Mover, meetings};
+use pcr_certify::table::{Checker, Margin};
 use pcr_core::{BroadPhase, Encounter, Interval, Motion};
+use pcr_planning::certificate;
+use pcr_planning::fleet::build_ecm;
 use std::hint::black_box;
 use std::process::ExitCode;
 
@@ -15,8 +20,9 @@ fn main() -> ExitCode {
         [job, name, times] => (job.as_str(), name.as_str(), times.parse()),
         _ => ("", "", "".parse()),
     };
-    let (Ok(times), "table" | "exchange" | "conflicts" | "pairs"): (Result<u32, _>, _) = (times, job) else {
-        eprintln!("work table|exchange|conflicts|pairs FLEET TIMES");
+    const JOBS: [&str; 6] = ["table", "exchange", "conflicts", "pairs", "certify", "motions"];
+    let (Ok(times), true): (Result<u32, _>, _) = (times, JOBS.contains(&job)) else {
+        eprintln!("work {} FLEET TIMES", JOBS.join("|"));
         return ExitCode::from(2);
     };
     let fleet = if name == "scattered" { scattered::<f64>(10) } else { fleet::<f64>(name) };
@@ -28,6 +34,10 @@ fn main() -> ExitCode {
     let mut boxes = boxes(&motions);
     let mut exchanged = storage.clone();
     let mut exchanged = exchanged.table(&motions);
+    let ids: Vec<u64> = (0..motions.len() as u64).collect();
+    let agents = certificate::agents(&fleet, &motions, &ids);
+    let certified = build_ecm(&motions).map(|ecm| certificate::table(agents.clone(), &motions, &ecm));
+    let certified = certified.expect("the table of the fleet");
     for _ in 0..times {
         black_box(match job {
             "table" => storage.table(black_box(&motions)).len(),
@@ -36,6 +46,15 @@ fn main() -> ExitCode {
                 let fleet = black_box(&motions);
                 let pairs = (0..fleet.len()).flat_map(|i| (i + 1..fleet.len()).map(move |j| (&fleet[i], &fleet[j])));
                 pairs.map(|(a, b)| Encounter::new(a, b).contacts(time).count()).sum()
+            }
+            "certify" => {
+                let found = Checker::new(black_box(&certified)).and_then(|checker| checker.check(Margin::Needed));
+                found.map_or(0, |found| found.steps)
+            }
+            "motions" => {
+                let ends = [time.lo, time.hi];
+                let movers = black_box(&agents).iter().map(|agent| Mover::new(agent, ends));
+                movers.collect::<Result<Vec<_>, _>>().map_or(0, |movers| meetings(&movers).steps)
             }
             _ => {
                 let broad_phase = BroadPhase::new(&mut boxes[..], black_box(&motions), time);

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# The Python package: a wheel, installed in an environment of its own, tested against the tool, and type-checked.
+#   check.sh PCR       PCR is the tool
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+tool=$(realpath "${1:?usage: $0 PCR}")
+target=${CARGO_TARGET_DIR:-target}
+wheels=$target/wheels environment=$target/python
+python=${PYTHON:-python3}
+if ! "$python" -m venv "$environment" >/dev/null 2>&1; then
+  .ci/install.sh python3-venv
+  "$python" -m venv "$environment"
+fi
+bin=$environment/bin
+"$bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2" numpy mypy
+rm -rf "$wheels"
+"$bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$wheels"
+wheel=$(ls "$wheels"/pcr_py-*.whl)
+size=$(stat -c %s "$wheel")
+echo "$(basename "$wheel"): $size bytes"
+if [ "$size" -gt 2097152 ]; then
+  echo "the wheel has more than 2 MB" >&2
+  exit 1
+fi
+"$bin/pip" install -q --disable-pip-version-check --force-reinstall --no-deps "$wheel"
+# Without NumPy in sight: nothing is needed.
+"$bin/python" -I -c 'import sys; sys.modules["numpy"] = None; import pcr; assert len(pcr.Fleet([], name="none").regions()) == 0'
+PCR=$tool "$bin/python" bindings/python/tests/test_pcr.py
+"$bin/python" - <<'DOCTEST'
+import doctest, sys, pcr
+failed, run = doctest.testmod(pcr)
+sys.exit(1 if failed or run < 5 else 0)
+DOCTEST
+# The example of the README prints what the README says.
+"$bin/python" - bindings/python/README.md <<'README'
+import contextlib, io, sys
+text = open(sys.argv[1]).read()
+program, said = (text.split(f"```{kind}\n")[1].split("```")[0] for kind in ("python", "text"))
+out = io.StringIO()
+with contextlib.redirect_stdout(out):
+    exec(program, {})
+sys.exit(0 if out.getvalue() == said else f"the README says\n{said}but it prints\n{out.getvalue()}")
+README
+"$bin/mypy" --config-file bindings/python/pyproject.toml -p pcr
+"$bin/mypy" --config-file bindings/python/pyproject.toml bindings/python/tests/test_pcr.py
+"$bin/stubtest" pcr._pcr --ignore-disjoint-bases
+echo "the Python package: ok"

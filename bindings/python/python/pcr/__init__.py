@@ -1,0 +1,329 @@
+"""Exact collision regions of discs that move on lines and arcs: will robots collide, where, when, and when may each start?
+
+Units are metres, seconds and radians; left turns are positive. A fleet is what the files of the tool ``pcr`` hold:
+
+>>> fleet = Fleet([
+...     {"id": 1, "radius": 0.25, "v_max": 1.0, "a_max": 1.0, "start": {"x": -2, "y": 0, "heading": 0},
+...      "path": [{"kind": "line", "length": 4}]},
+...     {"id": 2, "radius": 0.25, "v_max": 1.0, "a_max": 1.0, "start": {"x": 0, "y": -2, "heading": 1.5707963267948966},
+...      "path": [{"kind": "line", "length": 4}]},
+... ])
+>>> region = fleet.regions()[0]
+>>> region.i, region.j, [round(t, 3) for t in region.t], [round(l, 3) for l in region.l]
+(1, 2, [2.0, 3.0], [1.5, 2.5])
+>>> len(fleet.conflicts()), len(fleet.plan().fleet.conflicts())
+(1, 0)
+
+What cannot be answered is an :class:`Error`, never an empty answer. Other threads run while something is computed.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
+from typing import Any, NamedTuple, Optional, Union, overload
+
+from . import _pcr
+from ._options import Options
+from ._pcr import Error
+
+__all__ = ["Conflict", "Error", "Fleet", "Layout", "Lock", "Plan", "Region", "Regions", "ScenarioError"]
+__version__ = _pcr.version
+
+Path = Union[str, PathLike[str]]
+Span = tuple[float, float]
+
+
+class ScenarioError(Error):
+    """A scenario was refused; it says what it is about.
+
+    >>> try:
+    ...     Fleet.from_json('{"agents": [{"id": 4, "radius": -1}]}')
+    ... except ScenarioError as error:
+    ...     error.agent, error.field, error.line
+    ('agent 4', 'radius', 1)
+    """
+
+    def __init__(self, message: str, line: int, agent: Optional[str], part: Optional[str], field: Optional[str]) -> None:
+        super().__init__(message)
+        #: Line of the text, from 1.
+        self.line = line
+        #: For example ``"agent 7"``.
+        self.agent = agent
+        #: For example ``"segment 2"``, counted from 1.
+        self.segment = part
+        #: For example ``"radius"``.
+        self.field = field
+
+
+def _read(make: Any, *arguments: Any) -> Any:
+    """The core's errors about a scenario have several parts."""
+    try:
+        return make(*arguments)
+    except Error as error:
+        if len(error.args) == 5:
+            raise ScenarioError(*error.args) from None
+        raise
+
+
+class Region(NamedTuple):
+    """Where and when agent ``i`` would touch agent ``j``: times [s], lengths of ``i`` and of ``j`` along their paths [m].
+
+    It lies within these intervals; :meth:`Fleet.map` and :meth:`Fleet.outline` have its shape.
+    """
+
+    i: int
+    j: int
+    t: Span
+    l: Span
+    l_j: Span
+    #: Whether it reaches the start of the path, where ``i`` stands before it sets off, or the end.
+    open_start: bool
+    open_end: bool
+
+
+class Conflict(NamedTuple):
+    """Two discs in contact: when [s], how deep [m], and where on both paths [m]."""
+
+    i: int
+    j: int
+    t: Span
+    depth: float
+    l_i: Span
+    l_j: Span
+    #: Whether they but touch, within rounding.
+    touching: bool
+
+
+class Lock(NamedTuple):
+    """Two edges of a layout, and the lengths [m] of each on which a vehicle can touch one on the other."""
+
+    a: Any
+    b: Any
+    a_length: Span
+    b_length: Span
+
+
+#: The fields of an array of regions, for ``numpy.dtype``.
+REGION = [("i", "<f8"), ("j", "<f8"), ("t", "<f8", (2,)), ("l", "<f8", (2,)), ("l_j", "<f8", (2,)), ("open_start", "<f8"), ("open_end", "<f8")]
+_REGION = struct.Struct("=10d")
+
+
+class Regions(Sequence[Region]):
+    """Regions in the order of the tool: by both agents, then by time. Made into objects one by one, as they are asked for."""
+
+    __slots__ = ("_rows",)
+
+    def __init__(self, rows: bytes) -> None:
+        self._rows = rows
+
+    def __len__(self) -> int:
+        return len(self._rows) // _REGION.size
+
+    @overload
+    def __getitem__(self, place: int) -> Region: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Region]: ...
+    def __getitem__(self, place: Union[int, slice]) -> Union[Region, list[Region]]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(*place.indices(len(self)))]
+        if not -len(self) <= place < len(self):
+            raise IndexError(f"region {place} of {len(self)}")
+        row = _REGION.unpack_from(self._rows, place % len(self) * _REGION.size)
+        i, j, *spans, start, end = row
+        return Region(int(i), int(j), (spans[0], spans[1]), (spans[2], spans[3]), (spans[4], spans[5]), start != 0, end != 0)
+
+    def __iter__(self) -> Iterator[Region]:
+        return (self[k] for k in range(len(self)))
+
+    @property
+    def array(self) -> Any:
+        """A structured NumPy array of all regions, without a copy: ``regions.array["t"][:, 0]`` are all first times."""
+        import numpy
+
+        return numpy.frombuffer(self._rows, dtype=numpy.dtype(REGION))
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} regions>"
+
+
+def _finite(**numbers: float) -> None:
+    for name, number in numbers.items():
+        if not math.isfinite(number):
+            raise Error(f"{name}: {number} is not a finite number")
+
+
+class Plan(NamedTuple):
+    """What :meth:`Fleet.plan` found."""
+
+    #: The fleet as planned; ``None`` where there is no plan.
+    fleet: Optional[Fleet]
+    #: What ``pcr plan --json`` prints: delays, costs, and who cannot be planned, with the reason.
+    report: dict[str, Any]
+
+
+class Fleet:
+    """Agents on their paths. It does not change; what changes something returns another fleet.
+
+    ``agents`` are mappings with the fields of the tool's files (``docs/formats.md``).
+
+    >>> Fleet([], name="nobody").agents
+    []
+    """
+
+    __slots__ = ("_fleet", "warnings")
+
+    def __init__(self, agents: Sequence[Mapping[str, Any]], name: str = "") -> None:
+        text = json.dumps({"name": name, "agents": list(agents)}, allow_nan=False)
+        self._fleet: _pcr.Fleet = _read(_pcr.Fleet.from_json, text)
+        #: What was read otherwise than it is written in the file.
+        self.warnings: list[str] = []
+
+    @classmethod
+    def _of(cls, fleet: _pcr.Fleet, warnings: Optional[list[str]] = None) -> Fleet:
+        made = cls.__new__(cls)
+        made._fleet, made.warnings = fleet, warnings or []
+        return made
+
+    @classmethod
+    def from_json(cls, text: str) -> Fleet:
+        """The fleet in the text of a scenario file."""
+        return cls._of(_read(_pcr.Fleet.from_json, text))
+
+    @classmethod
+    def read(cls, path: Path, *, radius: Optional[float] = None, speed: Optional[float] = None, acceleration: Optional[float] = None,
+             rotation: Optional[float] = None, vehicle: Optional[str] = None, routes: Sequence[str] = (), partial: bool = False) -> Fleet:
+        """The fleet in a file: a scenario, or any format that ``pcr import`` reads, with its options."""
+        options = _options(radius, speed, acceleration, rotation, vehicle, routes, partial)
+        fleet, warnings = _read(_pcr.Fleet.read, path, options)
+        return cls._of(fleet, warnings)
+
+    def to_json(self) -> str:
+        """The text of a scenario file, which :meth:`from_json` and the tool read."""
+        return self._fleet.to_json()
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+        return self._fleet.name()
+
+    @property
+    def agents(self) -> list[dict[str, Any]]:
+        """Number, label, radius, length of the path and arrival of every agent."""
+        names = ("id", "label", "radius", "length", "arrival")
+        return [dict(zip(names, agent)) for agent in self._fleet.agents()]
+
+    def regions(self, *, margins: bool = False) -> Regions:
+        """All collision regions; with ``margins`` those in which margins overlap."""
+        return Regions(self._fleet.regions(margins))
+
+    def report(self, *, slices: Optional[int] = None, agent: Optional[int] = None) -> dict[str, Any]:
+        """What ``pcr regions --json`` prints: regions with their pieces and slices; of fleets with footprints, too."""
+        answer: dict[str, Any] = json.loads(self._fleet.regions_json(slices, agent))
+        return answer
+
+    def conflicts(self) -> list[Conflict]:
+        """Who collides, moving as given: sorted by the begin. An empty list is the answer "nobody touches"."""
+        found = json.loads(self._fleet.check_json())["conflicts"]
+        return [Conflict(c["i"], c["j"], tuple(c["t"]), c["depth"], tuple(c["l_i"]), tuple(c["l_j"]), c["touching"]) for c in found]
+
+    def map(self, agent: int, start: float, step: float, times: int) -> list[tuple[int, int, float, float]]:
+        """The collision map of an agent at ``times`` times: number of the time, other agent, and the lengths forbidden then, from, to."""
+        _finite(start=start, step=step)
+        rows = struct.iter_unpack("=4d", self._fleet.map(agent, start, step, times))
+        return [(int(place), int(other), lo, hi) for place, other, lo, hi in rows]
+
+    def places(self, time: float) -> list[tuple[float, float, float, float]]:
+        """Where every agent is at a time: x, y, heading, travelled length."""
+        return [(x, y, heading, length) for x, y, heading, length in struct.iter_unpack("=4d", self._fleet.places(time))]
+
+    def safe_intervals(self, agent: int, length: Union[float, Span], during: Span) -> list[Span]:
+        """When no other agent blocks a length, or a stretch of lengths, of an agent's path, within ``during``."""
+        stretch = (length, length) if isinstance(length, (int, float)) else length
+        return self._fleet.safe_intervals(agent, stretch, during)
+
+    def closest(self, i: int, j: int) -> tuple[float, float, float]:
+        """The least distance of two agents' centres, the first time of it, and the sum of their radii."""
+        return self._fleet.closest(i, j)
+
+    def plan(self, method: str = "delay") -> Plan:
+        """Later starts (``"delay"``), or waits and other speeds on the way (``"speed"``), so that nobody collides."""
+        if method not in ("delay", "speed"):
+            raise Error(f'method "{method}": it is "delay" or "speed"')
+        report, fleet = self._fleet.plan(method == "speed")
+        return Plan(None if fleet is None else Fleet._of(fleet), json.loads(report))
+
+    def holds(self, places: Sequence[Union[float, Span]]) -> list[float]:
+        """How far every agent may go in the order in which the motions pass one another, whatever the delays.
+
+        ``places`` are the travelled lengths, exact or from-to, in the order of :attr:`agents`. Infinite where nobody is in the
+        way; minus infinity for an agent that is where it should have waited. Motions that meet have no order: that is an error.
+        """
+        return self._fleet.holds([(p, p) if isinstance(p, (int, float)) else p for p in places])
+
+    def plot(self, ax: Any = None, *, agent: Optional[int] = None, columns: int = 400) -> Any:
+        """Draws the paths, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""
+        import matplotlib.pyplot as plt  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+        axes = plt.subplots()[1] if ax is None else ax
+        arrivals = {a["id"]: a for a in self.agents}
+        last = max((a["arrival"] for a in arrivals.values()), default=1.0)
+        times = [last * k / columns for k in range(columns + 1)]
+        tracks = list(zip(*(self.places(time) for time in times)))
+        if agent is None:
+            for number, track in zip(arrivals, tracks):
+                axes.plot([p[0] for p in track], [p[1] for p in track], label=str(number))
+            axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
+            return axes
+        if agent not in arrivals:
+            raise Error(f"no agent {agent}")
+        step = last / columns
+        for other in arrivals:
+            bars = [(k * step, lo, hi) for k, j, lo, hi in self.map(agent, 0.0, step, columns + 1) if j == other]
+            if bars:
+                axes.bar([t for t, _, _ in bars], [hi - lo for _, lo, hi in bars], bottom=[lo for _, lo, _ in bars], width=step, label=str(other), alpha=0.6)
+        own = tracks[list(arrivals).index(agent)]
+        axes.plot(times, [p[3] for p in own], color="black")
+        axes.set(xlabel="time [s]", ylabel="travelled length [m]")
+        return axes
+
+    def __len__(self) -> int:
+        return len(self._fleet.agents())
+
+    def __repr__(self) -> str:
+        return f"<fleet {self.name!r} of {len(self)}>"
+
+
+def _options(radius: Optional[float], speed: Optional[float], acceleration: Optional[float], rotation: Optional[float],
+             vehicle: Optional[str], routes: Sequence[str], partial: bool) -> Options:
+    for name, number in (("radius", radius), ("speed", speed), ("acceleration", acceleration), ("rotation", rotation)):
+        if number is not None and not (math.isfinite(number) and number > 0):
+            raise Error(f"{name}: {number} is not above 0")
+    return {"radius": radius, "speed": speed, "acceleration": acceleration, "rotation": rotation, "vehicle": vehicle,
+            "routes": list(routes), "partial": partial}
+
+
+class Layout:
+    """A road map of nav2, LIF, Open-RMF, OpenDRIVE, openTCS or Continuous-CBS, for one vehicle."""
+
+    __slots__ = ("_layout",)
+
+    def __init__(self, layout: _pcr.Layout) -> None:
+        self._layout = layout
+
+    @classmethod
+    def read(cls, path: Path, *, radius: Optional[float] = None, vehicle: Optional[str] = None, partial: bool = False) -> Layout:
+        """A layout file, for vehicles of this radius, or of this type."""
+        return cls(_pcr.Layout.read(path, _options(radius, None, None, None, vehicle, (), partial)))
+
+    def locks(self) -> list[Lock]:
+        """Which edges exclude one another, and on which lengths: two vehicles on other lengths cannot touch."""
+        found = json.loads(self._layout.locks_json(False))["locks"]
+        return [Lock(lock["a"], lock["b"], tuple(lock["a_length"]), tuple(lock["b_length"])) for lock in found]
+
+    def __repr__(self) -> str:
+        name, nodes, edges = self._layout.sizes()
+        return f"<layout {name!r}: {nodes} nodes, {edges} edges>"

@@ -1,0 +1,15 @@
+"""What the importers may be told."""
+
+from typing import Optional, TypedDict
+
+
+class Options(TypedDict):
+    """The options of ``pcr import`` that fleets and layouts need; ``None`` is left out."""
+
+    radius: Optional[float]
+    speed: Optional[float]
+    acceleration: Optional[float]
+    rotation: Optional[float]
+    vehicle: Optional[str]
+    routes: list[str]
+    partial: bool

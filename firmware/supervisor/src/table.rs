@@ -1,0 +1,135 @@
+//! What a supervisor keeps of its fleet: a table of regions, with passing orders where there is memory for them.
+
+use crate::agent::Agent;
+use crate::message::{Answer, Edition, Refusal, Terms};
+use crate::number::Number;
+use pcr_core::{Ecm, Full, Interval, Mismatch, Motion, Piece, Region, Unchanged};
+
+/// A table of at most `R` regions in `P` pieces.
+pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [Region; R], [Piece<S>; P]>;
+
+/// A table that a [`Service`](crate::Service) keeps. What orders are asked for is refused by one without them.
+pub trait Table<S: Number, const R: usize, const P: usize> {
+    /// The regions.
+    fn regions(&self) -> &Regions<S, R, P>;
+
+    /// Becomes the table of a fleet.
+    ///
+    /// # Errors
+    /// [`Full`]; it is then that of nobody.
+    fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full>;
+
+    /// Exchanges an agent, and computes its regions only.
+    ///
+    /// # Errors
+    /// [`Unchanged`].
+    fn replace<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<(), Unchanged>;
+
+    /// Removes an agent; those behind it move up by one place.
+    ///
+    /// # Errors
+    /// [`Mismatch`].
+    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch>;
+
+    /// Forgets the fleet.
+    fn clear(&mut self);
+
+    /// Whether robots are under way with orders.
+    fn is_running(&self) -> bool {
+        false
+    }
+
+    /// Takes the orders of a plan. [`Request::Order`](crate::Request::Order).
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    fn order(&mut self, _fleet: &[Motion<'_, S>], _terms: Terms<S>) -> Result<Edition, Refusal> {
+        Err(Refusal::NoOrders)
+    }
+
+    /// Takes the place of a robot. [`Request::Report`](crate::Request::Report).
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    fn report(
+        &mut self,
+        _fleet: &[Motion<'_, S>],
+        _agent: usize,
+        _edition: Edition,
+        _at: Interval<S>,
+        _send: &mut impl FnMut(Answer<S>),
+    ) -> Result<Answer<S>, Refusal> {
+        Err(Refusal::NoOrders)
+    }
+
+    /// The orders of a robot, of the agents `with` these indices. [`Request::Orders`](crate::Request::Orders).
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    fn orders(
+        &self,
+        _fleet: &[Motion<'_, S>],
+        _agent: usize,
+        _with: impl Fn(usize) -> Result<Agent<S>, Refusal>,
+        _send: &mut impl FnMut(Answer<S>),
+    ) -> Result<Answer<S>, Refusal> {
+        Err(Refusal::NoOrders)
+    }
+
+    /// Whether a robot is at the end of its path.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    fn arrived(&self, _fleet: &[Motion<'_, S>], _agent: usize) -> Result<(), Refusal> {
+        Err(Refusal::NoOrders)
+    }
+
+    /// Gives a robot another path. [`Request::Admit`](crate::Request::Admit).
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    fn admit<'m>(
+        &mut self,
+        _fleet: &mut [Motion<'m, S>],
+        _agent: usize,
+        _motion: Motion<'m, S>,
+    ) -> Result<Edition, Refusal> {
+        Err(Refusal::NoOrders)
+    }
+}
+
+impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R, P> {
+    fn regions(&self) -> &Self {
+        self
+    }
+
+    // By itself, with a stack of its own; so are those below.
+    #[inline(never)]
+    fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
+        Ecm::fill(self, fleet)
+    }
+
+    #[inline(never)]
+    fn replace<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<(), Unchanged> {
+        Ecm::replace(self, fleet, agent, motion)
+    }
+
+    #[inline(never)]
+    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        Ecm::erase(self, fleet, agent)
+    }
+
+    fn clear(&mut self) {
+        Ecm::clear(self);
+    }
+}

@@ -1,0 +1,211 @@
+//! Robots under way: who passes first, how far each has got, and how far each was sent.
+//!
+//! Orders are kept whatever is lost, late or repeated on the line:
+//!
+//! - what a robot has passed only grows, so an old report changes nothing, and a hold that is computed from old places is too low,
+//!   never too high;
+//! - how far a robot was sent ([`Answer::Go`]) only grows, too, and it never goes further. Without any clock that is the upper
+//!   end of where it can be: whoever gets a new path passes second wherever another robot may already be on the way there;
+//! - reports and places carry the edition of the orders. Those about another path have another edition, and are dropped.
+
+use crate::agent::Agent;
+use crate::message::{Answer, Edition, Refusal, Terms, short};
+use crate::number::Number;
+use crate::table::{Regions, Table};
+use pcr_core::{
+    Full, Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, Tolerances,
+    Unchanged,
+};
+
+/// A table of at most `R` regions in `P` pieces with `O` orders: as many as regions, and as many more as a robot has that is
+/// admitted. For at most `A` robots.
+#[derive(Debug)]
+pub struct Traffic<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> {
+    orders: Orders<S, [Region; R], [Piece<S>; P], [Order<S>; O]>,
+    robots: [Robot<S>; A],
+    edition: Edition,
+    terms: Terms<S>,
+    running: bool,
+}
+
+/// What is known of a robot.
+#[derive(Clone, Copy, Debug)]
+struct Robot<S> {
+    /// It has got so far at least, and was sent so far.
+    at: Interval<S>,
+    /// Number of the edition in which it got its path.
+    path: u16,
+}
+
+impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> Traffic<S, A, R, P, O> {
+    /// No fleet yet.
+    pub const fn new() -> Self {
+        let orders = Orders::new([Region::EMPTY; R], [Piece::EMPTY; P], [Order::EMPTY; O]);
+        let at = Interval { lo: S::ZERO, hi: S::ZERO };
+        let terms = Terms { run: 0, horizon: S::ZERO, width: S::ZERO };
+        let edition = Edition { run: 0, number: 0 };
+        Self { orders, robots: [Robot { at, path: 0 }; A], edition, terms, running: false }
+    }
+
+    fn robot(&self, agent: usize) -> Result<&Robot<S>, Refusal> {
+        if !self.running {
+            return Err(Refusal::NotRunning);
+        }
+        self.robots.get(agent).ok_or(Refusal::NoSuchAgent { agent: short(agent) })
+    }
+
+    /// Where all are; what they were sent to counts as where they can stop at the latest.
+    fn progress(&self) -> [Progress<S>; A] {
+        self.robots.map(|robot| Progress { at: robot.at, stop: robot.at.hi })
+    }
+
+    fn tolerances(&self) -> Tolerances<S> {
+        // About a millimetre.
+        let gain = (0..10).fold(S::ONE, |gain, _| gain.half());
+        Tolerances { width: self.terms.width, gain }
+    }
+}
+
+impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> Default for Traffic<S, A, R, P, O> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> Table<S, R, P>
+    for Traffic<S, A, R, P, O>
+{
+    fn regions(&self) -> &Regions<S, R, P> {
+        self.orders.ecm()
+    }
+
+    #[inline(never)]
+    fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
+        self.orders.fill(fleet)
+    }
+
+    #[inline(never)]
+    fn replace<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<(), Unchanged> {
+        self.orders.replace(fleet, agent, motion)
+    }
+
+    #[inline(never)]
+    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+        self.orders.erase(fleet, agent)
+    }
+
+    fn clear(&mut self) {
+        self.running = false;
+        self.orders.clear();
+    }
+
+    fn is_running(&self) -> bool {
+        self.running
+    }
+
+    #[inline(never)]
+    fn order(&mut self, fleet: &[Motion<'_, S>], terms: Terms<S>) -> Result<Edition, Refusal> {
+        let possible = |value: S, least: S| Scalar::is_finite(value) && value >= least && value <= S::LIMIT;
+        if terms.run == self.edition.run || !possible(terms.horizon, S::LEAST) || !possible(terms.width, S::ZERO) {
+            return Err(Refusal::Terms);
+        }
+        self.orders.as_planned(fleet)?;
+        let at = Interval::new(S::ZERO, S::ZERO);
+        (self.robots, self.terms) = ([Robot { at, path: 1 }; A], terms);
+        let (progress, tolerances) = (self.progress(), self.tolerances());
+        self.orders.check(fleet, &progress, tolerances, &mut [Reach::EMPTY; A])?;
+        (self.edition, self.running) = (Edition { run: terms.run, number: 1 }, true);
+        Ok(self.edition)
+    }
+
+    #[inline(never)]
+    fn report(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        agent: usize,
+        edition: Edition,
+        at: Interval<S>,
+        send: &mut impl FnMut(Answer<S>),
+    ) -> Result<Answer<S>, Refusal> {
+        let known = self.robot(agent)?.at;
+        if edition != self.edition {
+            return Err(Refusal::Edition(self.edition));
+        }
+        let end = fleet.get(agent).ok_or(Refusal::NoSuchAgent { agent: short(agent) })?.path().length();
+        // Neither does a number that is none pass.
+        if !(S::ZERO <= at.lo && at.lo <= at.hi && at.hi <= known.hi) {
+            return Err(Refusal::Beyond { agent: short(agent) });
+        }
+        let lo = Scalar::max(known.lo, at.lo);
+        let to = Scalar::max(known.hi, Scalar::min(lo + self.terms.horizon, end));
+        if let Some(robot) = self.robots.get_mut(agent) {
+            robot.at = Interval::new(lo, to);
+        }
+        let mut last = None;
+        for (_, region, pass) in self.orders.row(fleet, agent)? {
+            let other = region.other();
+            if pass == Pass::Second && last != Some(other) {
+                let at = self.robot(other)?.at.lo;
+                send(Answer::Place { agent: short(other), edition, at });
+                last = Some(other);
+            }
+        }
+        Ok(Answer::Go { agent: short(agent), edition, to })
+    }
+
+    #[inline(never)]
+    fn orders(
+        &self,
+        fleet: &[Motion<'_, S>],
+        agent: usize,
+        with: impl Fn(usize) -> Result<Agent<S>, Refusal>,
+        send: &mut impl FnMut(Answer<S>),
+    ) -> Result<Answer<S>, Refusal> {
+        let (path, edition) = (self.robot(agent)?.path, self.edition);
+        let partners = || Ok::<_, Refusal>(self.orders.row(fleet, agent)?.map(|(_, region, _)| region.other()));
+        let mut next = 0_usize;
+        for other in
+            partners()?.filter(|&other| other < agent).chain([agent]).chain(partners()?.filter(|&other| other > agent))
+        {
+            if other >= next {
+                send(Answer::Member { agent: short(other), edition, with: with(other)? });
+                next = other.saturating_add(1);
+            }
+        }
+        for (_, region, pass) in self.orders.row(fleet, agent)? {
+            send(Answer::Passing { other: short(region.other()), edition, pass, from: region.length().lo });
+        }
+        Ok(Answer::Orders { agent: short(agent), edition, path })
+    }
+
+    fn arrived(&self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Refusal> {
+        let at = self.robot(agent)?.at.lo;
+        let motion = fleet.get(agent).ok_or(Refusal::NoSuchAgent { agent: short(agent) })?;
+        if at < motion.path().length() { Err(Refusal::NotThere { agent: short(agent) }) } else { Ok(()) }
+    }
+
+    #[inline(never)]
+    fn admit<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        motion: Motion<'m, S>,
+    ) -> Result<Edition, Refusal> {
+        // Numbers of editions are not used twice.
+        let number = self.edition.number.checked_add(1).ok_or(Refusal::Terms)?;
+        let (mut progress, tolerances) = (self.progress(), self.tolerances());
+        let zero = Progress::at_rest(S::ZERO);
+        let mission = Mission { agent, motion, progress: zero };
+        self.orders.admit(fleet, &mut progress, mission, tolerances, &mut [Reach::EMPTY; A], |_| Pass::Second)?;
+        if let Some(robot) = self.robots.get_mut(agent) {
+            *robot = Robot { at: zero.at, path: number };
+        }
+        self.edition.number = number;
+        Ok(self.edition)
+    }
+}

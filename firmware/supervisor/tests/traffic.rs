@@ -1,0 +1,229 @@
+//! Orders are handed out once, go on as robots do, and whatever belongs to other orders is refused.
+
+use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Radians};
+use pcr_supervisor::message::{Edition, Refusal, Terms};
+use pcr_supervisor::{Agent, Answer, Briefing, Request, Robot, Service, Step, Traffic};
+use std::f32::consts::FRAC_PI_2;
+
+type Table = Traffic<f32, 3, 8, 12, 16>;
+type Supervisor = Service<f32, 3, 8, 8, 12, Table>;
+
+const STEPS: [Step<f32>; 1] = [Step { curve: Curve::Line, length: 4.0 }];
+const TERMS: Terms<f32> = Terms { run: 7, horizon: 2.0, width: 0.0 };
+const FIRST: Edition = Edition { run: 7, number: 1 };
+
+/// On a line of 4 m through the origin in its middle, or beside it.
+fn agent(heading: f32, aside: f32, start_time: f32) -> Agent<f32> {
+    let (sin, cos) = heading.sin_cos();
+    let position = Point::new(-2.0 * cos - aside * sin, -2.0 * sin + aside * cos);
+    let limits = Limits { speed: 1.0, acceleration: 1.0 };
+    let start = Pose { position, heading: Radians(heading) };
+    Agent { radius: 0.25, start_time, limits, start, path: STEPS.into_iter().collect() }
+}
+
+fn answers(service: &mut Supervisor, request: Request<f32>) -> Vec<Answer<f32>> {
+    let mut answers = Vec::new();
+    service.answer(request, 1, |answer| answers.push(answer));
+    answers
+}
+
+fn refused(refusal: Refusal) -> Vec<Answer<f32>> {
+    vec![Answer::Refused(refusal)]
+}
+
+/// One eastward, one northward 3 s later, one beside the first in the opposite direction.
+fn planned() -> Supervisor {
+    let mut service = Supervisor::with(Table::new(), &[]);
+    for agent in [agent(0.0, 0.0, 0.0), agent(FRAC_PI_2, 0.0, 3.0), agent(FRAC_PI_2 * 2.0, 1.0, 9.0)] {
+        assert!(matches!(answers(&mut service, Request::Add(agent))[..], [Answer::Fleet { .. }]));
+    }
+    assert_eq!(answers(&mut service, Request::Order(TERMS)), refused(Refusal::NotComputed));
+    assert!(matches!(answers(&mut service, Request::Compute)[..], [Answer::Computed { .. }]));
+    service
+}
+
+fn running() -> Supervisor {
+    let mut service = planned();
+    assert_eq!(answers(&mut service, Request::Order(TERMS)), [Answer::Edition(FIRST)]);
+    service
+}
+
+fn report(service: &mut Supervisor, agent: u16, edition: Edition, at: f32) -> Vec<Answer<f32>> {
+    answers(service, Request::Report { agent, edition, at: Interval::new(at, at) })
+}
+
+#[test]
+fn robots_get_their_orders_and_go_by_them() {
+    let mut service = running();
+    let told = answers(&mut service, Request::Orders { agent: 1 });
+    let members: Vec<_> = told
+        .iter()
+        .filter_map(|answer| if let Answer::Member { agent, .. } = answer { Some(*agent) } else { None })
+        .collect();
+    assert_eq!(members, [0, 1, 2]);
+    let passes: Vec<_> = told
+        .iter()
+        .filter_map(
+            |answer| if let Answer::Passing { other, pass, .. } = answer { Some((*other, *pass)) } else { None },
+        )
+        .collect();
+    assert_eq!(passes, [(0, Pass::Second), (2, Pass::First)]);
+    assert_eq!(told.last(), Some(&Answer::Orders { agent: 1, edition: FIRST, path: 1 }));
+
+    let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
+    told.iter().for_each(|answer| briefing.take(answer).expect("room"));
+    let fleet = briefing.motions().expect("motions");
+    let mut robot = Robot::<f32, 3, 4, 8>::new();
+    assert_eq!(robot.hold(&fleet), 0.0, "no orders yet");
+    assert_eq!(robot.brief(&briefing, &fleet, FIRST, 1, 0.0), Ok(true));
+    assert_eq!(robot.hold(&fleet), 0.0, "not sent anywhere yet");
+    for answer in report(&mut service, 1, FIRST, 0.0) {
+        robot.hear(&briefing, &answer);
+    }
+    assert!((robot.hold(&fleet) - 1.5).abs() < 1e-4, "{}", robot.hold(&fleet));
+    // The first is sent on as it goes, and what it has passed lets the second go on as far as it was sent.
+    for at in [0.0, 2.0, 2.75] {
+        assert_eq!(
+            report(&mut service, 0, FIRST, at),
+            [Answer::Go { agent: 0, edition: FIRST, to: f32::min(at + 2.0, 4.0) }]
+        );
+    }
+    let heard = report(&mut service, 1, FIRST, 1.0);
+    assert_eq!(heard[0], Answer::Place { agent: 0, edition: FIRST, at: 2.75 });
+    heard.iter().for_each(|answer| robot.hear(&briefing, answer));
+    assert_eq!(robot.hold(&fleet), 3.0);
+    // Late, repeated, of other orders, for another robot.
+    let other = Edition { number: 2, ..FIRST };
+    for late in [
+        Answer::Go { agent: 1, edition: FIRST, to: 2.0 },
+        Answer::Go { agent: 1, edition: other, to: 4.0 },
+        Answer::Go { agent: 0, edition: FIRST, to: 4.0 },
+        Answer::Place { agent: 0, edition: FIRST, at: 0.0 },
+    ] {
+        robot.hear(&briefing, &late);
+        assert_eq!(robot.hold(&fleet), 3.0, "{late:?}");
+    }
+}
+
+#[test]
+fn what_a_robot_was_not_told_of_is_no_order() {
+    let mut service = running();
+    let told = answers(&mut service, Request::Orders { agent: 1 });
+    let fleet_of = |told: &[Answer<f32>]| {
+        let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
+        told.iter().for_each(|answer| briefing.take(answer).expect("room"));
+        briefing
+    };
+    let brief = |told: &[Answer<f32>]| {
+        let briefing = fleet_of(told);
+        let fleet = briefing.motions().expect("motions");
+        let mut robot = Robot::<f32, 3, 4, 8>::new();
+        let briefed = robot.brief(&briefing, &fleet, FIRST, 1, 0.0).is_ok();
+        robot.hear(&briefing, &Answer::Go { agent: 1, edition: FIRST, to: 4.0 });
+        (briefed, robot.hold(&fleet) > 0.0)
+    };
+    assert_eq!(brief(&told), (true, true));
+    for missing in 0..told.len() - 1 {
+        let mut less = told.clone();
+        less.remove(missing);
+        assert_eq!(brief(&less), (false, false), "without {:?}", told[missing]);
+    }
+    let mut twice = told.clone();
+    twice.insert(3, told[3].clone());
+    assert_eq!(brief(&twice), (false, false));
+    // Orders that have changed while they were sent.
+    let mut mixed = Briefing::<f32, 3, 4, 4>::new(1);
+    for (place, answer) in told.iter().enumerate() {
+        let mut answer = answer.clone();
+        if let (4, Answer::Passing { edition, .. }) = (place, &mut answer) {
+            edition.number += 1;
+        }
+        assert_eq!(mixed.take(&answer).is_err(), place == 4, "{answer:?}");
+    }
+    let mut small = Briefing::<f32, 2, 4, 1>::new(1);
+    assert!(told.iter().any(|answer| small.take(answer).is_err()), "what does not fit is told");
+}
+
+#[test]
+fn rights_are_given_once_and_the_fleet_stays_while_robots_go() {
+    let mut service = planned();
+    let bad = [Terms { run: 0, ..TERMS }, Terms { horizon: 0.0, ..TERMS }, Terms { width: f32::NAN, ..TERMS }];
+    for terms in bad {
+        assert_eq!(answers(&mut service, Request::Order(terms)), refused(Refusal::Terms));
+    }
+    assert_eq!(report(&mut service, 0, FIRST, 0.0), refused(Refusal::NotRunning));
+    assert_eq!(answers(&mut service, Request::Orders { agent: 0 }), refused(Refusal::NotRunning));
+    let mut service = running();
+    for change in [
+        Request::Order(Terms { run: 8, ..TERMS }),
+        Request::Add(agent(0.0, 0.0, 0.0)),
+        Request::Load,
+        Request::Replan { agent: 0 },
+        Request::Remove { agent: 0 },
+        Request::Replace { agent: 0, with: agent(0.0, 0.0, 0.0) },
+    ] {
+        assert_eq!(answers(&mut service, change.clone()), refused(Refusal::Running), "{change:?}");
+    }
+    assert!(matches!(answers(&mut service, Request::Compute)[..], [Answer::Computed { .. }]));
+    assert_eq!(report(&mut service, 3, FIRST, 0.0), refused(Refusal::NoSuchAgent { agent: 3 }));
+    let old = Edition { run: 6, number: 1 };
+    assert_eq!(report(&mut service, 0, old, 0.0), refused(Refusal::Edition(FIRST)));
+    for at in [-1.0, f32::NAN, 0.5] {
+        assert_eq!(report(&mut service, 0, FIRST, at), refused(Refusal::Beyond { agent: 0 }), "{at}: not sent there");
+    }
+    assert_eq!(answers(&mut service, Request::Clear), [Answer::Done]);
+    assert_eq!(report(&mut service, 0, FIRST, 0.0), refused(Refusal::NotRunning));
+    for agent in [agent(0.0, 0.0, 0.0), agent(FRAC_PI_2, 0.0, 3.0)] {
+        answers(&mut service, Request::Add(agent));
+    }
+    answers(&mut service, Request::Compute);
+    assert_eq!(answers(&mut service, Request::Order(TERMS)), refused(Refusal::Terms), "the number of the last run");
+    assert!(matches!(answers(&mut service, Request::Order(Terms { run: 8, ..TERMS }))[..], [Answer::Edition(_)]));
+    let mut meeting = Supervisor::with(Table::new(), &[]);
+    for agent in [agent(0.0, 0.0, 0.0), agent(FRAC_PI_2, 0.0, 0.0)] {
+        answers(&mut meeting, Request::Add(agent));
+    }
+    answers(&mut meeting, Request::Compute);
+    assert_eq!(answers(&mut meeting, Request::Order(TERMS)), refused(Refusal::Meeting([0, 1])));
+    assert_eq!(report(&mut meeting, 0, FIRST, 0.0), refused(Refusal::NotRunning));
+}
+
+#[test]
+fn a_new_path_begins_where_the_old_one_ends_and_yields_to_whoever_may_be_on_the_way() {
+    let mut service = running();
+    let admit = |heading| Request::Admit {
+        agent: 0,
+        heading: Radians(heading),
+        limits: Limits { speed: 1.0, acceleration: 1.0 },
+        path: STEPS.into_iter().collect(),
+    };
+    assert_eq!(answers(&mut service, admit(0.0)), refused(Refusal::NotThere { agent: 0 }));
+    for at in [0.0, 2.0, 4.0] {
+        report(&mut service, 0, FIRST, at);
+    }
+    let second = Edition { number: 2, ..FIRST };
+    assert_eq!(answers(&mut service, admit(0.0)), [Answer::Edition(second)]);
+    assert_eq!(report(&mut service, 1, FIRST, 0.0), refused(Refusal::Edition(second)));
+    let told = answers(&mut service, Request::Orders { agent: 0 });
+    let [Answer::Member { with: own, .. }, Answer::Orders { edition, path: 2, .. }] = &told[..] else {
+        panic!("{told:?}")
+    };
+    assert!(own.start.position == Point::new(2.0, 0.0) && *edition == second);
+    assert_eq!(report(&mut service, 0, second, 0.5), refused(Refusal::Beyond { agent: 0 }), "not sent anywhere");
+    // Back over the crossing: the other one was sent 2 m far, into the crossing, and keeps its right.
+    for at in [0.0, 2.0, 4.0] {
+        report(&mut service, 0, second, at);
+    }
+    report(&mut service, 1, second, 0.0);
+    let Agent { path, .. } = agent(0.0, 0.0, 0.0);
+    let back = Request::Admit {
+        agent: 0,
+        heading: Radians(FRAC_PI_2 * 2.0),
+        limits: Limits { speed: 1.0, acceleration: 1.0 },
+        path: path.iter().chain(&path).copied().collect(),
+    };
+    assert_eq!(answers(&mut service, back), [Answer::Edition(Edition { number: 3, ..FIRST })]);
+    let told = answers(&mut service, Request::Orders { agent: 0 });
+    let passing = |answer: &&Answer<f32>| matches!(answer, Answer::Passing { other: 1, pass: Pass::Second, .. });
+    assert_eq!(told.iter().filter(passing).count(), 1, "{told:?}");
+}

@@ -1,0 +1,49 @@
+//! The regions of two agents alone, without a table.
+
+use crate::error::Full;
+use crate::motion::Motion;
+use crate::pair::Pair;
+use crate::pieces::{List, Piece, Pieces};
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+/// Tells `found` the regions of two agents, as the first one sees them, with numbers 0 and 1: those that a table of the two
+/// holds. Nothing is kept, and `storage`, which is any memory for as many pieces as they have, is overwritten.
+///
+/// For solvers and for tables of millions of pairs: what [`Ecm`](crate::Ecm) knows of its fleet need not be made for each.
+///
+/// Cost: that of the pair in a table.
+///
+/// ```
+/// use pcr_core::{Motion, Path, Piece, Point, Pose, Profile, Radians, overlaps};
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
+/// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+/// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
+/// let (east, north) = (motion(paths[0].as_path())?, motion(paths[1].as_path())?);
+///
+/// let (mut storage, mut delays) = ([Piece::EMPTY; 4], None);
+/// overlaps(&east, &north, &mut storage, |region| delays = Some(region.forbidden_delays()))?;
+/// assert!((delays.unwrap().hi - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Full::Pieces`] where the storage is too small, [`Full::Pair`] where none is large enough; then nothing was told.
+pub fn overlaps<S: Scalar>(
+    first: &Motion<'_, S>,
+    second: &Motion<'_, S>,
+    storage: &mut [Piece<S>],
+    mut found: impl FnMut(&RegionRef<'_, S>),
+) -> Result<(), Full> {
+    if !first.swept().meets(second.swept()) {
+        return Ok(());
+    }
+    let (pair, mut pieces) = (Pair::new(first, second), Pieces::new(storage));
+    pair.find(&mut pieces).map_err(|full| if pieces.pair_is_full() { Full::Pair([0, 1]) } else { full })?;
+    while let Some(head) = pieces.take_region() {
+        found(&RegionRef::new(pair, List::new(pieces.slots(), head), [0, 1], false));
+    }
+    Ok(())
+}

@@ -1,0 +1,64 @@
+//! What speed planning answers.
+
+use crate::error::Invalid;
+use crate::profile::Profile;
+use crate::scalar::Scalar;
+
+/// A speed profile and the time at which it begins.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SpeedPlan<S: Scalar, const N: usize> {
+    /// When the agent sets off \[s\].
+    pub start: S,
+    /// How it moves then.
+    pub profile: Profile<S, N>,
+}
+
+impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
+    /// When the agent arrives \[s\].
+    pub fn end(&self) -> S {
+        self.start + self.profile.as_profile().duration()
+    }
+}
+
+/// Why there is no speed plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum NoSpeedPlan<S> {
+    /// This agent is met while the ego stands at its start, before it may set off; or as it sets off, if it is in motion.
+    AtStart(usize),
+    /// The goal is never free for good because of this agent.
+    AtGoal(usize),
+    /// No motion leads further than about this length \[m\], because of this agent.
+    Beyond {
+        /// Length along the path \[m\].
+        length: S,
+        /// Index of the other agent in the fleet.
+        other: usize,
+    },
+    /// The drive is not valid, the speeds at the ends are too far apart for the path, there are too few stations, the
+    /// profile has too few phases, or it takes longer than the format can tell.
+    Invalid(Invalid),
+}
+
+impl<S> From<Invalid> for NoSpeedPlan<S> {
+    fn from(invalid: Invalid) -> Self {
+        Self::Invalid(invalid)
+    }
+}
+
+// The length is not told: what writes floating point can panic, for all that a linker knows.
+impl<S> core::fmt::Display for NoSpeedPlan<S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::AtStart(other) => write!(f, "agent {other} of the fleet is met at the start"),
+            Self::AtGoal(other) => write!(f, "agent {other} of the fleet blocks the goal for good"),
+            Self::Beyond { other, .. } => write!(f, "agent {other} of the fleet blocks the way on"),
+            Self::Invalid(invalid) => write!(f, "{invalid}"),
+        }
+    }
+}
+
+impl<S: core::fmt::Debug> core::error::Error for NoSpeedPlan<S> {}

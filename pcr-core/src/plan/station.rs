@@ -1,0 +1,50 @@
+//! What a speed plan remembers of each place along the path.
+
+use crate::plan::lattice::LEVELS;
+use crate::plan::times::Times;
+use crate::scalar::Scalar;
+
+/// A border of two cells of the path, or one of its ends: a place of the storage of [`plan_speed`](crate::plan_speed).
+#[derive(Clone, Debug)]
+pub struct Station<S> {
+    /// Length along the path \[m\].
+    pub(super) length: S,
+    /// When the agent can be here with each speed \[s\].
+    pub(super) reached: [Times<S>; LEVELS],
+    /// Place of the speed that was chosen.
+    pub(super) level: usize,
+    /// When the agent goes on from here \[s\].
+    pub(super) leaves: S,
+}
+
+#[cfg(feature = "defmt")]
+impl<S: Scalar + defmt::Format> defmt::Format for Station<S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "station at {} m, left at {} s", self.length, self.leaves);
+    }
+}
+
+impl<S: Scalar> Station<S> {
+    /// A free place.
+    pub const EMPTY: Self =
+        Self { length: S::ZERO, reached: [const { Times::NONE }; LEVELS], level: 0, leaves: S::ZERO };
+
+    /// The times at a speed. At the ends of the path there is one speed only, in any place.
+    pub(super) fn reached(&self, level: usize) -> Option<&Times<S>> {
+        self.reached.get(level).or(self.reached.first())
+    }
+
+    pub(super) fn reached_mut(&mut self, level: usize) -> Option<&mut Times<S>> {
+        if level < LEVELS { self.reached.get_mut(level) } else { self.reached.first_mut() }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.reached.iter_mut().for_each(Times::clear);
+    }
+}
+
+impl<S: Scalar> Default for Station<S> {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}

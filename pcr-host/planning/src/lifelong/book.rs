@@ -1,0 +1,263 @@
+//! Who passes whom first: the regions of the ways of a fleet, found by robot.
+//!
+//! A region is a set of pairs of atoms of two ways at which the robots touch and that hang together. Whoever is second at
+//! it waits at its gates.
+
+use super::gates::{Gate, hold, pruned};
+use super::robot::Robot;
+use super::site::Site;
+use super::way::Way;
+use pcr_core::Interval;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// A region of two ways, and who goes first.
+#[derive(Clone, Debug)]
+pub(super) struct Region {
+    pub(super) robots: [usize; 2],
+    /// Lengths of each of the two ways in it \[m\].
+    pub(super) hull: [Interval<f64>; 2],
+    /// Of each of them as the second.
+    gates: [Rc<[Gate]>; 2],
+    /// Which of the two goes first.
+    pub(super) first: usize,
+}
+
+impl Region {
+    /// The gates of whoever is second.
+    pub(super) fn gates(&self) -> &[Gate] {
+        &self.gates[1 - self.first]
+    }
+
+    /// The gates of one of the two as the second.
+    pub(super) fn gates_of(&self, second: usize) -> &[Gate] {
+        &self.gates[second]
+    }
+
+    /// Who is second.
+    pub(super) fn second(&self) -> usize {
+        self.robots[1 - self.first]
+    }
+
+    /// Whether one of the two has left it behind.
+    pub(super) fn is_over(&self, at: [f64; 2]) -> bool {
+        at[0] > self.hull[0].hi || at[1] > self.hull[1].hi
+    }
+
+    /// Whether this one of the two can go first: the other one can stop before what it has still to pass, and either the first leaves, or
+    /// the other one need not go further.
+    pub(super) fn can_be_first(&self, first: usize, at: [f64; 2], stop: [f64; 2], lengths: [f64; 2]) -> bool {
+        let second = 1 - first;
+        let gates = &self.gates[second];
+        let leaves = gates.last().is_none_or(|last| last.needs <= lengths[first] || last.at >= lengths[second]);
+        leaves && stop[second] <= hold(gates, at[first])
+    }
+}
+
+/// A pair of atoms of two ways, by their places on them.
+struct Tie {
+    places: [usize; 2],
+    hull: [Interval<f64>; 2],
+    gates: [Vec<Gate>; 2],
+    group: usize,
+}
+
+/// The regions of a fleet.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Book {
+    regions: Vec<Option<Region>>,
+    free: Vec<usize>,
+    /// Those of each robot.
+    rows: Vec<Vec<usize>>,
+    /// Who has an atom on its way, and as which of it.
+    on: Vec<Vec<(usize, usize)>>,
+}
+
+impl Book {
+    /// Of robots that stand at nodes apart.
+    pub(super) fn new(site: &Site, robots: &[Robot]) -> Self {
+        let (rows, on) = (vec![Vec::new(); robots.len()], vec![Vec::new(); site.atoms.len()]);
+        let mut book = Self { rows, on, ..Self::default() };
+        for (robot, it) in robots.iter().enumerate() {
+            book.occupy(robot, &it.way);
+        }
+        book
+    }
+
+    /// The regions of a robot.
+    pub(super) fn row(&self, robot: usize) -> impl Iterator<Item = &Region> {
+        self.rows[robot].iter().filter_map(|&place| self.regions[place].as_ref())
+    }
+
+    /// How far a robot may go.
+    pub(super) fn hold(&self, robot: usize, robots: &[Robot], far: f64) -> f64 {
+        let mut least = far;
+        for region in self.row(robot).filter(|region| region.second() == robot) {
+            if region.hull[1 - region.first].lo < least {
+                least = least.min(hold(region.gates(), robots[region.robots[region.first]].at));
+            }
+        }
+        least
+    }
+
+    /// Drops the regions that a robot, or the other one, has left behind.
+    pub(super) fn drop_over(&mut self, robot: usize, robots: &[Robot]) {
+        let over = |place: &usize| {
+            let region = self.regions[*place].as_ref();
+            region.is_some_and(|region| region.is_over(region.robots.map(|robot| robots[robot].at)))
+        };
+        let gone: Vec<usize> = self.rows[robot].iter().copied().filter(over).collect();
+        gone.into_iter().for_each(|place| self.remove(place));
+    }
+
+    fn remove(&mut self, place: usize) {
+        if let Some(region) = self.regions[place].take() {
+            for robot in region.robots {
+                self.rows[robot].retain(|&other| other != place);
+            }
+            self.free.push(place);
+        }
+    }
+
+    /// Gives a robot another way, with these regions of it.
+    pub(super) fn exchange(&mut self, robot: usize, old: &Way, new: &Way, regions: Vec<Region>) {
+        for place in std::mem::take(&mut self.rows[robot]) {
+            self.remove(place);
+        }
+        for atom in &old.atoms {
+            self.on[*atom].retain(|(other, _)| *other != robot);
+        }
+        self.occupy(robot, new);
+        for region in regions {
+            let place = self.free.pop().unwrap_or(self.regions.len());
+            if place == self.regions.len() {
+                self.regions.push(None);
+            }
+            region.robots.iter().for_each(|&robot| self.rows[robot].push(place));
+            self.regions[place] = Some(region);
+        }
+    }
+
+    fn occupy(&mut self, robot: usize, way: &Way) {
+        for (place, &atom) in way.atoms.iter().enumerate() {
+            self.on[atom].push((robot, place));
+        }
+    }
+
+    /// Who else has an atom on the rest of its way.
+    pub(super) fn others_on<'s>(
+        &'s self,
+        atom: usize,
+        robot: usize,
+        robots: &'s [Robot],
+    ) -> impl Iterator<Item = (usize, usize)> + 's {
+        let there = self.on[atom].iter().copied();
+        there.filter(move |&(other, place)| other != robot && robots[other].way.offsets[place + 1] >= robots[other].at)
+    }
+
+    /// The regions of a way of a robot that is at `at` on it; it is first in none.
+    pub(super) fn regions(&self, site: &Site, robots: &[Robot], robot: usize, way: &Way, at: f64) -> Vec<Region> {
+        let mut ties: HashMap<usize, Vec<Tie>> = HashMap::new();
+        for (place, &atom) in way.atoms.iter().enumerate() {
+            for (near, contact) in site.contacts(atom) {
+                for (other, their) in self.others_on(near, robot, robots) {
+                    let ways = [way, &robots[other].way];
+                    let places = [place, their];
+                    let offset = |side: usize| ways[side].offsets[places[side]];
+                    let shifted = |side: usize| {
+                        let hull = contact.hull[side];
+                        Interval::new(hull.lo + offset(side), hull.hi + offset(side))
+                    };
+                    let hull = [shifted(0), shifted(1)];
+                    if hull[0].hi < at || hull[1].hi < robots[other].at {
+                        continue;
+                    }
+                    let gates = [0, 1].map(|side| {
+                        let gates = contact.gates[side].iter();
+                        let global = gates.map(|gate| Gate {
+                            at: held(gate.at, offset(side), places[side]),
+                            needs: needed(gate.needs, ways[1 - side], places[1 - side]),
+                        });
+                        global.collect()
+                    });
+                    ties.entry(other).or_default().push(Tie { places, hull, gates, group: 0 });
+                }
+            }
+        }
+        let mut others: Vec<usize> = ties.keys().copied().collect();
+        others.sort_unstable();
+        others.into_iter().flat_map(|other| joined(ties.remove(&other).unwrap_or_default(), [robot, other])).collect()
+    }
+}
+
+/// A hold at the beginning of an atom is one before it; before the first there is nothing.
+fn held(at: f64, offset: f64, place: usize) -> f64 {
+    /// So far before \[m\].
+    const BEFORE: f64 = 1e-6;
+    match (at > f64::NEG_INFINITY, place) {
+        (true, _) => at + offset,
+        (false, 0) => f64::NEG_INFINITY,
+        (false, _) => offset - BEFORE,
+    }
+}
+
+/// Whoever never leaves on an atom has left at its end, if it goes on there.
+fn needed(needs: f64, way: &Way, place: usize) -> f64 {
+    match needs < f64::INFINITY {
+        true => needs + way.offsets[place],
+        false if place + 1 < way.atoms.len() => way.offsets[place + 1],
+        false => f64::INFINITY,
+    }
+}
+
+/// The regions that ties of two robots make: those of atoms that follow one another belong together where they meet.
+fn joined(mut ties: Vec<Tie>, robots: [usize; 2]) -> Vec<Region> {
+    /// Lengths as near are the same \[m\].
+    const NEAR: f64 = 1e-5;
+    let places: HashMap<[usize; 2], usize> = ties.iter().enumerate().map(|(k, tie)| (tie.places, k)).collect();
+    let mut parents: Vec<usize> = (0..ties.len()).collect();
+    fn root(parents: &mut [usize], mut k: usize) -> usize {
+        while parents[k] != k {
+            parents[k] = parents[parents[k]];
+            k = parents[k];
+        }
+        k
+    }
+    for k in 0..ties.len() {
+        for side in 0..2 {
+            let mut next = ties[k].places;
+            next[side] += 1;
+            let Some(&next) = places.get(&next) else { continue };
+            let across = 1 - side;
+            let [a, b] = [ties[k].hull, ties[next].hull];
+            if a[side].hi + NEAR >= b[side].lo && a[across].widened(NEAR).meets(b[across]) {
+                let (a, b) = (root(&mut parents, k), root(&mut parents, next));
+                parents[a] = b;
+            }
+        }
+    }
+    for k in 0..ties.len() {
+        ties[k].group = root(&mut parents, k);
+    }
+    ties.sort_by_key(|tie| tie.group);
+    let groups = ties.chunk_by(|a, b| a.group == b.group);
+    let region = |group: &[Tie]| {
+        let hull = [0, 1].map(|side| group.iter().map(|tie| tie.hull[side]).reduce(Interval::hull).unwrap_or_default());
+        let gates = [0, 1].map(|side| {
+            let all = group.iter().flat_map(|tie| tie.gates[side].iter().copied()).collect();
+            Rc::from(pruned(all))
+        });
+        Region { robots, hull, gates, first: 1 }
+    };
+    groups.map(region).collect()
+}
+
+trait Widened {
+    fn widened(self, by: f64) -> Self;
+}
+
+impl Widened for Interval<f64> {
+    fn widened(self, by: f64) -> Self {
+        Interval::new(self.lo - by, self.hi + by)
+    }
+}

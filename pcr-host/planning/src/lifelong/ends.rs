@@ -1,0 +1,171 @@
+//! Where robots may stand for good on a layout without cutting others off, and what makes a layout hard.
+
+use super::site::Site;
+use crate::random::Random;
+use pcr_formats::import::{Id, Layout};
+use serde::Serialize;
+
+/// How often safe ends are looked for, from another order of nodes.
+const DRAWS: usize = 40;
+
+/// Up to so many nodes any node may be a safe end; beyond only dead ends are looked at.
+const SMALL: usize = 400;
+
+/// Where missions can be carried out without end, and what stands against it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct WellFormedness {
+    /// Nodes of the level that has most.
+    pub nodes: usize,
+    /// Nodes from which not all others can be reached, or that cannot be reached from all others: no missions go there.
+    pub cut_off: Vec<Id>,
+    /// Safe ends: robots may stand at all of them for good, and all other nodes, and each of them, can be reached from one another.
+    /// Up to as many robots, no mission is refused for ever, and idle robots wait there.
+    pub safe_ends: Vec<Id>,
+    /// Nodes where a single robot that stands for good already cuts others off.
+    pub never_ends: Vec<Id>,
+    /// Edges for both directions without which the layout falls apart: robots that meet there wait for each other for ever unless one has
+    /// waited before.
+    pub bridges: Vec<Id>,
+    /// Whether the safe ends are the most that were found of all nodes, or dead ends only, in a large layout.
+    pub dead_ends_only: bool,
+}
+
+/// The nodes that missions can go to, and the safe ends among them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ends {
+    /// Nodes that can all be reached from one another.
+    pub(super) nodes: Vec<usize>,
+    pub(super) safe: Vec<usize>,
+}
+
+impl Ends {
+    pub(super) fn of(site: &Site, seed: u64) -> Self {
+        let nodes = strongest(site);
+        let safe = if nodes.len() <= SMALL { drawn(site, &nodes, seed) } else { dead_ends(site, &nodes) };
+        Self { nodes, safe }
+    }
+
+    /// What is told of them.
+    pub(super) fn report(&self, site: &Site, layout: &Layout) -> WellFormedness {
+        let ids = |nodes: Vec<usize>| nodes.into_iter().map(|node| layout.nodes[node].id.clone()).collect();
+        let other = |node: &usize| !self.nodes.contains(node);
+        let never = |node: &usize| !is_open(site, &self.nodes, &[*node]);
+        let mut safe = self.safe.clone();
+        safe.sort_unstable();
+        WellFormedness {
+            nodes: site.nodes.len(),
+            cut_off: ids(site.nodes.iter().copied().filter(other).collect()),
+            safe_ends: ids(safe),
+            never_ends: ids(self.nodes.iter().copied().filter(never).collect()),
+            bridges: bridges(site, &self.nodes).into_iter().map(|edge| layout.edges[edge].id.clone()).collect(),
+            dead_ends_only: self.nodes.len() > SMALL,
+        }
+    }
+}
+
+/// The largest set of nodes that can all be reached from one another.
+fn strongest(site: &Site) -> Vec<usize> {
+    let mut left: Vec<bool> = vec![true; site.points.len()];
+    let mut best: Vec<usize> = Vec::new();
+    for &node in &site.nodes {
+        if left[node] {
+            let both = [false, true].map(|back| reached(site, node, back, |_| true));
+            let mutual: Vec<usize> = site.nodes.iter().copied().filter(|&k| both[0][k] && both[1][k]).collect();
+            mutual.iter().for_each(|&k| left[k] = false);
+            if mutual.len() > best.len() {
+                best = mutual;
+            }
+        }
+    }
+    best
+}
+
+/// The largest set that is found from some orders of nodes, dead ends first.
+fn drawn(site: &Site, nodes: &[usize], seed: u64) -> Vec<usize> {
+    let mut random = Random(seed);
+    let mut best = Vec::new();
+    for _ in 0..DRAWS {
+        let mut candidates = random.shuffled(nodes);
+        candidates.sort_by_key(|&node| site.leaving[node].len() > 1);
+        let mut ends: Vec<usize> = Vec::new();
+        for node in candidates {
+            if ends.iter().all(|&end| !site.collide(end, node)) {
+                ends.push(node);
+                if !is_open(site, nodes, &ends) {
+                    ends.pop();
+                }
+            }
+        }
+        if ends.len() > best.len() {
+            best = ends;
+        }
+    }
+    best
+}
+
+/// Dead ends where a robot touches nobody on any other edge: nothing else leads past them.
+fn dead_ends(site: &Site, nodes: &[usize]) -> Vec<usize> {
+    let mut ends: Vec<usize> = Vec::new();
+    let mut taken = vec![false; site.atoms.len()];
+    for &node in nodes {
+        let own = |&atom: &usize| site.atoms[atom].ends.contains(&node);
+        let covers = site.covers(node);
+        if site.leaving[node].len() == 1 && covers.iter().all(own) && !taken[site.standing(node)] {
+            covers.iter().for_each(|&atom| taken[atom] = true);
+            ends.push(node);
+        }
+    }
+    ends
+}
+
+/// Whether all nodes that robots at `ends` leave free can be reached from one another, and each of the ends with its own
+/// robot away. Nodes that they cover otherwise are lost: there must be none.
+fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
+    let free = |node: usize| ends.iter().all(|&end| !site.collide(end, node));
+    let Some(&hub) = nodes.iter().find(|&&node| free(node)) else { return false };
+    let mut blocked = vec![0_u16; site.atoms.len()];
+    ends.iter().for_each(|&end| site.covers(end).iter().for_each(|&atom| blocked[atom] += 1));
+    let both = [false, true].map(|back| reached(site, hub, back, |atom| blocked[atom] == 0));
+    nodes.iter().all(|&node| if free(node) { both.iter().all(|reached| reached[node]) } else { ends.contains(&node) })
+        && ends.iter().all(|&end| {
+            let covers = site.covers(end);
+            let open = |atom: usize| blocked[atom] == 0 || (blocked[atom] == 1 && covers.contains(&atom));
+            // Whoever leaves it comes to a node that can be reached anyway, and likewise the other way.
+            let out = |atom: &usize| open(*atom) && both[1][site.atoms[*atom].ends[1]];
+            let leaves = site.leaving[end].iter().any(out);
+            let comes =
+                |atom: &usize| site.atoms[*atom].ends[1] == end && open(*atom) && both[0][site.atoms[*atom].ends[0]];
+            leaves && covers.iter().any(comes)
+        })
+}
+
+/// Two-way edges without which not all nodes can be reached from one another.
+fn bridges(site: &Site, nodes: &[usize]) -> Vec<usize> {
+    let Some(&hub) = nodes.first() else { return Vec::new() };
+    let two_way =
+        site.atoms.iter().enumerate().filter(|(place, _)| site.back[*place].is_some_and(|back| back > *place));
+    let cuts = |edge: usize| {
+        [false, true].into_iter().any(|back| {
+            let found = reached(site, hub, back, |atom| site.atoms[atom].edge != Some(edge));
+            nodes.iter().any(|&node| !found[node])
+        })
+    };
+    two_way.filter_map(|(_, atom)| atom.edge).filter(|&edge| cuts(edge)).collect()
+}
+
+/// The nodes that can be reached from one, or from which it can be, over these atoms.
+fn reached(site: &Site, from: usize, back: bool, open: impl Fn(usize) -> bool) -> Vec<bool> {
+    let mut found = vec![false; site.points.len()];
+    found[from] = true;
+    let mut left = vec![from];
+    while let Some(node) = left.pop() {
+        let next = if back { &site.coming[node] } else { &site.leaving[node] };
+        for &atom in next.iter().filter(|&&atom| open(atom)) {
+            let other = site.atoms[atom].ends[usize::from(!back)];
+            if !std::mem::replace(&mut found[other], true) {
+                left.push(other);
+            }
+        }
+    }
+    found
+}

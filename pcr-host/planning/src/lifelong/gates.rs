@@ -1,0 +1,88 @@
+//! Holds as a list: where the second of two has to wait, and for what. Holds are taken at some lengths of the first and
+//! rounded down in between, so that they are never too high; what is kept is what is checked.
+
+use crate::fleet::build_ecm;
+use pcr_core::{Hold, Interval, Motion, RegionRef};
+
+/// The second waits at `at` \[m\] until the first is at `needs` \[m\] of its path or beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gate {
+    pub(super) at: f64,
+    pub(super) needs: f64,
+}
+
+/// Beyond the last touch a region is left \[m\].
+const LEFT: f64 = 1e-6;
+
+/// How two pieces of paths touch.
+#[derive(Clone, Debug)]
+pub(super) struct Contact {
+    /// Lengths of each of them at which they may touch \[m\].
+    pub(super) hull: [Interval<f64>; 2],
+    /// Gates of each of them as the second one. It is held at its beginning: minus infinity; the first one never leaves on
+    /// this piece: infinity.
+    pub(super) gates: [Vec<Gate>; 2],
+}
+
+impl Contact {
+    /// Of two motions at 1 m/s, with holds that follow the first one in steps of `pitch` \[m\]; none if they never touch.
+    pub(super) fn of(motions: [Motion<'_, f64>; 2], pitch: f64) -> Option<Self> {
+        // Two pieces of a layout have a few segments each.
+        let ecm = build_ecm(&motions).expect("two short paths");
+        let own: Vec<RegionRef<'_, f64>> = ecm.pair(&motions, 0, 1).expect("the table of the two").collect();
+        let their: Vec<RegionRef<'_, f64>> = own.iter().cloned().map(RegionRef::swapped).collect();
+        let hull = [&own, &their].map(|regions| regions.iter().map(|region| region.length()).reduce(Interval::hull));
+        let [Some(first), Some(second)] = hull else { return None };
+        Some(Self { hull: [first, second], gates: [gates(&own, pitch), gates(&their, pitch)] })
+    }
+}
+
+/// The gates of the ego of some regions with one other, as the second.
+fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
+    let Some(extent) = regions.iter().map(|region| region.other_length()).reduce(Interval::hull) else {
+        return Vec::new();
+    };
+    let end = regions.first().map_or(0.0, |region| region.other_motion().path().length());
+    let hold = |other: f64| {
+        let holds = regions.iter().map(|region| match region.hold(0.0, other) {
+            Hold::Free => f64::INFINITY,
+            Hold::At(hold) => hold,
+            Hold::Inside => f64::NEG_INFINITY,
+        });
+        holds.fold(f64::INFINITY, f64::min)
+    };
+    let mut gates = Vec::new();
+    let mut at = hold(0.0);
+    let steps = ((extent.hi - extent.lo) / pitch).ceil().max(1.0) as u32;
+    for k in 1..steps {
+        let other = extent.lo + (extent.hi - extent.lo) * f64::from(k) / f64::from(steps);
+        let next = hold(other);
+        if next > at + 0.5 * LEFT {
+            gates.push(Gate { at, needs: other });
+            at = next;
+        }
+    }
+    if at < f64::INFINITY {
+        let exit = extent.hi + LEFT;
+        gates.push(Gate { at, needs: if exit < end { exit } else { f64::INFINITY } });
+    }
+    gates
+}
+
+/// Those that matter: a gate counts if it needs more than all before it.
+pub(super) fn pruned(mut gates: Vec<Gate>) -> Vec<Gate> {
+    gates.sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(b.needs.total_cmp(&a.needs)));
+    let mut most = f64::NEG_INFINITY;
+    gates.retain(|gate| {
+        let counts = gate.needs > most;
+        most = most.max(gate.needs);
+        counts
+    });
+    gates
+}
+
+/// How far the second may go when the first is at `first` \[m\].
+pub(super) fn hold(gates: &[Gate], first: f64) -> f64 {
+    let next = gates.partition_point(|gate| gate.needs <= first);
+    gates.get(next).map_or(f64::INFINITY, |gate| gate.at)
+}

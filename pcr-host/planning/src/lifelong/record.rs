@@ -1,0 +1,179 @@
+//! What robots have done, as motions for the independent checker: no contact at any time of a run, or it is found.
+
+use super::robot::{Phase, Robot};
+use super::site::Site;
+
+use pcr_certify::data::{self, Agent, Angle, Segment, Travel};
+use pcr_certify::motion::{Mover, meetings};
+use pcr_formats::scenario::{PathSegment, Placed};
+use serde::Serialize;
+
+/// What the checker has found in all windows of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Certificate {
+    /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell, or not checked.
+    pub verdict: &'static str,
+    /// Windows of time, one after the other.
+    pub windows: usize,
+    /// Intervals of time that were looked at.
+    pub steps: usize,
+    /// Pairs of robots with a contact, in all windows.
+    pub contacts: usize,
+    /// Those for which it was not decided.
+    pub undecided: usize,
+    /// Why there is no verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+impl Certificate {
+    /// Nothing is checked yet.
+    pub(super) fn new() -> Self {
+        Self { verdict: "undecided", ..Self::default() }
+    }
+
+    /// Checks what robots of this radius \[m\] have done since the last window, which began at these places.
+    pub(super) fn window(&mut self, site: &Site, robots: &mut [Robot], window: &mut Window, radius: f64, end: f64) {
+        let begin = window.begin;
+        let movers: Result<Vec<Mover>, String> = robots
+            .iter_mut()
+            .zip(&mut window.places)
+            .enumerate()
+            .map(|(id, (robot, place))| {
+                let (phases, trail, since) = robot.report(place.since);
+                let agent = agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
+                *place = Place::of(site, robot);
+                Mover::new(&agent, [begin, end])
+            })
+            .collect();
+        window.begin = end;
+        self.windows += 1;
+        match movers {
+            Ok(movers) => {
+                let found = meetings(&movers);
+                self.steps += found.steps;
+                self.contacts += found.contacts.len();
+                self.undecided += found.undecided.len();
+            }
+            Err(problem) => {
+                self.error.get_or_insert(problem);
+            }
+        }
+        self.verdict = match (self.contacts, self.undecided, &self.error) {
+            (1.., ..) => "contact",
+            (0, 0, None) => "proved",
+            _ => "undecided",
+        };
+    }
+}
+
+/// Where a window begins.
+#[derive(Clone, Debug)]
+pub(super) struct Window {
+    begin: f64,
+    places: Vec<Place>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Length of the atom where the robot is \[m\].
+    since: f64,
+    /// Where that is \[m\].
+    at: [f64; 2],
+}
+
+impl Place {
+    fn of(site: &Site, robot: &Robot) -> Self {
+        let atom = robot.way.atom(robot.at);
+        let since = if robot.at > 0.0 { robot.at - robot.way.offsets[atom] } else { 0.0 };
+        Self { since, at: robot.way.point(site, robot.at) }
+    }
+}
+
+impl Window {
+    pub(super) fn new(site: &Site, robots: &[Robot]) -> Self {
+        Self { begin: 0.0, places: robots.iter().map(|robot| Place::of(site, robot)).collect() }
+    }
+}
+
+/// A robot that did this in a window, on these atoms from a length of the first one on.
+fn agent(
+    site: &Site,
+    id: u64,
+    radius: f64,
+    [begin, end]: [f64; 2],
+    phases: &[Phase],
+    (trail, since): (&[usize], f64),
+    at: [f64; 2],
+) -> Result<Agent, String> {
+    let mut travel = Travel { start: begin, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
+    let (mut time, mut length) = (0.0, 0.0);
+    for phase in phases {
+        // Each begins where the one before ends: times are summed up.
+        if (phase.time - begin - time).abs() > 1e-6 {
+            return Err(format!("robot {id}: a gap in what it did at {} s", phase.time));
+        }
+        let to = time + phase.duration;
+        let further = length + 0.5 * (phase.speed[0] + phase.speed[1]) * phase.duration;
+        travel.phases.push(data::Phase { time: [time, to], length: [length, further], speed: phase.speed });
+        (time, length) = (to, further);
+    }
+    if (time - (end - begin)).abs() > 1e-6 {
+        return Err(format!("robot {id}: what it did ends at {} s", begin + time));
+    }
+    let shapes: Vec<Placed> = trail.iter().flat_map(|&atom| site.atoms[atom].shapes.iter().copied()).collect();
+    let path = path(&cut(&shapes, since, length), at, length);
+    Ok(Agent { id, radius, path, travel: Some(travel) })
+}
+
+/// The part of some shapes from a length on, so long.
+fn cut(shapes: &[Placed], from: f64, length: f64) -> Vec<Placed> {
+    let (mut before, mut left) = (from, length);
+    let mut parts = Vec::new();
+    for placed in shapes {
+        let whole = placed.shape.length();
+        let skip = before.min(whole);
+        before -= skip;
+        let keep = (whole - skip).min(left);
+        if keep > 0.0 {
+            parts.push(part(placed, skip, keep));
+            left -= keep;
+        }
+    }
+    parts
+}
+
+fn part(placed: &Placed, skip: f64, keep: f64) -> Placed {
+    let cut = |length: f64| match placed.shape {
+        PathSegment::Line { .. } => PathSegment::Line { length },
+        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (length / radius).copysign(sweep) },
+    };
+    let before = Placed { shape: cut(skip), ..*placed };
+    Placed { at: before.end(), heading: before.heading_at_end(), shape: cut(keep) }
+}
+
+/// A path along the shapes, which is where the robot stands if there are none.
+fn path(shapes: &[Placed], at: [f64; 2], length: f64) -> data::Path {
+    let first = shapes.first();
+    let mut heading = first.map_or(0.0, |first| first.heading);
+    let start = first.map_or(at, |first| first.at);
+    let path_heading = Angle::Radians(heading);
+    let mut segments = Vec::new();
+    let mut from = 0.0;
+    for placed in shapes {
+        let turn = placed.heading - heading;
+        let long = placed.shape.length();
+        let radius = match placed.shape {
+            PathSegment::Line { .. } => None,
+            PathSegment::Arc { radius, sweep } => Some(radius.copysign(sweep)),
+        };
+        let turns = if turn == 0.0 { Vec::new() } else { vec![Angle::Radians(turn)] };
+        segments.push(Segment { length: long, radius, turns, from, to: from + long });
+        from += long;
+        heading = placed.heading_at_end();
+    }
+    if segments.is_empty() {
+        segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
+    }
+    data::Path { start, heading: path_heading, segments, rounding: f64::EPSILON * length.max(1.0) * 16.0 }
+}

@@ -1,0 +1,304 @@
+//! A layout as robots use it: pieces of way from node to node, and how robots on two of them touch. What depends on
+//! the layout and the radius only is computed once, when it is first asked for.
+
+use super::gates::Contact;
+use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, Turn};
+use pcr_formats::import::{Imported, Layout, Step};
+use pcr_formats::scenario::{PathSegment, Placed};
+use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+use std::rc::Rc;
+
+/// More room than the discs need, for rounding \[m\].
+const ROOM: f64 = 1e-4;
+
+/// Holds follow the first robot in steps of so many radii.
+const PITCH: f64 = 2.0;
+
+/// An edge in one direction, or a node to stand at.
+#[derive(Clone, Debug)]
+pub(super) struct Atom {
+    /// Nodes where it begins and ends.
+    pub(super) ends: [usize; 2],
+    pub(super) length: f64,
+    /// Largest speed on it \[m/s\].
+    pub(super) speed: f64,
+    /// Directions at its ends \[rad\]; none of a node.
+    pub(super) headings: Option<[f64; 2]>,
+    pub(super) shapes: Vec<Placed>,
+    segments: Vec<Segment<f64>>,
+    phases: Vec<Phase<f64>>,
+    /// Least and largest abscissa and ordinate \[m\].
+    bounds: [[f64; 2]; 2],
+    /// Place of its edge in the layout.
+    pub(super) edge: Option<usize>,
+}
+
+/// A layout for robots of one size.
+#[derive(Debug)]
+pub(super) struct Site {
+    pub(super) points: Vec<[f64; 2]>,
+    /// Edges in their directions, then the nodes.
+    pub(super) atoms: Vec<Atom>,
+    /// Those that begin at a node.
+    pub(super) leaving: Vec<Vec<usize>>,
+    /// Those that end at a node.
+    pub(super) coming: Vec<Vec<usize>>,
+    /// Of the nodes where missions may be, their places.
+    pub(super) nodes: Vec<usize>,
+    /// For each atom the same edge the other way.
+    pub(super) back: Vec<Option<usize>>,
+    /// For each atom those that may touch it.
+    near: Vec<Vec<usize>>,
+    /// With margins, and what the curves may be off \[m\].
+    radius: f64,
+    /// How they touch, in the same places, once that was asked for.
+    contacts: Vec<Vec<OnceCell<Option<Contact>>>>,
+    covers: RefCell<HashMap<usize, Rc<[usize]>>>,
+}
+
+impl Site {
+    /// The level of a layout that has most nodes.
+    ///
+    /// # Errors
+    /// An edge that is no path.
+    pub(super) fn new(imported: &Imported) -> Result<Self, String> {
+        let Imported { layout, vehicle } = imported;
+        let level = layout.largest_level();
+        let points: Vec<[f64; 2]> = layout.nodes.iter().map(|node| node.at).collect();
+        let nodes: Vec<usize> = (0..points.len()).filter(|&node| layout.nodes[node].level == level).collect();
+        let mut atoms = Vec::new();
+        let mut off = 0.0_f64;
+        for (place, edge) in layout.edges.iter().enumerate() {
+            for backward in [false, true] {
+                let step = Step { edge, backward };
+                let there = [step.origin(), step.target()].iter().all(|&node| layout.nodes[node].level == level);
+                if there && (!backward || edge.two_way) {
+                    let atom = Atom::along(layout, step, place, vehicle.speed);
+                    let atom = atom.map_err(|invalid| format!("edge {}: {invalid}", edge.id))?;
+                    off = off.max(edge.deviation + atom.gap(&points));
+                    atoms.push(atom);
+                }
+            }
+        }
+        let (mut leaving, mut coming) = (vec![Vec::new(); points.len()], vec![Vec::new(); points.len()]);
+        for (place, atom) in atoms.iter().enumerate() {
+            leaving[atom.ends[0]].push(place);
+            coming[atom.ends[1]].push(place);
+        }
+        for (node, &at) in points.iter().enumerate() {
+            atoms.push(Atom::node(node, at).map_err(|invalid| format!("a node: {invalid}"))?);
+        }
+        let radius = vehicle.radius + vehicle.margin + off + 0.5 * ROOM;
+        let near = neighbours(&atoms, 2.0 * radius);
+        let back = |(place, atom): (usize, &Atom)| {
+            let [a, b] = atom.ends;
+            let other = |&other: &usize| other != place && atoms[other].edge == atom.edge && atom.edge.is_some();
+            leaving[b].iter().copied().filter(|&other: &usize| atoms[other].ends[1] == a).find(other)
+        };
+        let back = atoms.iter().enumerate().map(back).collect();
+        let contacts = near.iter().map(|near| vec![OnceCell::new(); near.len()]).collect();
+        let covers = RefCell::default();
+        let site = Self { points, atoms, leaving, coming, nodes, back, near, radius, contacts, covers };
+        site.atoms.iter().try_for_each(|atom| atom.motion(radius).map(drop)).map_err(|invalid| invalid.to_string())?;
+        Ok(site)
+    }
+
+    /// The atom of a robot that stands at a node.
+    pub(super) fn standing(&self, node: usize) -> usize {
+        self.atoms.len() - self.points.len() + node
+    }
+
+    /// Whether robots that stand at two nodes would touch.
+    pub(super) fn collide(&self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.points[a], self.points[b]);
+        (a[0] - b[0]).hypot(a[1] - b[1]) < 2.0 * self.radius
+    }
+
+    /// The atoms that touch one, and how.
+    pub(super) fn contacts(&self, atom: usize) -> impl Iterator<Item = (usize, &Contact)> {
+        let places = 0..self.near[atom].len();
+        places.filter_map(move |place| Some((self.near[atom][place], self.contact_at(atom, place)?)))
+    }
+
+    /// Whether robots on two atoms may touch.
+    pub(super) fn touch(&self, a: usize, b: usize) -> bool {
+        self.near[a].binary_search(&b).is_ok_and(|place| self.contact_at(a, place).is_some())
+    }
+
+    fn contact_at(&self, atom: usize, place: usize) -> Option<&Contact> {
+        let found = self.contacts[atom][place].get_or_init(|| {
+            let pair = [atom, self.near[atom][place]];
+            let motions = pair.map(|atom| self.atoms[atom].motion(self.radius).expect("checked by the constructor"));
+            Contact::of(motions, PITCH * self.radius)
+        });
+        found.as_ref()
+    }
+
+    /// Computes all contacts now.
+    pub(super) fn warm(&self) {
+        (0..self.atoms.len()).for_each(|atom| self.contacts(atom).for_each(drop));
+    }
+
+    /// The atoms on which a robot would touch one that stands at a node.
+    pub(super) fn covers(&self, node: usize) -> Rc<[usize]> {
+        if let Some(known) = self.covers.borrow().get(&node) {
+            return known.clone();
+        }
+        let near = self.near[self.standing(node)].iter().copied();
+        let found: Rc<[usize]> = near.filter(|&atom| self.passes(atom, node)).collect();
+        self.covers.borrow_mut().insert(node, found.clone());
+        found
+    }
+
+    /// Whether a robot somewhere on an atom would touch one that stands at a node.
+    pub(super) fn passes(&self, atom: usize, node: usize) -> bool {
+        self.atoms[atom].ends.contains(&node) || self.touch(atom, self.standing(node))
+    }
+}
+
+impl Atom {
+    fn along(layout: &Layout, step: Step<'_>, edge: usize, fastest: f64) -> Result<Self, Invalid> {
+        let mut shapes = step.curve();
+        shapes.retain(|placed| placed.shape.length() > 0.0);
+        let from = layout.nodes[step.origin()].at;
+        let segments = path(&shapes, from)?;
+        let length = PathRef::new(&segments)?.length();
+        let headings = shapes.first().zip(shapes.last()).map(|(first, last)| [first.heading, last.heading_at_end()]);
+        Ok(Self {
+            ends: [step.origin(), step.target()],
+            length,
+            speed: step.edge.speed.map_or(fastest, |speed| speed.min(fastest)),
+            headings,
+            phases: if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() },
+            bounds: bounds(&shapes, from),
+            shapes,
+            segments,
+            edge: Some(edge),
+        })
+    }
+
+    fn node(node: usize, at: [f64; 2]) -> Result<Self, Invalid> {
+        let segments = path(&[], at)?;
+        let (shapes, phases, bounds) = (Vec::new(), Vec::new(), [at, at]);
+        Ok(Self {
+            ends: [node; 2],
+            length: 0.0,
+            speed: 0.0,
+            headings: None,
+            shapes,
+            segments,
+            phases,
+            bounds,
+            edge: None,
+        })
+    }
+
+    /// How far its curve is from its nodes \[m\].
+    fn gap(&self, points: &[[f64; 2]]) -> f64 {
+        let ends = self.shapes.first().zip(self.shapes.last()).map(|(first, last)| [first.at, last.end()]);
+        let off = |ends: [[f64; 2]; 2]| {
+            let each =
+                ends.iter().zip(self.ends).map(|(at, node)| (at[0] - points[node][0]).hypot(at[1] - points[node][1]));
+            each.fold(0.0, f64::max)
+        };
+        ends.map_or(0.0, off)
+    }
+
+    /// As a motion at 1 m/s.
+    fn motion(&self, radius: f64) -> Result<Motion<'_, f64>, Invalid> {
+        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, radius, 0.0)
+    }
+
+    /// Where a robot is after so much \[m\].
+    pub(super) fn point(&self, length: f64) -> [f64; 2] {
+        let point = PathRef::new(&self.segments).map(|path| path.point_at(length)).unwrap_or_default();
+        [point.x, point.y]
+    }
+}
+
+/// An angle from -π to π.
+pub(super) fn wrapped(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+/// The segments, with turns in place where the shapes meet at an angle.
+fn path(shapes: &[Placed], at: [f64; 2]) -> Result<Vec<Segment<f64>>, Invalid> {
+    let heading = shapes.first().map_or(0.0, |first| first.heading);
+    let start = shapes.first().map_or(at, |first| first.at);
+    let mut last = Segment::standing(Pose { position: Point::new(start[0], start[1]), heading: Radians(heading) })?;
+    let mut segments: Vec<Segment<f64>> = Vec::new();
+    let mut heading = heading;
+    for placed in shapes {
+        let turn = wrapped(placed.heading - heading);
+        if turn != 0.0 {
+            last = last.turned(Radians(turn))?;
+            if let Some(before) = segments.last_mut() {
+                *before = last;
+            }
+        }
+        last = match placed.shape {
+            PathSegment::Line { length } => last.then_line(length)?,
+            PathSegment::Arc { radius, sweep } => {
+                last.then_arc(radius, if sweep > 0.0 { Turn::Left } else { Turn::Right }, radius * sweep.abs())?
+            }
+        };
+        heading = placed.heading_at_end();
+        segments.push(last);
+    }
+    if segments.is_empty() {
+        segments.push(last);
+    }
+    Ok(segments)
+}
+
+/// A box that holds a curve.
+fn bounds(shapes: &[Placed], at: [f64; 2]) -> [[f64; 2]; 2] {
+    let mut bounds = [at, at];
+    for placed in shapes {
+        // An arc is no further from its ends than its length.
+        let (ends, room) = match placed.shape {
+            PathSegment::Line { .. } => ([placed.at, placed.end()], 0.0),
+            PathSegment::Arc { .. } => ([placed.at, placed.end()], 0.5 * placed.shape.length()),
+        };
+        for end in ends {
+            for axis in 0..2 {
+                bounds[0][axis] = bounds[0][axis].min(end[axis] - room);
+                bounds[1][axis] = bounds[1][axis].max(end[axis] + room);
+            }
+        }
+    }
+    bounds
+}
+
+/// For each atom those whose boxes are nearer than the reach, found by cells of a grid.
+fn neighbours(atoms: &[Atom], reach: f64) -> Vec<Vec<usize>> {
+    /// No box lies in more cells than this, or the grid is made coarser.
+    const MOST: f64 = 64.0;
+    let size = |atom: &Atom| (0..2).map(|axis| atom.bounds[1][axis] - atom.bounds[0][axis]).fold(0.0, f64::max);
+    let largest = atoms.iter().map(size).fold(0.0, f64::max);
+    let pitch = reach.max(largest / MOST);
+    let cells = |atom: &Atom, room: f64| {
+        let cell = |value: f64| (value / pitch).floor() as i64;
+        let [lo, hi] = atom.bounds;
+        let (x, y) = ([cell(lo[0] - room), cell(hi[0] + room)], [cell(lo[1] - room), cell(hi[1] + room)]);
+        (x[0]..=x[1]).flat_map(move |x| (y[0]..=y[1]).map(move |y| (x, y)))
+    };
+    let mut grid: HashMap<(i64, i64), Vec<usize>> = HashMap::new();
+    for (place, atom) in atoms.iter().enumerate() {
+        cells(atom, 0.0).for_each(|cell| grid.entry(cell).or_default().push(place));
+    }
+    let near = |a: &Atom, b: &Atom| {
+        let apart = |axis: usize| (a.bounds[0][axis] - b.bounds[1][axis]).max(b.bounds[0][axis] - a.bounds[1][axis]);
+        apart(0) < reach && apart(1) < reach
+    };
+    let all = atoms.iter().map(|atom| {
+        let mut found: Vec<usize> = cells(atom, reach).filter_map(|cell| grid.get(&cell)).flatten().copied().collect();
+        found.sort_unstable();
+        found.dedup();
+        found.retain(|&other| near(atom, &atoms[other]));
+        found
+    });
+    all.collect()
+}

@@ -1,0 +1,347 @@
+//! Tables of locks of any size in a file: an edge is looked up without reading the others (docs/formats.md, "Lock tables").
+
+use super::rides::reversed;
+use super::sweep::{Pass, Sweep, Told};
+use crate::checksum::crc32;
+use pcr_formats::import::{Id, ImportError};
+use serde::Serialize;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// The first bytes of a file.
+const MAGIC: [u8; 8] = *b"pcrlocks";
+
+/// Of the layout of the file; another one is not read.
+const VERSION: u32 = 1;
+
+/// What a header takes, and so where the records begin \[bytes\].
+const HEADER: u64 = 128;
+
+/// A record: the other track, and lengths of both \[bytes\].
+const RECORD: usize = 20;
+
+/// Bits of a place.
+const TURNED: u32 = 1;
+const NODE: u32 = 2;
+const NUMBER: u32 = 4;
+
+/// Why a file is not read or written.
+#[derive(Debug)]
+pub enum IndexError {
+    /// By the system.
+    Io(io::Error),
+    /// There are no locks to be written.
+    Import(ImportError),
+    /// It is not what it should be.
+    Damaged(String),
+}
+
+impl std::fmt::Display for IndexError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Io(error) => error.fmt(f),
+            Self::Import(error) => error.fmt(f),
+            Self::Damaged(problem) => write!(f, "not a table of locks that can be read: {problem}"),
+        }
+    }
+}
+
+impl std::error::Error for IndexError {}
+
+impl From<io::Error> for IndexError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<ImportError> for IndexError {
+    fn from(error: ImportError) -> Self {
+        Self::Import(error)
+    }
+}
+
+/// The nearest number of half the digits that is not above, and the one that is not below.
+fn outward([lo, hi]: [f64; 2]) -> [f32; 2] {
+    let (below, above) = (lo as f32, hi as f32);
+    let below = if f64::from(below) > lo { below.next_down() } else { below };
+    [below, if f64::from(above) < hi { above.next_up() } else { above }]
+}
+
+/// Writes all locks of a layout; returns how many records that are.
+///
+/// # Errors
+/// [`IndexError`].
+pub fn write_index(sweep: &Sweep, out: &mut File, told: Told<'_>) -> Result<u64, IndexError> {
+    let pass = Pass::new(sweep);
+    let mut writer = BufWriter::with_capacity(1 << 20, &mut *out);
+    writer.write_all(&[0; HEADER as usize])?;
+    let (mut tracks, mut members, mut records) = (Vec::new(), Vec::new(), 0_u64);
+    let mut places = vec![[0_u8; 16]; sweep.ids().len()];
+    let row = |track: usize| {
+        let mut bytes = Vec::new();
+        for (other, [own, their]) in pass.row(track, true)? {
+            bytes.extend((other as u32).to_le_bytes());
+            let numbers = [outward(own), outward(their)];
+            bytes.extend(numbers.as_flattened().iter().flat_map(|number| number.to_le_bytes()));
+        }
+        Ok((track, crc32(&bytes), bytes))
+    };
+    pass.each(told, row, |(track, sum, bytes)| {
+        let count = (bytes.len() / RECORD) as u32;
+        let own = &sweep.tracks[track];
+        tracks.extend(records.to_le_bytes());
+        let numbers = [count, sum, (members.len() / 4) as u32, own.members.len() as u32];
+        tracks.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        for &(place, turned) in &own.members {
+            members.extend((place as u32).to_le_bytes());
+            let number = matches!(sweep.ids()[place], Id::Number(_));
+            let node = !sweep.is_edge(place);
+            let flags = if turned { TURNED } else { 0 } | if node { NODE } else { 0 } | if number { NUMBER } else { 0 };
+            let entry = [(track as u32).to_le_bytes(), flags.to_le_bytes()];
+            places[place][..8].copy_from_slice(entry.as_flattened());
+            places[place][8..].copy_from_slice(&own.length.to_le_bytes());
+        }
+        records += u64::from(count);
+        writer.write_all(&bytes).map_err(IndexError::Io)
+    })?;
+    let names: Vec<String> = sweep.ids().iter().map(Id::to_string).collect();
+    let mut ends = vec![0_u64];
+    names.iter().for_each(|name| ends.push(ends.last().unwrap_or(&0) + name.len() as u64));
+    let directory = [
+        places.concat(),
+        tracks,
+        members,
+        ends.iter().flat_map(|end| end.to_le_bytes()).collect(),
+        names.concat().into_bytes(),
+    ]
+    .concat();
+    writer.write_all(&directory)?;
+    writer.flush()?;
+    drop(writer);
+    let counts = [sweep.ids().len() as u64, sweep.tracks.len() as u64, records, directory.len() as u64];
+    let mut rest: Vec<u8> = counts.iter().flat_map(|count| count.to_le_bytes()).collect();
+    rest.extend(crc32(&directory).to_le_bytes());
+    rest.resize(HEADER as usize - 16, 0);
+    let header = [&MAGIC[..], &VERSION.to_le_bytes(), &crc32(&rest).to_le_bytes(), &rest].concat();
+    out.seek(SeekFrom::Start(0))?;
+    out.write_all(&header)?;
+    Ok(records)
+}
+
+/// A table of locks in a file. Its names are in memory, its locks are not.
+#[derive(Debug)]
+pub struct Index {
+    file: File,
+    directory: Vec<u8>,
+    /// Edges and nodes, tracks, and records.
+    counts: [u64; 3],
+    /// Bytes of records that were read.
+    read: u64,
+}
+
+/// What an edge or a node shares its time with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Partner {
+    /// The other edge or node.
+    pub name: Id,
+    /// Whether it is a node.
+    pub node: bool,
+    /// Lengths on the edge that was asked for, from its start \[m\].
+    pub own: [f64; 2],
+    /// Lengths on the other one \[m\].
+    pub other: [f64; 2],
+}
+
+/// An edge or a node.
+#[derive(Clone, Copy)]
+struct Place {
+    track: u32,
+    flags: u32,
+    length: f64,
+}
+
+impl Index {
+    /// Opens a file and reads the names in it.
+    ///
+    /// # Errors
+    /// [`IndexError`] for what is no such file, of another version or damaged.
+    pub fn open(file: &Path) -> Result<Self, IndexError> {
+        let mut file = File::open(file)?;
+        let size = file.metadata()?.len();
+        let mut header = [0; HEADER as usize];
+        let damaged = |problem: &str| Err(IndexError::Damaged(problem.to_owned()));
+        if size < HEADER || file.read_exact(&mut header).is_err() || header[..8] != MAGIC {
+            return damaged("it does not begin like one");
+        }
+        let word = |at: usize| header.get(at..at + 4).map_or(0, le32);
+        if word(8) != VERSION {
+            return damaged(&format!("version {}; known is {VERSION}", word(8)));
+        }
+        if word(12) != crc32(&header[16..]) {
+            return damaged("the checksum of its header is wrong");
+        }
+        let [places, tracks, records, length] = [16, 24, 32, 40].map(|at| header.get(at..at + 8).map_or(0, le64));
+        let begin = records.checked_mul(RECORD as u64).and_then(|bytes| bytes.checked_add(HEADER));
+        if begin.and_then(|begin| begin.checked_add(length)) != Some(size) {
+            return damaged("it is longer or shorter than its header says");
+        }
+        let mut directory = Vec::new();
+        file.seek(SeekFrom::Start(size - length))?;
+        (&file).take(length).read_to_end(&mut directory)?;
+        if crc32(&directory) != word(48) {
+            return damaged("the checksum of its names is wrong");
+        }
+        Ok(Self { file, directory, counts: [places, tracks, records], read: 0 })
+    }
+
+    /// Whether a file begins like one.
+    pub fn is_one(file: &Path) -> bool {
+        let mut begin = [0; MAGIC.len()];
+        File::open(file).and_then(|mut file| file.read_exact(&mut begin)).is_ok() && begin == MAGIC
+    }
+
+    /// Edges and nodes, and records, that it holds.
+    pub fn counts(&self) -> [u64; 2] {
+        [self.counts[0], self.counts[2]]
+    }
+
+    /// Bytes of locks that have been read.
+    pub fn bytes_read(&self) -> u64 {
+        self.read
+    }
+
+    fn bytes(&self, at: u64, count: usize) -> &[u8] {
+        let at = usize::try_from(at).unwrap_or(usize::MAX);
+        self.directory.get(at..at.saturating_add(count)).unwrap_or_default()
+    }
+
+    fn place(&self, place: u64) -> Place {
+        let bytes = self.bytes(16 * place, 16);
+        let part = |at: usize, count: usize| bytes.get(at..at + count).unwrap_or_default();
+        Place { track: le32(part(0, 4)), flags: le32(part(4, 4)), length: f64::from_bits(le64(part(8, 8))) }
+    }
+
+    /// First record, records, checksum, first member, members.
+    fn track(&self, track: u32) -> (u64, [u32; 4]) {
+        let bytes = self.bytes(16 * self.counts[0] + 24 * u64::from(track), 24);
+        let part = |at: usize, count: usize| bytes.get(at..at + count).unwrap_or_default();
+        (le64(part(0, 8)), [8, 12, 16, 20].map(|at| le32(part(at, 4))))
+    }
+
+    fn name(&self, place: u64) -> Id {
+        let [places, tracks, _] = self.counts;
+        let ends = 16 * places + 24 * tracks + 4 * places;
+        let [from, to] = [place, place + 1].map(|at| le64(self.bytes(ends + 8 * at, 8)));
+        let names = ends + 8 * (places + 1);
+        let text = String::from_utf8_lossy(self.bytes(names + from, to.saturating_sub(from) as usize)).into_owned();
+        match text.parse() {
+            Ok(number) if self.place(place).flags & NUMBER != 0 => Id::Number(number),
+            _ => Id::Text(text),
+        }
+    }
+
+    /// The places of a name: an edge, a node, or one of each.
+    fn places(&self, name: &str) -> Vec<u64> {
+        let ids = [name.parse().ok().map(Id::Number), Some(Id::Text(name.to_owned()))];
+        let nodes = partition(0, self.counts[0], |place| self.place(place).flags & NODE == 0);
+        let found = |id: &Id, [from, to]: [u64; 2]| {
+            let place = partition(from, to, |place| self.name(place) < *id);
+            (place < to && self.name(place) == *id).then_some(place)
+        };
+        let ranges = [[0, nodes], [nodes, self.counts[0]]];
+        ids.iter().flatten().flat_map(|id| ranges.map(|range| found(id, range))).flatten().collect()
+    }
+
+    /// All that an edge shares its time with, or a node where no edge has the name; nothing where neither has. It reads the locks
+    /// of this edge, and no others.
+    ///
+    /// # Errors
+    /// [`IndexError`] for a file that cannot be read or is damaged there.
+    pub fn of(&mut self, name: &str) -> Result<Option<Vec<Partner>>, IndexError> {
+        let Some(&place) = self.places(name).first() else { return Ok(None) };
+        let own = self.place(place);
+        let (first, [count, sum, ..]) = self.track(own.track);
+        if first.saturating_add(u64::from(count)) > self.counts[2] {
+            return Err(IndexError::Damaged(format!("the locks of {name} are not in it")));
+        }
+        let mut bytes = vec![0; count as usize * RECORD];
+        self.file.seek(SeekFrom::Start(HEADER + first * RECORD as u64))?;
+        self.file.read_exact(&mut bytes)?;
+        self.read += bytes.len() as u64;
+        if crc32(&bytes) != sum {
+            return Err(IndexError::Damaged(format!("the checksum of the locks of {name} is wrong")));
+        }
+        let mut partners = Vec::new();
+        for record in bytes.chunks_exact(RECORD) {
+            let number = |k: usize| f64::from(f32::from_bits(le32(&record[4 + 4 * k..8 + 4 * k])));
+            let lengths = [[number(0), number(1)], [number(2), number(3)]];
+            let (_, [_, _, begin, members]) = self.track(le32(&record[..4]));
+            for k in 0..u64::from(members).min(self.counts[0]) {
+                let at = 16 * self.counts[0] + 24 * self.counts[1] + 4 * (u64::from(begin) + k);
+                let other = u64::from(le32(self.bytes(at, 4)));
+                if other != place {
+                    let their = self.place(other);
+                    let on = |place: Place, lengths| {
+                        if place.flags & TURNED != 0 { reversed(place.length, lengths) } else { lengths }
+                    };
+                    let (own, node) = (on(own, lengths[0]), their.flags & NODE != 0);
+                    partners.push(Partner { name: self.name(other), node, own, other: on(their, lengths[1]) });
+                }
+            }
+        }
+        sort(&mut partners);
+        Ok(Some(partners))
+    }
+}
+
+/// By edges, then nodes, by their names, then by the lengths.
+fn sort(partners: &mut [Partner]) {
+    partners.sort_by(|a, b| (a.node, &a.name).cmp(&(b.node, &b.name)).then(a.own[0].total_cmp(&b.own[0])));
+}
+
+impl Sweep {
+    /// All that an edge shares its time with, or a node where no edge has the name; nothing where neither has.
+    ///
+    /// # Errors
+    /// [`ImportError`] for a pair that no memory holds.
+    pub fn partners(&self, name: &str) -> Result<Option<Vec<Partner>>, ImportError> {
+        let named = |place: usize| self.ids()[place].to_string() == name;
+        let found = (0..self.ids().len()).find(|&place| named(place));
+        let track = |place| self.tracks.iter().position(|track| track.members.iter().any(|member| member.0 == place));
+        let Some((place, track)) = found.and_then(|place| Some((place, track(place)?))) else { return Ok(None) };
+        let own = &self.tracks[track];
+        let turned = own.members.iter().any(|&member| member == (place, true));
+        let mut partners = Vec::new();
+        for (other, [lengths, other_lengths]) in self.row_of(track)?.0 {
+            let their = &self.tracks[other];
+            partners.extend(their.members.iter().filter(|member| member.0 != place).map(|&(there, other_turned)| {
+                Partner {
+                    name: self.ids()[there].clone(),
+                    node: !self.is_edge(there),
+                    own: own.on_member(lengths, turned),
+                    other: their.on_member(other_lengths, other_turned),
+                }
+            }));
+        }
+        sort(&mut partners);
+        Ok(Some(partners))
+    }
+}
+
+fn le32(bytes: &[u8]) -> u32 {
+    bytes.try_into().map_or(0, u32::from_le_bytes)
+}
+
+fn le64(bytes: &[u8]) -> u64 {
+    bytes.try_into().map_or(0, u64::from_le_bytes)
+}
+
+/// The first place for which it no longer holds.
+fn partition(mut from: u64, mut to: u64, holds: impl Fn(u64) -> bool) -> u64 {
+    while from < to {
+        let middle = from + (to - from) / 2;
+        if holds(middle) { from = middle + 1 } else { to = middle }
+    }
+    from
+}

@@ -1,0 +1,137 @@
+//! The locks of a layout that changes: an edge that is added, moved or removed costs a comparison with the box of every other
+//! edge, and its own locks.
+
+use super::Lock;
+use super::rides::Rides;
+use super::sweep::Sweep;
+use pcr_formats::import::{Edge, Id, ImportError, Imported};
+use std::collections::HashMap;
+
+/// A layout whose edges change, one at a time.
+pub struct Table {
+    imported: Imported,
+    sweep: Sweep,
+    /// Track of each edge.
+    tracks: HashMap<Id, usize>,
+}
+
+/// What a change does to the locks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The edges all of whose locks are void: the one that changed, and for outlines those that it meets at a node, where the
+    /// vehicle turns.
+    pub edges: Vec<Id>,
+    /// The locks that these have now, each once.
+    pub locks: Vec<Lock>,
+    /// Pairs of discs that were near enough to be computed.
+    pub looked: usize,
+}
+
+impl Table {
+    /// The edges of a layout, which [`Locks::of`](super::Locks::of) has the locks of.
+    ///
+    /// # Errors
+    /// As [`Sweep::new`].
+    pub fn new(imported: Imported) -> Result<Self, ImportError> {
+        let sweep = Sweep::new(&imported, false)?;
+        let members =
+            sweep.tracks.iter().enumerate().flat_map(|(track, it)| it.members.iter().map(move |m| (m.0, track)));
+        let tracks = members.filter_map(|(place, track)| Some((sweep.ids().get(place)?.clone(), track))).collect();
+        Ok(Self { imported, sweep, tracks })
+    }
+
+    /// The layout as it is now; its edges are in no order.
+    pub fn imported(&self) -> &Imported {
+        &self.imported
+    }
+
+    /// Adds an edge, or puts it in place of the one of its name.
+    ///
+    /// # Errors
+    /// [`ImportError`] for an edge between nodes that the layout does not have, or out of range; then nothing is changed.
+    pub fn insert(&mut self, edge: Edge) -> Result<Change, ImportError> {
+        if let Some(end) = edge.ends.iter().find(|&&end| end >= self.imported.layout.nodes.len()) {
+            return Err(ImportError::new(format!("edge {}: there is no node at place {end}", edge.id)));
+        }
+        let id = edge.id.clone();
+        let before = self.take_out(&id);
+        let mut met = before.as_ref().map_or_else(Vec::new, |before| self.met(before.ends));
+        met.extend(self.met(edge.ends));
+        self.imported.layout.edges.push(edge);
+        met.push(id.clone());
+        let change = self.renew(met);
+        if change.is_err() {
+            self.imported.layout.edges.pop();
+            if let Some(before) = before {
+                self.imported.layout.edges.push(before);
+                self.renew(vec![id])?;
+            }
+        }
+        change
+    }
+
+    /// Removes an edge.
+    ///
+    /// # Errors
+    /// [`ImportError`] where there is no such edge.
+    pub fn remove(&mut self, id: &Id) -> Result<Change, ImportError> {
+        let before = self.take_out(id).ok_or_else(|| ImportError::new(format!("there is no edge {id}")))?;
+        let mut change = self.renew(self.met(before.ends))?;
+        change.edges.push(id.clone());
+        Ok(change)
+    }
+
+    /// The edges that share a node with one, if the vehicle turns there.
+    fn met(&self, ends: [usize; 2]) -> Vec<Id> {
+        if self.imported.vehicle.footprint.is_none() {
+            return Vec::new();
+        }
+        let edges = self.imported.layout.edges.iter().filter(|edge| edge.ends.iter().any(|end| ends.contains(end)));
+        edges.map(|edge| edge.id.clone()).collect()
+    }
+
+    fn take_out(&mut self, id: &Id) -> Option<Edge> {
+        let edges = &mut self.imported.layout.edges;
+        let place = edges.iter().position(|edge| edge.id == *id)?;
+        if let Some(track) = self.tracks.remove(id) {
+            self.sweep.take_out(track, id);
+        }
+        Some(edges.swap_remove(place))
+    }
+
+    /// Computes some edges anew.
+    fn renew(&mut self, mut edges: Vec<Id>) -> Result<Change, ImportError> {
+        edges.sort();
+        edges.dedup();
+        let rides = Rides::new(&self.imported);
+        for id in &edges {
+            let Some(edge) = self.imported.layout.edges.iter().find(|edge| edge.id == *id) else { continue };
+            if let Some(track) = self.tracks.remove(id) {
+                self.sweep.take_out(track, id);
+            }
+            let track = self.sweep.insert(&self.imported.layout, &rides, edge)?;
+            self.tracks.insert(id.clone(), track);
+        }
+        let mut change = Change { edges, locks: Vec::new(), looked: 0 };
+        for id in &change.edges {
+            let Some(&track) = self.tracks.get(id) else { continue };
+            let (row, looked) = self.sweep.row_of(track)?;
+            change.looked += looked;
+            for (other, lengths) in row {
+                for (name, turned) in self.sweep.members(other) {
+                    // Between two that are computed anew, once.
+                    if name == id || (name < id && change.edges.binary_search(name).is_ok()) {
+                        continue;
+                    }
+                    let their = self.sweep.tracks[other].on_member(lengths[1], turned);
+                    change.locks.push(if id < name {
+                        Lock { a: id.clone(), b: name.clone(), a_length: lengths[0], b_length: their }
+                    } else {
+                        Lock { a: name.clone(), b: id.clone(), a_length: their, b_length: lengths[0] }
+                    });
+                }
+            }
+        }
+        Ok(change)
+    }
+}

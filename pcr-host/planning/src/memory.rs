@@ -1,0 +1,134 @@
+//! How much memory there is yet: what cannot be held is refused before an allocation fails, which would end the program.
+
+use std::fmt;
+use std::fs;
+
+/// What is left alone, so that what is small need not ask \[bytes\].
+const RESERVE: u64 = 48 << 20;
+
+/// What may be taken between two questions \[bytes\].
+pub const STEP: u64 = 16 << 20;
+
+/// An answer, or a part of it, that does not fit into memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TooLarge {
+    what: String,
+    /// \[bytes\], where it is known.
+    needed: Option<u64>,
+    /// \[bytes\]
+    left: u64,
+}
+
+impl fmt::Display for TooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let megabytes = |bytes: u64| bytes.div_ceil(1_000_000);
+        let left = megabytes(self.left);
+        match self.needed.map(megabytes) {
+            Some(needed) => write!(f, "{} would take {needed} MB of memory; {left} MB are left", self.what),
+            None => write!(f, "{} takes more memory than the {left} MB that are left", self.what),
+        }
+    }
+}
+
+impl std::error::Error for TooLarge {}
+
+impl TooLarge {
+    /// What an allocation was refused for.
+    pub(crate) fn of(what: String) -> Self {
+        Self { what, needed: None, left: left().unwrap_or(0) }
+    }
+}
+
+/// Asks for some bytes, before they are allocated.
+///
+/// # Errors
+/// [`TooLarge`], with the number, where the system tells that they are not there.
+pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
+    match left() {
+        Some(left) if bytes > left => Err(TooLarge { what: what(), needed: Some(bytes), left }),
+        _ => Ok(()),
+    }
+}
+
+/// Asks for a list of so many items of a size \[bytes\], if it is long: asking takes its time.
+pub(crate) fn for_list(count: usize, size: u64) -> Result<(), TooLarge> {
+    let bytes = count as u64 * size;
+    if bytes < STEP { Ok(()) } else { ask(bytes, || format!("a list of {count}")) }
+}
+
+/// Counts what a list takes while it grows, and asks from time to time.
+#[derive(Debug, Default)]
+pub(crate) struct Held {
+    since: u64,
+}
+
+impl Held {
+    /// Adds some items to a list, which take so many bytes beside it.
+    ///
+    /// # Errors
+    /// [`TooLarge`] where the list, which may have to move to twice the place, does not fit.
+    pub(crate) fn extend<T>(
+        &mut self,
+        list: &mut Vec<T>,
+        items: Vec<T>,
+        beside: u64,
+        what: &str,
+    ) -> Result<(), TooLarge> {
+        let own = size_of::<T>() as u64;
+        let count = list.len() + items.len();
+        let needed = 2 * count as u64 * own;
+        let what = || format!("a list of {count} {what} and those that are to come");
+        self.since += items.len() as u64 * own + beside;
+        if self.since >= STEP {
+            self.since = 0;
+            ask(if count > list.capacity() { needed } else { STEP }, what)?;
+        }
+        list.try_reserve(items.len()).map_err(|_| TooLarge { needed: Some(needed), ..TooLarge::of(what()) })?;
+        list.extend(items);
+        Ok(())
+    }
+}
+
+/// Bytes that may be allocated yet, by the limit of the address space (`ulimit -v`), that of the group of processes and what the
+/// machine has, less a reserve; nothing where no system tells.
+pub fn left() -> Option<u64> {
+    let limits = [address_space(), group(), machine()];
+    limits.into_iter().flatten().min().map(|bytes| bytes.saturating_sub(RESERVE))
+}
+
+/// A number of kilobytes in a file of lines `name: number kB` \[bytes\].
+fn kilobytes(file: &str, name: &str) -> Option<u64> {
+    let text = fs::read_to_string(file).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    line.trim_start_matches(':').split_whitespace().next()?.parse::<u64>().ok().map(|number| number << 10)
+}
+
+fn address_space() -> Option<u64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(limit.saturating_sub(kilobytes("/proc/self/status", "VmSize")?))
+}
+
+fn group() -> Option<u64> {
+    let number = |file: &str| fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
+    Some(number("/sys/fs/cgroup/memory.max")?.saturating_sub(number("/sys/fs/cgroup/memory.current")?))
+}
+
+fn machine() -> Option<u64> {
+    kilobytes("/proc/meminfo", "MemAvailable")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_than_any_machine_has_is_refused_with_its_number() {
+        if left().is_some() {
+            let refused = ask(1 << 60, || "a table".into()).unwrap_err().to_string();
+            assert!(refused.starts_with("a table would take 1152921504607 MB of memory; "), "{refused}");
+        }
+        assert_eq!(ask(0, String::new), Ok(()));
+    }
+}

@@ -1,0 +1,190 @@
+//! The regions of a fleet of any size, an agent at a time, in the order of their numbers: agents that come near are found by a
+//! grid, rows are computed on all cores, and none is held longer than it takes to hand it on.
+
+use super::record::Work;
+use super::{Answer, Cover, Failure, Region, Request, outlines};
+use crate::bodies::Bodies;
+use crate::fleet::Format;
+use crate::memory::Held;
+use crate::rows::{self, Grid, Row};
+use pcr_core::{Full, Motion};
+use pcr_formats::scenario::{Labels, Scenario};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Pairs of discs whose regions are held at once: enough for all cores, and some megabytes.
+const STRETCH: u64 = 1 << 15;
+
+/// How far a pass is: pairs that were looked at, of so many.
+pub type Told<'t> = &'t dyn Fn(usize, usize);
+
+/// All that the regions of a scenario are computed from.
+pub struct Sheet<'s, S: Format> {
+    pub(super) scenario: &'s Scenario,
+    pub(super) request: Request,
+    pub(super) labels: Labels,
+    bodies: Bodies<S>,
+    ids: Vec<u64>,
+    /// The discs of each agent.
+    discs: Vec<Range<usize>>,
+    /// The agents that are asked for, by their numbers.
+    egos: Vec<usize>,
+    /// Whether any agent is more than one disc.
+    outlined: bool,
+}
+
+impl<'s, S: Format> Sheet<'s, S> {
+    /// The scenario in the format `S`.
+    ///
+    /// # Errors
+    /// [`Failure`] where a value does not fit the format, or the agent asked for is not there.
+    pub fn new(scenario: &'s Scenario, request: Request) -> Result<Self, Failure> {
+        let ids: Vec<u64> = scenario.agents.iter().map(|agent| agent.id).collect();
+        if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
+            return Err(Failure::NoSuchAgent(asked, ids));
+        }
+        let bodies = Bodies::<S>::new(scenario)?;
+        let mut discs = vec![0..0; ids.len()];
+        for (place, disc) in bodies.discs.iter().enumerate() {
+            if let Some(own) = discs.get_mut(disc.agent) {
+                *own = if own.start < own.end { own.start..place + 1 } else { place..place + 1 };
+            }
+        }
+        let mut egos: Vec<usize> =
+            (0..ids.len()).filter(|&ego| request.agent.is_none_or(|it| ids[ego] == it)).collect();
+        egos.sort_by_key(|&ego| ids[ego]);
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
+        Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos, outlined })
+    }
+
+    /// Pairs of discs that come near one another, each counted from both sides: what a pass looks at.
+    pub fn near(&self) -> usize {
+        rows::grid(&self.bodies.fleet.motions()).counts().iter().map(|&count| count as usize).sum()
+    }
+
+    /// Whether any agent has a margin.
+    pub fn has_margins(&self) -> bool {
+        self.bodies.fleet.motions().iter().any(|motion| motion.margin() > S::ZERO)
+    }
+
+    /// What `make` makes of the regions of each agent, on all cores, to `take`, in the order of the agents' numbers; those of
+    /// the discs with their margins, if asked for.
+    ///
+    /// # Errors
+    /// What `take` refuses, and [`Failure`] for a pair that no table holds.
+    pub fn each<T: Send, E: From<Failure>>(
+        &self,
+        margin: bool,
+        told: Told<'_>,
+        make: impl Fn(Vec<Region>) -> T + Sync,
+        mut take: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut motions = self.bodies.fleet.motions();
+        if margin {
+            motions.iter_mut().for_each(|motion| *motion = motion.inflated());
+        }
+        let grid = rows::grid(&motions);
+        let counts = grid.counts();
+        let work = |ego: usize| self.discs[ego].clone().map(|disc| u64::from(counts[disc])).sum::<u64>();
+        let total = self.egos.iter().map(|&ego| work(ego) as usize).sum();
+        let (mut rest, mut done) = (&self.egos[..], 0);
+        while !rest.is_empty() {
+            let mut held = 0;
+            let more = |&&ego: &&usize| {
+                let before = held;
+                held += work(ego) + 1;
+                before < STRETCH
+            };
+            let (stretch, after) = rest.split_at(rest.iter().take_while(more).count());
+            let rows = stretch.par_iter().map(|&ego| self.row(&motions, &grid, ego).map(&make));
+            for row in rows.collect::<Result<Vec<T>, Failure>>()? {
+                take(row)?;
+            }
+            done += stretch.iter().map(|&ego| work(ego) as usize).sum::<usize>();
+            told(done, total);
+            rest = after;
+        }
+        Ok(())
+    }
+
+    /// The regions of one agent.
+    fn row(&self, motions: &[Motion<'_, S>], grid: &Grid, ego: usize) -> Result<Vec<Region>, Failure> {
+        let mut near = Vec::new();
+        let rows = self.discs[ego].clone().map(|disc| {
+            grid.around(disc, &mut near);
+            Row::new(motions, disc, &near)
+        });
+        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(|full| self.failure(full))?;
+        let works = rows.iter().map(|row| {
+            let (ids, fleet, slices) = (&self.ids[..], &self.bodies.fleet, self.request.slices);
+            let (agents, motions, ecm) = (row.agents(), row.motions(), row.table());
+            (Work { ids, fleet, agents, motions, ecm, slices }, row.place())
+        });
+        let works: Vec<(Work<'_, S>, usize)> = works.collect();
+        let mut regions = match &works[..] {
+            [(work, place)] if !self.outlined => work.row(*place),
+            works => outlines::regions(works, &self.bodies.discs, &self.ids),
+        };
+        regions.sort_by(|a, b| {
+            let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
+            a.j.cmp(&b.j).then(starts)
+        });
+        Ok(regions)
+    }
+
+    fn failure(&self, full: Full) -> Failure {
+        let id = |disc: usize| self.bodies.scenario.agents.get(disc).map(|agent| agent.id);
+        match full {
+            Full::Pair(discs) => match discs.map(id) {
+                [Some(i), Some(j)] => Failure::Overfull([i, j]),
+                _ => Failure::Full(full),
+            },
+            full => Failure::Full(full),
+        }
+    }
+
+    /// The answer without its regions.
+    ///
+    /// # Errors
+    /// [`Failure`] where a value does not fit the format.
+    pub fn head(&self) -> Result<Answer, Failure> {
+        let certificate = || super::table_of::<S>(self.scenario);
+        let agents = self.scenario.agents.iter().zip(&self.discs);
+        Ok(Answer {
+            name: self.scenario.name.clone(),
+            labels: self.labels.clone(),
+            scalar: S::NAME,
+            regions: Vec::new(),
+            margin_regions: self.has_margins().then(Vec::new),
+            footprints: agents.flat_map(|(agent, own)| Cover::of(agent, &self.bodies.discs[own.clone()])).collect(),
+            warnings: self.scenario.warnings.clone(),
+            certificate: self.request.certificate.then(certificate).transpose()?,
+            error: None,
+        })
+    }
+
+    /// All regions at once.
+    ///
+    /// # Errors
+    /// As [`Sheet::each`]; [`Failure::TooLarge`] where memory does not hold them.
+    pub fn answer(&self, told: Told<'_>) -> Result<Answer, Failure> {
+        let regions = self.all(false, told)?;
+        let head = self.head()?;
+        let margin_regions = head.margin_regions.is_some().then(|| self.all(true, told)).transpose()?;
+        Ok(Answer { regions, margin_regions, ..head })
+    }
+
+    fn all(&self, margin: bool, told: Told<'_>) -> Result<Vec<Region>, Failure> {
+        let (mut all, mut held) = (Vec::new(), Held::default());
+        self.each(
+            margin,
+            told,
+            |row| row,
+            |row| {
+                let beside = row.iter().map(Region::bytes).sum();
+                Ok::<(), Failure>(held.extend(&mut all, row, beside, "regions")?)
+            },
+        )?;
+        Ok(all)
+    }
+}

@@ -1,0 +1,143 @@
+//! Fleets that run for hours, for reading.
+
+use super::columns::Columns;
+use super::{heading, printable};
+use crate::lifelong::{Driven, Lifelong, WellFormedness};
+use pcr_formats::import::Id;
+use std::io::{self, Write};
+
+/// The header line of [`lifelong_csv`].
+pub const LIFELONG_CSV_HEADER: &str = "method,robots,missions,missions_per_hour,travel_over_unimpeded,certificate,breaches,\
+stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,decisions,decision_median,decision_p99\n";
+
+/// A line a method; no ratio where nobody has arrived.
+///
+/// # Errors
+/// Those of the writer.
+pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(LIFELONG_CSV_HEADER.as_bytes())?;
+    for run in &lifelong.runs {
+        let Driven { outcome: it, decisions, decision_median, decision_p99, .. } = run;
+        let ratio = it.travel_over_unimpeded.map_or_else(String::new, |ratio| ratio.to_string());
+        writeln!(
+            out,
+            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99}",
+            it.method.name(),
+            it.robots,
+            it.missions,
+            it.missions_per_hour,
+            it.certificate.verdict,
+            it.breaches,
+            it.stuck,
+            it.standstill,
+            it.refused,
+            it.moved,
+            it.revised,
+            it.longest_wait,
+            it.waiting,
+            it.starved
+        )?;
+    }
+    Ok(())
+}
+
+/// What the layout allows, and a line a method.
+///
+/// # Errors
+/// Those of the writer.
+pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
+    let Lifelong { layout, seed, asked, hours, delays, well_formedness, runs, .. } = lifelong;
+    let name = if layout.is_empty() { "layout" } else { layout };
+    writeln!(out, "{}: {asked} robots for {hours} h, seed {seed}", heading(name))?;
+    writeln!(
+        out,
+        "stopped for {} % of the time, {} s each; up to {} % slower",
+        100.0 * delays.stopped,
+        delays.stop,
+        100.0 * delays.slip
+    )?;
+    well_formed(well_formedness, out)?;
+    let safe = well_formedness.safe_ends.len();
+    if *asked > safe {
+        writeln!(out, "more robots than safe ends: somebody always stands in the way, and missions may wait for ever")?;
+    }
+    if let Some(run) = runs.iter().find(|run| run.outcome.robots < *asked) {
+        writeln!(out, "{} without a place to start", asked - run.outcome.robots)?;
+    }
+    let mut columns = Columns::new(&[
+        "<method",
+        "robots",
+        "missions",
+        "an hour",
+        "travel/alone",
+        "refused",
+        "waiting [s]",
+        "starved",
+        "stuck",
+        "decisions",
+        "median [ms]",
+        "99 % [ms]",
+        "<contact",
+    ]);
+    for run in runs {
+        let it = &run.outcome;
+        columns.row(vec![
+            it.method.name().to_owned(),
+            it.robots.to_string(),
+            it.missions.to_string(),
+            format!("{:.0}", it.missions_per_hour),
+            it.travel_over_unimpeded.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.2}")),
+            it.refused.to_string(),
+            format!("{:.0}", it.waiting),
+            it.starved.to_string(),
+            it.stuck.to_string(),
+            run.decisions.to_string(),
+            format!("{:.2}", 1e3 * run.decision_median),
+            format!("{:.2}", 1e3 * run.decision_p99),
+            match it.certificate.verdict {
+                "proved" => "none, proved".to_owned(),
+                verdict => verdict.to_owned(),
+            },
+        ]);
+    }
+    columns.write(out)
+}
+
+fn well_formed(it: &WellFormedness, out: &mut impl Write) -> io::Result<()> {
+    let list = |ids: &[Id]| {
+        /// More are counted only.
+        const MOST: usize = 20;
+        let shown: Vec<String> = ids.iter().take(MOST).map(|id| printable(&id.to_string())).collect();
+        let more = if ids.len() > MOST { format!(" and {} more", ids.len() - MOST) } else { String::new() };
+        format!("{}{more}", shown.join(", "))
+    };
+    let kind = if it.dead_ends_only { " (only dead ends were looked at)" } else { "" };
+    writeln!(
+        out,
+        "{} nodes, {} safe ends{kind}, where robots may stand for good: {}",
+        it.nodes,
+        it.safe_ends.len(),
+        list(&it.safe_ends)
+    )?;
+    if !it.cut_off.is_empty() {
+        writeln!(
+            out,
+            "{} nodes have no missions, as not all others can be reached: {}",
+            it.cut_off.len(),
+            list(&it.cut_off)
+        )?;
+    }
+    if !it.never_ends.is_empty() {
+        let count = it.never_ends.len();
+        writeln!(out, "{count} nodes where one robot that stands already cuts others off: {}", list(&it.never_ends))?;
+    }
+    if !it.bridges.is_empty() {
+        let count = it.bridges.len();
+        writeln!(
+            out,
+            "{count} edges for both directions that nothing leads around, hence deadlocks without orders: {}",
+            list(&it.bridges)
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,157 @@
+//! What is told of a region: that its lengths are those of its pieces, and that its times hold every contact.
+//!
+//! The told time begins no later than when the agent reaches the first length of the region, and ends no earlier than when it leaves the
+//! last one (`docs/certificates.md`, lemma 7). Where rounding has let it begin later, at the length u, the lengths up to u must be
+//! farther than R from all that the pieces hold of the other path: then there is no contact there.
+
+use crate::cell::{Claim, Outcome};
+use crate::data::{Agent, Pair, Travel};
+use crate::pair::{Findings, Placed, Promise, Radii, Segments};
+use crate::path::Stretch;
+use crate::travel;
+use crate::twofold::Twofold;
+
+/// Checks the regions of a pair.
+///
+/// # Errors
+/// A region that is none: without pieces, with lengths that are not those of its pieces, without times where there are motions.
+pub fn check(
+    agents: [&Agent; 2],
+    stretches: [&[Stretch]; 2],
+    pair: &Pair,
+    pieces: &[Placed],
+    radii: &Radii,
+    findings: &mut Findings,
+) -> Result<(), String> {
+    lengths_are_those_of_pieces(pair)?;
+    for (place, region) in pair.regions.iter().enumerate() {
+        let times = match (region.times, agents.map(|agent| agent.travel.as_ref())) {
+            (None, [None, None]) => continue,
+            (Some(times), [Some(first), Some(second)]) => [(times[0], first), (times[1], second)],
+            _ => return Err(format!("region {place}: a time without a motion, or a motion without a time")),
+        };
+        findings.times += 1;
+        let those: Vec<&Placed> = pieces.iter().filter(|piece| piece.region == place).collect();
+        for (k, (time, travel)) in times.into_iter().enumerate() {
+            let [from, to] = time;
+            if !(from <= to && from.abs() < 1e15 && to.abs() < 1e15) {
+                return Err(format!("region {place}: its time from {from} to {to} s is none"));
+            }
+            let told = Told { k, time, travel, agent: agents[k], lengths: region.lengths[k] };
+            for end in [0, 1] {
+                told.check(end, stretches, pair, &those, radii, findings);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn lengths_are_those_of_pieces(pair: &Pair) -> Result<(), String> {
+    let mut hulls: Vec<Option<[[f64; 2]; 2]>> = vec![None; pair.regions.len()];
+    for piece in &pair.pieces {
+        let hull = hulls.get_mut(piece.region).ok_or("a piece of a region that is not there")?;
+        let all = hull.get_or_insert(piece.lengths);
+        for (all, own) in all.iter_mut().zip(piece.lengths) {
+            *all = [all[0].min(own[0]), all[1].max(own[1])];
+        }
+    }
+    let wrong = pair.regions.iter().zip(hulls).position(|(region, hull)| hull != Some(region.lengths));
+    wrong.map_or(Ok(()), |place| Err(format!("region {place}: its lengths are not those of its pieces")))
+}
+
+/// The time of one agent of a region.
+struct Told<'a> {
+    /// Which agent.
+    k: usize,
+    time: [f64; 2],
+    travel: &'a Travel,
+    agent: &'a Agent,
+    lengths: [f64; 2],
+}
+
+impl Told<'_> {
+    /// Checks the beginning, or the end.
+    fn check(
+        &self,
+        end: usize,
+        stretches: [&[Stretch]; 2],
+        pair: &Pair,
+        pieces: &[&Placed],
+        radii: &Radii,
+        findings: &mut Findings,
+    ) {
+        let path = &self.agent.path;
+        let full = path.segments.last().map_or(0.0, |segment| segment.to);
+        let at = |time: Twofold| travel::length_at(self.travel, time, full);
+        let since = |time: Twofold| time - Twofold::from(self.travel.start);
+        let end_of_all = Twofold::from(travel::duration(self.travel));
+        let (told, length) = (Twofold::from(self.time[end]), Twofold::from(self.lengths[end]));
+        let inward = |by: f64| Twofold::from(if end == 0 { by } else { -by });
+        // Before it sets off an agent stands at 0, after its arrival at the end: there no time is too early or too late.
+        let always = if end == 0 { since(told) <= Twofold::ZERO } else { since(told) >= end_of_all };
+        let note = |outcome, promise, piece: &Placed, findings: &mut Findings| {
+            let segments = Segments {
+                stretches: [0, 1].map(|side| &stretches[side][piece.segments[side]]),
+                whole: [0, 1].map(|side| stretches[side][piece.segments[side]].placed.whole()),
+                pieces: Vec::new(),
+            };
+            let other = 1 - self.k;
+            let mut near = segments.stretches[other].placed.part(piece.lengths[other]);
+            segments.note(outcome, promise, pair, radii, self.k, &mut near, findings);
+        };
+        if !always {
+            // What the lengths along the path may be off is added.
+            let reached = at(told)[1 - end] + inward(path.rounding);
+            let strip = if end == 0 { [length, reached] } else { [reached, length] };
+            for piece in pieces.iter().filter(|_| strip[0] <= strip[1]) {
+                let outcome = self.strip_is_clear(strip, stretches, piece, radii, findings);
+                note(outcome, Promise::Timed, piece, findings);
+            }
+        }
+        // For messages the piece that the end is of.
+        let is_its_end = |piece: &&&Placed| {
+            let stretch = &stretches[self.k][piece.segments[self.k]];
+            stretch.holds(self.lengths[end]) && piece.lengths[self.k][end] == stretch.range([self.lengths[end]; 2])[end]
+        };
+        let Some(piece) = pieces.iter().find(is_its_end).or(pieces.first()) else { return };
+        let by_then = told + inward(self.travel.time_excess);
+        let [lo, hi] = at(by_then);
+        let latest = end_of_all + Twofold::from(self.travel.time_excess);
+        // Whether it is certain to have been there by then, or to be there no more; and whether it is certain not to.
+        let (passed, not_yet) = match end {
+            0 if self.lengths[0] <= 0.0 => (since(told) >= Twofold::ZERO, since(told) < Twofold::ZERO),
+            0 => (lo >= length || since(by_then) >= end_of_all, hi < length),
+            _ if self.lengths[1] >= full => (since(told) <= latest, since(told) > latest),
+            _ => (hi <= length || since(by_then) <= Twofold::ZERO, lo > length),
+        };
+        let place = piece.lengths[self.k][end];
+        let outcome = match (passed, not_yet) {
+            (true, _) => Outcome::Proved,
+            (_, true) => Outcome::Refuted(place),
+            _ => Outcome::Undecided(place),
+        };
+        note(outcome, Promise::Prompt, piece, findings);
+    }
+
+    /// Whether no length of a strip that the piece holds is within R of what it holds of the other path.
+    fn strip_is_clear(
+        &self,
+        strip: [Twofold; 2],
+        stretches: [&[Stretch]; 2],
+        piece: &Placed,
+        radii: &Radii,
+        findings: &mut Findings,
+    ) -> Outcome {
+        let other = 1 - self.k;
+        let own = &stretches[self.k][piece.segments[self.k]];
+        let [from, to] = piece.lengths[self.k];
+        let Some(strip) = own.common(strip) else { return Outcome::Proved };
+        let lo = if from < strip[0] { strip[0] } else { from };
+        let hi = if strip[1] < to { strip[1] } else { to };
+        if hi < lo {
+            return Outcome::Proved;
+        }
+        let mut near = stretches[other][piece.segments[other]].placed.part(piece.lengths[other]);
+        Claim::Above(radii.radius).decide(&own.placed.part([lo, hi]), &mut near, &mut findings.steps)
+    }
+}

@@ -1,0 +1,137 @@
+//! What only just does not touch: events and turning points of contacts that are missed by parts of the slack, as derived in
+//! docs/errors.md, and of none that is missed by more. The slack is far above rounding here, so that each rule shows alone.
+
+use pcr_core::{Point, Pose, Segment, Turn, internals};
+use pcr_fixed::{Q12, Q16, Q20};
+use pcr_planning::fleet::Format;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// The combined radius \[m\], and the slack that is played with.
+const RADIUS: f64 = 1.0;
+const SLACK: f64 = 1.0 / 32.0;
+
+/// A line, or an arc of this radius to the left, from a place.
+fn segment<S: Format>([x, y, heading]: [f64; 3], length: f64, bend: Option<f64>) -> Segment<S> {
+    let position = Point::new(S::from_f64(x), S::from_f64(y));
+    let start = Segment::standing(Pose { position, heading: S::angle(heading) }).expect("small");
+    let length = S::from_f64(length);
+    let next = match bend {
+        None => start.then_line(length),
+        Some(radius) => start.then_arc(S::from_f64(radius), Turn::Left, length),
+    };
+    next.expect("small")
+}
+
+/// Two radians of the upper half of a circle about the origin, to the left, whose middle is on top: one lap, with no change of it.
+fn upper<S: Format>(bend: f64) -> Segment<S> {
+    let from = FRAC_PI_2 - 1.0;
+    segment([bend * from.cos(), bend * from.sin(), from + FRAC_PI_2], 2.0 * bend, Some(bend))
+}
+
+/// Events along the second, and turning lengths of the first \[m\].
+fn found<S: Format>(first: &Segment<S>, second: &Segment<S>, radius: f64) -> [Vec<f64>; 2] {
+    let mut found = [Vec::new(), Vec::new()];
+    let [events, turns] = &mut found;
+    let sizes = [S::from_f64(radius), S::from_f64(SLACK)];
+    internals::events(first, second, sizes, |s| events.push(s.to_f64()), |l| turns.push(l.to_f64()));
+    found
+}
+
+fn has(lengths: &[f64], at: f64) -> bool {
+    lengths.iter().any(|length| (length - at).abs() < 8e-3)
+}
+
+/// The end of a line over the middle of another one: two events where it is in reach, the foot up to a slack further out.
+fn ends_of_lines<S: Format>() {
+    let second = segment::<S>([-3.0, 0.0, 0.0], 6.0, None);
+    for side in [1.0, -1.0] {
+        for (missed, foot) in [(-0.5, false), (0.1, true), (0.9, true), (1.1, false), (3.0, false)] {
+            let off = RADIUS + missed * SLACK;
+            // It comes down to there, or sets off from there.
+            let down = segment::<S>([0.0, side * (off + 5.0), -side * FRAC_PI_2], 5.0, None);
+            let up = segment::<S>([0.0, side * off, side * FRAC_PI_2], 5.0, None);
+            for (first, end) in [(down, 5.0), (up, 0.0)] {
+                let [events, turns] = found(&first, &second, RADIUS);
+                assert_eq!(has(&events, 3.0), foot, "{missed} slacks: {events:?}");
+                let half = (RADIUS * RADIUS - off * off).max(0.0).sqrt();
+                let both = missed >= 0.0 || has(&events, 3.0 - half) && has(&events, 3.0 + half);
+                assert!(both && has(&events, 0.0) && has(&events, 6.0), "{missed} slacks: {events:?}");
+                // An end that touches may be that of a contact just beyond it: half a slack outside, a slack inside.
+                assert_eq!(has(&turns, end), (-1.0..=0.5).contains(&missed), "{missed} slacks: {turns:?}");
+            }
+        }
+        for (missed, turns_there) in [(-1.1, false), (-0.9, true), (0.4, true), (0.6, false)] {
+            // Head on: the contact at the offset of the end is not normal to the second line, the end counts by its offset.
+            let first = segment::<S>([0.0, side * (RADIUS + missed * SLACK), 0.0], 2.0, None);
+            let [_, turns] = found(&first, &second, RADIUS);
+            assert_eq!([has(&turns, 0.0), has(&turns, 2.0)], [turns_there; 2], "{missed} slacks: {turns:?}");
+        }
+    }
+}
+
+/// A path that turns back short of a line, or passes an arc outside: one event where half a slack is missed at most.
+fn normals<S: Format>() {
+    for (missed, there) in [(0.4, true), (0.6, false)] {
+        // An arc of 2 m whose lowest point is as far above the line.
+        let line = segment::<S>([-4.0, 0.0, 0.0], 8.0, None);
+        let arc = segment::<S>([-2.0, 2.0 + RADIUS + missed * SLACK, -FRAC_PI_2], 2.0 * PI, Some(2.0));
+        let [events, _] = found(&line, &arc, RADIUS);
+        assert_eq!(has(&events, PI), there, "arc beside a line, {missed} slacks: {events:?}");
+        let [_, turns] = found(&arc, &line, RADIUS);
+        assert_eq!(has(&turns, PI), there, "turning point of an arc, {missed} slacks: {turns:?}");
+        // A line that passes an arc of 2 m about the origin outside, and a smaller one.
+        for bend in [2.0, 1.25] {
+            let own = upper::<S>(bend);
+            let passing = segment::<S>([-3.0, bend + RADIUS + missed * SLACK, 0.0], 6.0, None);
+            let [events, _] = found(&own, &passing, RADIUS);
+            assert_eq!(has(&events, 3.0), there, "line outside {bend} m, {missed} slacks: {events:?}");
+            let [_, turns] = found(&passing, &own, RADIUS);
+            assert_eq!(has(&turns, 3.0), there, "turning point outside {bend} m, {missed} slacks: {turns:?}");
+        }
+        // Two arcs of 2 m whose circles are as far apart.
+        let own = upper::<S>(2.0);
+        let other = segment::<S>([-2.0, 4.0 + RADIUS + missed * SLACK, -FRAC_PI_2], 2.0 * PI, Some(2.0));
+        let [events, turns] = found(&own, &other, RADIUS);
+        assert_eq!([has(&events, PI), has(&turns, 2.0)], [there; 2], "two arcs, {missed} slacks: {events:?} {turns:?}");
+    }
+}
+
+/// From inside an arc: P1 about the centre below twice the radius, right to a slack; P3 beyond, which takes (ϱ + R) / (ϱ - R) times
+/// half a slack for touching.
+fn inside<S: Format>() {
+    for (bend, missed, there) in [(1.5, 0.9, true), (1.5, 1.2, false), (4.0, 0.7, true), (4.0, 1.0, false)] {
+        let own = upper::<S>(bend);
+        // A line through the circle that stays off the ring inside which nothing is in contact.
+        let passing = segment::<S>([-1.0, bend - RADIUS + missed * SLACK, 0.0], 2.0, None);
+        let [events, _] = found(&own, &passing, RADIUS);
+        assert_eq!(has(&events, 1.0), there, "{missed} slacks inside {bend} m: {events:?}");
+    }
+}
+
+/// A disc that holds all of a circle about any point near its centre: the two ends of the diameter are events.
+fn whole_circles<S: Format>() {
+    let circle = segment::<S>([1.0, 0.0, FRAC_PI_2], TAU, Some(1.0));
+    for off in [0.2, 0.45] {
+        let first = segment::<S>([off, 5.0, -FRAC_PI_2], 5.0, None);
+        let [events, _] = found(&first, &circle, 1.5);
+        assert!(has(&events, PI), "the far end of the diameter through the point at {off} m: {events:?}");
+    }
+}
+
+macro_rules! in_format {
+    ($name:ident, $format:ty) => {
+        #[test]
+        fn $name() {
+            ends_of_lines::<$format>();
+            normals::<$format>();
+            inside::<$format>();
+            whole_circles::<$format>();
+        }
+    };
+}
+
+in_format!(near_misses_are_events_up_to_the_slack_in_f64, f64);
+in_format!(near_misses_are_events_up_to_the_slack_in_f32, f32);
+in_format!(near_misses_are_events_up_to_the_slack_in_q20, Q20);
+in_format!(near_misses_are_events_up_to_the_slack_in_q16, Q16);
+in_format!(near_misses_are_events_up_to_the_slack_in_q12, Q12);
