@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web python packages instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -32,7 +32,7 @@ style() {
 quick() {
   style
   step "unit tests"
-  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-drawing -p pcr-comparing --lib --features pcr-drawing/png --locked
+  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-exclusions -p pcr-drawing -p pcr-comparing --lib --features pcr-drawing/png --locked
 }
 
 docs() {
@@ -57,6 +57,17 @@ tests() {
   for example in "${examples[@]}"; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
   step "benchmarks, one pass each, as the tests are built"
   cargo bench "${options[@]}" --bench '*' -- --test
+}
+
+# Files that are written for openTCS, against its schema.
+schemas() {
+  step "plant models, by the schema of openTCS"
+  if ! command -v xmllint >/dev/null; then
+    echo "installing libxml2-utils"
+    apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends libxml2-utils >/dev/null
+  fi
+  # As the tests build it.
+  cargo test --workspace --profile checked --features pcr-tests/peers --locked --test tool -- --ignored plant_models
 }
 
 # A browser for the pages; a package of Debian, where there is none.
@@ -134,7 +145,7 @@ features() {
     cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
   done
   step "each part of the host alone, with the features that it names itself"
-  for crate in pcr-formats pcr-planning pcr-drawing pcr-comparing pcr-host; do
+  for crate in pcr-formats pcr-planning pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
     echo "$crate"
     cargo clippy -q -p $crate --locked --no-default-features -- -D warnings
   done
@@ -222,7 +233,7 @@ everything() {
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
-  for part in style docs features tests pages web python proofs; do
+  for part in style docs features tests pages web schemas python proofs; do
     kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
     timed "$part"
   done

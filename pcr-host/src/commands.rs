@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod demo;
 mod evaluate;
+mod exclusions;
 mod help;
 mod import;
 mod locks;

@@ -17,6 +17,7 @@ pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
+pub mod rules;
 pub mod search;
 pub mod settings;
 pub mod shadow;

@@ -13,6 +13,7 @@ mod degenerate;
 mod delays;
 mod documents;
 mod earned;
+mod exclusions;
 mod firmware;
 mod footprints;
 mod formats;

@@ -39,7 +39,7 @@ const POINT: f64 = 1e-6;
 pub(super) const STEPS: f64 = 1000.0;
 
 /// Lines and true arcs one after the other, by a map from metres to the picture; `flipped` where its y-axis points down.
-fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
+pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
     let mut data = PathData::default();
     for (k, piece) in curve.iter().enumerate() {
         if k == 0 {
@@ -155,6 +155,11 @@ impl Ground<'_> {
 
     /// The level as a picture of its own.
     pub(super) fn picture(&self) -> String {
+        self.picture_with(&self.title(), 0.0, |_, _| {})
+    }
+
+    /// The same under another title, with more on it and room below, in pixels.
+    pub(super) fn picture_with(&self, title: &str, room: f64, more: impl FnOnce(&mut Svg, &Frame)) -> String {
         let [x, y] = self.bounds();
         let metre = SIDE / x.length().max(y.length());
         let fit = |values: Interval<f64>| {
@@ -165,18 +170,18 @@ impl Ground<'_> {
         let ((width, x), (height, y)) = (fit(x), fit(y));
         let left = room_at_left(y, height);
         let frame = Frame::new(x, y, [left, ROOM_ABOVE, left + width, ROOM_ABOVE + height]);
-        let title = self.title();
         let [_, _, right, bottom] = frame.edges;
-        let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW, &title);
+        let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW + room, title);
         let size = Pixels(AXIS_SIZE + 0.5);
-        svg.label([(left + right) / 2.0, ROOM_ABOVE - 9.0], "middle", &[("font-size", &size)], &title);
+        svg.label([(left + right) / 2.0, ROOM_ABOVE - 9.0], "middle", &[("font-size", &size)], title);
         frame.draw(&mut svg, ["x [m]", "y [m]"]);
         self.draw(&mut svg, &frame, true);
+        more(&mut svg, &frame);
         frame.draw_border(&mut svg);
         svg.finish()
     }
 
-    fn title(&self) -> String {
+    pub(super) fn title(&self) -> String {
         let Imported { layout, vehicle } = self.imported;
         let name = if layout.name.is_empty() { "Layout" } else { &layout.name };
         let level = match layout.levels.get(self.level).filter(|_| layout.levels.len() > 1) {

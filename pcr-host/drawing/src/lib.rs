@@ -10,6 +10,7 @@
 //! map         paper Fig. 11: the extended collision map of an agent
 //! overview    both side by side
 //! page        the same in a browser, with a time slider
+//! audit       what an audit of exclusions has found
 //! layout      the corridors on the edges of a layout
 //! locks       a page in which the edges of a layout show what they block
 //! replay      a page on which to watch a simulation
@@ -18,6 +19,7 @@
 //! raster      SVG to PNG (feature `png`)
 //! ```
 
+mod audit;
 mod axis;
 mod contour;
 mod labels;
@@ -39,6 +41,7 @@ mod workspace;
 
 pub use layout::Ground;
 pub use overlay::{Bar, Overlay};
+use pcr_exclusions::{Audit, Rules};
 use pcr_formats::import::Imported;
 use pcr_formats::output;
 use pcr_formats::scenario::Scenario;
@@ -104,6 +107,33 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
     for level in 0..imported.layout.levels.len() {
         let svg = Ground { imported, level }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
+        files.extend(formats.files(&name, svg)?);
+    }
+    output::folder(directory)?;
+    let write = |(name, content): (String, Vec<u8>)| {
+        let file = directory.join(name);
+        output::write(&file, content).map(|()| file)
+    };
+    files.into_iter().map(write).collect()
+}
+
+/// Writes the audit of a layout: a page with groups and gaps as layers, and a picture of each level. Returns the files.
+///
+/// # Errors
+/// Those of writing files.
+pub fn write_audit(
+    imported: &Imported,
+    locks: &Locks,
+    rules: &Rules,
+    audit: &Audit,
+    directory: &Path,
+) -> io::Result<Vec<PathBuf>> {
+    let page = locks::page_of_audit(imported, locks, rules, audit);
+    let mut files = vec![("audit.html".to_owned(), page.into_bytes())];
+    let formats = Formats::new();
+    for level in 0..imported.layout.levels.len() {
+        let svg = audit::picture(Ground { imported, level }, rules, audit);
+        let name = if level > 0 { format!("audit-{}", level + 1) } else { "audit".to_owned() };
         files.extend(formats.files(&name, svg)?);
     }
     output::folder(directory)?;

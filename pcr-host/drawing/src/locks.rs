@@ -2,6 +2,7 @@
 
 use super::layout::{STEPS, bounds, line};
 use super::template::Page;
+use pcr_exclusions::{Audit, Rules};
 use pcr_formats::import::{Id, Imported};
 use pcr_formats::scenario::Placed;
 use pcr_planning::locks::{Locks, Rides, corridor};
@@ -11,14 +12,22 @@ use std::collections::HashMap;
 const PAGE: Page = Page {
     kind: "locks",
     body: include_str!("locks/locks.html"),
-    style: include_str!("locks/locks.css"),
-    script: include_str!("locks/locks.js"),
+    style: concat!(include_str!("locks/locks.css"), include_str!("locks/layers.css")),
+    script: concat!(include_str!("locks/locks.js"), include_str!("locks/layers.js")),
 };
 
 /// The page.
 pub(super) fn page(imported: &Imported, locks: &Locks) -> String {
     let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
     PAGE.fill(name, &data(imported, locks))
+}
+
+/// The page with what an audit has found, as layers: groups as written, what they leave out, and what they exclude in vain.
+pub(super) fn page_of_audit(imported: &Imported, locks: &Locks, rules: &Rules, audit: &Audit) -> String {
+    let name = if imported.layout.name.is_empty() { "Layout" } else { &imported.layout.name };
+    let mut all = data(imported, locks);
+    all["audit"] = super::audit::layers(imported, rules, audit);
+    PAGE.fill(name, &all)
 }
 
 /// Numbers of the page: lengths in metres, coordinates and path data in steps of a millimetre, y up.

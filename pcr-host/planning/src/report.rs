@@ -178,7 +178,7 @@ pub fn heading(name: &str) -> String {
 }
 
 /// A name on a terminal: whatever would move the cursor or change colours is escaped.
-fn printable(name: &str) -> String {
+pub fn printable(name: &str) -> String {
     name.chars().fold(String::new(), |mut text, c| {
         if c.is_control() {
             text.extend(c.escape_default());

@@ -1,8 +1,9 @@
 //! `pcr locks`.
 
+use super::exclusions::Asked;
 use super::printed::notes;
 use super::sources::{layout, source};
-use super::{Form, Printed, STATUSES, Stop};
+use super::{Form, Printed, Stop};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
@@ -15,13 +16,22 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+const STATUSES: &str = "\
+Exit status:
+  0  done; with --audit nothing can touch
+  1  with --audit: something can touch
+  2  wrong arguments, or a layout that cannot be read or was refused
+  3  the output could not be written";
+
 const EXAMPLES: &str = "\
 Examples:
   pcr locks warehouse.geojson --radius 0.4                      the table of locks of a nav2 route graph
   pcr locks warehouse.geojson --radius 0.4 -o locks             and a page in which an edge shows what it blocks
   pcr locks roadmap.xml --radius 0.5 --index roadmap.locks      a table of any size in a file
   pcr locks roadmap.locks --edge e17                            what an edge shares its time with, from that file
-  pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv";
+  pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
+  pcr locks warehouse.geojson --radius 0.4 --write nav2 -o guarded.geojson     and edges to be closed, into the file
+  pcr locks plant.xml --radius 0.5 --audit -o audit             what the blocks of the file do not keep apart";
 
 /// Print which edges of a layout may not be used at the same time, and on which lengths
 #[derive(Args)]
@@ -43,9 +53,11 @@ pub(super) struct Arguments {
     /// Write the locks to this file instead, in which --edge finds an edge without reading the others
     #[arg(long, value_name = "FILE", conflicts_with_all = ["lines", "output", "edge", "format", "json"])]
     index: Option<PathBuf>,
-    /// Draw the layout with its locks to this directory as well
+    /// Draw the layout with its locks to this directory as well; with --write the file to be written
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    asked: Asked,
     #[command(flatten)]
     import: Options,
 }
@@ -53,6 +65,9 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         let file = &source(self.layout.clone())?;
+        if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref()) {
+            return done;
+        }
         if let Some(edge) = &self.edge {
             return self.of_edge(file, edge);
         }

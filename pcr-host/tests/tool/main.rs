@@ -5,6 +5,7 @@ mod compare;
 #[cfg(unix)]
 mod console;
 mod evaluate;
+mod exclusions;
 mod files;
 mod fixture;
 mod formats;

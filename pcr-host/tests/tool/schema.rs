@@ -56,6 +56,7 @@ fn every_output_fits_its_schema() {
     let outlines = format!("{ROOT}/tests/data/small/outlines.json");
     let stuck = json!({ "agents": [straight(1, [0.0, 0.0, 0.0], 4.0), straight(2, [4.0, 0.0, 3.2], 4.0)] });
     let stuck = file("schema", "stuck.json", stuck.to_string());
+    let (plant, blocks) = (real("opentcs/Demo-01.xml"), file("schema", "blocks.xml", String::new()));
     let mut formats: Vec<String> = Vec::new();
     for arguments in [
         &["regions", PAPER, "--slices", "2", "--margin", "0.05"][..],
@@ -74,6 +75,8 @@ fn every_output_fits_its_schema() {
         &["locks", &layout, "--radius", "0.3", "--nodes"],
         &["locks", &lif, "--radius", "0.3"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--edge", "26"],
+        &["locks", &plant, "--radius", "0.9", "--write", "opentcs", "-o", &blocks],
+        &["locks", &plant, "--radius", "0.9", "--audit"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "3", "--hours", "0.01", "--compare"],
         &["nodes", &layout],
@@ -89,6 +92,8 @@ fn every_output_fits_its_schema() {
         fits(&run_with(&[refused, &["--json"]].concat(), b"{}\n").out);
     }
     formats.push(fits(&run(&["plan", &labelled, "-o", "-", "-q"]).out));
+    let lock_file = ["locks", &layout, "--radius", "0.3", "--write", "pcr", "-o", "-", "-q"];
+    formats.push(fits(&run(&lock_file).out));
     let factsheet = format!("{ROOT}/tests/data/small/factsheet.json");
     formats.push(fits(&run(&["import", "nav2", &layout, "--route", "0:1", "--fleet", &factsheet, "-q"]).out));
     let routes = ["import", "nav2", &layout, "--route", "0:1", "--radius", "0.3", "-q"];

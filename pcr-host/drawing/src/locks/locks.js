@@ -143,6 +143,7 @@ function draw() {
     if (node.level !== at) continue;
     nodes.set(node.id, make(lines, "circle", { cx: node.x, cy: node.y, r: 0.2 * STEPS * data.radius, class: "node" }));
   }
+  draw_layers();
   pin(null);
 }
 

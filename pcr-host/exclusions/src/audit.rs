@@ -1,0 +1,335 @@
+//! The rules of a file against the exact table of locks: what can touch and is not excluded, and what is excluded and cannot touch.
+//!
+//! Two vehicles on one edge can always touch, so that an edge has to exclude itself. A vehicle that comes to a node has been on an edge
+//! that ends there, and that edge touches whatever the node does; hence for a node and an edge it is enough that a vehicle
+//! at the node keeps others off the edge, and two nodes need nothing more.
+
+use crate::{Claim, Group, Rules, Section, Target, nearest, stretch};
+use pcr_formats::import::{Id, Imported, Layout};
+use pcr_formats::scenario::Placed;
+use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// What has come of an audit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Audit {
+    /// Name of the layout.
+    pub layout: String,
+    /// The vehicle.
+    pub vehicle: LockVehicle,
+    /// What has been audited: the format of the exclusions.
+    pub exclusions: String,
+    /// Groups, blocks, zones or lists of the file.
+    pub groups: usize,
+    /// Pairs of edges, and of a node and an edge, on which two vehicles can touch; every edge and itself among them.
+    pub can_touch: usize,
+    /// Those that the rules do not exclude.
+    pub gaps: Vec<Gap>,
+    /// Pairs of edges that cannot touch, and are excluded.
+    pub needless: Vec<Needless>,
+    /// Of all lengths at which two vehicles can be on two edges at the same time \[m²\], those at which the rules exclude it.
+    pub excluded: f64,
+    /// Those at which the table of locks excludes it \[m²\].
+    pub needed: f64,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// An edge or a node.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Spot {
+    /// An edge, as in the layout.
+    Edge(Id),
+    /// A node, as in the layout.
+    Node(Id),
+}
+
+/// Two places at which two vehicles can touch although they keep to the rules.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gap {
+    /// One of them.
+    pub a: Spot,
+    /// The other one; the same edge, for two vehicles on one edge.
+    pub b: Spot,
+    /// How the two hang together: `same`, `adjacent` (they share a node) or `apart`.
+    pub relation: &'static str,
+    /// Lengths of the first one \[m\]; none of a node.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub a_length: Option<[f64; 2]>,
+    /// Lengths of the second one \[m\].
+    pub b_length: [f64; 2],
+    /// Between the two centres, where they come nearest \[m\].
+    pub at: [f64; 2],
+    /// How deep the vehicles overlap there \[m\]; of an outline the deepest of its discs.
+    pub depth: f64,
+    /// Floor or map.
+    pub level: String,
+}
+
+/// Two edges that are excluded and cannot touch.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Needless {
+    /// An edge.
+    pub a: Id,
+    /// Another one.
+    pub b: Id,
+}
+
+impl Audit {
+    /// What rules leave out, and what they exclude in vain. `locks` has nodes.
+    pub fn of(imported: &Imported, locks: &Locks, rules: &Rules, target: Target) -> Self {
+        let auditor = Auditor::new(imported, rules);
+        let mut audit = Self {
+            layout: locks.layout.clone(),
+            vehicle: locks.vehicle.clone(),
+            exclusions: target.to_string(),
+            groups: rules.groups.len(),
+            can_touch: 0,
+            gaps: Vec::new(),
+            needless: Vec::new(),
+            excluded: 0.0,
+            needed: 0.0,
+            warnings: imported.layout.warnings.iter().chain(&rules.warnings).cloned().collect(),
+        };
+        let places: HashMap<&Id, usize> =
+            imported.layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
+        let mut pairs: BTreeMap<[usize; 2], Vec<[[f64; 2]; 2]>> = BTreeMap::new();
+        for lock in &locks.locks {
+            let (Some(&a), Some(&b)) = (places.get(&lock.a), places.get(&lock.b)) else { continue };
+            pairs.entry([a, b]).or_default().push([lock.a_length, lock.b_length]);
+            audit.needed += (lock.a_length[1] - lock.a_length[0]) * (lock.b_length[1] - lock.b_length[0]);
+        }
+        for (k, edge) in imported.layout.edges.iter().enumerate() {
+            pairs.entry([k, k]).or_default().push([[0.0, edge.length()]; 2]);
+        }
+        for (&[a, b], locked) in &pairs {
+            audit.can_touch += 1;
+            let gaps = locked.iter().filter_map(|&lengths| auditor.gap([a, b], lengths));
+            audit.gaps.extend(gaps.max_by(|x, y| x.depth.total_cmp(&y.depth)));
+        }
+        audit.add_nodes(&auditor, locks, &places);
+        for [a, b] in auditor.excluded_pairs() {
+            audit.excluded += auditor.area(a, b);
+            if !pairs.contains_key(&[a, b]) && !pairs.contains_key(&[b, a]) {
+                let id = |place: usize| imported.layout.edges[place].id.clone();
+                audit.needless.push(Needless { a: id(a), b: id(b) });
+            }
+        }
+        audit.needless.sort_by(|x, y| (&x.a, &x.b).cmp(&(&y.a, &y.b)));
+        audit
+    }
+
+    fn add_nodes(&mut self, auditor: &Auditor<'_>, locks: &Locks, places: &HashMap<&Id, usize>) {
+        let nodes: HashMap<&Id, usize> =
+            auditor.imported.layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect();
+        let mut done: BTreeMap<[usize; 2], Option<Gap>> = BTreeMap::new();
+        for lock in locks.nodes.iter().flatten() {
+            let (Some(&node), Some(&edge)) = (nodes.get(&lock.node), places.get(&lock.edge)) else { continue };
+            let gap = auditor.gap_at(node, edge, lock.edge_length);
+            let known = done.entry([node, edge]).or_default();
+            if known.as_ref().map_or(f64::NEG_INFINITY, |gap| gap.depth)
+                < gap.as_ref().map_or(f64::NEG_INFINITY, |gap| gap.depth)
+            {
+                *known = gap;
+            }
+        }
+        self.can_touch += done.len();
+        self.gaps.extend(done.into_values().flatten());
+    }
+
+    /// Whether nothing can touch as long as vehicles keep to the rules.
+    pub fn suffices(&self) -> bool {
+        self.gaps.is_empty()
+    }
+}
+
+struct Auditor<'a> {
+    imported: &'a Imported,
+    rules: &'a Rules,
+    rides: Rides<'a>,
+    radius: f64,
+}
+
+/// The two ranges' common part.
+fn common(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
+    let both = [a[0].max(b[0]), a[1].min(b[1])];
+    (both[0] <= both[1]).then_some(both)
+}
+
+impl<'a> Auditor<'a> {
+    fn new(imported: &'a Imported, rules: &'a Rules) -> Self {
+        let rides = Rides::new(imported);
+        let radius = rides.vehicle().radius;
+        Self { imported, rules, rides, radius }
+    }
+
+    fn layout(&self) -> &'a Layout {
+        &self.imported.layout
+    }
+
+    /// The sections of an edge in the directions in which it may be travelled.
+    fn ways(&self, edge: usize) -> impl Iterator<Item = &'a [Section]> {
+        let both = self.layout().edges[edge].two_way;
+        let ways = self.rules.edges.get(edge).into_iter().flatten().take(if both { 2 } else { 1 });
+        ways.map(Vec::as_slice)
+    }
+
+    /// Where on two edges vehicles can touch, of these lengths of a lock: the deepest such place.
+    fn gap(&self, [a, b]: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<Gap> {
+        let mut worst: Option<Gap> = None;
+        let mut seen = BTreeSet::new();
+        for own in self.ways(a).flatten() {
+            let Some(own_length) = common(own.length, a_length) else { continue };
+            for other in self.ways(b).flatten().filter(|other| !own.claim.excludes(&other.claim)) {
+                let Some(other_length) = common(other.length, b_length) else { continue };
+                if seen.insert([own_length, other_length].map(|range| range.map(f64::to_bits))) {
+                    let gap = self.touching([a, b], [own_length, other_length]);
+                    if gap.as_ref().is_some_and(|gap| worst.as_ref().is_none_or(|worst| worst.depth < gap.depth)) {
+                        worst = gap;
+                    }
+                }
+            }
+        }
+        worst
+    }
+
+    /// The gap of two stretches, if vehicles on them can touch.
+    fn touching(&self, [a, b]: [usize; 2], lengths: [[f64; 2]; 2]) -> Option<Gap> {
+        let edges = [a, b].map(|place| &self.layout().edges[place]);
+        let near = if self.imported.vehicle.footprint.is_none() {
+            let curves = [0, 1].map(|k| stretch(&edges[k].curve, lengths[k]));
+            let reach = 2.0 * self.radius + edges[0].deviation + edges[1].deviation;
+            near(&curves[0], &curves[1], reach)
+        } else {
+            // Lengths of a body are not those of its discs: the lock tells that there is contact, the discs how deep at most.
+            self.discs(a, b)
+        };
+        let (depth, at) = match near {
+            Some(near) => near,
+            // Without a length an edge is a point.
+            None => (2.0 * self.radius, self.layout().nodes.get(edges[0].ends[0])?.at),
+        };
+        let shared = edges[0].ends.iter().any(|end| edges[1].ends.contains(end));
+        (depth >= 0.0).then(|| Gap {
+            a: Spot::Edge(edges[0].id.clone()),
+            b: Spot::Edge(edges[1].id.clone()),
+            relation: if a == b {
+                "same"
+            } else if shared {
+                "adjacent"
+            } else {
+                "apart"
+            },
+            a_length: Some(lengths[0]),
+            b_length: lengths[1],
+            at,
+            depth,
+            level: self.level(self.layout().level(edges[0])),
+        })
+    }
+
+    fn discs(&self, a: usize, b: usize) -> Option<(f64, [f64; 2])> {
+        let tracks = [a, b].map(|place| corridor(&self.rides.on(&self.layout().edges[place])));
+        let pairs = tracks[0].iter().flat_map(|own| tracks[1].iter().map(move |other| (own, other)));
+        let all = pairs.filter_map(|((own, r), (other, s))| near(own, other, r + s));
+        all.max_by(|x, y| x.0.total_cmp(&y.0)).map(|(depth, at)| (depth.max(0.0), at))
+    }
+
+    fn level(&self, level: usize) -> String {
+        self.layout().levels.get(level).cloned().unwrap_or_default()
+    }
+
+    /// Where a vehicle on an edge can touch one that stands at a node and does not keep it off.
+    fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<Gap> {
+        let (claim, there) = (self.rules.nodes.get(node)?, self.layout().nodes.get(node)?);
+        let (own, stands) = (&self.layout().edges[edge], [Placed::line(there.at, there.at)]);
+        let open = self.ways(edge).flatten().filter(|section| !claim.keeps_out(&section.claim));
+        let ranges = open.filter_map(|section| common(section.length, length));
+        let gaps = ranges.filter_map(|range| {
+            let curve = stretch(&own.curve, range);
+            let (depth, at) = match self.imported.vehicle.footprint {
+                None => near(&stands, &curve, 2.0 * self.radius + own.deviation)?,
+                Some(_) => near(&stands, &curve, 2.0 * self.radius).map(|(depth, at)| (depth.max(0.0), at))?,
+            };
+            (depth >= 0.0).then(|| Gap {
+                a: Spot::Node(there.id.clone()),
+                b: Spot::Edge(own.id.clone()),
+                relation: if own.ends.contains(&node) { "adjacent" } else { "apart" },
+                a_length: None,
+                b_length: range,
+                at,
+                depth,
+                level: self.level(there.level),
+            })
+        });
+        gaps.max_by(|x, y| x.depth.total_cmp(&y.depth))
+    }
+
+    /// Pairs of different edges of which some sections exclude each other.
+    fn excluded_pairs(&self) -> BTreeSet<[usize; 2]> {
+        let mut taking: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        let claims = |edge: usize| self.ways(edge).flatten().map(|section| &section.claim);
+        for edge in 0..self.layout().edges.len() {
+            for token in claims(edge).flat_map(|claim: &Claim| &claim.takes) {
+                taking.entry(*token).or_default().insert(edge);
+            }
+        }
+        let mut pairs: BTreeSet<[usize; 2]> = BTreeSet::new();
+        for a in 0..self.layout().edges.len() {
+            let tokens: BTreeSet<usize> = claims(a).flat_map(|claim: &Claim| claim.bars.iter().copied()).collect();
+            let others: BTreeSet<usize> =
+                tokens.iter().filter_map(|token| taking.get(token)).flatten().copied().collect();
+            // What excludes each other shows from either side.
+            let excludes = |b: &usize| claims(a).any(|own| claims(*b).any(|other| own.excludes(other)));
+            pairs.extend(others.into_iter().filter(|b| *b > a && excludes(b)).map(|b| [a, b]));
+        }
+        pairs
+    }
+
+    /// Lengths of two edges at which they exclude each other, in the directions in which most are left \[m²\].
+    fn area(&self, a: usize, b: usize) -> f64 {
+        let area = |own: &[Section], other: &[Section]| {
+            let pairs = own.iter().flat_map(|own| other.iter().map(move |other| (own, other)));
+            let size = |section: &Section| section.length[1] - section.length[0];
+            pairs
+                .filter(|(own, other)| own.claim.excludes(&other.claim))
+                .map(|(own, other)| size(own) * size(other))
+                .sum::<f64>()
+        };
+        let all = self.ways(a).flat_map(|own| self.ways(b).map(move |other| area(own, other)));
+        all.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// How deep discs with these radii together overlap where two curves come nearest, and where; below 0 where they do not touch.
+fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
+    let found = nearest(a, b)?;
+    let [p, q] = found.points;
+    let depth = reach - found.distance;
+    // What the search leaves open counts as contact.
+    let depth = if depth < 0.0 && found.least <= reach { 0.0 } else { depth };
+    Some((depth, [0, 1].map(|k| (p[k] + q[k]) / 2.0)))
+}
+
+/// The groups of tokens that several places have, by name.
+pub(crate) fn groups(layout: &Layout, names: &[String], edges: &[Vec<usize>], nodes: &[Vec<usize>]) -> Vec<Group> {
+    let empty = |name: &String| Group { name: name.clone(), edges: Vec::new(), nodes: Vec::new() };
+    let mut groups: Vec<Group> = names.iter().map(empty).collect();
+    for (tokens, edge) in edges.iter().zip(&layout.edges) {
+        for token in tokens {
+            if let Some(group) = groups.get_mut(*token) {
+                group.edges.push(edge.id.to_string());
+            }
+        }
+    }
+    for (tokens, node) in nodes.iter().zip(&layout.nodes) {
+        for token in tokens {
+            if let Some(group) = groups.get_mut(*token) {
+                group.nodes.push(node.id.to_string());
+            }
+        }
+    }
+    groups
+}

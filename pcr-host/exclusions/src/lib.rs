@@ -1,0 +1,204 @@
+//! What keeps vehicles apart in the files that fleets load: groups, blocks, zones and lists of closed edges, read, written and audited.
+//!
+//! Every format is read as [`Rules`]: what a vehicle takes on an edge or at a node, and what it bars the others from. The rules
+//! are those of the program that loads the file:
+//!
+//! | format | a vehicle on an edge from u to v | a vehicle at a node |
+//! |---|---|---|
+//! | nav2 | takes the edge, bars those of its list | bars those of its list |
+//! | openTCS | takes u, the path, v, and all blocks in which one of them is | takes the point and its blocks |
+//! | Open-RMF | takes the groups of the lane and of v, no longer that of u | takes the group of the vertex |
+//! | VDA 5050 | takes the RELEASE zones that its contour touches | the same |
+//! | pcr | takes the locks of the stretch it is on | bars the stretches of its locks |
+//!
+//! ```text
+//! nearest   the least distance of two stretches
+//! audit     what can touch and is not excluded, and what is excluded and cannot touch   Audit
+//! cover     cliques that cover the pairs of a graph, and how many it takes at least
+//! edit      changes of a text at spans; the rest is kept byte for byte
+//! json      JSON with the span of every value
+//! yaml      YAML with the span of every value
+//! outline   polygons around corridors
+//! nav2, opentcs, rmf, vda5050, own   the formats
+//! report    what has been written and found, as text
+//! ```
+
+mod audit;
+mod cover;
+mod edit;
+mod json;
+mod nav2;
+mod nearest;
+mod opentcs;
+mod outline;
+mod own;
+pub mod report;
+mod rmf;
+mod vda5050;
+mod write;
+mod yaml;
+
+pub use audit::{Audit, Gap, Needless, Spot};
+pub use nearest::{Approach, nearest, stretch};
+pub use write::{Settings, Written, write};
+
+use pcr_formats::import::{Format, ImportError, Imported};
+use std::fmt;
+
+/// Formats of exclusions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Target {
+    /// Route graph of nav2: for each edge and node the edges to be closed while a vehicle is there
+    Nav2,
+    /// Building of Open-RMF: mutex groups of vertices and lanes
+    Rmf,
+    /// Plant model of openTCS: blocks of paths and points, or envelopes
+    #[cfg_attr(feature = "clap", value(name = "opentcs"))]
+    OpenTcs,
+    /// Zone set of VDA 5050 (3.0): RELEASE zones
+    Vda5050,
+    /// For each edge and node the stretches of others that it locks
+    Pcr,
+}
+
+impl Target {
+    /// The layout format whose files hold such exclusions themselves.
+    pub fn layout(self) -> Option<Format> {
+        match self {
+            Self::Nav2 => Some(Format::Nav2),
+            Self::Rmf => Some(Format::Rmf),
+            Self::OpenTcs => Some(Format::OpenTcs),
+            Self::Vda5050 | Self::Pcr => None,
+        }
+    }
+
+    /// What the layout of a format holds.
+    pub fn of_layout(format: Format) -> Option<Self> {
+        [Self::Nav2, Self::Rmf, Self::OpenTcs].into_iter().find(|target| target.layout() == Some(format))
+    }
+
+    /// What a file beside a layout is.
+    pub fn of_text(text: &str) -> Option<Self> {
+        if vda5050::is_zones(text) { Some(Self::Vda5050) } else { own::is_locks(text).then_some(Self::Pcr) }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Nav2 => "nav2",
+            Self::Rmf => "rmf",
+            Self::OpenTcs => "opentcs",
+            Self::Vda5050 => "vda5050",
+            Self::Pcr => "pcr",
+        })
+    }
+}
+
+/// What a vehicle takes, and what it bars all others from taking: numbers of tokens, ascending.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Claim {
+    /// What it needs to be free of the bars of others.
+    pub takes: Vec<usize>,
+    /// What nobody else may take while it is there.
+    pub bars: Vec<usize>,
+    /// Nobody may have it at all.
+    pub closed: bool,
+}
+
+impl Claim {
+    /// What one vehicle at a time has.
+    pub(crate) fn exclusive(mut tokens: Vec<usize>) -> Self {
+        tokens.sort_unstable();
+        tokens.dedup();
+        Self { takes: tokens.clone(), bars: tokens, closed: false }
+    }
+
+    /// Whether a vehicle with this claim keeps another one from making `other`.
+    pub fn keeps_out(&self, other: &Self) -> bool {
+        if other.closed {
+            return true;
+        }
+        let (mut bars, mut takes) = (self.bars.iter().peekable(), other.takes.iter().peekable());
+        while let (Some(bar), Some(take)) = (bars.peek(), takes.peek()) {
+            match bar.cmp(take) {
+                std::cmp::Ordering::Less => bars.next(),
+                std::cmp::Ordering::Greater => takes.next(),
+                std::cmp::Ordering::Equal => return true,
+            };
+        }
+        false
+    }
+
+    /// Whether two vehicles cannot have these claims at the same time, whoever comes first.
+    pub fn excludes(&self, other: &Self) -> bool {
+        self.closed || other.closed || (self.keeps_out(other) && other.keeps_out(self))
+    }
+}
+
+/// A stretch of an edge on which a vehicle has a claim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// From and to, from the start of the edge \[m\].
+    pub length: [f64; 2],
+    /// What it has there.
+    pub claim: Claim,
+}
+
+/// A group, block, zone or list of a file.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Group {
+    /// As in the file.
+    pub name: String,
+    /// Edges of its members.
+    pub edges: Vec<String>,
+    /// Nodes of its members.
+    pub nodes: Vec<String>,
+}
+
+/// What vehicles have to keep to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rules {
+    /// For each edge of the layout its sections in the direction of the edge, and those of its way back, both from the start of the edge.
+    pub edges: Vec<[Vec<Section>; 2]>,
+    /// For each node of the layout what a vehicle has that stands there.
+    pub nodes: Vec<Claim>,
+    /// What the file has, as it is named there.
+    pub groups: Vec<Group>,
+    /// What was read and does nothing, and why.
+    pub warnings: Vec<String>,
+}
+
+impl Rules {
+    /// Rules of whole edges, alike in both directions.
+    pub(crate) fn of_edges(imported: &Imported, edges: Vec<Claim>, nodes: Vec<Claim>) -> Self {
+        let ways = edges.into_iter().map(|claim| [claim.clone(), claim]).collect();
+        Self::of_ways(imported, ways, nodes)
+    }
+
+    /// Rules of whole edges, each forward and backward.
+    pub(crate) fn of_ways(imported: &Imported, ways: Vec<[Claim; 2]>, nodes: Vec<Claim>) -> Self {
+        let layout = &imported.layout;
+        let edges = layout
+            .edges
+            .iter()
+            .zip(ways)
+            .map(|(edge, claims)| claims.map(|claim| vec![Section { length: [0.0, edge.length()], claim }]));
+        Self { edges: edges.collect(), nodes, ..Self::default() }
+    }
+}
+
+/// Reads the exclusions of a file: of the layout itself, or of one beside it.
+///
+/// # Errors
+/// [`ImportError`] where the file is not of the format, or names what is not in the layout.
+pub fn read(target: Target, text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+    match target {
+        Target::Nav2 => nav2::read(text, imported),
+        Target::Rmf => rmf::read(text, imported),
+        Target::OpenTcs => opentcs::read(text, imported),
+        Target::Vda5050 => vda5050::read(text, imported),
+        Target::Pcr => own::read(text, imported),
+    }
+}

@@ -1,0 +1,275 @@
+//! Route graphs of nav2: the edges that are closed for the others while a vehicle is on an edge or at a node.
+//!
+//! Each edge and node has them in its metadata as [`KEY`], as the service `DynamicEdgesScorer/adjust_edges` takes them
+//! (`closed_edges` when the vehicle comes, `opened_edges` when it has left). An edge is among its own: two vehicles on one edge can touch.
+//! The service and its lists know edges by their ids, of 16 bits; edges of one id are closed together.
+
+use crate::edit::Edits;
+use crate::json::{Spanned, Value as Kind};
+use crate::{Claim, Group, Rules};
+use pcr_formats::import::{Id, ImportError, Imported};
+use pcr_planning::locks::Locks;
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The member of `metadata` that holds them.
+const KEY: &str = "closed_edges";
+
+/// The largest id of the service.
+const LARGEST: u64 = 65535;
+
+/// The id in the file of an edge or a node of a layout: of several with one id all but the first have a longer name there.
+fn id_in_file(id: &Id) -> Option<u64> {
+    match id {
+        Id::Number(number) => Some(*number),
+        Id::Text(text) => text.split('#').next()?.parse().ok(),
+    }
+}
+
+fn whole(value: &Value) -> Option<u64> {
+    let parsed = || value.as_str().and_then(|text| text.parse().ok());
+    value
+        .as_u64()
+        .or_else(parsed)
+        .or_else(|| value.as_f64().filter(|x| x.fract() == 0.0 && *x >= 0.0).map(|x| x as u64))
+}
+
+/// Whether a feature is a node, or an edge; what is neither has no part in the graph.
+fn is_node(feature: &Value) -> Option<bool> {
+    match feature["geometry"]["type"].as_str()? {
+        "Point" => Some(true),
+        "LineString" | "MultiLineString" => Some(false),
+        _ => None,
+    }
+}
+
+fn parse(text: &str) -> Result<Value, ImportError> {
+    serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        .map_err(|error| ImportError::new(format!("not JSON: {error}")))
+}
+
+/// Reads the lists.
+pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+    let root = parse(text)?;
+    let mut lists: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
+    let mut groups = Vec::new();
+    for feature in root["features"].as_array().into_iter().flatten() {
+        let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
+        let what = if node { "node" } else { "edge" };
+        let problem = || ImportError::new(format!("{what} {id}, metadata, {KEY}: ids of edges are expected"));
+        let list = match &feature["properties"]["metadata"][KEY] {
+            Value::Null => BTreeSet::new(),
+            Value::Array(ids) => ids.iter().map(whole).collect::<Option<_>>().ok_or_else(problem)?,
+            _ => return Err(problem()),
+        };
+        if !list.is_empty() {
+            let edges = list.iter().map(ToString::to_string).collect();
+            groups.push(Group { name: format!("{what} {id}"), edges, nodes: Vec::new() });
+        }
+        // Of several features with one id, what all of them close.
+        let known = lists[usize::from(node)].entry(id).or_insert_with(|| list.clone());
+        *known = known.intersection(&list).copied().collect();
+    }
+    let [of_edges, of_nodes] = lists;
+    let known: Vec<u64> = of_edges.keys().copied().collect();
+    let tokens = |list: Option<&BTreeSet<u64>>| {
+        let token =
+            |id: &u64| known.binary_search(id).map_err(|_| ImportError::new(format!("{KEY}: there is no edge {id}")));
+        list.into_iter().flatten().map(token).collect::<Result<Vec<_>, _>>()
+    };
+    let layout = &imported.layout;
+    let edges = layout.edges.iter().map(|edge| {
+        let id = id_in_file(&edge.id);
+        let takes = id.and_then(|id| known.binary_search(&id).ok()).into_iter().collect();
+        Ok(Claim { takes, bars: tokens(id.and_then(|id| of_edges.get(&id)))?, closed: false })
+    });
+    let nodes = layout.nodes.iter().map(|node| {
+        let bars = tokens(id_in_file(&node.id).and_then(|id| of_nodes.get(&id)))?;
+        Ok(Claim { bars, ..Claim::default() })
+    });
+    let (edges, nodes) = (edges.collect::<Result<_, ImportError>>()?, nodes.collect::<Result<_, ImportError>>()?);
+    Ok(Rules { groups, ..Rules::of_edges(imported, edges, nodes) })
+}
+
+/// Writes the lists of a table with nodes.
+pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<String, ImportError> {
+    let mut closed: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
+    let mut close = |node: bool, of: &Id, edge: &Id| {
+        if let (Some(of), Some(edge)) = (id_in_file(of), id_in_file(edge)) {
+            closed[usize::from(node)].entry(of).or_default().insert(edge);
+        }
+    };
+    imported.layout.edges.iter().for_each(|edge| close(false, &edge.id, &edge.id));
+    for lock in &locks.locks {
+        close(false, &lock.a, &lock.b);
+        close(false, &lock.b, &lock.a);
+    }
+    locks.nodes.iter().flatten().for_each(|lock| close(true, &lock.node, &lock.edge));
+    if let Some((large, _)) = closed[0].iter().find(|(id, _)| **id > LARGEST) {
+        return Err(ImportError::new(format!("edge {large}: the service that closes edges knows ids up to {LARGEST}")));
+    }
+    let (root, spans) = both(text)?;
+    let mut edits = Edits::default();
+    for (feature, span) in features(&root, &spans) {
+        let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
+        let ids: Vec<u64> = closed[usize::from(node)].get(&id).into_iter().flatten().copied().collect();
+        if let Some(properties) = span.get("properties") {
+            set(&mut edits, properties, &Value::from(ids).to_string());
+        }
+    }
+    Ok(edits.made(text))
+}
+
+/// Sets the list in the metadata of a feature.
+fn set(edits: &mut Edits, properties: &Spanned, list: &str) {
+    let metadata = properties.get("metadata");
+    if let Some(old) = metadata.and_then(|metadata| metadata.get(KEY)) {
+        return edits.replace(old.span.clone(), list);
+    }
+    match metadata.map(|metadata| (metadata, metadata.end_of_members())) {
+        Some((_, Some((at, comma)))) => edits.insert(at, format!("{comma}\"{KEY}\": {list}")),
+        // `null`, or what is no metadata.
+        Some((other, None)) => edits.replace(other.span.clone(), format!("{{ \"{KEY}\": {list} }}")),
+        None => {
+            if let Some((at, comma)) = properties.end_of_members() {
+                edits.insert(at, format!("{comma}\"metadata\": {{ \"{KEY}\": {list} }}"));
+            }
+        }
+    }
+}
+
+fn both(text: &str) -> Result<(Value, Spanned), ImportError> {
+    let spans = Spanned::of(text).ok_or_else(|| ImportError::new("not JSON"))?;
+    Ok((parse(text)?, spans))
+}
+
+fn features<'a>(root: &'a Value, spans: &'a Spanned) -> impl Iterator<Item = (&'a Value, &'a Spanned)> {
+    let values = root["features"].as_array().into_iter().flatten();
+    values.zip(spans.get("features").map_or(&[][..], Spanned::list))
+}
+
+/// Cuts edges into equal parts no longer than this \[m\]; returns the text, and which edges are left whole, and why.
+pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), ImportError> {
+    let (root, spans) = both(text)?;
+    let mut cutter = Cutter::new(&root);
+    let (mut edits, mut whole_ones) = (Edits::default(), Vec::new());
+    let mut nodes = Vec::new();
+    for (feature, span) in features(&root, &spans).filter(|(feature, _)| is_node(feature) == Some(false)) {
+        let properties = &feature["properties"];
+        let Some((ends, at)) = cutter.ends(properties) else { continue };
+        let length = (at[1][0] - at[0][0]).hypot(at[1][1] - at[0][1]);
+        let parts = (length / most - 1e-9).ceil().max(1.0);
+        if parts < 2.0 {
+            continue;
+        }
+        let id = &properties["id"];
+        if properties["operations"].as_array().is_some_and(|list| !list.is_empty()) {
+            whole_ones.push(format!("edge {id} is left whole: its operations belong to all of it"));
+            continue;
+        }
+        if properties["cost"].as_f64().is_some_and(|cost| cost != 0.0) {
+            whole_ones.push(format!("edge {id} is left whole: its cost belongs to all of it"));
+            continue;
+        }
+        let chain = cutter.chain(ends, at, parts as usize, &mut nodes);
+        let text = &text[span.span.clone()];
+        let copies = chain.windows(2).enumerate().map(|(k, pair)| {
+            let id = if k == 0 { whole(id).unwrap_or_default() } else { cutter.new_edge() };
+            copy(text, id, [&pair[0], &pair[1]])
+        });
+        edits.replace(span.span.clone(), copies.collect::<Option<Vec<_>>>().unwrap_or_default().join(",\n"));
+    }
+    if let Some(list) = spans.get("features")
+        && let Some(last) = list.list().last()
+    {
+        edits.insert(last.span.end, nodes.iter().map(|node| format!(",\n{node}")).collect::<String>());
+    }
+    Ok((edits.made(text), whole_ones))
+}
+
+/// A node of a chain: its id, and where it is \[m\].
+type Link = (u64, [f64; 2]);
+
+struct Cutter {
+    at: BTreeMap<u64, [f64; 2]>,
+    frames: BTreeMap<u64, Value>,
+    next: [u64; 2],
+    /// The nodes between two others, from the lower id on.
+    between: BTreeMap<(u64, u64, usize), Vec<Link>>,
+}
+
+impl Cutter {
+    fn new(root: &Value) -> Self {
+        let (mut at, mut frames, mut next) = (BTreeMap::new(), BTreeMap::new(), [0, 0]);
+        for feature in root["features"].as_array().into_iter().flatten() {
+            let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
+            next[usize::from(node)] = next[usize::from(node)].max(id + 1);
+            if node {
+                let coordinate = |k: usize| feature["geometry"]["coordinates"][k].as_f64().unwrap_or_default();
+                at.insert(id, [coordinate(0), coordinate(1)]);
+                frames.insert(id, feature["properties"]["frame"].clone());
+            }
+        }
+        Self { at, frames, next, between: BTreeMap::new() }
+    }
+
+    fn new_edge(&mut self) -> u64 {
+        self.next[0] += 1;
+        self.next[0] - 1
+    }
+
+    fn ends(&self, properties: &Value) -> Option<([u64; 2], [[f64; 2]; 2])> {
+        let ends = [whole(&properties["startid"])?, whole(&properties["endid"])?];
+        Some((ends, [*self.at.get(&ends[0])?, *self.at.get(&ends[1])?]))
+    }
+
+    /// The nodes along an edge, new ones where nothing has cut it there before.
+    fn chain(&mut self, ends: [u64; 2], at: [[f64; 2]; 2], parts: usize, features: &mut Vec<Value>) -> Vec<Link> {
+        let turned = ends[0] > ends[1];
+        let (low, high) = if turned { (1, 0) } else { (0, 1) };
+        let key = (ends[low], ends[high], parts);
+        if !self.between.contains_key(&key) {
+            let frame = self.frames.get(&ends[low]).cloned().unwrap_or_default();
+            let link = |k: usize| {
+                let share = k as f64 / parts as f64;
+                let point = [0, 1].map(|x| at[low][x] + (at[high][x] - at[low][x]) * share);
+                let id = self.next[1] + k as u64 - 1;
+                let mut of = json!({ "id": id });
+                if !frame.is_null() {
+                    of["frame"] = frame.clone();
+                }
+                let geometry = json!({ "type": "Point", "coordinates": point });
+                features.push(json!({ "type": "Feature", "properties": of, "geometry": geometry }));
+                (id, point)
+            };
+            let links: Vec<Link> = (1..parts).map(link).collect();
+            self.next[1] += links.len() as u64;
+            self.between.insert(key, links);
+        }
+        let mut chain = self.between[&key].clone();
+        if turned {
+            chain.reverse();
+        }
+        chain.insert(0, (ends[0], at[0]));
+        chain.push((ends[1], at[1]));
+        chain
+    }
+}
+
+/// The text of an edge with another id, other ends, and a line between them.
+fn copy(text: &str, id: u64, [from, to]: [&Link; 2]) -> Option<String> {
+    let spans = Spanned::of(text)?;
+    let properties = spans.get("properties")?;
+    let mut edits = Edits::default();
+    for (name, value) in [("id", id), ("startid", from.0), ("endid", to.0)] {
+        edits.replace(properties.get(name)?.span.clone(), value.to_string());
+    }
+    let geometry = spans.get("geometry")?;
+    let (kind, line) = (geometry.get("type")?, json!([from.1, to.1]));
+    edits.replace(kind.span.clone(), "\"LineString\"");
+    let drawn = geometry.get("coordinates")?;
+    if let Kind::Array(_) = drawn.value {
+        edits.replace(drawn.span.clone(), line.to_string());
+    }
+    Some(edits.made(text))
+}

@@ -1,0 +1,320 @@
+//! Plant models of openTCS: blocks, or envelopes.
+//!
+//! Points and paths are resources of one vehicle each; a vehicle on a path has the path and both of its points until it reports
+//! that it is at the second one. With a resource it has all blocks `SINGLE_VEHICLE_ONLY` in which that is a member. Where the vehicle has an
+//! envelope key, the envelopes of its resources with this key may not meet those of others.
+//!
+//! Blocks are written only for what points do not exclude: two paths with a common point have it both. Of places that touch, points
+//! come first, since a block of two points is one of all paths that end there.
+//! `SAME_DIRECTION_ONLY` keeps off nothing that can touch: it lets vehicles in that follow one another.
+
+use crate::audit::groups;
+use crate::cover::cover;
+use crate::edit::{Edits, indent};
+use crate::outline::{around, hull, intersect};
+use crate::write::{Notes, Settings};
+use crate::{Claim, Rules};
+use pcr_formats::import::{Id, ImportError, Imported, Layout};
+use pcr_formats::scenario::Placed;
+use pcr_planning::locks::Locks;
+use roxmltree::{Document, Node};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::fmt::Write as _;
+
+/// How the names of blocks begin that are written here, and are replaced when they are written again.
+const PREFIX: &str = "pcr-block-";
+
+/// By how much envelopes are larger than corridors, for coordinates that are rounded to a millimetre \[m\].
+const ROUNDING: f64 = 1e-3;
+
+fn parse(text: &str) -> Result<Document<'_>, ImportError> {
+    Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| ImportError::new(format!("not XML: {error}")))
+}
+
+fn elements<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |child| child.has_tag_name(name))
+}
+
+fn name<'a>(node: Node<'a, '_>) -> &'a str {
+    node.attribute("name").unwrap_or_default()
+}
+
+/// The places of paths and points in the layout, by name: paths first.
+fn resources(layout: &Layout) -> HashMap<String, usize> {
+    let paths = layout.edges.iter().map(|edge| edge.id.to_string());
+    let points = layout.nodes.iter().map(|node| node.id.to_string());
+    paths.chain(points).enumerate().map(|(place, name)| (name, place)).collect()
+}
+
+/// Reads resources, blocks and envelopes.
+pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+    let document = parse(text)?;
+    let (root, layout) = (document.root_element(), &imported.layout);
+    let places = resources(layout);
+    let count = layout.edges.len() + layout.nodes.len();
+    // Each resource is a token of its own.
+    let mut tokens: Vec<Vec<usize>> = (0..count).map(|place| vec![place]).collect();
+    let (mut names, mut warnings) = (Vec::new(), Vec::new());
+    let locations: BTreeSet<&str> = elements(root, "location").map(name).collect();
+    for block in elements(root, "block") {
+        if block.attribute("type").is_some_and(|kind| kind != "SINGLE_VEHICLE_ONLY") {
+            warnings.push(format!(
+                "block {}: {} does not keep vehicles apart that follow one another; it is not counted",
+                name(block),
+                block.attribute("type").unwrap_or_default()
+            ));
+            continue;
+        }
+        for member in elements(block, "member").map(name) {
+            match places.get(member) {
+                Some(&place) => tokens[place].push(count + names.len()),
+                None if locations.contains(member) => {}
+                None => {
+                    let problem = format!("block {}: there is no point, path or location {member}", name(block));
+                    return Err(ImportError::new(problem));
+                }
+            }
+        }
+        names.push(name(block).to_owned());
+    }
+    let blocks: Vec<Vec<usize>> = tokens
+        .iter()
+        .map(|tokens| tokens.iter().filter(|token| **token >= count).map(|token| token - count).collect())
+        .collect();
+    let (of_paths, of_points) = blocks.split_at(layout.edges.len());
+    let groups = groups(layout, &names, of_paths, of_points);
+    envelopes(root, &places, count + names.len(), &mut tokens, &mut warnings)?;
+    let nodes: Vec<Claim> = tokens[layout.edges.len()..].iter().cloned().map(Claim::exclusive).collect();
+    let edges = layout.edges.iter().enumerate().map(|(place, edge)| {
+        let ends = edge.ends.iter().flat_map(|&end| &tokens[layout.edges.len() + end]);
+        Claim::exclusive(tokens[place].iter().chain(ends).copied().collect())
+    });
+    Ok(Rules { groups, warnings, ..Rules::of_edges(imported, edges.collect(), nodes) })
+}
+
+/// Adds a token for every two resources of which the envelopes with the key of all vehicles meet.
+fn envelopes(
+    root: Node<'_, '_>,
+    places: &HashMap<String, usize>,
+    first: usize,
+    tokens: &mut [Vec<usize>],
+    warnings: &mut Vec<String>,
+) -> Result<(), ImportError> {
+    let keys: BTreeSet<Option<&str>> =
+        elements(root, "vehicle").map(|vehicle| vehicle.attribute("envelopeKey")).collect();
+    let mut outlines: Vec<(usize, Vec<[f64; 2]>)> = Vec::new();
+    let mut other = false;
+    for element in root.children().filter(|child| child.has_tag_name("point") || child.has_tag_name("path")) {
+        for envelope in elements(element, "vehicleEnvelope") {
+            if keys.len() != 1 || !keys.contains(&envelope.attribute("key")) {
+                other = true;
+                continue;
+            }
+            let vertex = |vertex: Node<'_, '_>| {
+                let number = |attribute| vertex.attribute(attribute)?.trim().parse::<f64>().ok();
+                Some([number("x")?, number("y")?])
+            };
+            let outline: Option<Vec<[f64; 2]>> = elements(envelope, "vertex").map(vertex).collect();
+            let outline = outline.filter(|outline| !outline.is_empty()).ok_or_else(|| {
+                ImportError::new(format!("{}, vehicleEnvelope: vertices are expected", name(element)))
+            })?;
+            if let Some(&place) = places.get(name(element)) {
+                outlines.push((place, outline));
+            }
+        }
+    }
+    if other {
+        warnings.push("envelopes: those that are not of the one key of all vehicles are not counted".to_owned());
+    }
+    let mut next = first;
+    for (k, (a, own)) in outlines.iter().enumerate() {
+        for (b, theirs) in &outlines[k + 1..] {
+            if a != b && intersect(own, theirs) {
+                tokens[*a].push(next);
+                tokens[*b].push(next);
+                next += 1;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Writes blocks, or envelopes if they are asked for.
+pub(crate) fn write(
+    text: &str,
+    imported: &Imported,
+    locks: &Locks,
+    settings: &Settings,
+    notes: &mut Notes,
+) -> Result<String, ImportError> {
+    let document = parse(text)?;
+    let offset = text.len() - text.trim_start_matches('\u{feff}').len();
+    let layout = &imported.layout;
+    let mut names = BTreeSet::new();
+    let all = layout.edges.iter().map(|edge| &edge.id).chain(layout.nodes.iter().map(|node| &node.id));
+    for id in all.clone() {
+        if !names.insert(id.to_string()) {
+            return Err(ImportError::new(format!("{id}: a point and a path of one name cannot be told apart")));
+        }
+    }
+    let there: BTreeSet<&str> = document.root_element().children().map(name).collect();
+    if let Some(id) = all.into_iter().find(|id| !there.contains(id.to_string().as_str())) {
+        return Err(ImportError::new(format!("{id}: the file has several of one name; a block cannot name them")));
+    }
+    let mut edits = Edits::default();
+    let root = document.root_element();
+    if let Some(key) = &settings.envelopes {
+        notes.groups = write_envelopes(root, offset, imported, key, &mut edits)?;
+    } else {
+        write_blocks(text, root, offset, layout, locks, notes, &mut edits);
+    }
+    Ok(edits.made(text))
+}
+
+/// What has to be in a block, and what may be: pairs of resources, paths first.
+fn pairs(layout: &Layout, locks: &Locks) -> [Vec<[usize; 2]>; 2] {
+    let paths: HashMap<&Id, usize> = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
+    let points: HashMap<&Id, usize> = layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect();
+    let ends = |path: usize| layout.edges[path].ends;
+    let first = layout.edges.len();
+    let ordered = |a: usize, b: usize| [a.min(b), a.max(b)];
+    let two_points: BTreeSet<[usize; 2]> = (locks.node_pairs.iter().flatten())
+        .filter_map(|[a, b]| Some(ordered(*points.get(a)?, *points.get(b)?)))
+        .filter(|[a, b]| a != b)
+        .collect();
+    let point_path: BTreeSet<[usize; 2]> = (locks.nodes.iter().flatten())
+        .filter_map(|lock| Some([*points.get(&lock.node)?, *paths.get(&lock.edge)?]))
+        .filter(|[point, path]| !ends(*path).contains(point))
+        .collect();
+    let two_paths: BTreeSet<[usize; 2]> =
+        locks.locks.iter().filter_map(|lock| Some(ordered(*paths.get(&lock.a)?, *paths.get(&lock.b)?))).collect();
+    let by_points = |point: usize, path: usize| ends(path).iter().any(|&end| two_points.contains(&ordered(point, end)));
+    let covered = |a: usize, b: usize| {
+        let (own, other) = (ends(a), ends(b));
+        own.iter().any(|end| other.contains(end) || by_points(*end, b) || point_path.contains(&[*end, b]))
+            || other.iter().any(|end| point_path.contains(&[*end, a]))
+    };
+    let mut needed: Vec<[usize; 2]> = two_points.iter().map(|[a, b]| [first + a, first + b]).collect();
+    let mixed = point_path.iter().filter(|[point, path]| !by_points(*point, *path));
+    needed.extend(mixed.map(|[point, path]| [*path, first + point]));
+    needed.extend(two_paths.iter().filter(|[a, b]| !covered(*a, *b)).copied());
+    let mut allowed: Vec<[usize; 2]> = two_points.iter().map(|[a, b]| [first + a, first + b]).collect();
+    allowed.extend(point_path.iter().map(|[point, path]| [*path, first + point]));
+    allowed.extend(two_paths);
+    [needed, allowed]
+}
+
+fn write_blocks(
+    text: &str,
+    root: Node<'_, '_>,
+    offset: usize,
+    layout: &Layout,
+    locks: &Locks,
+    notes: &mut Notes,
+    edits: &mut Edits,
+) {
+    let [needed, allowed] = pairs(layout, locks);
+    let cover = cover(layout.edges.len() + layout.nodes.len(), &allowed, &needed);
+    (notes.groups, notes.at_least) = (cover.cliques.len(), Some(cover.at_least));
+    let (old, kept): (Vec<Node<'_, '_>>, Vec<Node<'_, '_>>) =
+        elements(root, "block").partition(|block| name(*block).starts_with(PREFIX));
+    for block in &old {
+        let range = block.range();
+        let from = text[..range.start + offset].trim_end().len();
+        edits.replace(from..range.end + offset, "");
+    }
+    // Blocks come before the visual layout and the properties of the model.
+    let after =
+        |names: &[&str]| root.children().rfind(|child| child.is_element() && names.contains(&child.tag_name().name()));
+    let last = kept.last().copied().or_else(|| after(&["location", "locationType", "vehicle", "path", "point"]));
+    let Some(last) = last else { return };
+    let at = last.range().end + offset;
+    let margin = indent(text, last.range().start + offset).unwrap_or("    ").to_owned();
+    let id = |place: usize| match place.checked_sub(layout.edges.len()) {
+        None => &layout.edges[place].id,
+        Some(point) => &layout.nodes[point].id,
+    };
+    let mut blocks = String::new();
+    for (k, clique) in cover.cliques.iter().enumerate() {
+        let _ = write!(blocks, "\n{margin}<block name=\"{PREFIX}{:04}\" type=\"SINGLE_VEHICLE_ONLY\">", k + 1);
+        for place in clique {
+            let _ = write!(blocks, "\n{margin}    <member name=\"{}\"/>", escaped(&id(*place).to_string()));
+        }
+        let _ = write!(blocks, "\n{margin}    <blockLayout color=\"#A94022\"/>\n{margin}</block>");
+    }
+    edits.insert(at, blocks);
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn write_envelopes(
+    root: Node<'_, '_>,
+    offset: usize,
+    imported: &Imported,
+    key: &str,
+    edits: &mut Edits,
+) -> Result<usize, ImportError> {
+    let (layout, vehicle) = (&imported.layout, &imported.vehicle);
+    if elements(root, "vehicle").next().is_none() {
+        return Err(ImportError::new("envelopes: there is no vehicle in the model that could have their key"));
+    }
+    let radius = vehicle.radius + vehicle.margin;
+    let curves: BTreeMap<String, (Vec<Placed>, f64)> = (layout.nodes.iter())
+        .map(|node| (node.id.to_string(), (vec![Placed::line(node.at, node.at)], 0.0)))
+        .chain(layout.edges.iter().map(|edge| {
+            let place = || vec![Placed::line(layout.nodes[edge.ends[0]].at, layout.nodes[edge.ends[1]].at)];
+            let curve = if edge.curve.is_empty() { place() } else { edge.curve.clone() };
+            (edge.id.to_string(), (curve, edge.deviation))
+        }))
+        .collect();
+    let mut count = 0;
+    for element in root.children().filter(|child| child.has_tag_name("point") || child.has_tag_name("path")) {
+        let Some((curve, deviation)) = curves.get(name(element)) else { continue };
+        count += 1;
+        let mut outline = millimetres(&around(curve, radius + deviation + ROUNDING));
+        outline.extend(outline.first().copied());
+        let vertices = outline.iter().map(|[x, y]| format!("<vertex x=\"{x}\" y=\"{y}\"/>")).collect::<String>();
+        let envelope = format!("<vehicleEnvelope key=\"{}\">{vertices}</vehicleEnvelope>", escaped(key));
+        let old = elements(element, "vehicleEnvelope").find(|old| old.attribute("key") == Some(key));
+        if let Some(old) = old {
+            edits.replace(old.range().start + offset..old.range().end + offset, envelope);
+            continue;
+        }
+        // Before them come boxes and operations, in this order.
+        let before = ["maxVehicleBoundingBox", "peripheralOperation", "vehicleEnvelope"];
+        let last = element.children().rfind(|child| before.contains(&child.tag_name().name()));
+        let first = element.children().find(Node::is_element);
+        match (last, first) {
+            (Some(last), _) => edits.insert(last.range().end + offset, envelope),
+            (None, Some(first)) => edits.insert(first.range().start + offset, envelope),
+            (None, None) => {
+                return Err(ImportError::new(format!(
+                    "{}: an element without content has no room for an envelope",
+                    name(element)
+                )));
+            }
+        }
+    }
+    for vehicle in elements(root, "vehicle") {
+        let given = vehicle.attributes().find(|attribute| attribute.name() == "envelopeKey");
+        match given {
+            Some(given) => {
+                let range = given.range_value();
+                edits.replace(range.start + offset..range.end + offset, escaped(key));
+            }
+            None => {
+                let at = vehicle.range().start + offset + "<vehicle".len();
+                edits.insert(at, format!(" envelopeKey=\"{}\"", escaped(key)));
+            }
+        }
+    }
+    Ok(count)
+}
+
+/// The hull of corners at whole millimetres, each less than a millimetre from where it was.
+fn millimetres(outline: &[[f64; 2]]) -> Vec<[i64; 2]> {
+    let rounded = outline.iter().map(|corner| corner.map(|x| (x * 1e3).round())).collect();
+    hull(rounded).into_iter().map(|corner| corner.map(|x| x as i64)).collect()
+}

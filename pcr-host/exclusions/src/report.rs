@@ -1,0 +1,149 @@
+//! What is written into the files of fleets, and what audits find, for reading and as CSV.
+
+use crate::{Audit, Gap, Spot, Written};
+use pcr_planning::locks::LockVehicle;
+use pcr_planning::report::columns::Columns;
+use pcr_planning::report::{Document, printable, quoted};
+use std::io::{self, Write};
+
+impl Document for Written {
+    const FORMAT: &'static str = "pcr-written";
+}
+impl Document for Audit {
+    const FORMAT: &'static str = "pcr-audit";
+}
+
+/// Rows of a table for reading at most; the rest is counted, and in the other formats.
+const ROWS: usize = 40;
+
+fn named(layout: &str) -> String {
+    printable(if layout.is_empty() { "layout" } else { layout })
+}
+
+fn vehicle(vehicle: &LockVehicle) -> String {
+    match vehicle.discs.len() {
+        0 => format!("radius {} m", vehicle.radius),
+        discs => format!("an outline of {discs} discs within {:.3} m", vehicle.radius),
+    }
+}
+
+/// How much is excluded beside what is needed.
+fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
+    let times = if needed > 0.0 { format!(", {:.1} times that", excluded / needed) } else { String::new() };
+    writeln!(out, "  lengths of two edges: {needed:.1} m² touch, {excluded:.1} m² are excluded{times}")?;
+    writeln!(out, "  pairs of edges that cannot touch and are excluded: {needless}")
+}
+
+/// What has been written, in a few lines.
+///
+/// # Errors
+/// Those of the writer.
+pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "{}: exclusions for {} on {} edges and {} nodes, {}",
+        named(&written.layout),
+        written.exclusions,
+        written.edges,
+        written.nodes,
+        vehicle(&written.vehicle)
+    )?;
+    let bound = written.at_least.map_or(String::new(), |least| format!("; no fewer than {least} would do"));
+    writeln!(out, "  groups: {}{bound}", written.groups)?;
+    writeln!(out, "  pairs that can touch: {}, all excluded by what stands in the file", written.can_touch)?;
+    extent(out, written.excluded, written.needed, written.needless)?;
+    for warning in &written.warnings {
+        writeln!(out, "  {}", printable(warning))?;
+    }
+    Ok(())
+}
+
+fn spot(spot: &Spot) -> String {
+    match spot {
+        Spot::Edge(id) => id.to_string(),
+        Spot::Node(id) => format!("node {id}"),
+    }
+}
+
+/// The audit: what can touch, the deepest first, and what is excluded in vain.
+///
+/// # Errors
+/// Those of the writer.
+pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "{}: audit of {} groups of {}, {}",
+        named(&audit.layout),
+        audit.groups,
+        audit.exclusions,
+        vehicle(&audit.vehicle)
+    )?;
+    let count = |relation: &str| audit.gaps.iter().filter(|gap| gap.relation == relation).count();
+    writeln!(
+        out,
+        "  pairs that can touch: {}, not excluded: {} ({} of one edge, {} with a common node, {} apart)",
+        audit.can_touch,
+        audit.gaps.len(),
+        count("same"),
+        count("adjacent"),
+        count("apart")
+    )?;
+    extent(out, audit.excluded, audit.needed, audit.needless.len())?;
+    let mut gaps: Vec<&Gap> = audit.gaps.iter().collect();
+    // Those that share no node are the ones that nobody sees in the graph.
+    let rank = |gap: &Gap| ["apart", "adjacent", "same"].iter().position(|relation| *relation == gap.relation);
+    gaps.sort_by(|a, b| rank(a).cmp(&rank(b)).then(b.depth.total_cmp(&a.depth)));
+    if !gaps.is_empty() {
+        writeln!(out, "  not excluded:")?;
+        let mut columns = Columns::new(&["<a", "<b", "<", "depth [m]", "x [m]", "y [m]"]);
+        for gap in gaps.iter().take(ROWS) {
+            let [x, y] = gap.at;
+            columns.row(vec![
+                printable(&spot(&gap.a)),
+                printable(&spot(&gap.b)),
+                gap.relation.to_owned(),
+                format!("{:.3}", gap.depth),
+                format!("{x:.3}"),
+                format!("{y:.3}"),
+            ]);
+        }
+        columns.write(out)?;
+        more(out, gaps.len())?;
+    }
+    if !audit.needless.is_empty() {
+        writeln!(out, "  needless:")?;
+        let mut columns = Columns::new(&["<a", "<b"]);
+        for pair in audit.needless.iter().take(ROWS) {
+            columns.row([&pair.a, &pair.b].map(|id| printable(&id.to_string())).to_vec());
+        }
+        columns.write(out)?;
+        more(out, audit.needless.len())?;
+    }
+    Ok(())
+}
+
+fn more(out: &mut impl Write, count: usize) -> io::Result<()> {
+    if count > ROWS { writeln!(out, "  and {} more (--json, --format csv)", count - ROWS) } else { Ok(()) }
+}
+
+/// The header line of [`audit_csv`].
+pub const AUDIT_HEADER: &str = "finding,a,b,relation,a_from,a_to,b_from,b_to,x,y,depth\n";
+
+/// A line a finding: `open`, what can touch, and `needless`. A node is `node` and its name, as `a`, and has no lengths.
+///
+/// # Errors
+/// Those of the writer.
+pub fn audit_csv(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(AUDIT_HEADER.as_bytes())?;
+    for gap in &audit.gaps {
+        let [a, b] = [&gap.a, &gap.b].map(|at| quoted(&spot(at)).into_owned());
+        let own = gap.a_length.map_or(",".to_owned(), |[from, to]| format!("{from},{to}"));
+        let ([from, to], [x, y]) = (gap.b_length, gap.at);
+        writeln!(out, "open,{a},{b},{},{own},{from},{to},{x},{y},{}", gap.relation, gap.depth)?;
+    }
+    for pair in &audit.needless {
+        let [a, b] = [&pair.a, &pair.b].map(|id| quoted(&id.to_string()).into_owned());
+        writeln!(out, "needless,{a},{b},,,,,,,,")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! What `pcr locks` writes into the files of fleets, and finds in them.
+
+use super::sources::layout;
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, write_to};
+use clap::Args;
+use pcr_drawing as picture;
+use pcr_exclusions::{Audit, Settings, Target, report};
+use pcr_formats::import::{Format, Imported, Options};
+use pcr_formats::input;
+use pcr_planning::locks::Locks;
+use pcr_planning::report::json;
+use std::fs;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Exclusions, as they stand in files of fleets.
+#[derive(Args)]
+pub(super) struct Asked {
+    /// Write the layout to the file of --output, with what keeps its vehicles apart
+    #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes"])]
+    write: Option<Target>,
+    /// Cut edges (lanes, zones) into equal parts no longer than this before
+    #[arg(long, value_name = "LENGTH", value_parser = length, requires = "write")]
+    split: Option<f64>,
+    /// Write envelopes with this key instead of blocks (openTCS)
+    #[arg(long, value_name = "KEY", requires = "write")]
+    envelopes: Option<String>,
+    /// Tell what can touch though vehicles keep to what the layout, or FILE, says; exit status 1 if anything can
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes"])]
+    audit: Option<Option<PathBuf>>,
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(length) if length > 0.0 && length <= 1e6 => Ok(length),
+        _ => Err("a number above 0, up to 1e6, is expected".into()),
+    }
+}
+
+fn text(file: &Path) -> Result<String, Stop> {
+    let mut text = String::new();
+    let read = if file == Path::new("-") {
+        std::io::stdin().read_to_string(&mut text).map(|_| text)
+    } else {
+        fs::read_to_string(file)
+    };
+    read.map_err(|error| Stop::wrong(file, format_args!("cannot be read: {error}")))
+}
+
+impl Asked {
+    /// Does what is asked for, if anything is.
+    pub(super) fn run(
+        &self,
+        file: &Path,
+        import: &Options,
+        printed: &Printed,
+        output: Option<&PathBuf>,
+    ) -> Option<Result<ExitCode, Stop>> {
+        match (self.write, &self.audit) {
+            (Some(target), _) => Some(self.write(target, file, import, printed, output?)),
+            (None, Some(beside)) => Some(audit(file, beside.as_deref(), import, printed, output)),
+            (None, None) => None,
+        }
+    }
+
+    fn write(
+        &self,
+        target: Target,
+        file: &Path,
+        import: &Options,
+        printed: &Printed,
+        output: &PathBuf,
+    ) -> Result<ExitCode, Stop> {
+        if printed.form() == Form::Csv {
+            return Err(Stop::arguments("--write is for --format json and table"));
+        }
+        let standard = is_standard(Some(output));
+        let (format, content) = read(file, import)?;
+        let settings = Settings { target, split: self.split, envelopes: self.envelopes.clone() };
+        let name = input::stem(file);
+        let (written, report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
+            .map_err(|error| Stop::wrong(file, error))?;
+        write_to(output, &written)?;
+        let mut out = printed.out(standard);
+        match printed.form() {
+            Form::Json => json(&report, &mut out)?,
+            _ => report::written_table(&report, &mut out)?,
+        }
+        out.flush()?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// The text of a layout, and its format; everything that is wrong with it, or with the options, is said.
+fn read(file: &Path, import: &Options) -> Result<(Format, String), Stop> {
+    let content = text(file)?;
+    let Some(format) = import.from.or_else(|| Format::of(file, &content)) else {
+        return Err(Stop::wrong(file, "not a layout in a format that is read"));
+    };
+    if file != Path::new("-") {
+        layout(file, import, "locks", false)?;
+    }
+    Ok((format, content))
+}
+
+fn audit(
+    file: &Path,
+    beside: Option<&Path>,
+    import: &Options,
+    printed: &Printed,
+    output: Option<&PathBuf>,
+) -> Result<ExitCode, Stop> {
+    if file == Path::new("-") {
+        return Err(Stop::arguments("--audit reads a file twice; name it"));
+    }
+    let imported: Imported = layout(file, import, "locks", false)?;
+    let (source, content) = match beside {
+        Some(beside) => (beside, text(beside)?),
+        None => (file, text(file)?),
+    };
+    let format = import.from.or_else(|| Format::of(file, &content));
+    let target = match beside {
+        Some(_) => Target::of_text(&content),
+        None => format.and_then(Target::of_layout),
+    };
+    let target = target.ok_or_else(|| match beside {
+        Some(_) => Stop::wrong(source, "neither a zone set of VDA 5050 nor a lock file"),
+        None => Stop::wrong(source, "files of this format hold no exclusions; name the file that does: --audit=FILE"),
+    })?;
+    let wrong = |error| Stop::wrong(source, error);
+    let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
+    let locks = Locks::of(&imported, true).map_err(wrong)?;
+    let audit = Audit::of(&imported, &locks, &rules, target);
+    if let Some(directory) = output {
+        picture::write_audit(&imported, &locks, &rules, &audit, directory)
+            .map_err(|error| Stop::not_written(directory, &error))?;
+    }
+    let mut out = printed.out(false);
+    match printed.form() {
+        Form::Table => report::audit_table(&audit, &mut out)?,
+        Form::Json => json(&audit, &mut out)?,
+        Form::Csv => report::audit_csv(&audit, &mut out)?,
+    }
+    out.flush()?;
+    Ok(if audit.suffices() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
+}

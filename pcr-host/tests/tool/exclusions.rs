@@ -1,0 +1,102 @@
+//! `pcr locks --write` and `--audit`: files for fleets, what is told about them, and exit status.
+
+use crate::fixture::{directory, run};
+use serde_json::Value;
+use std::fs;
+
+fn real(name: &str) -> String {
+    format!("{}/../tests/data/real/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A place for a written file.
+fn output(name: &str) -> String {
+    directory("exclusions").join(name).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn what_is_written_passes_the_audit_that_its_layout_fails() {
+    let cases = [
+        ("nav2/warehouse_graph.geojson", "nav2", "guarded.geojson"),
+        ("rmf/office.building.yaml", "rmf", "guarded.building.yaml"),
+        ("nav2/sample_graph.geojson", "vda5050", "zones.json"),
+        ("lif/example_07.lif.json", "pcr", "locks.json"),
+    ];
+    for (layout, target, name) in cases {
+        let (layout, written) = (real(layout), output(name));
+        let options = ["--radius", "0.4", "-q"];
+        let write = ["locks", &layout, "--write", target, "-o", &written, "--json"];
+        let report: Value = serde_json::from_str(&run(&[&write[..], &options].concat()).out).unwrap();
+        assert_eq!(report["exclusions"], target);
+        assert!(report["can_touch"].as_u64() > Some(2) && report["groups"].as_u64() > Some(1), "{report}");
+        let beside = format!("--audit={written}");
+        let audit = match target {
+            "vda5050" | "pcr" => run(&[&["locks", &layout, &beside, "--json"][..], &options].concat()),
+            _ => run(&[&["locks", &written, "--audit", "--json"][..], &options].concat()),
+        };
+        let found: Value = serde_json::from_str(&audit.out).unwrap();
+        assert_eq!((audit.status, found["gaps"].as_array().unwrap().len()), (0, 0), "{layout}");
+        assert_eq!(found["can_touch"], report["can_touch"]);
+        if !matches!(target, "vda5050" | "pcr") {
+            assert_eq!(run(&[&["locks", &layout, "--audit"][..], &options].concat()).status, 1, "{layout}");
+        }
+    }
+}
+
+#[test]
+fn an_audit_names_places_and_depths_and_draws_them() {
+    let pictures = directory("exclusions").join("pictures");
+    let layout = real("rmf/office.building.yaml");
+    let audit = run(&["locks", &layout, "--radius", "0.4", "--audit", "-o", pictures.to_str().unwrap()]);
+    assert_eq!(audit.status, 1);
+    let expected = "\
+building: audit of 0 groups of rmf, radius 0.4 m
+  pairs that can touch: 139, not excluded: 139 (30 of one edge, 104 with a common node, 5 apart)
+";
+    assert!(audit.out.starts_with(expected), "{}", audit.out);
+    assert!(audit.out.contains("  L1/21       L1/22  apart         0.093  18.798  -10.726\n"), "{}", audit.out);
+    let page = fs::read_to_string(pictures.join("audit.html")).unwrap();
+    assert!(page.contains("\"gaps\":[") && page.contains("draw_layers"));
+    let svg = fs::read_to_string(pictures.join("audit.svg")).unwrap();
+    assert!(svg.contains("139 pairs that can touch") && !svg.contains("NaN"));
+    let csv = run(&["locks", &layout, "--radius", "0.4", "--audit", "--format", "csv"]);
+    let lines: Vec<&str> = csv.out.lines().collect();
+    assert_eq!((lines[0], lines.len()), ("finding,a,b,relation,a_from,a_to,b_from,b_to,x,y,depth", 140));
+    assert!(lines[1..].iter().all(|line| line.starts_with("open,") && line.matches(',').count() == 10));
+}
+
+#[test]
+fn what_cannot_be_done_is_refused() {
+    let (nav2, lif, written) = (real("nav2/sample_graph.geojson"), real("lif/example_07.lif.json"), output("none"));
+    for (arguments, reason) in [
+        (&["locks", &lif, "--radius", "0.4", "--audit", "-q"][..], "files of this format hold no exclusions"),
+        (
+            &["locks", &nav2, "--radius", "0.4", &format!("--audit={lif}")],
+            "neither a zone set of VDA 5050 nor a lock file",
+        ),
+        (&["locks", &nav2, "--radius", "0.4", "--write", "rmf", "-o", &written], "written into files of rmf"),
+        (&["locks", &nav2, "--radius", "0.4", "--write", "pcr", "--split", "1", "-o", &written], "--split"),
+        (&["locks", &nav2, "--radius", "0.4", "--write", "nav2", "--envelopes", "a", "-o", &written], "--envelopes"),
+    ] {
+        let message = run(arguments).failed(2);
+        assert!(message.contains(reason), "{message}");
+    }
+    assert_eq!(run(&["locks", &nav2, "--radius", "0.4", "--write", "nav2"]).status, 2, "without a file");
+    assert!(!std::path::Path::new(&written).exists());
+}
+
+/// openTCS reads models by this schema.
+#[test]
+#[ignore = "needs xmllint (Debian's package libxml2-utils)"]
+fn plant_models_are_valid() {
+    let layout = real("opentcs/Demo-01.xml");
+    for (name, more) in [("blocks.xml", &[][..]), ("envelopes.xml", &["--envelopes", "pcr"])] {
+        let written = output(name);
+        let write = ["locks", &layout, "--radius", "0.9", "--write", "opentcs", "-o", &written, "-q"];
+        assert_eq!(run(&[&write[..], more].concat()).status, 0);
+        assert_ne!(fs::read_to_string(&written).unwrap(), fs::read_to_string(&layout).unwrap());
+        let mut xmllint = std::process::Command::new("xmllint");
+        xmllint.args(["--noout", "--schema", &real("opentcs/model-7.0.0.xsd"), &written]);
+        let Ok(output) = xmllint.output() else { panic!("xmllint (libxml2-utils) is needed for this test") };
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}

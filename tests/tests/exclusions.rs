@@ -1,0 +1,269 @@
+//! Exclusions in the files of fleets: vehicles that obey nothing but a written file never touch, no lock is needless, and what
+//! is not asked to change does not change.
+
+use pcr_certify::data::{Agent, Angle, Path, Segment, Travel};
+use pcr_certify::motion::{Mover, meetings};
+use pcr_exclusions::{Audit, Rules, Settings, Spot, Target, read, stretch, write};
+use pcr_formats::import::{Format, Id, Imported, Options, Warnings, layout};
+use pcr_planning::locks::Locks;
+use pcr_tests::rules::run;
+use serde_json::Value;
+
+const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+const AWS: &str = include_str!("../data/real/nav2/aws_graph.geojson");
+const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
+const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
+const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
+const TRIPLE_H: &str = include_str!("../data/real/rmf/triple_H.building.yaml");
+const BATTLE: &str = include_str!("../data/real/rmf/battle_royale.building.yaml");
+const HOTEL: &str = include_str!("../data/real/rmf/hotel.building.yaml");
+
+fn options(radius: f64) -> Options {
+    Options { radius: Some(radius), ..Options::default() }
+}
+
+fn imported(format: Format, text: &str, radius: f64) -> Imported {
+    layout(format, text, &options(radius), &mut Warnings::default()).unwrap()
+}
+
+fn settings(target: Target) -> Settings {
+    Settings { target, split: None, envelopes: None }
+}
+
+fn written(format: Format, text: &str, radius: f64, settings: &Settings) -> String {
+    write(format, text, &options(radius), "site", settings).unwrap().0
+}
+
+/// The layout that vehicles travel, and the rules that they keep to, both from what was written.
+fn reread(format: Format, layout: &str, text: &str, radius: f64, target: Target) -> (Imported, Rules) {
+    let geometry = if target.layout().is_some() { text } else { layout };
+    let mut imported = imported(format, geometry, radius);
+    if imported.layout.name.is_empty() {
+        imported.layout.name = "site".into();
+    }
+    let rules = read(target, text, &imported).unwrap();
+    (imported, rules)
+}
+
+fn suffices(name: &str, format: Format, text: &str, radius: f64, settings: &Settings) {
+    let file = written(format, text, radius, settings);
+    let (imported, rules) = reread(format, text, &file, radius, settings.target);
+    let run = run(&imported, &rules, 1000, 7);
+    assert!(run.contacts.is_empty(), "{name}: {:?}", run.contacts);
+    assert_eq!(run.missions, 1000, "{name}: {run:?}");
+    assert!(run.pairs > 200 && run.refused > 100, "{name}: hardly anybody met: {run:?}");
+}
+
+#[test]
+fn vehicles_that_obey_nav2_lists_never_touch() {
+    for (name, text, radius) in [("warehouse", WAREHOUSE, 0.4), ("aws", AWS, 0.3), ("sample", SAMPLE, 0.3)] {
+        suffices(name, Format::Nav2, text, radius, &settings(Target::Nav2));
+    }
+    suffices("warehouse, cut", Format::Nav2, WAREHOUSE, 0.4, &Settings { split: Some(1.5), ..settings(Target::Nav2) });
+}
+
+#[test]
+fn vehicles_that_obey_mutex_groups_never_touch() {
+    for (name, text) in [("office", OFFICE), ("triple H", TRIPLE_H), ("battle royale", BATTLE), ("hotel", HOTEL)] {
+        suffices(name, Format::Rmf, text, 0.45, &settings(Target::Rmf));
+    }
+    suffices("office, cut", Format::Rmf, OFFICE, 0.3, &Settings { split: Some(1.0), ..settings(Target::Rmf) });
+}
+
+#[test]
+fn vehicles_that_obey_blocks_or_envelopes_never_touch() {
+    suffices("blocks", Format::OpenTcs, DEMO, 0.9, &settings(Target::OpenTcs));
+    let envelopes = Settings { envelopes: Some("pcr".into()), ..settings(Target::OpenTcs) };
+    suffices("envelopes", Format::OpenTcs, DEMO, 0.9, &envelopes);
+}
+
+#[test]
+fn vehicles_that_obey_release_zones_never_touch() {
+    for (name, text, radius) in [("warehouse", WAREHOUSE, 0.4), ("sample", SAMPLE, 0.3)] {
+        suffices(name, Format::Nav2, text, radius, &settings(Target::Vda5050));
+    }
+    suffices("sample, cut", Format::Nav2, SAMPLE, 0.3, &Settings { split: Some(0.8), ..settings(Target::Vda5050) });
+    suffices("office", Format::Rmf, OFFICE, 0.3, &settings(Target::Vda5050));
+}
+
+#[test]
+fn vehicles_that_obey_lock_files_never_touch() {
+    for (name, text, radius) in [("warehouse", WAREHOUSE, 0.4), ("aws", AWS, 0.3), ("sample", SAMPLE, 0.3)] {
+        suffices(name, Format::Nav2, text, radius, &settings(Target::Pcr));
+    }
+    suffices("demo", Format::OpenTcs, DEMO, 0.9, &settings(Target::Pcr));
+}
+
+#[test]
+fn vehicles_without_rules_touch() {
+    let imported = imported(Format::Nav2, WAREHOUSE, 0.4);
+    let none = read(Target::Nav2, WAREHOUSE, &imported).unwrap();
+    let run = run(&imported, &none, 200, 7);
+    assert!(run.contacts.len() > 20, "{run:?}");
+}
+
+/// Two discs that stand, as the checker sees them.
+fn touch(radius: f64, points: [[f64; 2]; 2]) -> bool {
+    let mover = |(k, start): (usize, [f64; 2])| {
+        let segment = Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 };
+        let path = Path { start, heading: Angle::Radians(0.0), segments: vec![segment], rounding: 0.0 };
+        let travel = Travel { start: 0.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
+        Mover::new(&Agent { id: k as u64, radius, path, travel: Some(travel) }, [0.0, 1.0]).unwrap()
+    };
+    let movers: Vec<Mover> = points.into_iter().enumerate().map(mover).collect();
+    !meetings(&movers).contacts.is_empty()
+}
+
+/// A lock file without one of its locks of two edges.
+fn without(file: &str, a: &Value, b: &Value, own: &Value) -> String {
+    let mut root: Value = serde_json::from_str(file).unwrap();
+    for entry in root["edges"].as_array_mut().unwrap() {
+        let edge = entry["edge"].clone();
+        entry["locks"].as_array_mut().unwrap().retain(|lock| {
+            !((edge == *a && lock["edge"] == *b && lock["own"] == *own)
+                || (edge == *b && lock["edge"] == *a && lock["other"] == *own))
+        });
+    }
+    root.to_string()
+}
+
+/// Leaves out locks of a table, every `step`th; each leaves a contact that the audit shows and the checker confirms.
+fn needed(format: Format, text: &str, radius: f64, step: usize) {
+    let file = written(format, text, radius, &settings(Target::Pcr));
+    let mut imported = imported(format, text, radius);
+    imported.layout.name = "site".into();
+    let locks = Locks::of(&imported, true).unwrap();
+    let root: Value = serde_json::from_str(&file).unwrap();
+    let mut pairs = Vec::new();
+    for entry in root["edges"].as_array().unwrap() {
+        for lock in entry["locks"].as_array().unwrap() {
+            pairs.push((entry["edge"].clone(), lock["edge"].clone(), lock["own"].clone()));
+        }
+    }
+    let id = |value: &Value| value.as_u64().map_or_else(|| Id::Text(value.as_str().unwrap().into()), Id::Number);
+    let (mut shown, mut left_out) = (0, 0);
+    for (a, b, own) in pairs.iter().step_by(step) {
+        left_out += 1;
+        let rules = read(Target::Pcr, &without(&file, a, b, own), &imported).unwrap();
+        let audit = Audit::of(&imported, &locks, &rules, Target::Pcr);
+        let ends = [Spot::Edge(id(a).min(id(b))), Spot::Edge(id(a).max(id(b)))];
+        let gap = audit.gaps.iter().find(|gap| {
+            let mut both = [gap.a.clone(), gap.b.clone()];
+            both.sort();
+            both == ends
+        });
+        let gap = gap.unwrap_or_else(|| panic!("{a} {b}: nothing touches without it"));
+        let curve = |spot: &Spot, lengths: [f64; 2]| {
+            let edge = imported.layout.edges.iter().find(|edge| Spot::Edge(edge.id.clone()) == *spot).unwrap();
+            stretch(&edge.curve, lengths)
+        };
+        let found = pcr_exclusions::nearest(&curve(&gap.a, gap.a_length.unwrap()), &curve(&gap.b, gap.b_length));
+        shown += usize::from(found.is_none_or(|found| touch(radius, found.points)));
+    }
+    assert!(left_out > 20);
+    assert_eq!(shown, left_out, "not all of them are contacts");
+}
+
+#[test]
+fn every_lock_that_is_left_out_leaves_a_contact() {
+    needed(Format::Nav2, SAMPLE, 0.3, 1);
+    needed(Format::Nav2, WAREHOUSE, 0.4, 40);
+    needed(Format::OpenTcs, DEMO, 0.9, 15);
+}
+
+/// What is left of a text without the lists, the blocks, or the groups that were written.
+#[test]
+fn all_else_is_kept_byte_for_byte() {
+    let nav2 = written(Format::Nav2, SAMPLE, 0.3, &settings(Target::Nav2));
+    let mut rest = nav2.clone();
+    while let Some(at) = rest.find("\"closed_edges\": [") {
+        let end = at + rest[at..].find(']').unwrap() + 1;
+        let from = ["\"metadata\": { ", ", "]
+            .iter()
+            .fold(at, |from, before| if rest[..from].ends_with(before) { from - before.len() } else { from });
+        let after = if rest[from..].starts_with(", \"metadata\"") { end + " }".len() } else { end };
+        rest.replace_range(from..after, "");
+    }
+    assert_eq!(rest, SAMPLE);
+    // Written again, nothing changes.
+    assert_eq!(written(Format::Nav2, &nav2, 0.3, &settings(Target::Nav2)), nav2);
+
+    let blocks = written(Format::OpenTcs, DEMO, 0.9, &settings(Target::OpenTcs));
+    let first = blocks.find("\n    <block name=\"pcr-block-").unwrap();
+    let last = blocks.rfind("</block>").unwrap() + "</block>".len();
+    assert_eq!([&blocks[..first], &blocks[last..]].concat(), DEMO);
+    assert_eq!(written(Format::OpenTcs, &blocks, 0.9, &settings(Target::OpenTcs)), blocks);
+
+    let groups = written(Format::Rmf, OFFICE, 0.3, &settings(Target::Rmf));
+    assert_eq!(written(Format::Rmf, &groups, 0.3, &settings(Target::Rmf)), groups);
+    let other = |text: &str| {
+        let lines = text.lines().filter(|line| !line.starts_with("      - ["));
+        lines.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(other(&groups), other(OFFICE));
+}
+
+#[test]
+fn audits_name_what_is_left_out_and_what_is_in_vain() {
+    let (radius, target) = (0.3, Target::Nav2);
+    let file = written(Format::Nav2, SAMPLE, radius, &settings(target));
+    let imported = imported(Format::Nav2, SAMPLE, radius);
+    let locks = Locks::of(&imported, true).unwrap();
+    let audit = |text: &str| Audit::of(&imported, &locks, &read(target, text, &imported).unwrap(), target);
+    let whole = audit(&file);
+    assert!(whole.suffices() && whole.needless.is_empty(), "{whole:?}");
+    // An edge more in one list only excludes nothing; in both it is in vain.
+    let lists = |text: &str, edge: u64| -> Vec<u64> {
+        let root: Value = serde_json::from_str(text).unwrap();
+        let of = |feature: &&Value| feature["properties"]["id"] == edge && feature["properties"]["startid"].is_number();
+        let features = root["features"].as_array().unwrap();
+        serde_json::from_value(features.iter().find(of).unwrap()["properties"]["metadata"]["closed_edges"].clone())
+            .unwrap()
+    };
+    let ids: Vec<u64> = imported.layout.edges.iter().map(|edge| edge.id.to_string().parse().unwrap()).collect();
+    let a = ids[0];
+    let near = lists(&file, a);
+    let far = *ids.iter().find(|id| !near.contains(id)).unwrap();
+    let with = |text: &str, edge: u64, change: &dyn Fn(&mut Vec<u64>)| {
+        let mut root: Value = serde_json::from_str(text).unwrap();
+        for feature in root["features"].as_array_mut().unwrap() {
+            let properties = &mut feature["properties"];
+            if properties["id"] == edge && properties["startid"].is_number() {
+                let mut list = lists(text, edge);
+                change(&mut list);
+                properties["metadata"]["closed_edges"] = list.into();
+            }
+        }
+        root.to_string()
+    };
+    let once = with(&file, a, &|list| list.push(far));
+    assert!(audit(&once).needless.is_empty());
+    let twice = with(&once, far, &|list| list.push(a));
+    assert_eq!(audit(&twice).needless.len(), 1);
+    // One that is missing from one list only: who comes second is not stopped.
+    let other = *near.iter().find(|id| **id != a).unwrap();
+    let open = audit(&with(&file, a, &|list| list.retain(|id| *id != other)));
+    assert_eq!(open.gaps.len(), 1, "{:?}", open.gaps);
+    assert!(open.gaps[0].depth > 0.0 && open.gaps[0].a_length.is_some());
+    // An edge that is not closed for others while somebody is on it.
+    let same = audit(&with(&file, a, &|list| list.retain(|id| *id != a)));
+    assert_eq!(same.gaps.iter().map(|gap| gap.relation).collect::<Vec<_>>(), ["same"]);
+}
+
+#[test]
+fn what_cannot_be_written_is_refused() {
+    let refused = |format, text: &str, settings: &Settings, partial: bool| {
+        let options = Options { partial, ..options(0.4) };
+        write(format, text, &options, "site", settings).unwrap_err().to_string()
+    };
+    let nav2 = settings(Target::Nav2);
+    assert!(refused(Format::OpenTcs, DEMO, &nav2, false).contains("written into files of nav2"));
+    assert!(refused(Format::Nav2, WAREHOUSE, &nav2, true).contains("--partial"));
+    let large = WAREHOUSE.replace("10000", "70000");
+    assert!(refused(Format::Nav2, &large, &nav2, false).contains("edge 70000"), "ids of 16 bits");
+    let split = Settings { split: Some(1.0), ..settings(Target::OpenTcs) };
+    assert!(refused(Format::OpenTcs, DEMO, &split, false).contains("--split"));
+    let unknown = WAREHOUSE.replacen("\"id\": 0  }", "\"id\": 0, \"metadata\": { \"closed_edges\": [7] } }", 1);
+    let imported = imported(Format::Nav2, WAREHOUSE, 0.4);
+    assert!(read(Target::Nav2, &unknown, &imported).unwrap_err().to_string().contains("there is no edge 7"));
+}
