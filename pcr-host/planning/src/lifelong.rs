@@ -16,7 +16,6 @@
 //! book       regions of the ways, and who goes first
 //! forecast   whether all can finish, and when
 //! dispatch   ways and orders for a mission
-//! edges      locks on edges, for comparison
 //! record     what was done, for the independent checker        Certificate
 //! run        a run                                             Outcome
 //! answer     what `pcr traffic --hours` prints                 Lifelong
@@ -26,7 +25,6 @@ mod abilities;
 mod answer;
 mod book;
 mod dispatch;
-mod edges;
 mod ends;
 mod forecast;
 mod gates;
@@ -52,15 +50,13 @@ pub enum Method {
     Orders,
     /// A robot sets off when nobody else has anything in its way, up to its end.
     RouteLocks,
-    /// A robot takes one edge after the other, if a banker's check lets it.
-    EdgeLocks,
     /// A robot sets off when it is expected to meet nobody; orders keep to that when somebody is late.
     StartDelays,
 }
 
 impl Method {
-    /// Those that are compared. Locks on edges are not yet: fleets come to a standstill with them where a goal is another robot's end,
-    /// which would flatter the others.
+    /// All of them. Locks on single edges are not among them: with random goals and no safe ends of their own, fleets come to a
+    /// standstill with them, with which nothing can be compared.
     pub const ALL: [Self; 3] = [Self::Orders, Self::RouteLocks, Self::StartDelays];
 
     /// What it is called in tables.
@@ -68,7 +64,6 @@ impl Method {
         match self {
             Self::Orders => "orders",
             Self::RouteLocks => "route locks",
-            Self::EdgeLocks => "edge locks",
             Self::StartDelays => "start delays",
         }
     }

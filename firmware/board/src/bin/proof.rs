@@ -16,8 +16,8 @@ use pcr_core::{
     Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders, Pass, Path, PathRef,
     Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef,
     Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector, crossings,
-    earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration, plan_delays,
-    plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
+    earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration, overlaps,
+    plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -244,6 +244,9 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
 #[inline(never)]
 fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
     any(Ecm::build(any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
+    if let [first, second, ..] = &*fleet {
+        any(overlaps(first, second, any(&mut [][..]), |region| drop(any(region.length()))).is_ok());
+    }
     let mut ecm = any(Ecm::<S, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8]));
     for &agent in agents {
         any(Ecm::insert(&mut ecm, fleet, agent).is_ok());

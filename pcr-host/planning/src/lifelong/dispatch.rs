@@ -57,8 +57,6 @@ pub(super) struct Admitted {
     pub(super) departs: f64,
     /// Forecast, for comparison.
     pub(super) cost: f64,
-    /// Atoms of the way before that it begins with.
-    pub(super) kept: usize,
 }
 
 /// Why no way was admitted: who is in the way, if anybody is.
@@ -216,8 +214,7 @@ impl Scene<'_> {
             match case.solve(regions) {
                 Ok((regions, departs, cost)) => {
                     if best.as_ref().is_none_or(|best| cost < best.cost) {
-                        let count = kept.atoms.len();
-                        best = Some(Admitted { way, before: kept.before, regions, departs, cost, kept: count });
+                        best = Some(Admitted { way, before: kept.before, regions, departs, cost });
                     }
                 }
                 Err(by) => refused = by,
@@ -253,23 +250,7 @@ impl Case<'_> {
                 None => Ok((regions, self.scene.time, self.way.time(self.way.length()))),
                 Some(region) => Err(Refused { by: Some(region.robots[1]) }),
             },
-            Method::EdgeLocks => self.clear_of_ends(),
             Method::StartDelays => self.delayed(regions),
-        }
-    }
-
-    /// A banker needs that nobody ends on the way of another one, or those who could finish first stand in the way for good.
-    fn clear_of_ends(&self) -> Result<(Vec<Region>, f64, f64), Refused> {
-        let Scene { site, book, robots, parked, time, .. } = *self.scene;
-        let own = site.covers(robots[self.robot].way.end());
-        if self.way.atoms.iter().any(|atom| parked[*atom] > u16::from(own.contains(atom))) {
-            return Err(Refused::default());
-        }
-        let end = site.covers(self.way.end());
-        let passing = end.iter().find_map(|&atom| book.others_on(atom, self.robot, robots).next());
-        match passing {
-            Some((by, _)) => Err(Refused { by: Some(by) }),
-            None => Ok((Vec::new(), time, self.way.time(self.way.length()))),
         }
     }
 

@@ -6,6 +6,9 @@ use super::way::Way;
 /// A robot stands so far before its hold at least, for rounding \[m\].
 pub(super) const SHORT: f64 = 1e-6;
 
+/// Lengths that differ by less are the same, for rounding \[m\].
+const NEAR: f64 = 1e-9;
+
 /// So long at constant acceleration, between these speeds, on this atom from this length on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Phase {
@@ -98,19 +101,22 @@ impl Robot {
         if self.speed == 0.0 && before < self.at {
             // A stop is where it was to be, but for rounding.
             let aim = before + left;
-            if (aim - self.at).abs() < 1e-9 {
+            if (aim - self.at).abs() < NEAR {
                 self.at = aim;
             }
         }
         self.at = self.at.min(self.way.length());
+        let comes = self.speed == 0.0 && next - self.at <= NEAR && !waits;
+        if comes {
+            self.at = next;
+        }
         self.enter();
         if self.at > before {
             self.still_since = time + step;
         }
-        if self.speed > 0.0 || next - self.at > 1e-9 || waits {
+        if !comes {
             return false;
         }
-        self.at = next;
         if let Some(corner) = self.way.corners.get(self.turned)
             && corner.at <= next
         {
@@ -127,7 +133,11 @@ impl Robot {
     /// Notes the atoms that it has come to.
     fn enter(&mut self) {
         while self.entered < self.way.atoms.len() && self.at > self.way.offsets[self.entered] {
-            self.trail.push(self.way.atoms[self.entered]);
+            let atom = self.way.atoms[self.entered];
+            // Back at its beginning by rounding, with another way along it: no atom follows itself.
+            if self.trail.last() != Some(&atom) {
+                self.trail.push(atom);
+            }
             self.entered += 1;
         }
     }
@@ -167,7 +177,11 @@ impl Robot {
     /// Takes another way, the first `before` metres of the old one being cut off.
     pub(super) fn take(&mut self, way: Way, before: f64) {
         self.at -= before;
-        self.entered = usize::from(self.at > 0.0);
+        // At a node it is exactly there on the new way, too: else it would be on the next atom already, or not yet.
+        if let Some(&node) = way.offsets.iter().find(|&&offset| (offset - self.at).abs() < NEAR) {
+            self.at = node;
+        }
+        self.entered = way.offsets.partition_point(|&offset| offset < self.at);
         // Where it stands at a corner the turn is still to be done.
         self.turned = way.corners.iter().filter(|corner| corner.at < self.at).count();
         self.way = way;

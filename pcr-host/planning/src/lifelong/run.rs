@@ -3,7 +3,6 @@
 use super::abilities::Abilities;
 use super::book::Book;
 use super::dispatch::{Admitted, Refused, Scene};
-use super::edges::EdgeLocks;
 use super::ends::{Ends, WellFormedness};
 use super::record::{Certificate, Window};
 use super::robot::Robot;
@@ -117,7 +116,6 @@ struct Run {
     request: Request,
     robots: Vec<Robot>,
     book: Book,
-    locks: EdgeLocks,
     /// How many robots stand for good in the way of an atom.
     parked: Vec<u16>,
     missions: Vec<Option<Mission>>,
@@ -204,7 +202,6 @@ impl Run {
         };
         Ok(Self {
             book: Book::new(&site, &robots),
-            locks: EdgeLocks::new(count),
             site,
             ends,
             abilities,
@@ -322,31 +319,20 @@ impl Run {
     }
 
     fn take(&mut self, robot: usize, admitted: Admitted) {
-        let Admitted { way, before, regions, departs, kept, .. } = admitted;
+        let Admitted { way, before, regions, departs, .. } = admitted;
         let it = &mut self.robots[robot];
         self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
         self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);
         self.book.exchange(robot, &it.way, &way, regions);
         it.take(way, before);
         it.departs = departs;
-        self.locks.exchanged(robot, kept);
     }
 
     /// Everybody goes on for a step.
     fn step(&mut self, tick: usize, now: f64, open: bool) {
-        let holds: Vec<f64> = match self.request.method {
-            Method::EdgeLocks => {
-                let ahead = |robot: usize| {
-                    let it = &self.robots[robot];
-                    it.horizon(&self.abilities, STEP) + self.abilities.braking(self.abilities.speed)
-                };
-                self.locks.holds(&self.site, &self.robots, ahead)
-            }
-            _ => {
-                let far = |robot: usize| self.robots[robot].horizon(&self.abilities, STEP);
-                (0..self.robots.len()).map(|robot| self.book.hold(robot, &self.robots, far(robot))).collect()
-            }
-        };
+        let far = |robot: usize| self.robots[robot].horizon(&self.abilities, STEP);
+        let holds: Vec<f64> =
+            (0..self.robots.len()).map(|robot| self.book.hold(robot, &self.robots, far(robot))).collect();
         for (robot, hold) in holds.into_iter().enumerate() {
             let it = &mut self.robots[robot];
             let stop = it.stop(&self.abilities);
@@ -355,7 +341,7 @@ impl Run {
             if it.drive(hold, now, STEP, &self.abilities) {
                 self.arrived(robot, now + STEP);
             }
-            if self.request.method != Method::EdgeLocks && tick % 10 == robot % 10 {
+            if tick % 10 == robot % 10 {
                 self.book.drop_over(robot, &self.robots);
             }
         }
