@@ -123,8 +123,9 @@ pub fn table<S: Number, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>>(
     };
     send(Line::default().text(b"pcr-table 1 ").text(S::NAME.as_bytes()).count(fleet.len()));
     fleet.iter().for_each(|motion| agent(motion, &mut send));
-    for (i, first) in fleet.iter().enumerate() {
-        for (j, second) in fleet.iter().enumerate().skip(i.saturating_add(1)) {
+    // `enumerate` would check its counter for overflow.
+    for (i, first) in (0..fleet.len()).zip(fleet) {
+        for (j, second) in (0..fleet.len()).zip(fleet).skip(i.saturating_add(1)) {
             let count = table.pair(fleet, i, j)?.fold(0_usize, |count, _| count.saturating_add(1));
             send(Line::default().text(b"pair").count(i).count(j).count(count).numbers(&[excess(first, second)]));
             for region in table.pair(fleet, i, j)? {
