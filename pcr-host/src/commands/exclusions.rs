@@ -21,10 +21,10 @@ pub(super) struct Asked {
     #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes"])]
     write: Option<Target>,
     /// Cut edges (lanes, zones) into equal parts no longer than this before
-    #[arg(long, value_name = "LENGTH", value_parser = length, requires = "write")]
+    #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
     split: Option<f64>,
     /// Write envelopes with this key instead of blocks (openTCS)
-    #[arg(long, value_name = "KEY", requires = "write")]
+    #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
     envelopes: Option<String>,
     /// Tell what can touch though vehicles keep to what the layout, or FILE, says; exit status 1 if anything can
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes"])]

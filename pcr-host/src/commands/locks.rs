@@ -12,7 +12,7 @@ use pcr_formats::output;
 use pcr_planning::locks::{Index, IndexError, Locks, Sweep, Told, write_index};
 use pcr_planning::memory::{self, TooLarge};
 use pcr_planning::report::{self, EdgeLocks, LocksUnprinted};
-use std::io::Write;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -45,13 +45,13 @@ pub(super) struct Arguments {
     #[arg(long)]
     nodes: bool,
     /// Print JSON Lines, a lock a line, for tables of any size
-    #[arg(long, conflicts_with_all = ["format", "json", "output"])]
+    #[arg(long, hide_short_help = true, conflicts_with_all = ["format", "json", "output"])]
     lines: bool,
     /// Only what an edge (or a node) shares its time with
     #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
     edge: Option<String>,
     /// Write the locks to this file instead, in which --edge finds an edge without reading the others
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["lines", "output", "edge", "format", "json"])]
+    #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output", "edge", "format", "json"])]
     index: Option<PathBuf>,
     /// Draw the layout with its locks to this directory as well; with --write the file to be written
     #[arg(short, long, value_name = "DIR")]
@@ -91,7 +91,9 @@ impl Arguments {
             writeln!(notes(), "{}: {names} edges and nodes, {records} records of locks", index.display())?;
             return Ok(ExitCode::SUCCESS);
         }
-        let mut out = self.printed.out(false);
+        // Lines are for programs: they are not what --quiet leaves out.
+        let mut out: Box<dyn Write> =
+            if self.lines { Box::new(BufWriter::new(io::stdout().lock())) } else { self.printed.out(false) };
         let form = self.printed.form();
         if self.lines || (form == Form::Csv && self.output.is_none()) {
             let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;

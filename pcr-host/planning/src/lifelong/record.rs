@@ -41,8 +41,12 @@ impl Certificate {
             .enumerate()
             .map(|(id, (robot, place))| {
                 let (phases, trail, since) = robot.report(place.since);
-                let agent = agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
+                let (agent, ends) = agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
                 *place = Place::of(site, robot);
+                // What is certified is what has been done, or nothing is certified.
+                if (ends[0] - place.at[0]).hypot(ends[1] - place.at[1]) > 1e-6 {
+                    return Err(format!("robot {id}: its record ends at {ends:?}, it is at {:?}", place.at));
+                }
                 Mover::new(&agent, [begin, end])
             })
             .collect();
@@ -76,7 +80,7 @@ pub(super) struct Window {
 
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// Length of the atom where the robot is \[m\].
+    /// How far the robot is along the atom that it came on \[m\].
     since: f64,
     /// Where that is \[m\].
     at: [f64; 2],
@@ -84,9 +88,7 @@ struct Place {
 
 impl Place {
     fn of(site: &Site, robot: &Robot) -> Self {
-        let atom = robot.way.atom(robot.at);
-        let since = if robot.at > 0.0 { robot.at - robot.way.offsets[atom] } else { 0.0 };
-        Self { since, at: robot.way.point(site, robot.at) }
+        Self { since: robot.along(), at: robot.way.point(site, robot.at) }
     }
 }
 
@@ -96,7 +98,7 @@ impl Window {
     }
 }
 
-/// A robot that did this in a window, on these atoms from a length of the first one on.
+/// A robot that did this in a window, on these atoms from a length of the first one on; and where that ends.
 fn agent(
     site: &Site,
     id: u64,
@@ -105,7 +107,7 @@ fn agent(
     phases: &[Phase],
     (trail, since): (&[usize], f64),
     at: [f64; 2],
-) -> Result<Agent, String> {
+) -> Result<(Agent, [f64; 2]), String> {
     let mut travel = Travel { start: begin, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
     let (mut time, mut length) = (0.0, 0.0);
     for phase in phases {
@@ -122,8 +124,9 @@ fn agent(
         return Err(format!("robot {id}: what it did ends at {} s", begin + time));
     }
     let shapes: Vec<Placed> = trail.iter().flat_map(|&atom| site.atoms[atom].shapes.iter().copied()).collect();
-    let path = path(&cut(&shapes, since, length), at, length);
-    Ok(Agent { id, radius, path, travel: Some(travel) })
+    let parts = cut(&shapes, since, length);
+    let ends = parts.last().map_or(at, Placed::end);
+    Ok((Agent { id, radius, path: path(&parts, at, length), travel: Some(travel) }, ends))
 }
 
 /// The part of some shapes from a length on, so long.

@@ -153,6 +153,12 @@ impl Robot {
         told
     }
 
+    /// How far it is along the atom with which the next record begins \[m\]: at a node that is the end of the one that it came on.
+    pub(super) fn along(&self) -> f64 {
+        let begun = self.entered.checked_sub(1).and_then(|last| self.way.offsets.get(last));
+        begun.map_or(0.0, |offset| self.at - offset)
+    }
+
     /// A phase from now on; one that goes on as the last one makes that longer.
     fn record(&mut self, time: f64, duration: f64, to: f64) {
         if let Some(last) = self.done.last_mut() {
@@ -176,6 +182,10 @@ impl Robot {
 
     /// Takes another way, the first `before` metres of the old one being cut off.
     pub(super) fn take(&mut self, way: Way, before: f64) {
+        // What was entered by rounding alone was not gone along, and the new way may leave the node otherwise.
+        if self.entered > 0 && self.along() < NEAR {
+            self.trail.pop();
+        }
         self.at -= before;
         // At a node it is exactly there on the new way, too: else it would be on the next atom already, or not yet.
         if let Some(&node) = way.offsets.iter().find(|&&offset| (offset - self.at).abs() < NEAR) {
