@@ -13,6 +13,7 @@ mod planner;
 mod reason;
 mod speeds;
 mod starts;
+mod task;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;
@@ -23,10 +24,11 @@ pub(crate) use forbidden::Forbidden;
 pub use forbidden::{Out, Schedule};
 use pcr_core::{Encounter, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
-use planner::Planner;
+
 pub use reason::Spot;
 use serde::Serialize;
 use starts::Starts;
+use task::Planner;
 
 /// How conflicts are avoided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

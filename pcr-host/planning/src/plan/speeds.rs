@@ -4,7 +4,7 @@
 mod branching;
 
 use super::Priority;
-use super::planner::Planner;
+use super::task::Planner;
 use crate::regions::Failure;
 use pcr_core::{Drive, Motion, Profile, Station, Unsolved as Never, plan_speed, plan_speeds};
 

@@ -3,7 +3,7 @@
 use super::circle;
 use super::delays::{self, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
-use super::planner::Planner;
+use super::task::Planner;
 use super::{Priority, Unsolved};
 use crate::regions::Failure;
 

@@ -2,7 +2,7 @@
 //! round, and who comes second is planned again, and so are those who come after it; depth first, the cheaper way first.
 
 use super::{PHASES, Room};
-use crate::plan::planner::Planner;
+use crate::plan::task::Planner;
 use pcr_core::{Drive, Interval, Motion, Station, first_overlap, plan_speed};
 
 /// Nodes at most.
