@@ -18,6 +18,7 @@
 //! edit      changes of a text at spans; the rest is kept byte for byte
 //! json      JSON with the span of every value
 //! yaml      YAML with the span of every value
+//! settings  what writers are told, and what they have to say
 //! outline   polygons around corridors
 //! nav2, opentcs, rmf, vda5050, own   the formats
 //! report    what has been written and found, as text
@@ -34,13 +35,15 @@ mod outline;
 mod own;
 pub mod report;
 mod rmf;
+mod settings;
 mod vda5050;
 mod write;
 mod yaml;
 
 pub use audit::{Audit, Gap, Needless, Spot};
 pub use nearest::{Approach, nearest, stretch};
-pub use write::{Settings, Written, write};
+pub use settings::Settings;
+pub use write::{Written, write};
 
 use pcr_formats::import::{Format, ImportError, Imported};
 use std::fmt;

@@ -12,7 +12,7 @@ use crate::audit::groups;
 use crate::cover::cover;
 use crate::edit::{Edits, indent};
 use crate::outline::{around, hull, intersect};
-use crate::write::{Notes, Settings};
+use crate::settings::{Notes, Settings};
 use crate::{Claim, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::Placed;

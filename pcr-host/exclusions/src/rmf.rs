@@ -10,7 +10,7 @@
 
 use crate::audit::groups;
 use crate::edit::Edits;
-use crate::write::Notes;
+use crate::settings::Notes;
 use crate::yaml::Spanned;
 use crate::{Claim, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, Layout};

@@ -5,7 +5,7 @@
 //! each part of it if it is cut, and both directions of one way are the same one. A `BLOCKED` zone is not entered at all.
 
 use crate::outline::{around, distance};
-use crate::write::{Notes, Settings};
+use crate::settings::{Notes, Settings};
 use crate::{Claim, Group, Rules, Section, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout};
 use pcr_formats::scenario::PathSegment;

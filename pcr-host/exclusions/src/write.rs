@@ -2,29 +2,11 @@
 //!
 //! A written file is read again, by the reader that audits files of others, and is not given away if anything can touch.
 
+use crate::settings::{Notes, Settings};
 use crate::{Audit, Target, nav2, opentcs, own, read, rmf, vda5050};
 use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
 use pcr_planning::locks::{LockVehicle, Locks};
 use serde::Serialize;
-
-/// What is to be written.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// The format.
-    pub target: Target,
-    /// Cut edges into equal parts no longer than this \[m\].
-    pub split: Option<f64>,
-    /// Envelopes with this key instead of blocks (openTCS).
-    pub envelopes: Option<String>,
-}
-
-/// What writers have to say.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Notes {
-    pub(crate) groups: usize,
-    pub(crate) at_least: Option<usize>,
-    pub(crate) said: Vec<String>,
-}
 
 /// What has been written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
