@@ -75,7 +75,7 @@ where
     ///
     /// # Errors
     /// [`Refused::Stuck`] names one agent that would wait for ever, [`Refused::Late`] one that is beyond its hold, by more
-    /// than the least gain; [`Full::Reaches`] for too few places; [`Mismatch`] for another fleet or the row of one agent only.
+    /// than the least gain; [`Full::Reaches`] for too few places; [`Mismatch`](crate::Mismatch) for another fleet or the row of one agent only.
     pub fn check(
         &mut self,
         fleet: &[Motion<'_, S>],

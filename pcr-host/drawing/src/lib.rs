@@ -147,7 +147,7 @@ pub fn write_audit(
 /// The collision map of an agent over what a sampled map says, as SVG.
 ///
 /// # Errors
-/// As [`write`], without the files.
+/// As [`write()`], without the files.
 pub fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Result<String> {
     with_scene(scenario, None, |scene| Ok(overlay::picture(scene, ego, overlay)))
 }
@@ -155,7 +155,7 @@ pub fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Resul
 /// The workspace, on the ground if there is one, beside the map of the agent with the most regions, as SVG.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn overview(scenario: &Scenario, ground: Option<Ground<'_>>) -> io::Result<String> {
     with_scene(scenario, ground, |scene| Ok(overview::picture(scene)))
 }

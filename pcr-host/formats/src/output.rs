@@ -20,7 +20,7 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
 /// The same with what is written bit by bit.
 ///
 /// # Errors
-/// As [`write`], and what `fill` refuses.
+/// As [`write()`], and what `fill` refuses.
 pub fn stream<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -> Result<T, E>) -> Result<T, E> {
     let target = followed(file)?;
     match fs::metadata(&target) {
