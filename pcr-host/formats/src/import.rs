@@ -56,6 +56,7 @@ mod xml;
 
 pub use layout::{Edge, Id, Layout, Node};
 pub use route::{Step, cheapest, ride, turn};
+pub use timed::seconds;
 pub use useful::Kind;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;

@@ -4,6 +4,8 @@ use crate::course::Course;
 use crate::robot::{Abilities, Alarm, Waiting};
 use pcr_core::Pass;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// What is drawn on the page, and nothing else: it decides nothing.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -87,6 +89,9 @@ pub struct Known {
     pub waiting: Option<Waiting>,
     /// Its orders with all others, in place of those that it had.
     pub orders: Vec<Kept>,
+    /// What others have to remember of it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub notes: BTreeMap<String, Value>,
 }
 
 /// A change.
@@ -122,6 +127,15 @@ pub enum Entry {
         robot: String,
         /// Which.
         waiting: Option<Waiting>,
+    },
+    /// What others have to remember of a robot.
+    Note {
+        /// Of which.
+        robot: String,
+        /// What it is about.
+        key: String,
+        /// It, in place of that before.
+        note: Value,
     },
     /// Something is wrong with a robot, or no longer.
     Alarm {

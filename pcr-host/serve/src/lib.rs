@@ -20,3 +20,4 @@ pub mod event;
 pub mod fault;
 pub mod robot;
 pub mod supervisor;
+pub mod vda5050;

@@ -3,6 +3,8 @@
 use crate::course::Course;
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// Discs are larger by this than they are \[m\]: what rounding does to paths that are cut and joined, and to lengths in messages.
 pub const ROOM: f64 = 1e-6;
@@ -118,6 +120,8 @@ pub struct Robot {
     pub waiting: Option<Waiting>,
     /// Whether it has been called silent.
     pub silent: bool,
+    /// What others have to remember of it, by what it is about.
+    pub notes: BTreeMap<String, Value>,
 }
 
 impl Robot {
@@ -140,6 +144,7 @@ impl Robot {
             stopped: None,
             waiting: None,
             silent: false,
+            notes: BTreeMap::new(),
         }
     }
 

@@ -244,6 +244,18 @@ impl Supervisor {
         Ok(true)
     }
 
+    /// Remembers something about a robot, with its journal and as long as the robot is there.
+    ///
+    /// # Errors
+    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
+    pub fn note(&mut self, name: &str, key: &str, note: serde_json::Value) -> Result<(), Fault> {
+        self.works()?;
+        let place = self.place(name)?;
+        self.robots[place].notes.insert(key.into(), note.clone());
+        self.entries.push(Entry::Note { robot: name.into(), key: key.into(), note });
+        Ok(())
+    }
+
     fn place(&self, name: &str) -> Result<usize, Fault> {
         self.names.get(name).copied().ok_or(Fault::NoSuchRobot)
     }

@@ -64,7 +64,7 @@ fn pieces(sections: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Seconds since 1970 of a time stamp of ISO 8601: `2017-04-15T11:40:03.123Z`, also with an offset instead of `Z`.
-pub(super) fn seconds(stamp: &str) -> Option<f64> {
+pub fn seconds(stamp: &str) -> Option<f64> {
     let (date, time) = stamp.trim().split_once(['T', 't', ' '])?;
     let mut date = date.splitn(3, '-').map(|part| part.parse::<i64>().ok());
     let (year, month, day) = (date.next()??, date.next()??, date.next()??);

@@ -246,6 +246,7 @@ impl Supervisor {
             alarm: robot.alarm.clone(),
             waiting: robot.waiting.clone(),
             orders: orders.collect(),
+            notes: robot.notes.clone(),
         }
     }
 

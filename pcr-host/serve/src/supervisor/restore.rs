@@ -81,6 +81,9 @@ impl State {
                 }
             }
             Entry::Waiting { robot, waiting } => self.robot(&robot)?.waiting = waiting,
+            Entry::Note { robot, key, note } => {
+                self.robot(&robot)?.notes.insert(key, note);
+            }
             Entry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
         }
         Ok(())
@@ -181,5 +184,6 @@ fn robot(known: Known) -> Robot {
     }
     robot.alarm = known.alarm;
     robot.waiting = known.waiting;
+    robot.notes = known.notes;
     robot
 }

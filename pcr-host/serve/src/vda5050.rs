@@ -1,0 +1,27 @@
+//! VDA 5050 (2.0, 2.1 and 3.0) between a fleet manager and vehicles.
+//!
+//! ```text
+//! stamp      time stamps
+//! door       bytes to values: sizes, counts, numbers                Limits, Refusal
+//! version    which edition of the standard                          Version
+//! topics     names of topics                                        Interface, Key, Kind
+//! order      orders                                                 Order
+//! state      states, positions                                      State
+//! messages   the others                                             Connection, InstantActions
+//! held       an order as its receiver keeps it, updates stitched    Held
+//! way        the path of an order, lengths of its nodes             Way
+//! lane       one vehicle between its manager and the supervisor     Lane
+//! bridge     the lanes of a fleet, no input or output of its own    Bridge
+//! ```
+
+pub mod bridge;
+pub mod door;
+pub mod held;
+pub mod lane;
+pub mod messages;
+pub mod order;
+pub mod stamp;
+pub mod state;
+pub mod topics;
+pub mod version;
+pub mod way;

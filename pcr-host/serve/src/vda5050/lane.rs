@@ -1,0 +1,152 @@
+//! One vehicle between its fleet manager and the supervisor.
+//!
+//! The manager's order is kept as it is ([`Held`]); the vehicle gets it under the same name, with its base cut to what the supervisor has
+//! allowed, and numbers of its own for nodes and updates, as the base may end in the middle of an edge. What the vehicle says is
+//! told to the manager in the manager's numbers.
+
+mod actions;
+mod job;
+mod mirror;
+mod orders;
+mod release;
+mod states;
+
+pub use job::{Job, Sent, Stop};
+
+use super::messages::Header;
+use super::order::Order;
+use super::stamp;
+use super::state::{State, StateError};
+use super::topics::{Key, Kind};
+use super::version::Version;
+use crate::robot::Abilities;
+use crate::supervisor::Supervisor;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// What is known of a vehicle before it says anything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Which.
+    pub key: Key,
+    /// Its margin has to cover how far it may be off its path, and how far it may be from where it says.
+    pub abilities: Abilities,
+    /// Whether it can be sent to places in the middle of straight edges, so that it need not wait at nodes.
+    pub split: bool,
+}
+
+/// To whom a message goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum To {
+    /// The vehicle.
+    Vehicle,
+    /// Its fleet manager.
+    Manager,
+}
+
+/// A message to be sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Post {
+    /// To whom.
+    pub to: To,
+    /// Whose.
+    pub key: Key,
+    /// Of which edition.
+    pub version: Version,
+    /// What.
+    pub kind: Kind,
+    /// JSON.
+    pub payload: Vec<u8>,
+}
+
+/// The newest message of a vehicle.
+#[derive(Clone, Copy, Debug)]
+struct Newest {
+    header_id: u64,
+    stamp: f64,
+}
+
+/// One vehicle.
+#[derive(Debug)]
+pub struct Lane {
+    profile: Profile,
+    name: String,
+    version: Option<Version>,
+    newest: BTreeMap<Kind, Newest>,
+    state: Option<State>,
+    job: Option<Job>,
+    /// What the manager is told is wrong with its orders, until one is taken.
+    errors: Vec<StateError>,
+    /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
+    astray: Option<(u32, f64)>,
+    sent: BTreeMap<Kind, u64>,
+    posts: Vec<Post>,
+}
+
+impl Lane {
+    /// Of a vehicle, with what the supervisor remembers of it.
+    pub fn new(profile: Profile, supervisor: &Supervisor) -> Self {
+        let name = profile.key.to_string();
+        let job = supervisor.robot(&name).ok().and_then(Job::remembered);
+        let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
+        let (errors, posts) = (Vec::new(), Vec::new());
+        let version = job.as_ref().and_then(|job| Version::of(&job.version));
+        Self { profile, name, version, newest, state: None, job, errors, astray: None, sent, posts }
+    }
+
+    /// What the supervisor calls it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What is known of it before it says anything.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// The order that it has, or had last.
+    pub fn job(&self) -> Option<&Job> {
+        self.job.as_ref()
+    }
+
+    /// The messages to be sent.
+    pub fn posts(&mut self) -> Vec<Post> {
+        std::mem::take(&mut self.posts)
+    }
+
+    /// Whether a message is newer than all others of its kind: a higher number, or a later time of a vehicle that counts anew.
+    fn is_new(&mut self, kind: Kind, header: &Header) -> bool {
+        let stamp = pcr_formats::import::seconds(&header.timestamp).unwrap_or(f64::NEG_INFINITY);
+        let newest = self.newest.get(&kind);
+        let is_new = newest.is_none_or(|newest| header.header_id > newest.header_id || stamp > newest.stamp);
+        if is_new {
+            self.newest.insert(kind, Newest { header_id: header.header_id, stamp });
+        }
+        is_new
+    }
+
+    /// The header of our next message of a kind.
+    fn header(&mut self, kind: Kind, version: Version) -> Header {
+        let number = self.sent.entry(kind).or_insert(0);
+        *number += 1;
+        Header::new(&self.profile.key, version, *number, stamp::now())
+    }
+
+    fn post(&mut self, to: To, kind: Kind, version: Version, message: &impl Serialize) {
+        // Maps of texts and finite numbers: there is no message that cannot be written.
+        let payload = serde_json::to_vec(message).unwrap_or_default();
+        self.posts.push(Post { to, key: self.profile.key.clone(), version, kind, payload });
+    }
+
+    /// Remembers what it has to.
+    fn note(&self, supervisor: &mut Supervisor, key: &str, note: Value) {
+        // A robot that is not there needs no memory; a broken journal tells no more holds either.
+        let _ = supervisor.note(&self.name, key, note);
+    }
+}
+
+/// An order of ours.
+fn order(header: Header, order_id: String, order_update_id: u64) -> Order {
+    Order { header, order_id, order_update_id, nodes: Vec::new(), edges: Vec::new(), rest: serde_json::Map::new() }
+}

@@ -1,0 +1,95 @@
+//! Instant actions: those of the manager, and our own.
+
+use super::super::door::{self, Limits, Refusal};
+use super::super::messages::InstantActions;
+use super::super::topics::Kind;
+use super::super::version::Version;
+use super::{Lane, To};
+use crate::event::Event;
+use crate::supervisor::{Proposal, Supervisor};
+
+impl Lane {
+    /// Passes on what the manager wants at once. An order that it cancels gets no further update.
+    ///
+    /// # Errors
+    /// [`Refusal`] for what is no such message.
+    pub fn instant_actions(
+        &mut self,
+        supervisor: &mut Supervisor,
+        bytes: &[u8],
+        limits: Limits,
+        is_third: bool,
+        now: f64,
+    ) -> Result<(), Refusal> {
+        let mut message: InstantActions = door::read(bytes, limits)?;
+        // The schema 2.0 does not ask for a header.
+        let version = match (message.header.version.as_str(), self.version) {
+            ("", Some(version)) => version,
+            _ => message.header.check(&self.profile.key, is_third)?,
+        };
+        let cancel = message.actions.iter().find(|action| action.action_type == "cancelOrder");
+        if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
+            job.cancel = Some(cancel.action_id.clone());
+            let given = job.given();
+            self.note(supervisor, "order", given);
+            // What waits to be admitted is given up: the way ends where it ends now.
+            let mission = format!("cancel {}", cancel.action_id);
+            let nothing = Proposal { robot: self.name.clone(), mission, after: None, start: None, path: Vec::new() };
+            let waits = supervisor.robot(&self.name).is_ok_and(|robot| robot.waiting.is_some());
+            if waits {
+                let _ = supervisor.mission(&nothing, now);
+            }
+        }
+        if version == Version::V2_0 {
+            for action in &mut message.actions {
+                action.rest.insert("actionName".into(), action.action_type.clone().into());
+            }
+        }
+        message.header = self.header(Kind::InstantActions, version);
+        self.post(To::Vehicle, Kind::InstantActions, version, &message);
+        Ok(())
+    }
+
+    /// Asks the vehicle for something.
+    pub fn ask_for(&mut self, action_type: &str) {
+        let version = self.version.unwrap_or(Version::V2_1);
+        let header = self.header(Kind::InstantActions, version);
+        let id = format!("pcr-{action_type}-{}-{}", header.timestamp, header.header_id);
+        let message = InstantActions::one(header, action_type, id);
+        self.post(To::Vehicle, Kind::InstantActions, version, &message);
+    }
+
+    /// Cancels the order of the vehicle once more, under another name.
+    pub(super) fn cancel_again(&mut self, supervisor: &mut Supervisor) {
+        let Some(version) = self.version else { return };
+        let header = self.header(Kind::InstantActions, version);
+        let id = format!("pcr-cancelOrder-{}-{}", header.timestamp, header.header_id);
+        if let Some(job) = &mut self.job {
+            job.cancel = Some(id.clone());
+            let given = job.given();
+            self.note(supervisor, "order", given);
+        }
+        let message = InstantActions::one(header, "cancelOrder", id);
+        self.post(To::Vehicle, Kind::InstantActions, version, &message);
+    }
+
+    /// Takes what the supervisor says of the vehicle.
+    pub fn told(&mut self, event: &Event) {
+        match event {
+            Event::Stop { .. } => self.ask_for("startPause"),
+            Event::Go { .. } => self.ask_for("stopPause"),
+            Event::Dropped { mission, why, .. } => {
+                use super::super::held::Rejected;
+                use super::super::version::Error;
+                let order = mission.rsplit_once('#').map_or(mission.as_str(), |(order, _)| order);
+                let update = self.job.as_ref().map_or(0, |job| job.held.update_id);
+                // One that was replaced by a longer one of the same order is not lost.
+                if !why.contains("takes its place") {
+                    self.reject(&Rejected::new(Error::Order, "nodes", why), order, update);
+                    self.mirror();
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! The order of a vehicle: as the manager has given it, and what of it the vehicle has.
+
+use super::super::held::Held;
+use super::super::order::{Edge, Node, NodePosition};
+use super::super::way::Way;
+use crate::course::Start;
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+/// Where the base of the vehicle's order may end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stop {
+    /// The vehicle's number of it.
+    pub sequence: u64,
+    /// Length of the way up to it \[m\].
+    pub length: f64,
+    /// The manager's node there, or the last one before it.
+    pub node: usize,
+    /// Whether it is in the middle of the edge after that node.
+    pub between: bool,
+}
+
+/// An update that was sent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sent {
+    /// The vehicle's number of it.
+    pub update: u64,
+    /// The manager's number of what it says.
+    pub manager: u64,
+    /// Place of its first stop.
+    pub from: usize,
+}
+
+/// An order.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// As the manager has given it.
+    pub held: Held,
+    /// Its path, from where the vehicle stood.
+    pub way: Way,
+    /// Edition of the manager's order.
+    pub version: String,
+    /// Place of the node at which the path of the supervisor ends, and the next one, if that is not admitted yet.
+    pub planned: usize,
+    /// That which was asked for.
+    pub asked: usize,
+    /// What the vehicle has been released, or may have been.
+    pub stops: Vec<Stop>,
+    /// What was sent last, and when \[s\].
+    pub sent: Option<Sent>,
+    /// When \[s\].
+    pub sent_at: f64,
+    /// The update that the vehicle has, and the manager's number of that.
+    pub acknowledged: Option<(u64, u64)>,
+    /// The nodes ahead are not those that the vehicle knows.
+    pub changed: bool,
+    /// The action that cancels it.
+    pub cancel: Option<String>,
+}
+
+/// What is remembered of the manager's order.
+#[derive(Serialize, Deserialize)]
+struct Given {
+    held: Held,
+    start: Start,
+    version: String,
+    cancel: Option<String>,
+}
+
+/// What is remembered of the vehicle's.
+#[derive(Serialize, Deserialize)]
+struct Base {
+    stops: Vec<Stop>,
+    sent: Option<Sent>,
+}
+
+/// The mission of a base, as the supervisor knows it.
+pub(super) fn mission(held: &Held) -> String {
+    format!("{}#{}", held.order_id, held.nodes.get(held.base).map_or(0, |node| node.sequence_id))
+}
+
+impl Job {
+    /// A new order for a vehicle that stands there.
+    pub(super) fn new(held: Held, way: Way, version: String) -> Self {
+        let first = Stop { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false };
+        Self {
+            held,
+            way,
+            version,
+            planned: 0,
+            asked: 0,
+            stops: vec![first],
+            sent: None,
+            sent_at: f64::NEG_INFINITY,
+            acknowledged: None,
+            changed: true,
+            cancel: None,
+        }
+    }
+
+    /// What the journal has of it.
+    pub(super) fn remembered(robot: &Robot) -> Option<Self> {
+        let note = |key: &str| robot.notes.get(key).filter(|note| !note.is_null()).cloned();
+        let Given { held, start, version, cancel } = serde_json::from_value(note("order")?).ok()?;
+        let way = Way::new(start, &held).ok()?;
+        let mut job = Self { cancel, ..Self::new(held, way, version) };
+        if let Some(Base { stops, sent }) = note("base").and_then(|note| serde_json::from_value(note).ok()) {
+            (job.stops, job.sent) = (stops, sent);
+        }
+        job.place(robot);
+        Some(job)
+    }
+
+    /// What is to be remembered of the manager's order.
+    pub(super) fn given(&self) -> Value {
+        let Self { held, way, version, cancel, .. } = self;
+        let given = Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() };
+        serde_json::to_value(given).unwrap_or_default()
+    }
+
+    /// What is to be remembered of the vehicle's.
+    pub(super) fn base(&self) -> Value {
+        serde_json::to_value(Base { stops: self.stops.clone(), sent: self.sent }).unwrap_or_default()
+    }
+
+    /// Takes over from the supervisor how far its path goes.
+    pub(super) fn place(&mut self, robot: &Robot) {
+        let place = |mission: &String| {
+            let (order, sequence) = mission.rsplit_once('#')?;
+            if order == self.held.order_id { self.held.place_of(sequence.parse().ok()?) } else { None }
+        };
+        if let Some(planned) = robot.mission.as_ref().and_then(place) {
+            self.planned = self.planned.max(planned);
+        }
+        if let Some(asked) = robot.waiting.as_ref().and_then(|waiting| place(&waiting.mission)) {
+            self.asked = self.asked.max(asked);
+        }
+        self.asked = self.asked.max(self.planned);
+    }
+
+    /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node.
+    pub(super) fn offset(&self, robot: &Robot) -> f64 {
+        self.way.node(self.planned).unwrap_or(0.0) - robot.course.length()
+    }
+
+    /// Where the base of the vehicle ends, or may end.
+    pub(super) fn last(&self) -> Stop {
+        self.stops.last().copied().unwrap_or(Stop { sequence: 0, length: 0.0, node: 0, between: false })
+    }
+
+    /// Place of a stop by the vehicle's number.
+    pub(super) fn stop(&self, sequence: u64) -> Option<usize> {
+        self.stops.binary_search_by_key(&sequence, |stop| stop.sequence).ok()
+    }
+
+    /// Whether the vehicle has all that was sent.
+    pub(super) fn is_acknowledged(&self) -> bool {
+        match (self.sent, self.acknowledged) {
+            (None, _) => true,
+            (Some(sent), Some((update, _))) => update >= sent.update,
+            _ => false,
+        }
+    }
+
+    /// The node of a stop, as the vehicle gets it.
+    pub(super) fn node(&self, stop: Stop, deviation: f64, released: bool) -> Option<Node> {
+        let near = self.held.nodes.get(stop.node)?;
+        let mut node = if stop.between { self.between(near, stop) } else { near.clone() };
+        (node.sequence_id, node.released) = (stop.sequence, released);
+        if let Some(position) = &mut node.node_position {
+            limit(position, deviation, &self.version);
+        }
+        Some(node)
+    }
+
+    /// A node in the middle of the edge after another one.
+    fn between(&self, near: &Node, stop: Stop) -> Node {
+        let there = self.way.pose(stop.length);
+        let map_id = near.node_position.as_ref().map_or_else(String::new, |position| position.map_id.clone());
+        let position = NodePosition { x: there.x, y: there.y, map_id, rest: Map::new() };
+        let node_id = self.id(stop);
+        Node {
+            node_id,
+            sequence_id: 0,
+            released: false,
+            node_position: Some(position),
+            actions: Vec::new(),
+            rest: Map::new(),
+        }
+    }
+
+    /// The name of the node of a stop.
+    fn id(&self, stop: Stop) -> String {
+        let node = self.held.nodes.get(stop.node).map_or("", |node| node.node_id.as_str());
+        if stop.between {
+            format!("{node}+{:.3}", stop.length - self.way.node(stop.node).unwrap_or(0.0))
+        } else {
+            node.into()
+        }
+    }
+
+    /// The edge from stop to stop, or a part of it, as the vehicle gets it.
+    pub(super) fn edge(&self, [from, to]: [Stop; 2], released: bool) -> Option<Edge> {
+        let mut edge = self.held.edges.get(from.node)?.clone();
+        (edge.sequence_id, edge.released) = (from.sequence + 1, released);
+        for (id, stop) in [(&mut edge.start_node_id, from), (&mut edge.end_node_id, to)] {
+            if id.is_some() {
+                *id = Some(self.id(stop));
+            }
+        }
+        if from.between || to.between {
+            edge.rest.remove("length");
+        }
+        Some(edge)
+    }
+
+    /// Whether vehicles can stop in the middle of an edge.
+    pub(super) fn can_split(&self, edge: usize) -> bool {
+        self.held.edges.get(edge).is_some_and(|edge| edge.trajectory.is_none() && edge.actions.is_empty())
+    }
+}
+
+/// The vehicle may not pass a node further off than its margin covers.
+fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
+    use super::super::version::Version;
+    let allowed = position.deviation().ok().flatten().unwrap_or(deviation).min(deviation);
+    let (name, value) = match Version::of(version) {
+        Some(Version::V2_0) => ("allowedDeviationXy", Value::from(allowed)),
+        Some(Version::V3_0) => ("allowedDeviationXY", serde_json::json!({ "a": allowed, "b": allowed, "theta": 0.0 })),
+        _ => ("allowedDeviationXY", Value::from(allowed)),
+    };
+    for old in super::super::order::DEVIATIONS {
+        position.rest.remove(old);
+    }
+    position.rest.insert(name.into(), value);
+}

@@ -1,0 +1,131 @@
+//! What the manager is told of the vehicle: its state, in the manager's numbers.
+
+use super::super::door::{self, Limits, Refusal};
+use super::super::messages::{Connection, Factsheet, Header};
+use super::super::order::{Edge, Node};
+use super::super::state::{EdgeState, NodeState, State};
+use super::super::topics::Kind;
+use super::super::version::Version;
+use super::{Lane, Post, To};
+use pcr_formats::import::{self, Options, Warnings};
+use serde_json::{Map, Value};
+
+impl Lane {
+    /// Tells the manager the newest state.
+    pub(super) fn mirror(&mut self) {
+        let (Some(version), Some(state)) = (self.version, &self.state) else { return };
+        let state = self.translated(state.clone());
+        self.post(To::Manager, Kind::State, version, &state);
+    }
+
+    /// Passes on to the manager what it reads as it is.
+    pub fn pass_on(&mut self, kind: Kind, is_third: bool, payload: &[u8]) {
+        self.forward(To::Manager, kind, is_third, payload);
+    }
+
+    fn forward(&mut self, to: To, kind: Kind, is_third: bool, payload: &[u8]) {
+        let version = if is_third { Version::V3_0 } else { Version::V2_1 };
+        let key = self.profile.key.clone();
+        self.posts.push(Post { to, key, version, kind, payload: payload.to_vec() });
+    }
+
+    /// Passes on to the vehicle what is between it and its manager.
+    ///
+    /// # Errors
+    /// [`Refusal`] for what is no message about it.
+    pub fn untouched(&mut self, kind: Kind, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
+        let header: Header = door::read(payload, limits)?;
+        header.check(&self.profile.key, is_third)?;
+        self.forward(To::Vehicle, kind, is_third, payload);
+        Ok(())
+    }
+
+    /// Takes whether the vehicle is connected, which nothing depends on: it may go where it was allowed to.
+    ///
+    /// # Errors
+    /// [`Refusal`] for what is no such message.
+    pub fn connection(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
+        let message: Connection = door::read(payload, limits)?;
+        let version = message.header.check(&self.profile.key, is_third)?;
+        self.version.get_or_insert(version);
+        Ok(())
+    }
+
+    /// Takes what the vehicle is: one that is larger than it was said to be is refused.
+    ///
+    /// # Errors
+    /// [`Refusal`] for what is no factsheet, or one of another vehicle.
+    pub fn factsheet(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
+        let message: Factsheet = door::read(payload, limits)?;
+        let version = message.header.check(&self.profile.key, is_third)?;
+        self.version.get_or_insert(version);
+        let text = String::from_utf8_lossy(payload);
+        let vehicle = import::vehicle(&text, &Options::default(), &mut Warnings::default());
+        let vehicle = vehicle.map_err(|error| Refusal::new("", error))?;
+        let own = self.profile.abilities;
+        // The disc around the contour; how fast it is matters to nothing that is promised.
+        if vehicle.footprint.is_some() && vehicle.radius > own.radius + 1e-9 {
+            let why = format!("the vehicle needs a disc of {} m, not {}", vehicle.radius, own.radius);
+            return Err(Refusal::new("physicalParameters", why));
+        }
+        Ok(())
+    }
+
+    fn translated(&self, mut state: State) -> State {
+        state.errors.extend(self.errors.iter().cloned());
+        let Some(job) = self.job.as_ref().filter(|job| job.held.order_id == state.order_id) else { return state };
+        let Some(stop) = job.stop(state.last_node_sequence_id).and_then(|place| job.stops.get(place)) else {
+            return state;
+        };
+        if let Some((_, manager)) = job.acknowledged {
+            state.order_update_id = manager;
+        }
+        let Some(last) = job.held.nodes.get(stop.node) else { return state };
+        state.last_node_id.clone_from(&last.node_id);
+        state.last_node_sequence_id = last.sequence_id;
+        if stop.between
+            && let Some(since) = state.rest.get("distanceSinceLastNode").and_then(Value::as_f64)
+        {
+            let since = since + stop.length - job.way.node(stop.node).unwrap_or(stop.length);
+            state.rest.insert("distanceSinceLastNode".into(), since.into());
+        }
+        // A vehicle that has dropped its nodes has been cancelled.
+        if state.node_states.is_empty() && job.cancel.is_some() {
+            return state;
+        }
+        let waits = state.node_states.iter().any(|node| node.released);
+        state.node_states = job.held.nodes.iter().skip(stop.node + 1).map(node_state).collect();
+        state.edge_states = job.held.edges.iter().skip(stop.node).map(edge_state).collect();
+        // Whether more base is needed depends on what the manager has released, not on what the vehicle has of that.
+        let has_base = state.node_states.iter().any(|node| node.released);
+        if let Some(request) = &mut state.new_base_request {
+            *request &= waits || !has_base;
+        }
+        state
+    }
+}
+
+fn node_state(node: &Node) -> NodeState {
+    let mut rest = Map::new();
+    if let Some(position) = &node.node_position {
+        let mut place = Map::from_iter([
+            ("x".to_owned(), position.x.into()),
+            ("y".to_owned(), position.y.into()),
+            ("mapId".to_owned(), position.map_id.clone().into()),
+        ]);
+        // Schema 2.0 asks for one.
+        let theta = position.rest.get("theta").cloned().unwrap_or_else(|| 0.0.into());
+        place.insert("theta".into(), theta);
+        rest.insert("nodePosition".into(), place.into());
+    }
+    NodeState { node_id: node.node_id.clone(), sequence_id: node.sequence_id, released: node.released, rest }
+}
+
+fn edge_state(edge: &Edge) -> EdgeState {
+    EdgeState {
+        edge_id: edge.edge_id.clone(),
+        sequence_id: edge.sequence_id,
+        released: edge.released,
+        rest: Map::new(),
+    }
+}

@@ -1,0 +1,174 @@
+//! Orders of the fleet manager.
+
+use super::super::door::{self, Limits, Refusal};
+use super::super::held::{Held, Rejected, Taken};
+use super::super::order::Order;
+use super::super::state::StateError;
+use super::super::version::{Error, Version};
+use super::super::way::{TOLERANCE, Way};
+use super::Lane;
+use super::job::{Job, mission};
+use crate::supervisor::{Proposal, Supervisor, Verdict};
+
+/// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
+const BEGINS: f64 = 1.0;
+
+impl Lane {
+    /// Takes an order or an update of the manager, or tells it why not.
+    pub fn order(&mut self, supervisor: &mut Supervisor, bytes: &[u8], limits: Limits, is_third: bool, now: f64) {
+        let (mut id, mut update) = (String::new(), 0);
+        let taken = door::read::<Order>(bytes, limits).map_err(Rejected::from).and_then(|order| {
+            (id, update) = (order.order_id.clone(), order.order_update_id);
+            self.take(supervisor, order, is_third, now)
+        });
+        match taken {
+            Ok(true) => self.errors.clear(),
+            Ok(false) => {}
+            Err(rejected) => self.reject(&rejected, &id, update),
+        }
+        self.mirror();
+    }
+
+    /// Tells the manager why an order is not taken.
+    pub(super) fn reject(&mut self, rejected: &Rejected, order: &str, update: u64) {
+        let Some(version) = self.version else { return };
+        let kind = version.error(rejected.error);
+        let update = update.to_string();
+        let mut references = vec![("orderId", order), ("orderUpdateId", update.as_str())];
+        references.retain(|_| !order.is_empty());
+        let error = StateError::warning(kind, rejected.refusal.to_string(), &references);
+        /// Kept at most: a manager that errs for ever needs no more.
+        const MOST: usize = 10;
+        if !self.errors.contains(&error) {
+            self.errors.push(error);
+            if self.errors.len() > MOST {
+                self.errors.remove(0);
+            }
+        }
+    }
+
+    /// Whether it was new.
+    fn take(&mut self, supervisor: &mut Supervisor, order: Order, is_third: bool, now: f64) -> Result<bool, Rejected> {
+        let version = order.header.check(&self.profile.key, is_third)?;
+        if self.version.is_some_and(|own| own.major() != version.major()) {
+            return Err(Refusal::new("version", "not that of the vehicle").into());
+        }
+        self.passable(&order)?;
+        if supervisor.robot(&self.name).is_err() {
+            return Err(Rejected::new(Error::Order, "", "the vehicle has not yet said where it stands"));
+        }
+        match &self.job {
+            Some(job) if job.held.order_id == order.order_id => self.extend(supervisor, order, now),
+            Some(_) if !self.is_free(supervisor) => {
+                Err(Rejected::new(Error::Order, "orderId", "the vehicle has another order that is not finished"))
+            }
+            _ => self.begin(supervisor, order, version, now),
+        }
+    }
+
+    /// Whether the vehicle has done all of its order.
+    fn is_free(&self, supervisor: &Supervisor) -> bool {
+        let (Some(job), Some(state), Ok(robot)) = (&self.job, &self.state, supervisor.robot(&self.name)) else {
+            return self.job.is_none();
+        };
+        job.is_acknowledged()
+            && robot.waiting.is_none()
+            && job.planned == job.held.base
+            && job.held.nodes.len() == job.held.base + 1
+            && job.last().node == job.planned
+            && !job.last().between
+            && state.order_id == job.held.order_id
+            && state.last_node_sequence_id == job.last().sequence
+            && state.is_idle()
+    }
+
+    /// Refuses what the vehicle's margin does not cover.
+    fn passable(&self, order: &Order) -> Result<(), Rejected> {
+        for (k, edge) in order.edges.iter().enumerate() {
+            if edge.rest.contains_key("corridor") {
+                let field = format!("edges[{k}].corridor");
+                return Err(Rejected::new(Error::Order, &field, "vehicles keep to the middle of their way here"));
+            }
+        }
+        for (k, node) in order.nodes.iter().enumerate() {
+            let position = node.node_position.as_ref();
+            position
+                .map_or(Ok(None), |position| position.deviation())
+                .map_err(|refusal| Refusal::new(format!("nodes[{k}].nodePosition.{}", refusal.field), refusal.why))?;
+        }
+        let maps = order.nodes.iter().filter_map(|node| node.node_position.as_ref()).map(|position| &position.map_id);
+        let here = self.state.as_ref().and_then(|state| state.position()).map(|pose| &pose.map_id);
+        let mut all = maps.chain(here);
+        let first = all.next();
+        if all.any(|map| Some(map) != first) {
+            return Err(Rejected::new(Error::Order, "nodes", "from map to map: there are no common coordinates"));
+        }
+        Ok(())
+    }
+
+    fn begin(
+        &mut self,
+        supervisor: &mut Supervisor,
+        order: Order,
+        version: Version,
+        now: f64,
+    ) -> Result<bool, Rejected> {
+        let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
+        let course = &robot.course;
+        let start = course.arrival(course.length()).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
+        let held = Held::new(order)?;
+        let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
+        let begins = way.node(0).unwrap_or(0.0);
+        if begins > BEGINS {
+            return Err(Rejected::new(
+                Error::Order,
+                "nodes[0].nodePosition",
+                format!("{begins:.3} m from the vehicle"),
+            ));
+        }
+        let mut job = Job::new(held, way, version.text().into());
+        self.ask(supervisor, &mut job, None, now)?;
+        self.note(supervisor, "order", job.given());
+        self.note(supervisor, "base", job.base());
+        self.job = Some(job);
+        self.astray = None;
+        Ok(true)
+    }
+
+    fn extend(&mut self, supervisor: &mut Supervisor, order: Order, now: f64) -> Result<bool, Rejected> {
+        let Some(job) = &self.job else { return Ok(false) };
+        if job.cancel.is_some() {
+            return Err(Rejected::new(Error::Order, "orderId", "it is being cancelled"));
+        }
+        let mut job = job.clone();
+        let Taken::After(after) = job.held.update(order)? else { return Ok(false) };
+        job.way.extend(&job.held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
+        let planned = job.planned;
+        if job.held.base > job.asked {
+            self.ask(supervisor, &mut job, Some(planned), now)?;
+        }
+        job.changed = true;
+        self.note(supervisor, "order", job.given());
+        self.job = Some(job);
+        Ok(true)
+    }
+
+    /// Asks the supervisor for the way from a node, or from where the vehicle stands, to the end of the base.
+    fn ask(&self, supervisor: &mut Supervisor, job: &mut Job, from: Option<usize>, now: f64) -> Result<(), Rejected> {
+        let path = job.way.shapes(from, job.held.base).to_vec();
+        let proposal =
+            Proposal { robot: self.name.clone(), mission: mission(&job.held), after: None, start: None, path };
+        let verdict = supervisor.mission(&proposal, now);
+        match verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))? {
+            Verdict::Admitted { .. } => job.planned = job.held.base,
+            Verdict::Waiting { .. } => {}
+        }
+        job.asked = job.held.base;
+        Ok(())
+    }
+
+    /// How far the vehicle may be off its path, and from where it says \[m\].
+    pub(super) fn deviation(&self) -> f64 {
+        (self.profile.abilities.margin - TOLERANCE).max(0.0)
+    }
+}

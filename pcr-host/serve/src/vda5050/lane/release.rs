@@ -1,0 +1,122 @@
+//! Updates for the vehicle: its base goes as far as the supervisor allows.
+
+use super::super::order::Order;
+use super::super::topics::Kind;
+use super::super::version::Version;
+use super::job::{Job, Sent, Stop};
+use super::{Lane, order};
+use crate::robot::Robot;
+use crate::supervisor::Supervisor;
+
+/// Between two attempts to send the same \[s\].
+const AGAIN: f64 = 1.0;
+
+/// Holds are computed with more room than this \[m\].
+const ROUNDING: f64 = 1e-4;
+
+/// A part of an edge that is released alone is no shorter \[m\].
+const PART: f64 = 0.25;
+
+/// Nodes ahead that a vehicle is told at most: it need not know all of a long order.
+const AHEAD: usize = 60;
+
+impl Lane {
+    /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
+    pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
+        let (Some(version), Some(state)) = (self.version, &self.state) else { return };
+        let Ok(robot) = supervisor.robot(&self.name) else { return };
+        let Some(job) = &mut self.job else { return };
+        job.place(robot);
+        if job.cancel.is_some() || robot.stopped.is_some() {
+            return;
+        }
+        if !job.is_acknowledged() {
+            // An older update that the vehicle has meanwhile, or none: the same once more.
+            if now - job.sent_at >= AGAIN {
+                job.sent_at = now;
+                self.send(version);
+            }
+            return;
+        }
+        let is_first = job.sent.is_none();
+        if is_first && !(state.is_idle() || state.node_states.is_empty()) {
+            return;
+        }
+        let next = job.next(robot, self.profile.split);
+        if next.is_empty() && !job.changed {
+            return;
+        }
+        let update = job.sent.map_or(0, |sent| sent.update + 1);
+        let from = job.stops.len().saturating_sub(1);
+        job.stops.extend(next);
+        job.sent = Some(Sent { update, manager: job.held.update_id, from });
+        (job.sent_at, job.changed) = (now, false);
+        let base = job.base();
+        self.note(supervisor, "base", base);
+        self.send(version);
+    }
+
+    fn send(&mut self, version: Version) {
+        let deviation = self.deviation();
+        let header = self.header(Kind::Order, version);
+        let Some(job) = &self.job else { return };
+        let Some(sent) = job.sent else { return };
+        let mut message = order(header, job.held.order_id.clone(), sent.update);
+        job.write(&mut message, sent.from, deviation);
+        self.post(super::To::Vehicle, Kind::Order, version, &message);
+    }
+}
+
+impl Job {
+    /// The stops up to where the robot has been allowed to go; none if there are no more.
+    fn next(&self, robot: &Robot, split: bool) -> Vec<Stop> {
+        let offset = self.offset(robot);
+        let hold = robot.told + offset;
+        let last = self.last();
+        let mut stops = Vec::new();
+        let mut sequence = last.sequence;
+        let mut push = |stops: &mut Vec<Stop>, length, node, between| {
+            sequence += 2;
+            stops.push(Stop { sequence, length, node, between });
+        };
+        let mut reached = last.node;
+        for node in last.node + 1..=self.planned {
+            let Some(length) = self.way.node(node).filter(|length| *length <= hold + ROUNDING) else { break };
+            push(&mut stops, length, node, false);
+            reached = node;
+        }
+        // In the middle of an edge only if the vehicle would have to brake for its end.
+        let from = stops.last().map_or(last.length, |stop| stop.length);
+        let is_short = from - (robot.up_to + offset) < 2.0 * robot.abilities.braking() + 2.0 * robot.abilities.speed;
+        let next = self.way.node(reached + 1).filter(|_| reached < self.planned);
+        if split
+            && is_short
+            && self.can_split(reached)
+            && next.is_some_and(|next| hold < next - 0.1)
+            && hold - from >= PART
+        {
+            push(&mut stops, hold, reached, true);
+        }
+        stops
+    }
+
+    /// Writes nodes and edges from a stop on: released up to the last one, then the horizon.
+    fn write(&self, message: &mut Order, from: usize, deviation: f64) {
+        let mut stops: Vec<Stop> = self.stops.iter().skip(from).copied().collect();
+        let base = stops.len();
+        let Some(mut last) = stops.last().copied() else { return };
+        for node in (last.node + 1..self.held.nodes.len()).take(AHEAD) {
+            last = Stop {
+                sequence: last.sequence + 2,
+                length: self.way.node(node).unwrap_or(last.length),
+                node,
+                between: false,
+            };
+            stops.push(last);
+        }
+        let nodes = stops.iter().enumerate().filter_map(|(k, stop)| self.node(*stop, deviation, k < base));
+        message.nodes = nodes.collect();
+        let pairs = stops.windows(2).enumerate();
+        message.edges = pairs.filter_map(|(k, pair)| self.edge([pair[0], pair[1]], k + 1 < base)).collect();
+    }
+}

@@ -1,0 +1,307 @@
+//! The path of an order: from where the vehicle stands through its nodes, straight or along their trajectories.
+
+use super::door::Refusal;
+use super::held::Held;
+use super::order::{Edge, Node};
+use crate::course::{Shape, Start};
+use pcr_formats::import::{self, Format, Options, Warnings};
+use pcr_formats::scenario::{PathSegment, Placed, TURN};
+use serde_json::json;
+use std::f64::consts::{PI, TAU};
+
+/// Ways shorter than this are none: their direction may be rounding \[m\].
+const NEAR: f64 = 1e-6;
+
+/// Angle that is rounding and nothing else \[rad\].
+const STRAIGHT: f64 = 1e-9;
+
+/// How far lines and arcs may be off a trajectory \[m\]: margins have to cover it.
+pub const TOLERANCE: f64 = 2e-3;
+
+/// A path, and where the nodes of its order are on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    start: Start,
+    pieces: Vec<Piece>,
+    shapes: Vec<Shape>,
+    /// Length up to each node \[m\], and how many shapes there are before it.
+    nodes: Vec<(f64, usize)>,
+    at: [f64; 2],
+    heading: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Piece {
+    from: f64,
+    placed: Placed,
+}
+
+impl Way {
+    /// The way of an order for a vehicle that stands there.
+    ///
+    /// # Errors
+    /// [`Refusal`] where nodes have no place, or a trajectory cannot be read.
+    pub fn new(start: Start, held: &Held) -> Result<Self, Refusal> {
+        let (at, heading) = ([start.x, start.y], start.heading);
+        let mut way = Self { start, pieces: Vec::new(), shapes: Vec::new(), nodes: Vec::new(), at, heading };
+        if let Some(first) = held.nodes.first() {
+            way.line(position(first, 0)?);
+            way.arrived();
+        }
+        way.extend(held, 0)?;
+        Ok(way)
+    }
+
+    /// Replaces the way after a node by that of the order as it is now.
+    ///
+    /// # Errors
+    /// As [`Way::new`]; the way is of no use then.
+    pub fn extend(&mut self, held: &Held, after: usize) -> Result<(), Refusal> {
+        self.nodes.truncate(after + 1);
+        let (length, shapes) = self.nodes.last().copied().unwrap_or_default();
+        self.shapes.truncate(shapes);
+        self.pieces.retain(|piece| piece.from < length);
+        (self.at, self.heading) = match self.pieces.last() {
+            None => ([self.start.x, self.start.y], self.start.heading),
+            Some(last) => (last.placed.end(), last.placed.heading_at_end()),
+        };
+        for (k, (edge, ends)) in held.edges.iter().zip(held.nodes.windows(2)).enumerate().skip(after) {
+            let [from, to] = ends else { continue };
+            self.edge(edge, from, to, k)?;
+            self.arrived();
+        }
+        Ok(())
+    }
+
+    fn edge(&mut self, edge: &Edge, from: &Node, to: &Node, k: usize) -> Result<(), Refusal> {
+        if edge.trajectory.is_none() {
+            self.line(position(to, k + 1)?);
+            return Ok(());
+        }
+        let order = json!({ "orderId": "one", "nodes": [from, to], "edges": [edge] }).to_string();
+        let one = Some(1.0);
+        let options = Options {
+            radius: one,
+            speed: one,
+            acceleration: one,
+            rotation: one,
+            rotation_acceleration: one,
+            horizon: true,
+            ..Options::default()
+        };
+        let field = || format!("edges[{k}].trajectory");
+        let read = import::scenario(Format::Vda5050, &order, &options, &mut Warnings::default());
+        let read = read.map_err(|error| Refusal::new(field(), error))?;
+        let Some(agent) = read.agents.first() else { return Err(Refusal::new(field(), "no way")) };
+        if agent.radius > 1.0 + TOLERANCE {
+            return Err(Refusal::new(field(), format!("lines and arcs are {} m off it", agent.radius - 1.0)));
+        }
+        let [x, y, mut heading] = agent.start;
+        let mut at = [x, y];
+        for &shape in &agent.path {
+            let placed = Placed { at, heading, shape };
+            (at, heading) = (placed.end(), placed.heading_at_end());
+            if !matches!(shape, PathSegment::Arc { radius: TURN, .. }) {
+                self.follow(placed);
+            }
+        }
+        Ok(())
+    }
+
+    fn follow(&mut self, placed: Placed) {
+        match placed.shape {
+            PathSegment::Line { .. } => self.line(placed.end()),
+            PathSegment::Arc { .. } => {
+                self.line(placed.at);
+                self.push(placed);
+            }
+        }
+    }
+
+    /// A line to a point from where the way ends.
+    fn line(&mut self, to: [f64; 2]) {
+        if distance(self.at, to) > NEAR {
+            self.push(Placed::line(self.at, to));
+        }
+    }
+
+    fn push(&mut self, placed: Placed) {
+        let sweep = (placed.heading - self.heading + PI).rem_euclid(TAU) - PI;
+        if sweep.abs() > STRAIGHT {
+            self.shapes.push(Shape::Turn { sweep });
+        }
+        self.pieces.push(Piece { from: self.length(), placed });
+        self.shapes.push(match placed.shape {
+            PathSegment::Line { length } => Shape::Line { length },
+            PathSegment::Arc { radius, sweep } => Shape::Arc { radius, sweep },
+        });
+        (self.at, self.heading) = (placed.end(), placed.heading_at_end());
+    }
+
+    fn arrived(&mut self) {
+        self.nodes.push((self.length(), self.shapes.len()));
+    }
+
+    /// \[m\]
+    pub fn length(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |last| last.from + last.placed.shape.length())
+    }
+
+    /// Where it begins.
+    pub fn start(&self) -> Start {
+        self.start
+    }
+
+    /// Length up to a node \[m\].
+    pub fn node(&self, place: usize) -> Option<f64> {
+        self.nodes.get(place).map(|(length, _)| *length)
+    }
+
+    /// The shapes from a node on, from the start if there is none, up to another one.
+    pub fn shapes(&self, from: Option<usize>, to: usize) -> &[Shape] {
+        let before = |node: usize| self.nodes.get(node).map_or(self.shapes.len(), |(_, shapes)| *shapes);
+        self.shapes.get(from.map_or(0, before)..before(to)).unwrap_or_default()
+    }
+
+    /// Where a vehicle is after so much, and in which direction \[m, rad\].
+    pub fn pose(&self, length: f64) -> Start {
+        let after = self.pieces.partition_point(|piece| piece.from <= length);
+        let Some(piece) = after.checked_sub(1).and_then(|place| self.pieces.get(place)) else { return self.start };
+        let along = (length - piece.from).min(piece.placed.shape.length());
+        let shape = match piece.placed.shape {
+            PathSegment::Line { .. } => PathSegment::Line { length: along },
+            PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) },
+        };
+        let part = Placed { shape, ..piece.placed };
+        let [x, y] = part.end();
+        Start { x, y, heading: part.heading_at_end() }
+    }
+
+    /// The lengths, within a window, at which the way is nearest to a point piece by piece and no further than `reach` \[m\] from it: the
+    /// least and the largest. None: it is not there.
+    pub fn near(&self, point: [f64; 2], window: [f64; 2], reach: f64) -> Option<[f64; 2]> {
+        let mut found: Option<[f64; 2]> = None;
+        let mut consider = |length: f64, off: f64| {
+            if off <= reach {
+                found = Some(found.map_or([length; 2], |[lo, hi]| [lo.min(length), hi.max(length)]));
+            }
+        };
+        if self.pieces.is_empty() {
+            consider(0.0, distance(self.at, point));
+        }
+        for piece in &self.pieces {
+            let to = piece.from + piece.placed.shape.length();
+            if to < window[0] || piece.from > window[1] {
+                continue;
+            }
+            let length = (piece.from + along(&piece.placed, point)).clamp(window[0], window[1].max(window[0]));
+            let there = self.pose(length.clamp(piece.from, to));
+            consider(length, distance([there.x, there.y], point));
+        }
+        found
+    }
+}
+
+/// The length along a line or an arc at which it is nearest to a point \[m\].
+fn along(placed: &Placed, point: [f64; 2]) -> f64 {
+    let [x, y] = [point[0] - placed.at[0], point[1] - placed.at[1]];
+    let (sin, cos) = placed.heading.sin_cos();
+    let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
+    match placed.shape {
+        PathSegment::Line { length } => ahead.clamp(0.0, length),
+        PathSegment::Arc { radius, sweep } => {
+            // The centre is to the left of an arc that turns left.
+            let towards = if sweep < 0.0 { -left } else { left };
+            let angle = ahead.atan2(radius - towards).rem_euclid(TAU);
+            let whole = sweep.abs();
+            // Beyond its end it is nearest to one of the two.
+            let angle = if angle <= whole {
+                angle
+            } else if angle - whole < TAU - angle {
+                whole
+            } else {
+                0.0
+            };
+            radius * angle
+        }
+    }
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Where a node is.
+fn position(node: &Node, place: usize) -> Result<[f64; 2], Refusal> {
+    let position = node.node_position.as_ref().map(|position| [position.x, position.y]);
+    position.ok_or_else(|| Refusal::new(format!("nodes[{place}].nodePosition"), "missing"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::door::{Limits, read};
+    use super::super::order::Order;
+    use super::*;
+    use serde_json::Value;
+
+    fn held(points: &[[f64; 2]], curve: Option<Value>) -> Held {
+        let nodes: Vec<_> = (points.iter().enumerate())
+            .map(|(k, [x, y])| {
+                let at = json!({ "x": x, "y": y, "mapId": "m" });
+                json!({ "nodeId": k.to_string(), "sequenceId": 2 * k, "released": true, "actions": [], "nodePosition": at })
+            })
+            .collect();
+        let edges: Vec<_> = (1..points.len())
+            .map(|k| json!({ "edgeId": "e", "sequenceId": 2 * k - 1, "released": true, "actions": [], "trajectory": curve }))
+            .collect();
+        let order = json!({ "orderId": "o", "orderUpdateId": 0, "nodes": nodes, "edges": edges });
+        Held::new(read::<Order>(order.to_string().as_bytes(), Limits::default()).unwrap()).unwrap()
+    }
+
+    const ORIGIN: Start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+
+    #[test]
+    fn a_way_leads_through_its_nodes() {
+        let corner = held(&[[1.0, 0.0], [4.0, 0.0], [4.0, 2.0]], None);
+        let way = Way::new(ORIGIN, &corner).unwrap();
+        assert_eq!([0, 1, 2].map(|node| way.node(node).unwrap()), [1.0, 4.0, 6.0]);
+        assert_eq!(way.length(), 6.0);
+        let end = way.pose(5.0);
+        assert!((end.x - 4.0).abs() < 1e-12 && (end.y - 1.0).abs() < 1e-12, "{end:?}");
+        assert_eq!(way.shapes(None, 0), [Shape::Line { length: 1.0 }]);
+        assert_eq!(way.shapes(Some(0), 1), [Shape::Line { length: 3.0 }]);
+        assert!(matches!(way.shapes(Some(1), 2), [Shape::Turn { .. }, Shape::Line { .. }]));
+        let mut again = way.clone();
+        again.extend(&corner, 1).unwrap();
+        assert_eq!(again, way);
+    }
+
+    #[test]
+    fn a_place_is_found_where_the_window_is() {
+        // There and back again: the same place twice.
+        let way = Way::new(ORIGIN, &held(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]], None)).unwrap();
+        assert_eq!(way.near([1.0, 0.05], [0.0, 4.0], 0.1), Some([1.0, 1.0]));
+        assert_eq!(way.near([1.0, 0.05], [4.0, 8.0], 0.1), Some([7.0, 7.0]));
+        assert_eq!(way.near([1.0, 0.05], [0.0, 8.0], 0.1), Some([1.0, 7.0]));
+        assert_eq!(way.near([1.0, 0.05], [0.0, 8.0], 0.04), None);
+        assert_eq!(way.near([1.0, 0.0], [2.0, 3.0], 0.1), None, "outside of the window");
+    }
+
+    #[test]
+    fn curves_are_followed() {
+        // A quarter circle of radius 2 around (0, 2), as a rational curve.
+        let curve = json!({ "degree": 2, "knotVector": [0.0, 0.0, 0.0, 1.0, 1.0, 1.0], "controlPoints": [
+            { "x": 0.0, "y": 0.0, "weight": 1.0 }, { "x": 2.0, "y": 0.0, "weight": 0.5_f64.sqrt() }, { "x": 2.0, "y": 2.0, "weight": 1.0 } ] });
+        let way = Way::new(ORIGIN, &held(&[[0.0, 0.0], [2.0, 2.0]], Some(curve))).unwrap();
+        assert!((way.length() - PI).abs() < 1e-2, "{}", way.length());
+        for k in 0..=20 {
+            let length = way.length() * f64::from(k) / 20.0;
+            let pose = way.pose(length);
+            assert!((pose.x.hypot(pose.y - 2.0) - 2.0).abs() < TOLERANCE, "{pose:?}");
+            let [lo, hi] = way.near([pose.x, pose.y], [0.0, 4.0], 1e-6).unwrap();
+            assert!((lo - length).abs() < 1e-5 && (hi - length).abs() < 1e-5, "{lo} {hi} {length}");
+        }
+        let nonsense = held(&[[0.0, 0.0], [2.0, 2.0]], Some(json!({ "degree": 2, "controlPoints": [] })));
+        assert_eq!(Way::new(ORIGIN, &nonsense).unwrap_err().field, "edges[0].trajectory");
+    }
+}
