@@ -9,6 +9,8 @@
 //! entry        what has to outlive the process                          Entry, Keep
 //! journal      a file of entries                                        Journal
 //! supervisor   robots, missions, positions, holds                       Supervisor
+//! vda5050      VDA 5050 between a fleet manager and vehicles            Bridge, Station
+//! vehicles     simulated vehicles and a fleet manager                   Vehicle, Fleet
 //! ```
 //!
 //! One thread owns the [`Supervisor`](supervisor::Supervisor); what others send it is handled in any number of calls, then
@@ -21,3 +23,4 @@ pub mod fault;
 pub mod robot;
 pub mod supervisor;
 pub mod vda5050;
+pub mod vehicles;

@@ -12,6 +12,8 @@
 //! way        the path of an order, lengths of its nodes             Way
 //! lane       one vehicle between its manager and the supervisor     Lane
 //! bridge     the lanes of a fleet, no input or output of its own    Bridge
+//! mqtt       a connection to a broker                               Link
+//! station    the bridge at its broker, one at a time                Station
 //! ```
 
 pub mod bridge;
@@ -19,9 +21,13 @@ pub mod door;
 pub mod held;
 pub mod lane;
 pub mod messages;
+#[cfg(feature = "mqtt")]
+pub mod mqtt;
 pub mod order;
 pub mod stamp;
 pub mod state;
+#[cfg(feature = "mqtt")]
+pub mod station;
 pub mod topics;
 pub mod version;
 pub mod way;

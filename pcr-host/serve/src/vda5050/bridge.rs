@@ -137,16 +137,21 @@ impl Bridge {
 
     /// Takes what the supervisor has settled, and sends vehicles what they may do.
     pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[Event], now: f64) {
-        for event in events {
-            if let Some(lane) = self.lanes.values_mut().find(|lane| lane.name() == event.robot()) {
-                lane.told(event);
-            }
-        }
+        self.told(events);
         // A vehicle that has never said where it stands may stand anywhere.
         if self.lanes.values().all(|lane| supervisor.robot(lane.name()).is_ok()) {
             self.lanes.values_mut().for_each(|lane| lane.release(supervisor, now));
         }
         self.collect();
+    }
+
+    /// Takes what the supervisor has settled, and sends nobody anything for it yet.
+    pub fn told(&mut self, events: &[Event]) {
+        for event in events {
+            if let Some(lane) = self.lanes.values_mut().find(|lane| lane.name() == event.robot()) {
+                lane.told(event);
+            }
+        }
     }
 
     fn collect(&mut self) {

@@ -39,7 +39,9 @@ impl Lane {
             return;
         }
         let is_first = job.sent.is_none();
-        if is_first && !(state.is_idle() || state.node_states.is_empty()) {
+        // It goes to its first node with its first order.
+        let may_begin = robot.told + job.offset(robot) + ROUNDING >= job.last().length;
+        if is_first && !(may_begin && state.node_states.is_empty()) {
             return;
         }
         let next = job.next(robot, self.profile.split);

@@ -1,0 +1,221 @@
+//! Simulated vehicles at a broker, each with a connection of its own.
+
+use super::random::Random;
+use super::record::{Record, Recorded};
+use super::vehicle::Vehicle;
+use super::weather::{Climate, Weather};
+use crate::vda5050::bridge::Publish;
+use crate::vda5050::mqtt::{Broker, Link, News};
+use crate::vda5050::topics::{Interface, Kind};
+use std::io::{self, Write};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Instant;
+
+/// What can be set. Times are those of the vehicles, which may be faster than ours.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Where the broker is.
+    pub broker: Broker,
+    /// Topics of the vehicles.
+    pub interface: Interface,
+    /// Their seconds in one of ours.
+    pub pace: f64,
+    /// Positions a second of ours.
+    pub positions: f64,
+    /// States without any news, a second of ours.
+    pub states: f64,
+    /// Connections lost by each vehicle, a second of ours.
+    pub drops: f64,
+    /// What becomes of messages.
+    pub climate: Climate,
+    /// The same seed makes the same vehicles, though not the same run.
+    pub seed: u64,
+}
+
+struct Member {
+    vehicle: Vehicle,
+    link: Option<Link>,
+    /// When it connects again \[s\].
+    again: f64,
+    incoming: Weather<(Kind, Vec<u8>)>,
+    outgoing: Weather<Publish>,
+    told: [f64; 2],
+}
+
+/// Vehicles at a broker.
+pub struct Fleet<W: Write> {
+    settings: Settings,
+    members: Vec<Member>,
+    news: Receiver<(usize, News)>,
+    sender: Sender<(usize, News)>,
+    record: Record<W>,
+    random: Random,
+    begin: Instant,
+    /// Time of the vehicles \[s\].
+    time: f64,
+    /// Times that connections were lost.
+    drops: u64,
+}
+
+/// Vehicles go on in steps of this at most \[s\].
+const STEP: f64 = 0.05;
+
+/// A connection that was lost is back within \[s\].
+const AWAY: f64 = 3.0;
+
+impl<W: Write> Fleet<W> {
+    /// Connects them; where they are is recorded.
+    ///
+    /// # Errors
+    /// As the writer of the record, or what is wrong with the broker's settings.
+    pub fn new(settings: Settings, vehicles: Vec<Vehicle>, record: W) -> io::Result<Self> {
+        let names = vehicles
+            .iter()
+            .map(|vehicle| Recorded { name: vehicle.key().to_string(), radius: vehicle.abilities().radius });
+        let record = Record::new(record, &names.collect::<Vec<_>>())?;
+        let (sender, news) = channel();
+        let random = Random::new(settings.seed);
+        let members = vehicles.into_iter().enumerate().map(|(k, vehicle)| {
+            let seed = settings.seed.wrapping_add(k as u64);
+            let (incoming, outgoing) = (Weather::new(settings.climate, seed), Weather::new(settings.climate, !seed));
+            let told = [k as f64 * 0.001; 2];
+            Member { vehicle, link: None, again: 0.0, incoming, outgoing, told }
+        });
+        let members = members.collect();
+        Ok(Self { settings, members, news, sender, record, random, begin: Instant::now(), time: 0.0, drops: 0 })
+    }
+
+    /// Time of the vehicles \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Times that connections were lost on purpose.
+    pub fn drops(&self) -> u64 {
+        self.drops
+    }
+
+    /// The vehicles.
+    pub fn vehicles_mut(&mut self) -> impl Iterator<Item = &mut Vehicle> {
+        self.members.iter_mut().map(|member| &mut member.vehicle)
+    }
+
+    /// Another weather from now on.
+    pub fn change(&mut self, climate: Climate) {
+        for member in &mut self.members {
+            member.incoming.change(climate);
+            member.outgoing.change(climate);
+        }
+    }
+
+    /// Up to now: messages, motions, messages.
+    ///
+    /// # Errors
+    /// As the writer of the record, or where there is no thread for a connection.
+    pub fn step(&mut self) -> io::Result<()> {
+        let now = self.begin.elapsed().as_secs_f64();
+        while let Ok((k, news)) = self.news.try_recv() {
+            let Some(member) = self.members.get_mut(k) else { continue };
+            match news {
+                News::Up => {
+                    member.vehicle.tell_online();
+                    member.vehicle.tell_factsheet();
+                    member.vehicle.tell_state();
+                }
+                News::Down(_) => {}
+                News::Message { topic, payload } => {
+                    if let Some((_, key, kind)) = self.settings.interface.parse(&topic)
+                        && key == *member.vehicle.key()
+                    {
+                        member.incoming.send((kind, payload), now);
+                    }
+                }
+            }
+        }
+        let until = now * self.settings.pace;
+        let steps = ((until - self.time) / STEP).ceil().max(1.0);
+        let step = (until - self.time) / steps;
+        for _ in 0..steps as u64 {
+            self.time += step;
+            for (k, member) in self.members.iter_mut().enumerate() {
+                member.vehicle.advance(step);
+                self.record.push(k, self.time, member.vehicle.place())?;
+            }
+        }
+        for k in 0..self.members.len() {
+            self.talk(k, now)?;
+        }
+        Ok(())
+    }
+
+    fn talk(&mut self, k: usize, now: f64) -> io::Result<()> {
+        let Self { settings, members, sender, random, drops, .. } = self;
+        let Some(member) = members.get_mut(k) else { return Ok(()) };
+        if member.link.is_some() && settings.drops > 0.0 && random.happens(settings.drops, 0.01) {
+            member.link = None;
+            member.again = now + AWAY * random.unit();
+            *drops += 1;
+        }
+        if member.link.is_none() && now >= member.again {
+            member.link = Some(connected(settings, &mut member.vehicle, k, sender.clone()).map_err(io::Error::other)?);
+        }
+        for (kind, payload) in member.incoming.come(now) {
+            member.vehicle.receive(kind, &payload);
+        }
+        if now >= member.told[0] && settings.positions > 0.0 {
+            member.told[0] = now + 1.0 / settings.positions;
+            member.vehicle.tell_position();
+        }
+        if now >= member.told[1] && settings.states > 0.0 {
+            member.told[1] = now + 1.0 / settings.states;
+            member.vehicle.tell_state();
+        }
+        let version = member.vehicle.version();
+        for (kind, payload) in member.vehicle.out() {
+            let topic = settings.interface.topic(version, member.vehicle.key(), kind);
+            let message = Publish { topic, payload, assured: kind.is_assured(), retain: kind.is_retained() };
+            member.outgoing.send(message, now);
+        }
+        for message in member.outgoing.come(now) {
+            if let Some(link) = &member.link {
+                let _ = link.publish(message);
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends all connections in order; the record is whole then.
+    ///
+    /// # Errors
+    /// As the writer of the record.
+    pub fn close(mut self) -> io::Result<W> {
+        for member in &mut self.members {
+            if let Some(link) = member.link.take() {
+                let payload = member.vehicle.connection("OFFLINE");
+                let topic =
+                    self.settings.interface.topic(member.vehicle.version(), member.vehicle.key(), Kind::Connection);
+                let _ = link.publish(Publish { topic, payload, assured: true, retain: true });
+                link.close();
+            }
+        }
+        self.record.finish()
+    }
+}
+
+fn connected(
+    settings: &Settings,
+    vehicle: &mut Vehicle,
+    k: usize,
+    sender: Sender<(usize, News)>,
+) -> Result<Link, String> {
+    let (key, version) = (vehicle.key().clone(), vehicle.version());
+    let topic = |kind: Kind| settings.interface.topic(version, &key, kind);
+    let filters = [Kind::Order, Kind::InstantActions].map(topic).to_vec();
+    let payload = vehicle.connection(version.broken());
+    let will = Publish { topic: topic(Kind::Connection), payload, assured: true, retain: true };
+    let id = format!("pcr-vehicle-{}-{}", key.manufacturer, key.serial_number);
+    Link::open(&settings.broker, &id, Some(will), filters, move |news| {
+        // A fleet that is gone needs no news.
+        let _ = sender.send((k, news));
+    })
+}

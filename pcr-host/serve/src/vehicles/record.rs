@@ -1,0 +1,279 @@
+//! Where vehicles really were, in a file of lines, and the proof that they never touched.
+//!
+//! The first line names the vehicles: `{"format":"pcr-record","version":1,"vehicles":[{"name":"sim/1","radius":0.4}]}`. Each further one is
+//! `[vehicle, time, x, y]`, vehicles counted from 0, times \[s\] of a vehicle in their order: between two of its lines a vehicle goes
+//! straight on at a constant speed, before the first and after the last one it stands.
+
+use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
+use pcr_certify::motion::{Mover, meetings};
+use serde::{Deserialize, Serialize};
+use std::io::{self, BufRead, Write};
+
+/// A vehicle of a record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recorded {
+    /// What it is called.
+    pub name: String,
+    /// Of its disc \[m\].
+    pub radius: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Head {
+    format: String,
+    version: u32,
+    vehicles: Vec<Recorded>,
+}
+
+/// A record in the making.
+#[derive(Debug)]
+pub struct Record<W: Write> {
+    out: W,
+    last: Vec<Option<[f64; 3]>>,
+    /// Whether the last one written is that before, and not what it stood at since.
+    waits: Vec<bool>,
+}
+
+impl<W: Write> Record<W> {
+    /// Of these vehicles.
+    ///
+    /// # Errors
+    /// As the writer.
+    pub fn new(mut out: W, vehicles: &[Recorded]) -> io::Result<Self> {
+        let head = Head { format: "pcr-record".into(), version: 1, vehicles: vehicles.to_vec() };
+        serde_json::to_writer(&mut out, &head)?;
+        out.write_all(b"\n")?;
+        Ok(Self { out, last: vec![None; vehicles.len()], waits: vec![false; vehicles.len()] })
+    }
+
+    /// A vehicle is there at a time \[s, m\].
+    ///
+    /// # Errors
+    /// As the writer.
+    pub fn push(&mut self, vehicle: usize, time: f64, [x, y]: [f64; 2]) -> io::Result<()> {
+        let (Some(last), Some(waits)) = (self.last.get_mut(vehicle), self.waits.get_mut(vehicle)) else {
+            return Ok(());
+        };
+        if let Some([_, x0, y0]) = *last
+            && [x0, y0] == [x, y]
+        {
+            (*last, *waits) = (Some([time, x, y]), true);
+            return Ok(());
+        }
+        if let Some([time, x, y]) = last.filter(|_| std::mem::take(waits)) {
+            writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")?;
+        }
+        *last = Some([time, x, y]);
+        writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")
+    }
+
+    /// The record is whole.
+    ///
+    /// # Errors
+    /// As the writer.
+    pub fn finish(mut self) -> io::Result<W> {
+        for (vehicle, (last, waits)) in self.last.iter().zip(&self.waits).enumerate() {
+            if let Some([time, x, y]) = last.filter(|_| *waits) {
+                writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")?;
+            }
+        }
+        self.out.flush()?;
+        Ok(self.out)
+    }
+}
+
+/// What the checker found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Certificate {
+    /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell, or not checked.
+    pub verdict: &'static str,
+    /// Vehicles.
+    pub vehicles: usize,
+    /// From the first to the last line \[s\].
+    pub time: f64,
+    /// What all of them have travelled \[m\].
+    pub travelled: f64,
+    /// Pairs of vehicles with a contact, of each window of time the first one.
+    pub contacts: Vec<Contact>,
+    /// Those for which it was not decided.
+    pub undecided: usize,
+    /// Why there is no verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+/// Two vehicles at one time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// Who.
+    pub vehicles: [String; 2],
+    /// When \[s\].
+    pub time: f64,
+    /// Distance of the centres less the radii \[m\].
+    pub clearance: f64,
+}
+
+/// Windows in which motions are checked \[s\].
+const WINDOW: f64 = 20.0;
+
+/// Proves that the vehicles of a record never touched, or shows where.
+///
+/// # Errors
+/// Lines that are none of a record.
+pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
+    let wrong = |line: usize, why: String| io::Error::new(io::ErrorKind::InvalidData, format!("line {line}: {why}"));
+    let mut lines = text.lines().enumerate();
+    let (_, head) = lines.next().ok_or_else(|| wrong(1, "missing".into()))?;
+    let head: Head = serde_json::from_str(&head?).map_err(|error| wrong(1, error.to_string()))?;
+    if (head.format.as_str(), head.version) != ("pcr-record", 1) {
+        return Err(wrong(1, "a record of version 1 is expected".into()));
+    }
+    let mut tracks: Vec<Vec<[f64; 3]>> = vec![Vec::new(); head.vehicles.len()];
+    for (line, text) in lines {
+        let mut point = |text: &str| {
+            let (vehicle, time, x, y): (usize, f64, f64, f64) =
+                serde_json::from_str(text).map_err(|it| it.to_string())?;
+            let track = tracks.get_mut(vehicle).ok_or("no such vehicle")?;
+            if track.last().is_some_and(|last| last[0] > time || (last[0] == time && last[1..] != [x, y])) {
+                return Err("earlier than the line before".to_owned());
+            }
+            track.push([time, x, y]);
+            Ok(())
+        };
+        point(&text?).map_err(|why| wrong(line + 1, why))?;
+    }
+    if let Some(none) = tracks.iter().position(Vec::is_empty) {
+        return Err(wrong(1, format!("nothing about {}", head.vehicles[none].name)));
+    }
+    Ok(checked(&head.vehicles, &tracks))
+}
+
+fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>]) -> Certificate {
+    let times = tracks.iter().flatten().map(|point| point[0]);
+    let (begin, end) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), time| (lo.min(time), hi.max(time)));
+    let legs = tracks.iter().flat_map(|track| track.windows(2));
+    let travelled = legs.map(|leg| (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2])).sum();
+    let mut found = Certificate { vehicles: vehicles.len(), time: end - begin, travelled, ..Certificate::default() };
+    let windows = ((end - begin) / WINDOW).ceil().max(1.0) as usize;
+    for window in 0..windows {
+        let from = begin + window as f64 * WINDOW;
+        let to = (from + WINDOW).min(end).max(from);
+        let movers = vehicles.iter().zip(tracks).enumerate();
+        let movers = movers.map(|(id, (vehicle, track))| {
+            Mover::new(&agent(id as u64, vehicle.radius, &within(track, from, to)), [from, to])
+        });
+        match movers.collect::<Result<Vec<_>, _>>() {
+            Ok(movers) => {
+                let met = meetings(&movers);
+                found.undecided += met.undecided.len();
+                let name = |id: u64| vehicles.get(id as usize).map_or_else(String::new, |vehicle| vehicle.name.clone());
+                found.contacts.extend(met.contacts.iter().map(|meeting| Contact {
+                    vehicles: meeting.agents.map(name),
+                    time: meeting.time,
+                    clearance: meeting.clearance,
+                }));
+            }
+            Err(why) => {
+                found.error.get_or_insert(why);
+            }
+        }
+    }
+    found.verdict = match (found.contacts.is_empty(), found.undecided, &found.error) {
+        (false, ..) => "contact",
+        (true, 0, None) => "proved",
+        _ => "undecided",
+    };
+    found
+}
+
+/// The part of a track between two times.
+fn within(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
+    let at = |time: f64| {
+        let next = track.partition_point(|point| point[0] <= time);
+        match (next.checked_sub(1).and_then(|last| track.get(last)), track.get(next)) {
+            (Some(a), Some(b)) => {
+                let part = (time - a[0]) / (b[0] - a[0]);
+                [time, a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])]
+            }
+            (Some(only), None) | (None, Some(only)) => [time, only[1], only[2]],
+            (None, None) => [time, 0.0, 0.0],
+        }
+    };
+    let inside = track.iter().copied().filter(|point| point[0] > from && point[0] < to);
+    std::iter::once(at(from)).chain(inside).chain(std::iter::once(at(to))).collect()
+}
+
+/// A disc that goes from point to point.
+fn agent(id: u64, radius: f64, points: &[[f64; 3]]) -> Agent {
+    let first = points.first().copied().unwrap_or_default();
+    let (mut segments, mut phases): (Vec<Segment>, Vec<Phase>) = (Vec::new(), Vec::new());
+    let (mut length, mut heading, mut initial) = (0.0, 0.0, None);
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        let (time, way) = (b[0] - a[0], (b[1] - a[1]).hypot(b[2] - a[2]));
+        if time <= 0.0 {
+            continue;
+        }
+        if way > 0.0 {
+            let direction = (b[2] - a[2]).atan2(b[1] - a[1]);
+            let turn = direction - *initial.get_or_insert(direction) - heading;
+            let turns = if turn == 0.0 { Vec::new() } else { vec![Angle::Radians(turn)] };
+            heading += turn;
+            segments.push(Segment { length: way, radius: None, turns, from: length, to: length + way });
+        }
+        let speed = way / time;
+        let [begin, end] = [a[0] - first[0], b[0] - first[0]];
+        phases.push(Phase { time: [begin, end], length: [length, length + way], speed: [speed, speed] });
+        length += way;
+    }
+    if segments.is_empty() {
+        segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
+        phases.clear();
+    }
+    // Rounding of directions and sums of some hundred short legs.
+    let rounding = f64::EPSILON * length.max(1.0) * 64.0;
+    let start = [first[1], first[2]];
+    let path = Path { start, heading: Angle::Radians(initial.unwrap_or(0.0)), segments, rounding };
+    Agent { id, radius, path, travel: Some(Travel { start: first[0], phases, lag: 0.0, time_excess: 0.0 }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(apart: f64) -> String {
+        let vehicles = ["a", "b"].map(|name| Recorded { name: name.into(), radius: 0.5 });
+        let mut record = Record::new(Vec::new(), &vehicles).unwrap();
+        // Past one another with a distance of `apart`, there and back.
+        for k in 0..=600 {
+            let time = f64::from(k) * 0.1;
+            let x = if k <= 300 { time } else { 60.0 - time };
+            record.push(0, time, [x, 0.0]).unwrap();
+            record.push(1, time, [20.0 - x.min(20.0), apart]).unwrap();
+        }
+        String::from_utf8(record.finish().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn contacts_are_found_and_their_absence_is_proved() {
+        let free = certify(record(1.001).as_bytes()).unwrap();
+        assert_eq!((free.verdict, free.contacts.len(), free.undecided), ("proved", 0, 0), "{free:?}");
+        assert!((free.travelled - 100.0).abs() < 1e-6 && (free.time - 60.0).abs() < 1e-9);
+        let touched = certify(record(0.999).as_bytes()).unwrap();
+        assert_eq!(touched.verdict, "contact");
+        assert!(touched.contacts.len() >= 2 && touched.contacts[0].clearance < 0.0);
+    }
+
+    #[test]
+    fn what_is_no_record_is_refused() {
+        let text = record(2.0);
+        for (from, to) in [("pcr-record", "pcr-plan"), ("[1,", "[2,"), ("[0,0.1,", "[0,99.0,")] {
+            assert!(certify(text.replacen(from, to, 1).as_bytes()).is_err(), "{to}");
+        }
+        assert!(certify(&b""[..]).is_err());
+        let head = text.lines().next().unwrap();
+        assert!(certify(head.as_bytes()).is_err(), "nobody was anywhere");
+    }
+}

@@ -1,0 +1,200 @@
+//! What a vehicle says.
+
+use super::vehicle::{Task, Vehicle};
+use crate::vda5050::messages::{Connection, Header, Visualization};
+use crate::vda5050::stamp;
+use crate::vda5050::state::{EdgeState, NodeState, Pose, State, Velocity};
+use crate::vda5050::topics::Kind;
+use crate::vda5050::version::Version;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::f64::consts::{PI, TAU};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+impl Vehicle {
+    fn header(&mut self, kind: Kind) -> Header {
+        let number = self.headers.entry(kind).or_insert(0);
+        *number += 1;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64());
+        Header::new(&self.key, self.version, *number, stamp::written(now + self.clock))
+    }
+
+    fn say(&mut self, kind: Kind, message: &impl Serialize) {
+        self.out.push((kind, serde_json::to_vec(message).unwrap_or_default()));
+    }
+
+    /// Where it believes to be.
+    fn pose(&mut self) -> Pose {
+        let [x, y] = self.place();
+        let (noise, angle) = (self.abilities.noise * self.random.unit(), self.random.unit() * TAU);
+        let theta = (self.heading() + PI).rem_euclid(TAU) - PI;
+        let is_third = self.version == Version::V3_0;
+        Pose {
+            x: x + noise * angle.cos(),
+            y: y + noise * angle.sin(),
+            // The schema has fewer digits of π.
+            theta: theta.clamp(-3.141_592_653, 3.141_592_653),
+            map_id: self.map_id.clone(),
+            position_initialized: (!is_third).then_some(true),
+            localized: is_third.then_some(true),
+            deviation_range: Some(self.abilities.noise),
+            localization_score: Some(0.9),
+            rest: Map::new(),
+        }
+    }
+
+    fn velocity(&self) -> Velocity {
+        let speed = self.task.as_ref().map_or(0.0, |task| task.drive.speed);
+        Velocity { vx: Some(speed), vy: Some(0.0), omega: Some(0.0) }
+    }
+
+    /// Says where it is.
+    pub fn tell_position(&mut self) {
+        let (header, pose, velocity) = (self.header(Kind::Visualization), self.pose(), Some(self.velocity()));
+        let (agv, robot) = if self.version == Version::V3_0 { (None, Some(pose)) } else { (Some(pose), None) };
+        let message =
+            Visualization { header, agv_position: agv, mobile_robot_position: robot, velocity, rest: Map::new() };
+        self.say(Kind::Visualization, &message);
+    }
+
+    /// Says everything.
+    pub fn tell_state(&mut self) {
+        let (header, pose, velocity) = (self.header(Kind::State), self.pose(), Some(self.velocity()));
+        let is_third = self.version == Version::V3_0;
+        let (agv, robot) = if is_third { (None, Some(pose)) } else { (Some(pose), None) };
+        let rest = match if is_third { third() } else { second() } {
+            Value::Object(rest) => rest,
+            _ => Map::new(),
+        };
+        let task = self.task.as_ref();
+        let open = task.filter(|task| !task.cancelled);
+        let last = task.and_then(|task| task.held.nodes.get(task.done));
+        let mut actions = self.actions.clone();
+        if !is_third {
+            actions.extend(self.instant.iter().cloned());
+        }
+        let mut state = State {
+            header,
+            order_id: task.map_or_else(String::new, |task| task.held.order_id.clone()),
+            order_update_id: task.map_or(0, |task| task.held.update_id),
+            last_node_id: last.map_or_else(String::new, |node| node.node_id.clone()),
+            last_node_sequence_id: last.map_or(0, |node| node.sequence_id),
+            node_states: open.map_or_else(Vec::new, nodes),
+            edge_states: open.map_or_else(Vec::new, edges),
+            driving: task.is_some_and(|task| task.drive.is_driving()),
+            new_base_request: Some(false),
+            agv_position: agv,
+            mobile_robot_position: robot,
+            velocity,
+            action_states: actions,
+            instant_action_states: is_third.then(|| self.instant.clone()),
+            operating_mode: "AUTOMATIC".into(),
+            errors: self.errors.clone(),
+            rest,
+        };
+        state.rest.insert("paused".into(), self.paused.into());
+        self.say(Kind::State, &state);
+    }
+
+    /// The connection message in this state.
+    pub fn connection(&mut self, connection_state: &str) -> Vec<u8> {
+        let header = self.header(Kind::Connection);
+        let message = Connection { header, connection_state: connection_state.into(), rest: Map::new() };
+        serde_json::to_vec(&message).unwrap_or_default()
+    }
+
+    /// Says that it is connected.
+    pub fn tell_online(&mut self) {
+        let payload = self.connection("ONLINE");
+        self.out.push((Kind::Connection, payload));
+    }
+
+    /// Says what it is.
+    pub fn tell_factsheet(&mut self) {
+        let header = self.header(Kind::Factsheet);
+        let mut sheet = if self.version == Version::V3_0 { self.sheet_third() } else { self.sheet_second() };
+        if let (Value::Object(sheet), Ok(Value::Object(header))) = (&mut sheet, serde_json::to_value(header)) {
+            sheet.extend(header);
+        }
+        self.say(Kind::Factsheet, &sheet);
+    }
+
+    fn contour(&self) -> Vec<Value> {
+        // The square inside of its disc.
+        let half = self.abilities.radius * 0.5_f64.sqrt();
+        [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
+            .map(|[x, y]| json!({ "x": x * half, "y": y * half }))
+            .into()
+    }
+
+    fn sheet_second(&self) -> Value {
+        let can = self.abilities;
+        let side = can.radius * 2.0_f64.sqrt();
+        json!({
+            "typeSpecification": { "seriesName": "pcr fleet", "agvKinematic": "DIFF", "agvClass": "CARRIER", "maxLoadMass": 100,
+                "localizationTypes": ["NATURAL"], "navigationTypes": ["VIRTUAL_LINE_GUIDED"] },
+            "physicalParameters": { "speedMin": 0.0, "speedMax": can.speed, "accelerationMax": can.acceleration,
+                "decelerationMax": can.acceleration, "heightMax": 1.0, "width": side, "length": side },
+            "protocolLimits": { "maxStringLens": {}, "maxArrayLens": {}, "timing": { "minOrderInterval": 0.0, "minStateInterval": 0.0 } },
+            "protocolFeatures": { "optionalParameters": [], "agvActions": [] },
+            "agvGeometry": { "envelopes2d": [ { "set": "contour", "polygonPoints": self.contour() } ] },
+            "loadSpecification": {},
+        })
+    }
+
+    fn sheet_third(&self) -> Value {
+        let can = self.abilities;
+        let side = can.radius * 2.0_f64.sqrt();
+        json!({
+            // Both names: the schema of 3.0.0 asks for one and describes the other.
+            "typeSpecification": { "seriesName": "pcr fleet", "mobileRobotKinematic": "DIFFERENTIAL", "mobileRobotKinematics": "DIFFERENTIAL",
+                "mobileRobotClass": "CARRIER", "maximumLoadMass": 100, "localizationTypes": ["NATURAL"],
+                "navigationTypes": ["VIRTUAL_LINE_GUIDED"] },
+            "physicalParameters": { "minimumSpeed": 0.0, "maximumSpeed": can.speed, "maximumAcceleration": can.acceleration,
+                "maximumDeceleration": can.acceleration, "minimumHeight": 1.0, "maximumHeight": 1.0, "width": side, "length": side },
+            "protocolLimits": { "maximumStringLengths": {}, "maximumArrayLengths": {},
+                "timing": { "minimumOrderInterval": 0.0, "minimumStateInterval": 0.0 } },
+            "protocolFeatures": { "optionalParameters": [], "mobileRobotActions": [] },
+            "mobileRobotGeometry": { "envelopes2d": [ { "envelope2dId": "contour", "vertices": self.contour() } ] },
+            "loadSpecification": {},
+        })
+    }
+}
+
+fn second() -> Value {
+    json!({
+        "batteryState": { "batteryCharge": 80.0, "charging": false },
+        "safetyState": { "eStop": "NONE", "fieldViolation": false },
+    })
+}
+
+fn third() -> Value {
+    json!({
+        "powerSupply": { "stateOfCharge": 80.0, "charging": false },
+        "safetyState": { "activeEmergencyStop": "NONE", "fieldViolation": false },
+    })
+}
+
+fn nodes(task: &Task) -> Vec<NodeState> {
+    let ahead = task.held.nodes.iter().skip(task.done + 1);
+    ahead
+        .map(|node| NodeState {
+            node_id: node.node_id.clone(),
+            sequence_id: node.sequence_id,
+            released: node.released,
+            rest: Map::new(),
+        })
+        .collect()
+}
+
+fn edges(task: &Task) -> Vec<EdgeState> {
+    let ahead = task.held.edges.iter().skip(task.done);
+    ahead
+        .map(|edge| EdgeState {
+            edge_id: edge.edge_id.clone(),
+            sequence_id: edge.sequence_id,
+            released: edge.released,
+            rest: Map::new(),
+        })
+        .collect()
+}

@@ -1,0 +1,338 @@
+//! A simulated vehicle that keeps to the standard: it drives the released base only, stitches updates, and says what it does.
+
+use super::drive::{Abilities, Drive};
+use super::random::Random;
+use crate::course::Start;
+use crate::vda5050::door::{self, Limits};
+use crate::vda5050::held::{Held, Rejected, Taken};
+use crate::vda5050::messages::{Action, Header, InstantActions};
+use crate::vda5050::order::Order;
+use crate::vda5050::state::{ActionState, StateError};
+use crate::vda5050::topics::{Key, Kind};
+use crate::vda5050::version::{Error, Version};
+use crate::vda5050::way::Way;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+/// A new order has to begin so near \[m\].
+const BEGINS: f64 = 0.5;
+
+/// How long an action at a node takes \[s\].
+const ACTION: f64 = 2.0;
+
+/// An order and how far it is.
+#[derive(Clone, Debug)]
+pub(super) struct Task {
+    pub(super) held: Held,
+    pub(super) way: Way,
+    pub(super) drive: Drive,
+    /// The last node that was reached.
+    pub(super) done: usize,
+    pub(super) cancelled: bool,
+}
+
+/// A vehicle.
+#[derive(Debug)]
+pub struct Vehicle {
+    pub(super) key: Key,
+    pub(super) version: Version,
+    pub(super) map_id: String,
+    pub(super) abilities: Abilities,
+    pub(super) random: Random,
+    pub(super) start: Start,
+    pub(super) task: Option<Task>,
+    /// What is off, sideways \[m\], and how fast that changes.
+    pub(super) off: f64,
+    pub(super) actions: Vec<ActionState>,
+    pub(super) instant: Vec<ActionState>,
+    /// How long the action at the node still takes \[s\].
+    acting: f64,
+    cancel: Option<String>,
+    pub(super) paused: bool,
+    frozen: f64,
+    pub(super) errors: Vec<StateError>,
+    pub(super) headers: BTreeMap<Kind, u64>,
+    /// What its clock is off \[s\].
+    pub(super) clock: f64,
+    pub(super) out: Vec<(Kind, Vec<u8>)>,
+    news: bool,
+}
+
+impl Vehicle {
+    /// One that stands there.
+    pub fn new(key: Key, version: Version, map_id: &str, abilities: Abilities, start: Start, seed: u64) -> Self {
+        Self {
+            key,
+            version,
+            map_id: map_id.into(),
+            abilities,
+            random: Random::new(seed),
+            start,
+            task: None,
+            off: 0.0,
+            actions: Vec::new(),
+            instant: Vec::new(),
+            acting: 0.0,
+            cancel: None,
+            paused: false,
+            frozen: 0.0,
+            errors: Vec::new(),
+            headers: BTreeMap::new(),
+            clock: 0.0,
+            out: Vec::new(),
+            news: true,
+        }
+    }
+
+    /// Which.
+    pub fn key(&self) -> &Key {
+        &self.key
+    }
+
+    /// Edition of its messages.
+    pub fn version(&self) -> Version {
+        self.version
+    }
+
+    /// What it can do.
+    pub fn abilities(&self) -> &Abilities {
+        &self.abilities
+    }
+
+    /// Sets its clock off by so much \[s\].
+    pub fn set_clock(&mut self, off: f64) {
+        self.clock = off;
+    }
+
+    /// Does nothing, and says nothing, for a time \[s\].
+    pub fn freeze(&mut self, time: f64) {
+        self.frozen = time;
+        if let Some(task) = &mut self.task {
+            task.drive.speed = 0.0;
+        }
+    }
+
+    /// The messages to be sent.
+    pub fn out(&mut self) -> Vec<(Kind, Vec<u8>)> {
+        if std::mem::take(&mut self.news) && self.frozen <= 0.0 {
+            self.tell_state();
+        }
+        std::mem::take(&mut self.out)
+    }
+
+    /// Where it really is.
+    pub fn place(&self) -> [f64; 2] {
+        let Some(task) = &self.task else { return [self.start.x, self.start.y] };
+        let pose = task.way.pose(task.drive.at);
+        // Sideways, as far as it has gone: it does not jump when it sets off.
+        let off = self.off * (task.drive.at / self.abilities.drift.max(1e-9)).min(1.0);
+        let end = task.way.length() - task.drive.at;
+        let off = off * (end / self.abilities.drift.max(1e-9)).min(1.0);
+        [pose.x - off * pose.heading.sin(), pose.y + off * pose.heading.cos()]
+    }
+
+    /// Which way it looks \[rad\].
+    pub(super) fn heading(&self) -> f64 {
+        self.task.as_ref().map_or(self.start.heading, |task| task.way.pose(task.drive.at).heading)
+    }
+
+    /// Takes a message.
+    pub fn receive(&mut self, kind: Kind, payload: &[u8]) {
+        if self.frozen > 0.0 {
+            return;
+        }
+        match kind {
+            Kind::Order => {
+                let mut named = (String::new(), 0);
+                let order = door::read::<Order>(payload, Limits::default()).map_err(Rejected::from);
+                let taken = order.and_then(|order| {
+                    named = (order.order_id.clone(), order.order_update_id);
+                    self.take(order)
+                });
+                match taken {
+                    Ok(true) => (self.errors.clear(), self.news = true).1,
+                    Ok(false) => {}
+                    Err(rejected) => self.reject(&rejected, &named),
+                }
+            }
+            Kind::InstantActions => {
+                if let Ok(message) = door::read::<InstantActions>(payload, Limits::default())
+                    && self.is_ours(&message.header)
+                {
+                    message.actions.iter().for_each(|action| self.act(action));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn is_ours(&self, header: &Header) -> bool {
+        header.check(&self.key, self.version == Version::V3_0).is_ok()
+    }
+
+    fn reject(&mut self, rejected: &Rejected, (order, update): &(String, u64)) {
+        let update = update.to_string();
+        let kind = self.version.error(rejected.error);
+        let references = [("orderId", order.as_str()), ("orderUpdateId", update.as_str())];
+        let error = StateError::warning(kind, rejected.refusal.to_string(), &references);
+        if !self.errors.contains(&error) {
+            self.errors.push(error);
+        }
+        self.news = true;
+    }
+
+    fn take(&mut self, order: Order) -> Result<bool, Rejected> {
+        order.header.check(&self.key, self.version == Version::V3_0)?;
+        let actions = |order: &Order| -> Vec<ActionState> {
+            let nodes = order.nodes.iter().flat_map(|node| &node.actions);
+            nodes.chain(order.edges.iter().flat_map(|edge| &edge.actions)).map(waiting).collect()
+        };
+        let new = actions(&order);
+        match &mut self.task {
+            Some(task) if task.held.order_id == order.order_id && !task.cancelled => {
+                let mut held = task.held.clone();
+                let Taken::After(after) = held.update(order)? else { return Ok(false) };
+                task.way.extend(&held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
+                task.held = held;
+                let known: Vec<String> = self.actions.iter().map(|action| action.action_id.clone()).collect();
+                self.actions.extend(new.into_iter().filter(|action| !known.contains(&action.action_id)));
+            }
+            Some(task) if task.held.order_id == order.order_id => {
+                return Err(Rejected::new(Error::Update, "orderId", "it was cancelled"));
+            }
+            task => {
+                if task.as_ref().is_some_and(|task| !task.cancelled && task.done + 1 < task.held.nodes.len())
+                    || self.acting > 0.0
+                {
+                    return Err(Rejected::new(Error::Order, "orderId", "another order is not finished"));
+                }
+                let start = task.as_ref().map_or(self.start, |task| task.way.pose(task.drive.at));
+                let held = Held::new(order)?;
+                let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
+                if way.node(0).is_none_or(|begins| begins > BEGINS) {
+                    return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", "too far off"));
+                }
+                self.start = start;
+                *task = Some(Task { held, way, drive: Drive::new(), done: 0, cancelled: false });
+                self.actions = new;
+            }
+        }
+        Ok(true)
+    }
+
+    fn act(&mut self, action: &Action) {
+        let mut state = waiting(action);
+        let has_order = self
+            .task
+            .as_ref()
+            .is_some_and(|task| !task.cancelled && (task.done + 1 < task.held.nodes.len() || task.drive.is_driving()));
+        let status = match action.action_type.as_str() {
+            "cancelOrder" if has_order => {
+                self.cancel = Some(action.action_id.clone());
+                "RUNNING"
+            }
+            "cancelOrder" => {
+                let kind = self.version.error(Error::NothingToCancel);
+                let references = [("actionId", action.action_id.as_str())];
+                self.errors.push(StateError::warning(kind, "there is no order".into(), &references));
+                "FAILED"
+            }
+            "startPause" => (self.paused = true, "FINISHED").1,
+            "stopPause" => (self.paused = false, "FINISHED").1,
+            "stateRequest" => "FINISHED",
+            "factsheetRequest" => (self.tell_factsheet(), "FINISHED").1,
+            _ => "FAILED",
+        };
+        state.action_status = status.into();
+        self.instant.retain(|known| known.action_id != state.action_id);
+        self.instant.push(state);
+        /// No more than the last ones.
+        const MOST: usize = 8;
+        if self.instant.len() > MOST {
+            self.instant.remove(0);
+        }
+        self.news = true;
+    }
+
+    /// Goes on for a time \[s\].
+    pub fn advance(&mut self, time: f64) {
+        self.frozen = (self.frozen - time).max(0.0);
+        if self.frozen > 0.0 {
+            return;
+        }
+        let can = self.abilities;
+        // So slowly that it is never faster sideways than a tenth of its speed.
+        self.off = (self.off + self.random.sign() * can.drift * time).clamp(-can.drift, can.drift);
+        let Some(task) = &mut self.task else { return };
+        let was = (task.drive.is_driving(), task.done);
+        let base = task.way.node(task.held.base).unwrap_or(0.0);
+        if self.cancel.is_some() || self.paused {
+            task.drive.brake(base, &can, time);
+            if let Some(id) = self.cancel.take_if(|_| task.drive.speed == 0.0) {
+                task.cancelled = true;
+                self.acting = 0.0;
+                for action in &mut self.actions {
+                    if action.action_status != "FINISHED" {
+                        action.action_status = "FAILED".into();
+                    }
+                }
+                if let Some(state) = self.instant.iter_mut().find(|state| state.action_id == id) {
+                    state.action_status = "FINISHED".into();
+                }
+                self.news = true;
+            }
+        } else if self.acting > 0.0 {
+            self.acting = (self.acting - time).max(0.0);
+        } else if !task.cancelled {
+            let end = stop(task, &self.actions).map_or(base, |stop| stop.min(base));
+            task.drive.advance(&task.way, &task.held, end, &can, &mut self.random, time);
+        }
+        let reached = |task: &Task| task.way.node(task.done + 1).is_some_and(|next| next <= task.drive.at + 1e-9);
+        while !task.cancelled && task.done < task.held.base && reached(task) {
+            task.done += 1;
+        }
+        if was != (task.drive.is_driving(), task.done) {
+            self.news = true;
+        }
+        self.work();
+    }
+
+    /// The actions of the node where it stands, one after the other; those of edges are done when the edge is.
+    fn work(&mut self) {
+        let Some(task) = self.task.as_ref().filter(|task| !task.cancelled && self.acting <= 0.0) else { return };
+        let passed = task.held.edges.iter().take(task.done).flat_map(|edge| &edge.actions);
+        let before = task.held.nodes.iter().take(task.done).flat_map(|node| &node.actions);
+        let done: Vec<&str> = passed.chain(before).map(|action| action.action_id.as_str()).collect();
+        for state in self.actions.iter_mut().filter(|state| state.action_status != "FINISHED") {
+            if done.contains(&state.action_id.as_str()) || state.action_status == "RUNNING" {
+                state.action_status = "FINISHED".into();
+                self.news = true;
+            }
+        }
+        let here = task.held.nodes.get(task.done).filter(|_| task.drive.speed == 0.0);
+        let next = here.and_then(|node| {
+            let is_next = |state: &&mut ActionState| {
+                state.action_status == "WAITING" && node.actions.iter().any(|own| own.action_id == state.action_id)
+            };
+            self.actions.iter_mut().find(is_next)
+        });
+        if let Some(state) = next {
+            state.action_status = "RUNNING".into();
+            (self.acting, self.news) = (ACTION, true);
+        }
+    }
+}
+
+/// Where it has to stop for an action \[m\].
+fn stop(task: &Task, actions: &[ActionState]) -> Option<f64> {
+    let is_open = |action: &Action| {
+        actions.iter().any(|state| state.action_id == action.action_id && state.action_status != "FINISHED")
+    };
+    let nodes = task.held.nodes.iter().enumerate().skip(task.done);
+    nodes.filter(|(_, node)| node.actions.iter().any(is_open)).find_map(|(place, _)| task.way.node(place))
+}
+
+fn waiting(action: &Action) -> ActionState {
+    let rest = Map::from_iter([("actionType".to_owned(), Value::from(action.action_type.clone()))]);
+    ActionState { action_id: action.action_id.clone(), action_status: "WAITING".into(), rest }
+}

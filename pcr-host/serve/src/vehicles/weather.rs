@@ -1,0 +1,62 @@
+//! Messages that are lost, late, sent twice or in another order.
+
+use super::random::Random;
+use serde::{Deserialize, Serialize};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Climate {
+    /// Part of the messages that are lost.
+    pub lost: f64,
+    /// Part of them that come twice.
+    pub twice: f64,
+    /// Part of them that come late, hence after later ones.
+    pub late: f64,
+    /// By how much at most \[s\].
+    pub delay: f64,
+}
+
+/// Messages on their way.
+#[derive(Debug)]
+pub struct Weather<T> {
+    climate: Climate,
+    random: Random,
+    underway: Vec<(f64, u64, T)>,
+    count: u64,
+}
+
+impl<T: Clone> Weather<T> {
+    /// With nothing on its way.
+    pub fn new(climate: Climate, seed: u64) -> Self {
+        Self { climate, random: Random::new(seed), underway: Vec::new(), count: 0 }
+    }
+
+    /// Another weather from now on; what is on its way comes as it would have.
+    pub fn change(&mut self, climate: Climate) {
+        self.climate = climate;
+    }
+
+    /// Sends a message at a time \[s\].
+    pub fn send(&mut self, message: T, now: f64) {
+        let Climate { lost, twice, late, delay } = self.climate;
+        if self.random.unit() < lost {
+            return;
+        }
+        let times = if self.random.unit() < twice { 2 } else { 1 };
+        for _ in 0..times {
+            let comes = if self.random.unit() < late { now + delay * self.random.unit() } else { now };
+            self.underway.push((comes, self.count, message.clone()));
+            self.count += 1;
+        }
+    }
+
+    /// What has come by now.
+    pub fn come(&mut self, now: f64) -> Vec<T> {
+        let (mut come, rest): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.underway).into_iter().partition(|it| it.0 <= now);
+        self.underway = rest;
+        come.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        come.into_iter().map(|(_, _, message)| message).collect()
+    }
+}

@@ -1,0 +1,79 @@
+//! A real broker for a test: mosquitto.
+
+use pcr_serve::vda5050::mqtt::Broker;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+/// A broker that ends with the test.
+pub(crate) struct Mosquitto {
+    child: Child,
+    folder: PathBuf,
+    port: u16,
+}
+
+/// A folder of this name that is empty.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+impl Mosquitto {
+    pub(crate) fn start(name: &str) -> Self {
+        let folder = folder(&format!("broker-{name}"));
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let config = format!("listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\nlog_dest none\n");
+        std::fs::write(folder.join("mosquitto.conf"), config).unwrap();
+        let child = Self::spawn(&folder);
+        let broker = Self { child, folder, port };
+        broker.wait();
+        broker
+    }
+
+    fn spawn(folder: &Path) -> Child {
+        let path = format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default());
+        let mut command = Command::new("mosquitto");
+        command.arg("-c").arg(folder.join("mosquitto.conf")).env("PATH", &path);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        let child = command.spawn();
+        // The search path that counts is that of this process.
+        let child = child.or_else(|_| {
+            Command::new("/usr/sbin/mosquitto")
+                .arg("-c")
+                .arg(folder.join("mosquitto.conf"))
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+        });
+        child.expect("mosquitto is needed: .ci/install.sh mosquitto")
+    }
+
+    fn wait(&self) {
+        while std::net::TcpStream::connect(("127.0.0.1", self.port)).is_err() {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Ends it with all that it keeps, and starts another one at its place.
+    pub(crate) fn restart(&mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        self.child = Self::spawn(&self.folder);
+        self.wait();
+    }
+
+    pub(crate) fn address(&self) -> Broker {
+        Broker::new("127.0.0.1", self.port)
+    }
+}
+
+impl Drop for Mosquitto {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,5 @@
+//! VDA 5050 over a real broker: `.ci/test.sh serve`.
+
+mod broker;
+mod runs;
+mod site;

@@ -1,0 +1,65 @@
+//! Fleets at work.
+
+use crate::broker::Mosquitto;
+use crate::site::{Desk, Scene, Site};
+use pcr_serve::entry::Nowhere;
+use pcr_serve::vda5050::version::Version;
+use pcr_serve::vehicles::drive::Abilities;
+use pcr_serve::vehicles::weather::Climate;
+
+const FAIR: Scene<'_> = Scene {
+    count: 1,
+    versions: &[Version::V2_1],
+    abilities: &[Abilities {
+        radius: 0.4,
+        speed: 1.0,
+        acceleration: 0.5,
+        rotation: 1.0,
+        slip: 0.05,
+        drift: 0.02,
+        noise: 0.02,
+        delay: 0.0,
+    }],
+    climate: Climate { lost: 0.0, twice: 0.0, late: 0.0, delay: 0.0 },
+    drops: 0.0,
+    pace: 10.0,
+};
+
+#[test]
+#[ignore = "needs a broker: .ci/test.sh serve"]
+fn one_vehicle_does_its_missions() {
+    let broker = Mosquitto::start("one");
+    let (mut site, profiles) = Site::open(&broker, FAIR);
+    let desk = Desk::open(&broker, profiles, "one", Box::new(Nowhere));
+    let log = desk.log.clone();
+    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(2)));
+    assert!(told.is_ok(), "{:#?}", log.lock().unwrap());
+    let found = site.close();
+    assert!(found.travelled > 5.0, "{found:?}");
+    desk.close().unwrap();
+}
+
+#[test]
+#[ignore = "needs a broker: .ci/test.sh serve"]
+fn a_fleet_of_all_editions_keeps_apart() {
+    let broker = Mosquitto::start("fleet");
+    let small = Abilities { radius: 0.3, speed: 1.5, acceleration: 1.0, ..FAIR.abilities[0] };
+    let slow = Abilities { delay: 3.0, slip: 0.2, speed: 0.7, ..FAIR.abilities[0] };
+    let climate = Climate { lost: 0.05, twice: 0.1, late: 0.1, delay: 1.0 };
+    let scene = Scene {
+        count: 8,
+        versions: &Version::ALL,
+        abilities: &[FAIR.abilities[0], small, slow],
+        climate,
+        drops: 0.02,
+        ..FAIR
+    };
+    let (mut site, profiles) = Site::open(&broker, scene);
+    let desk = Desk::open(&broker, profiles, "fleet", Box::new(Nowhere));
+    let log = desk.log.clone();
+    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(24)));
+    assert!(told.is_ok(), "{:#?}", log.lock().unwrap().iter().rev().take(60).collect::<Vec<_>>());
+    let found = site.close();
+    assert!(found.travelled > 100.0, "{found:?}");
+    desk.close().unwrap();
+}

@@ -1,0 +1,164 @@
+//! A fleet, its manager and its supervisor at a broker, in one process.
+
+use crate::broker::Mosquitto;
+use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout};
+use pcr_serve::entry::Keep;
+use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::vda5050::bridge::{self, Bridge};
+use pcr_serve::vda5050::door::Limits;
+use pcr_serve::vda5050::lane::Profile;
+use pcr_serve::vda5050::station::{Station, Stopped};
+use pcr_serve::vda5050::topics::Interface;
+use pcr_serve::vda5050::version::Version;
+use pcr_serve::vehicles::drive::Abilities;
+use pcr_serve::vehicles::fleet::{self, Fleet};
+use pcr_serve::vehicles::office::Office;
+use pcr_serve::vehicles::record::{Certificate, certify};
+use pcr_serve::vehicles::weather::Climate;
+use pcr_serve::vehicles::world::World;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Safe ends of the warehouse for discs of 0.5 m: `pcr traffic warehouse_graph.geojson --radius 0.5 --agents 3 --hours 0.01 --json`.
+pub(crate) const SAFE: [u64; 13] = [0, 60, 65, 66, 67, 75, 77, 79, 81, 83, 85, 87, 95];
+
+pub(crate) const WAREHOUSE: &str = include_str!("../../../../tests/data/real/nav2/warehouse_graph.geojson");
+
+pub(crate) fn warehouse() -> Layout {
+    let options = Options { radius: Some(0.4), ..Options::default() };
+    let Imported { layout, .. } = layout(Format::Nav2, WAREHOUSE, &options, &mut Warnings::default()).unwrap();
+    layout
+}
+
+/// Nodes of a layout with these names.
+pub(crate) fn nodes(layout: &Layout, names: &[u64]) -> Vec<usize> {
+    names.iter().map(|name| layout.nodes_called(&name.to_string())[0]).collect()
+}
+
+/// The part of the topics that is the manager's, and that of the vehicles.
+pub(crate) fn interfaces() -> [Interface; 2] {
+    ["fleet", "uagv"].map(|prefix| Interface::new(prefix).unwrap())
+}
+
+pub(crate) fn settings() -> Settings {
+    // Holds as far as the way is free: bases end at nodes that may be far.
+    Settings { lookahead: 1e3, ..Settings::default() }
+}
+
+/// A supervisor at work.
+pub(crate) struct Desk {
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<Result<(), Stopped>>,
+    pub(crate) log: Arc<Mutex<Vec<String>>>,
+}
+
+impl Desk {
+    pub(crate) fn open(broker: &Mosquitto, profiles: Vec<Profile>, session: &str, keep: Box<dyn Keep>) -> Self {
+        Self::with(broker, profiles, session, Supervisor::new(settings(), keep))
+    }
+
+    pub(crate) fn with(broker: &Mosquitto, profiles: Vec<Profile>, session: &str, mut supervisor: Supervisor) -> Self {
+        let [manager, vehicles] = interfaces();
+        let stop = Arc::new(AtomicBool::new(false));
+        let settings = bridge::Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
+        let mut bridge = Bridge::new(settings, profiles, &supervisor);
+        let mut station = Station::open(&broker.address(), &vehicles, &bridge, session).unwrap();
+        let log = Arc::new(Mutex::new(Vec::new()));
+        let (ended, lines) = (stop.clone(), log.clone());
+        let thread = std::thread::spawn(move || {
+            while !ended.load(Ordering::Relaxed) {
+                let events = station.turn(&mut supervisor, &mut bridge)?;
+                let mut lines = lines.lock().unwrap();
+                lines.extend(events.iter().map(|event| format!("{event:?}")));
+                lines.extend(bridge.log());
+            }
+            station.close();
+            Ok(())
+        });
+        Self { stop, thread, log }
+    }
+
+    pub(crate) fn is_over(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    pub(crate) fn close(self) -> Result<(), Stopped> {
+        self.stop.store(true, Ordering::Relaxed);
+        self.thread.join().unwrap()
+    }
+}
+
+/// Vehicles and their manager.
+pub(crate) struct Site {
+    pub(crate) fleet: Fleet<Vec<u8>>,
+    pub(crate) office: Office,
+}
+
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) count: usize,
+    pub(crate) versions: &'a [Version],
+    pub(crate) abilities: &'a [Abilities],
+    pub(crate) climate: Climate,
+    pub(crate) drops: f64,
+    pub(crate) pace: f64,
+}
+
+impl Site {
+    /// At the safe ends of the warehouse.
+    pub(crate) fn open(broker: &Mosquitto, scene: Scene<'_>) -> (Self, Vec<Profile>) {
+        let layout = warehouse();
+        let goals = nodes(&layout, &SAFE);
+        let world = World::new(layout, goals, scene.count, scene.versions, scene.abilities, 1).unwrap();
+        let [manager, interface] = interfaces();
+        let settings = fleet::Settings {
+            broker: broker.address(),
+            interface,
+            pace: scene.pace,
+            positions: 10.0,
+            states: 2.0,
+            drops: scene.drops,
+            climate: scene.climate,
+            seed: 1,
+        };
+        let fleet = Fleet::new(settings, world.vehicles, Vec::new()).unwrap();
+        let office = Office::open(&broker.address(), manager, world.manager).unwrap();
+        (Self { fleet, office }, world.profiles)
+    }
+
+    /// Goes on until so many missions are done, or fails when none is for long.
+    pub(crate) fn until(&mut self, missions: u64) {
+        let (mut done, mut since) = (self.office.manager.done(), Instant::now());
+        while done < missions {
+            self.step();
+            if self.office.manager.done() > done {
+                (done, since) = (self.office.manager.done(), Instant::now());
+            }
+            // Not a measure of anything: a test that hangs tells nobody why.
+            assert!(since.elapsed() < Duration::from_secs(60), "{done} of {missions} missions, and then nothing");
+        }
+    }
+
+    pub(crate) fn step(&mut self) {
+        self.fleet.step().unwrap();
+        self.office.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+
+    pub(crate) fn lasts(&mut self, time: Duration) {
+        let since = Instant::now();
+        while since.elapsed() < time {
+            self.step();
+        }
+    }
+
+    /// Ends it, and proves that nobody has touched anybody.
+    pub(crate) fn close(self) -> Certificate {
+        let record = self.fleet.close().unwrap();
+        let found = certify(record.as_slice()).unwrap();
+        assert_eq!(found.verdict, "proved", "{found:?}");
+        found
+    }
+}
