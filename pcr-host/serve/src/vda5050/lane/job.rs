@@ -41,9 +41,7 @@ pub struct Job {
     pub way: Way,
     /// Edition of the manager's order.
     pub version: String,
-    /// Place of the node at which the path of the supervisor ends, and the next one, if that is not admitted yet.
-    pub planned: usize,
-    /// That which was asked for.
+    /// Place of the node up to which the supervisor was asked for a way.
     pub asked: usize,
     /// What the vehicle has been released, or may have been.
     pub stops: Vec<Stop>,
@@ -88,7 +86,6 @@ impl Job {
             held,
             way,
             version,
-            planned: 0,
             asked: 0,
             stops: vec![first],
             sent: None,
@@ -108,7 +105,7 @@ impl Job {
         if let Some(Base { stops, sent }) = note("base").and_then(|note| serde_json::from_value(note).ok()) {
             (job.stops, job.sent) = (stops, sent);
         }
-        job.place(robot);
+        job.asked = job.planned(robot).max(job.waiting(robot).unwrap_or(0));
         Some(job)
     }
 
@@ -124,24 +121,33 @@ impl Job {
         serde_json::to_value(Base { stops: self.stops.clone(), sent: self.sent }).unwrap_or_default()
     }
 
-    /// Takes over from the supervisor how far its path goes.
-    pub(super) fn place(&mut self, robot: &Robot) {
-        let place = |mission: &String| {
-            let (order, sequence) = mission.rsplit_once('#')?;
-            if order == self.held.order_id { self.held.place_of(sequence.parse().ok()?) } else { None }
-        };
-        if let Some(planned) = robot.mission.as_ref().and_then(place) {
-            self.planned = self.planned.max(planned);
-        }
-        if let Some(asked) = robot.waiting.as_ref().and_then(|waiting| place(&waiting.mission)) {
-            self.asked = self.asked.max(asked);
-        }
-        self.asked = self.asked.max(self.planned);
+    /// The node that a mission leads to.
+    fn place(&self, mission: &str) -> Option<usize> {
+        let (order, sequence) = mission.rsplit_once('#')?;
+        if order == self.held.order_id { self.held.place_of(sequence.parse().ok()?) } else { None }
     }
 
-    /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node.
+    /// Place of the node at which the path of the supervisor ends; the first one while nothing is admitted.
+    pub(super) fn planned(&self, robot: &Robot) -> usize {
+        robot.mission.as_deref().and_then(|mission| self.place(mission)).unwrap_or(0)
+    }
+
+    /// Whether the supervisor's path is a part of this way.
+    pub(super) fn is_admitted(&self, robot: &Robot) -> bool {
+        robot.mission.as_deref().and_then(|mission| self.place(mission)).is_some()
+    }
+
+    /// Place of the node at which a mission ends that waits to be admitted.
+    fn waiting(&self, robot: &Robot) -> Option<usize> {
+        robot.waiting.as_ref().and_then(|waiting| self.place(&waiting.mission))
+    }
+
+    /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node. It follows from the
+    /// path that the supervisor has now: a mission can be admitted at any time.
     pub(super) fn offset(&self, robot: &Robot) -> f64 {
-        self.way.node(self.planned).unwrap_or(0.0) - robot.course.length()
+        // Until then the vehicle is where the path before ends.
+        let end = if self.is_admitted(robot) { self.way.node(self.planned(robot)).unwrap_or(0.0) } else { 0.0 };
+        end - robot.course.length()
     }
 
     /// Where the base of the vehicle ends, or may end.

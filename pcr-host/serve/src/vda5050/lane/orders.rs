@@ -8,7 +8,7 @@ use super::super::version::{Error, Version};
 use super::super::way::{TOLERANCE, Way};
 use super::Lane;
 use super::job::{Job, mission};
-use crate::supervisor::{Proposal, Supervisor, Verdict};
+use crate::supervisor::{Proposal, Supervisor};
 
 /// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
 const BEGINS: f64 = 1.0;
@@ -73,9 +73,9 @@ impl Lane {
         };
         job.is_acknowledged()
             && robot.waiting.is_none()
-            && job.planned == job.held.base
+            && job.planned(robot) == job.held.base
             && job.held.nodes.len() == job.held.base + 1
-            && job.last().node == job.planned
+            && job.last().node == job.held.base
             && !job.last().between
             && state.order_id == job.held.order_id
             && state.last_node_sequence_id == job.last().sequence
@@ -143,9 +143,10 @@ impl Lane {
         let mut job = job.clone();
         let Taken::After(after) = job.held.update(order)? else { return Ok(false) };
         job.way.extend(&job.held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
-        let planned = job.planned;
+        let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
+        let from = job.is_admitted(robot).then(|| job.planned(robot));
         if job.held.base > job.asked {
-            self.ask(supervisor, &mut job, Some(planned), now)?;
+            self.ask(supervisor, &mut job, from, now)?;
         }
         job.changed = true;
         self.note(supervisor, "order", job.given());
@@ -159,10 +160,7 @@ impl Lane {
         let proposal =
             Proposal { robot: self.name.clone(), mission: mission(&job.held), after: None, start: None, path };
         let verdict = supervisor.mission(&proposal, now);
-        match verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))? {
-            Verdict::Admitted { .. } => job.planned = job.held.base,
-            Verdict::Waiting { .. } => {}
-        }
+        verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))?;
         job.asked = job.held.base;
         Ok(())
     }

@@ -26,7 +26,6 @@ impl Lane {
         let (Some(version), Some(state)) = (self.version, &self.state) else { return };
         let Ok(robot) = supervisor.robot(&self.name) else { return };
         let Some(job) = &mut self.job else { return };
-        job.place(robot);
         if job.cancel.is_some() || robot.stopped.is_some() {
             return;
         }
@@ -72,7 +71,7 @@ impl Lane {
 impl Job {
     /// The stops up to where the robot has been allowed to go; none if there are no more.
     fn next(&self, robot: &Robot, split: bool) -> Vec<Stop> {
-        let offset = self.offset(robot);
+        let (offset, planned) = (self.offset(robot), self.planned(robot));
         let hold = robot.told + offset;
         let last = self.last();
         let mut stops = Vec::new();
@@ -82,7 +81,7 @@ impl Job {
             stops.push(Stop { sequence, length, node, between });
         };
         let mut reached = last.node;
-        for node in last.node + 1..=self.planned {
+        for node in last.node + 1..=planned {
             let Some(length) = self.way.node(node).filter(|length| *length <= hold + ROUNDING) else { break };
             push(&mut stops, length, node, false);
             reached = node;
@@ -90,7 +89,7 @@ impl Job {
         // In the middle of an edge only if the vehicle would have to brake for its end.
         let from = stops.last().map_or(last.length, |stop| stop.length);
         let is_short = from - (robot.up_to + offset) < 2.0 * robot.abilities.braking() + 2.0 * robot.abilities.speed;
-        let next = self.way.node(reached + 1).filter(|_| reached < self.planned);
+        let next = self.way.node(reached + 1).filter(|_| reached < planned);
         if split
             && is_short
             && self.can_split(reached)
