@@ -18,5 +18,6 @@ pub mod course;
 pub mod entry;
 pub mod event;
 pub mod fault;
+pub mod journal;
 pub mod robot;
 pub mod supervisor;
