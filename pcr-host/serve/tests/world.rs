@@ -7,11 +7,13 @@ use pcr_core::Brakes;
 use pcr_serve::course::{Course, Shape, Start};
 use pcr_serve::entry::{Entry, Keep};
 use pcr_serve::event::Event;
+use pcr_serve::fault::Fault;
 use pcr_serve::journal::{self, frame};
 use pcr_serve::robot::Abilities;
 use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
 use std::f64::consts::PI;
 use std::io;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 /// Time between two controls \[s\].
@@ -50,13 +52,13 @@ impl Dice {
 #[derive(Clone)]
 pub(crate) struct Disc {
     pub(crate) bytes: Arc<Mutex<Vec<u8>>>,
-    pub(crate) fails_at: usize,
+    pub(crate) fails_at: Arc<AtomicUsize>,
 }
 
 impl Disc {
     pub(crate) fn new() -> Self {
         let header = b"pcr-journal\0\x01\0\0\0".to_vec();
-        Self { bytes: Arc::new(Mutex::new(header)), fails_at: usize::MAX }
+        Self { bytes: Arc::new(Mutex::new(header)), fails_at: Arc::new(AtomicUsize::new(usize::MAX)) }
     }
 
     pub(crate) fn entries(&self) -> Vec<Entry> {
@@ -71,7 +73,7 @@ impl Keep for Disc {
     fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
         let mut bytes = self.bytes.lock().unwrap();
         let frame = frame(entries)?;
-        let room = self.fails_at.saturating_sub(bytes.len());
+        let room = self.fails_at.load(Relaxed).saturating_sub(bytes.len());
         if room < frame.len() {
             bytes.extend(&frame[..room]);
             return Err(io::Error::other("killed"));
@@ -253,6 +255,7 @@ pub(crate) struct World {
     pub(crate) open: bool,
     pub(crate) proposals: u32,
     pub(crate) waits: u32,
+    pub(crate) kills: u32,
 }
 
 impl World {
@@ -306,6 +309,7 @@ impl World {
             open: true,
             proposals: 0,
             waits: 0,
+            kills: 0,
         }
     }
 
@@ -324,6 +328,13 @@ impl World {
             let hold = hold + vehicle.origin() - robot.origin;
             assert!(robot.told >= hold - 1e-9, "{}: {hold} was told, {} is known", vehicle.name, robot.told);
         }
+    }
+
+    /// From now on what matters goes to another journal, all of it.
+    pub(crate) fn persist(&mut self, mut keeper: Box<dyn Keep>) {
+        self.supervisor.settle(self.now).unwrap();
+        keeper.keep(&self.supervisor.snapshot()).unwrap();
+        self.supervisor = Supervisor::restored(self.settings, self.supervisor.snapshot(), keeper).unwrap();
     }
 
     fn post(&mut self, mail: Mail) {
@@ -375,8 +386,8 @@ impl World {
         self.waits += u32::from(matches!(verdict, Verdict::Waiting { .. }));
     }
 
-    /// A step of the fleet.
-    pub(crate) fn step(&mut self) {
+    /// A step of the fleet; returns what was told.
+    pub(crate) fn step(&mut self) -> Vec<Event> {
         for k in 0..self.vehicles.len() {
             if self.dice.chance(0.5) {
                 let report = self.vehicles[k].report();
@@ -401,7 +412,19 @@ impl World {
                 Mail::Event(event, course) => news.push((event, course)),
             }
         }
-        for event in self.supervisor.settle(self.now).unwrap() {
+        let events = match self.supervisor.settle(self.now) {
+            Ok(events) => events,
+            Err(Fault::Broken { .. }) => {
+                self.kills += 1;
+                assert!(self.supervisor.settle(self.now).is_err(), "no right is given any more");
+                self.disc.fails_at.store(usize::MAX, Relaxed);
+                self.restart();
+                Vec::new()
+            }
+            Err(fault) => panic!("{fault}"),
+        };
+        let told = events.clone();
+        for event in events {
             let is_hold = matches!(event, Event::Hold { .. });
             if is_hold && self.dice.chance(self.trouble.lost) {
                 continue;
@@ -430,6 +453,7 @@ impl World {
         if self.tick.is_multiple_of(WINDOW) {
             self.certify();
         }
+        told
     }
 
     /// Whoever talks to robots asks what is so, and says it again.
