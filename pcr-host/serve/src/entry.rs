@@ -77,6 +77,8 @@ pub struct Known {
     pub course: Course,
     /// Number of the path.
     pub path: u64,
+    /// Where the path begins, on the way since the robot was added \[m\].
+    pub origin: f64,
     /// The mission that it has got last.
     pub mission: Option<String>,
     /// Where it was at least \[m\].

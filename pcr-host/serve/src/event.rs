@@ -27,8 +27,9 @@ pub enum Event {
         mission: String,
         /// Number of the path: positions have to name it.
         path: u64,
-        /// What is left out of the old path before the beginning of the new one \[m\].
-        dropped: f64,
+        /// Where the path begins, as a length of the way since the robot was added \[m\]: the length `l` of a path that begins at `o` is
+        /// the length `l + o - origin` of this one.
+        origin: f64,
         /// Length of the new path \[m\].
         length: f64,
         /// How far the robot had been allowed to go, on the new path \[m\].

@@ -20,6 +20,7 @@ pub mod course;
 pub mod entry;
 pub mod event;
 pub mod fault;
+pub mod journal;
 pub mod robot;
 pub mod supervisor;
 pub mod vda5050;

@@ -85,6 +85,15 @@ pub struct Waiting {
     pub turn: u64,
 }
 
+/// How far the orders of a robot allow it to go, as the others were when this was computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wait {
+    /// So far.
+    pub hold: Hold<f64>,
+    /// The number of the robot that it waits for there, and where that one was \[m\]: when it has gone on there is more.
+    pub by: Option<(usize, f64)>,
+}
+
 /// A robot as the supervisor knows it.
 #[derive(Clone, Debug)]
 pub struct Robot {
@@ -96,6 +105,8 @@ pub struct Robot {
     pub course: Course,
     /// Its number: 1 for that with which it was added, and one more each time.
     pub path: u64,
+    /// Where the path begins, as a length of the way since the robot was added \[m\]: what was left out of paths before.
+    pub origin: f64,
     /// The mission that it has got last.
     pub mission: Option<String>,
     /// It is here or further on \[m\]; never less than before on the same path.
@@ -106,12 +117,15 @@ pub struct Robot {
     pub heard: Option<f64>,
     /// When its last message came \[s\].
     pub alive: Option<f64>,
-    /// How far it has been allowed to go \[m\], or may have been.
+    /// How far it may go \[m\]: what it may be told, again and again.
+    pub granted: f64,
+    /// How far it may have been allowed to go \[m\]: `granted`, but after a restart, when more may have been told than is known to be
+    /// right now. It may be there, and must not be told so.
     pub told: f64,
     /// What is in the journal of that: `told` or more.
     pub ceiling: f64,
-    /// How far its orders allow it to go as the others were when this was computed, and for whom it waits there; none: not known.
-    pub hold: Option<(Hold<f64>, Option<usize>)>,
+    /// How far its orders allow it to go; none: not known.
+    pub hold: Option<Wait>,
     /// Something is wrong with it.
     pub alarm: Option<Alarm>,
     /// Who it must stop for, as that one may be anywhere near.
@@ -132,11 +146,13 @@ impl Robot {
             abilities,
             course,
             path: 1,
+            origin: 0.0,
             mission: None,
             at: 0.0,
             up_to: 0.0,
             heard: None,
             alive: None,
+            granted: 0.0,
             told: 0.0,
             ceiling: 0.0,
             hold: None,

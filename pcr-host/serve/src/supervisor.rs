@@ -88,8 +88,7 @@ pub struct Supervisor {
     entries: Vec<Entry>,
     /// What is to be told once it is.
     events: Vec<Event>,
-    /// Whose places have changed since holds were computed, and since they were in the journal.
-    moved: Vec<bool>,
+    /// Whose places have changed since they were in the journal.
     unsaved: Vec<bool>,
     /// The number of the next mission that has to wait.
     turn: u64,
@@ -120,7 +119,6 @@ impl Supervisor {
             keeper,
             entries: Vec::new(),
             events: Vec::new(),
-            moved: Vec::new(),
             unsaved: Vec::new(),
             turn: 0,
             tries: HashMap::new(),
@@ -203,7 +201,7 @@ impl Supervisor {
             return Err(Fault::invalid(full));
         }
         self.names.insert(name.into(), place);
-        (self.moved.push(true), self.unsaved.push(false));
+        self.unsaved.push(false);
         self.reaches.push(Reach::EMPTY);
         let known = self.known(place);
         self.entries.push(Entry::Robot(Box::new(known)));
@@ -233,7 +231,6 @@ impl Supervisor {
         let Ok(place) = self.place(name) else { return Ok(false) };
         self.orders.erase(&fleet(&self.robots), place).map_err(Fault::invalid)?;
         self.robots.remove(place);
-        self.moved.remove(place);
         self.unsaved.remove(place);
         self.reaches.pop();
         self.tries.remove(name);

@@ -183,10 +183,11 @@ impl Supervisor {
         let shifted = |value: f64| (value - dropped).max(0.0).min(length);
         robot.at = shifted(robot.at);
         robot.up_to = shifted(robot.up_to).max(robot.at);
-        robot.told = shifted(robot.told);
+        (robot.granted, robot.told) = (shifted(robot.granted), shifted(robot.told));
         // No more than that has been told.
         robot.ceiling = robot.told;
         robot.path += 1;
+        robot.origin += dropped;
         robot.course = course;
         robot.mission = Some(mission.mission.clone());
         robot.waiting = None;
@@ -194,15 +195,14 @@ impl Supervisor {
             robot: robot.name.clone(),
             mission: mission.mission.clone(),
             path: robot.path,
-            dropped,
+            origin: robot.origin,
             length,
-            hold: robot.told,
+            hold: robot.granted,
         };
         self.tries.remove(&self.robots[place].name);
         self.counts.admitted += 1;
         self.events.push(event);
         self.forget_holds_with(place);
-        (self.moved[place], self.unsaved[place]) = (true, true);
         let known = self.known(place);
         self.entries.push(Entry::Robot(Box::new(known)));
         // Who was in the way of somebody may be so no longer.
@@ -216,7 +216,7 @@ impl Supervisor {
             agents.into_iter().for_each(|agent| self.robots[agent].hold = None);
         }
         for (other, robot) in self.robots.iter_mut().enumerate() {
-            if other == place || robot.hold.is_some_and(|(_, by)| by == Some(place)) {
+            if other == place || robot.hold.is_some_and(|wait| wait.by.is_some_and(|(by, _)| by == place)) {
                 robot.hold = None;
             }
         }
@@ -240,6 +240,7 @@ impl Supervisor {
             abilities: robot.abilities,
             course: robot.course.clone(),
             path: robot.path,
+            origin: robot.origin,
             mission: robot.mission.clone(),
             at: robot.at,
             ceiling: robot.ceiling,
@@ -290,7 +291,7 @@ impl Supervisor {
 }
 
 fn admitted(robot: &Robot) -> Verdict {
-    Verdict::Admitted { path: robot.path, length: robot.course.length(), hold: robot.told }
+    Verdict::Admitted { path: robot.path, length: robot.course.length(), hold: robot.granted }
 }
 
 /// Who should go first: whoever makes the other one wait less, if nobody else were there.

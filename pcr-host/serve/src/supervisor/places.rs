@@ -56,7 +56,7 @@ impl Supervisor {
         let lo = lo.min(robot.told);
         if lo > robot.at {
             robot.at = lo;
-            (self.moved[place], self.unsaved[place]) = (true, true);
+            self.unsaved[place] = true;
         }
         if robot.heard.is_none_or(|heard| now - age >= heard) {
             robot.heard = Some(now - age);

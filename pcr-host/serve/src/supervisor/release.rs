@@ -5,6 +5,7 @@ use super::alarms::Limit;
 use super::{Supervisor, fleet};
 use crate::entry::Entry;
 use crate::event::Event;
+use crate::robot::Wait;
 use pcr_core::Hold;
 
 impl Supervisor {
@@ -15,7 +16,6 @@ impl Supervisor {
         if !stale.is_empty() {
             self.evaluate(&stale);
         }
-        self.moved.fill(false);
         for place in wanting {
             self.tell(place, limits.get(place));
         }
@@ -23,15 +23,15 @@ impl Supervisor {
 
     fn wants(&self, place: usize) -> bool {
         let robot = &self.robots[place];
-        robot.alarm.is_none() && robot.stopped.is_none() && robot.wanted(self.settings.lookahead) > robot.told
+        robot.alarm.is_none() && robot.stopped.is_none() && robot.wanted(self.settings.lookahead) > robot.granted
     }
 
     /// Whether the hold of a robot keeps it from where it wants to go, and may have changed.
     fn is_stale(&self, place: usize) -> bool {
         let robot = &self.robots[place];
-        let Some((hold, by)) = robot.hold else { return true };
-        let bound = hold.length(robot.course.length()).unwrap_or(robot.told);
-        bound < robot.wanted(self.settings.lookahead) && by.is_some_and(|by| self.moved.get(by) == Some(&true))
+        let Some(Wait { hold, by }) = robot.hold else { return true };
+        let bound = hold.length(robot.course.length()).unwrap_or(robot.granted);
+        bound < robot.wanted(self.settings.lookahead) && by.is_some_and(|(by, at)| self.robots[by].at > at)
     }
 
     fn evaluate(&mut self, places: &[usize]) {
@@ -41,34 +41,37 @@ impl Supervisor {
         self.counts.evaluations += places.len() as u64;
         for (&place, hold) in places.iter().zip(holds) {
             // The table is that of the robots; were it another, nobody would go on.
-            self.robots[place].hold = Some(hold.unwrap_or((Hold::Inside, None)));
+            let (hold, by) = hold.unwrap_or((Hold::Inside, None));
+            self.robots[place].hold = Some(Wait { hold, by: by.map(|by| (by, progress[by].at.lo)) });
         }
     }
 
     fn tell(&mut self, place: usize, limit: Option<&Limit>) {
         let Self { robots, settings, .. } = self;
         let robot = &robots[place];
-        let Some((hold, by)) = robot.hold else { return };
+        let Some(Wait { hold, by }) = robot.hold else { return };
         let end = robot.course.length();
-        let mut bound = hold.length(end).unwrap_or(robot.told);
+        let mut bound = hold.length(end).unwrap_or(robot.granted);
         if let Some(Limit { at: Some(at), .. }) = limit {
             bound = bound.min(*at);
         }
         let wanted = robot.wanted(settings.lookahead);
-        let told = bound.min(wanted);
-        let is_worth = told >= robot.told + settings.step || (told > robot.told && told >= bound.min(end));
+        let granted = bound.min(wanted);
+        let before = robot.granted;
+        let is_worth = granted >= before + settings.step || (granted > before && granted >= bound.min(end));
         if !is_worth {
             return;
         }
-        let waits_for = by.filter(|_| told >= bound && bound < end).map(|by| robots[by].name.clone());
+        let waits_for = by.filter(|_| granted >= bound && bound < end).map(|(by, _)| robots[by].name.clone());
         let robot = &mut robots[place];
-        robot.told = told;
-        if told > robot.ceiling {
-            robot.ceiling = (told + settings.spare).min(end);
+        robot.granted = granted;
+        robot.told = robot.told.max(granted);
+        if granted > robot.ceiling {
+            robot.ceiling = (granted + settings.spare).min(end);
             let (name, path, ceiling) = (robot.name.clone(), robot.path, robot.ceiling);
             self.entries.push(Entry::Ceiling { robot: name, path, ceiling });
         }
         self.counts.holds += 1;
-        self.events.push(Event::Hold { robot: robot.name.clone(), path: robot.path, hold: told, waits_for });
+        self.events.push(Event::Hold { robot: robot.name.clone(), path: robot.path, hold: granted, waits_for });
     }
 }

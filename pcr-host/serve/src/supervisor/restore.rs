@@ -4,7 +4,7 @@ use super::{Settings, Supervisor, Table, fleet};
 use crate::entry::{Entry, Keep, Kept, Known, Layout};
 use crate::robot::{Alarm, Robot};
 use pcr_core::{Full, Mismatch, Pass, Reach};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 /// Why a journal cannot be gone on with.
@@ -110,8 +110,7 @@ impl Supervisor {
             own.robots.push(robot(known));
         }
         let count = own.robots.len();
-        (own.moved, own.unsaved) = (vec![true; count], vec![false; count]);
-        (own.reaches, own.hazards) = (vec![Reach::EMPTY; count], true);
+        (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![Reach::EMPTY; count], true);
         own.order(kept)?;
         Ok(own)
     }
@@ -126,6 +125,7 @@ impl Supervisor {
         while let Err(full) = orders.fill(&fleet) {
             orders.grow(full)?;
         }
+        let mut missing = HashSet::new();
         for ego in 0..fleet.len() {
             let name = &self.robots[ego].name;
             let row: Vec<_> = orders
@@ -134,7 +134,11 @@ impl Supervisor {
                 .collect();
             for group in row.chunk_by(|a, b| a.1 == b.1) {
                 let other = &self.robots[group[0].1].name;
-                let Some(made) = kept.remove(&[name.clone(), other.clone()]) else { continue };
+                let Some(made) = kept.remove(&[name.clone(), other.clone()]) else {
+                    // The other one's row has them.
+                    missing.insert([ego, group[0].1]);
+                    continue;
+                };
                 let same = |(found, kept): (&(usize, usize, [pcr_core::Interval<f64>; 2]), &Kept)| {
                     let ends = found.2.iter().flat_map(|length| [length.lo, length.hi]);
                     ends.zip(kept.lengths.as_flattened()).all(|(a, b)| (a - b).abs() <= 1e-6)
@@ -146,6 +150,10 @@ impl Supervisor {
                     orders.decide_at(&fleet, place, ego, Pass::from(order.pass), order.since)?;
                 }
             }
+        }
+        if let Some([robot, other]) = missing.iter().find(|[ego, other]| missing.contains(&[*other, *ego])) {
+            let [robot, other] = [robot, other].map(|place| &self.robots[*place].name);
+            return Err(Damaged(format!("the journal has no orders of {robot} and {other}, which meet")));
         }
         if let Some([robot, other]) = kept.into_keys().next() {
             return Err(Damaged(format!("the journal has orders of {robot} and {other}, which do not meet")));
@@ -172,12 +180,12 @@ impl Supervisor {
 fn robot(known: Known) -> Robot {
     let mut robot = Robot::new(known.name, known.abilities, known.course);
     let end = robot.course.length();
-    robot.path = known.path;
+    (robot.path, robot.origin) = (known.path, known.origin);
     robot.mission = known.mission;
     robot.at = known.at.min(end);
     robot.up_to = robot.at;
     robot.ceiling = known.ceiling.max(robot.at).min(end);
-    robot.told = robot.ceiling;
+    (robot.granted, robot.told) = (robot.at, robot.ceiling);
     // It was told no more since then.
     if let Some(Alarm::Beyond { told, .. }) = known.alarm {
         robot.told = robot.told.min(told.max(robot.at));

@@ -1,0 +1,5 @@
+//! The supervisor as users see it: runs of fleets, kills, lines.
+
+mod kills;
+mod runs;
+mod world;
