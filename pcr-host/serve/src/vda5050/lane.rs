@@ -80,6 +80,8 @@ pub struct Lane {
     errors: Vec<StateError>,
     /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
     astray: Option<(u32, f64)>,
+    /// The supervisor's path and how far the vehicle may go on it \[m\], once that is certain.
+    confirmed: Option<(u64, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
 }
@@ -92,7 +94,7 @@ impl Lane {
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        Self { profile, name, version, newest, state: None, job, errors, astray: None, sent, posts }
+        Self { profile, name, version, newest, state: None, job, errors, astray: None, confirmed: None, sent, posts }
     }
 
     /// What the supervisor calls it.

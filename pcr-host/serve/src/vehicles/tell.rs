@@ -51,9 +51,15 @@ impl Vehicle {
     /// Says where it is.
     pub fn tell_position(&mut self) {
         let (header, pose, velocity) = (self.header(Kind::Visualization), self.pose(), Some(self.velocity()));
-        let (agv, robot) = if self.version == Version::V3_0 { (None, Some(pose)) } else { (Some(pose), None) };
-        let message =
-            Visualization { header, agv_position: agv, mobile_robot_position: robot, velocity, rest: Map::new() };
+        let mut rest = Map::new();
+        let (agv, robot) = if self.version == Version::V3_0 {
+            let state = self.headers.get(&Kind::State).copied().unwrap_or(0);
+            rest.insert("referenceStateHeaderId".into(), state.into());
+            (None, Some(pose))
+        } else {
+            (Some(pose), None)
+        };
+        let message = Visualization { header, agv_position: agv, mobile_robot_position: robot, velocity, rest };
         self.say(Kind::Visualization, &message);
     }
 

@@ -1,5 +1,8 @@
-//! VDA 5050 over a real broker: `.ci/test.sh serve`.
+//! VDA 5050 over a real broker, and what does not need one. The runs with a broker: `.ci/test.sh serve`.
 
 mod broker;
+mod faults;
 mod runs;
+mod samples;
+mod schemas;
 mod site;

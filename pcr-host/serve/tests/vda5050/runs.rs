@@ -1,13 +1,16 @@
 //! Fleets at work.
 
 use crate::broker::Mosquitto;
-use crate::site::{Desk, Scene, Site};
+use crate::schemas;
+use crate::site::{Desk, Scene, Site, interfaces};
 use pcr_serve::entry::Nowhere;
+use pcr_serve::vda5050::mqtt::{Link, News};
 use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::weather::Climate;
+use std::sync::mpsc::channel;
 
-const FAIR: Scene<'_> = Scene {
+pub(crate) const FAIR: Scene<'_> = Scene {
     count: 1,
     versions: &[Version::V2_1],
     abilities: &[Abilities {
@@ -54,6 +57,10 @@ fn a_fleet_of_all_editions_keeps_apart() {
         drops: 0.02,
         ..FAIR
     };
+    // Who listens to everything that is said.
+    let (sender, said) = channel();
+    let everything = ["uagv/#".to_owned(), "fleet/#".to_owned()].to_vec();
+    let ear = Link::open(&broker.address(), "ear", None, everything, move |news| drop(sender.send(news))).unwrap();
     let (mut site, profiles) = Site::open(&broker, scene);
     let desk = Desk::open(&broker, profiles, "fleet", Box::new(Nowhere));
     let log = desk.log.clone();
@@ -62,4 +69,16 @@ fn a_fleet_of_all_editions_keeps_apart() {
     let found = site.close();
     assert!(found.travelled > 100.0, "{found:?}");
     desk.close().unwrap();
+    ear.close();
+    let messages = said.try_iter().filter_map(|news| match news {
+        News::Message { topic, payload } => Some((topic, payload)),
+        _ => None,
+    });
+    let seen = schemas::check(&messages.collect::<Vec<_>>(), &interfaces());
+    // Every kind of every edition was said.
+    for version in Version::ALL {
+        for kind in ["order", "state", "visualization", "connection", "factsheet", "instantActions"] {
+            assert!(seen.contains_key(&format!("{version} {kind}")), "{seen:?}");
+        }
+    }
 }

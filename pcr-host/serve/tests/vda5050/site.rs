@@ -7,6 +7,7 @@ use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::vda5050::bridge::{self, Bridge};
 use pcr_serve::vda5050::door::Limits;
 use pcr_serve::vda5050::lane::Profile;
+use pcr_serve::vda5050::mqtt::Broker;
 use pcr_serve::vda5050::station::{Station, Stopped};
 use pcr_serve::vda5050::topics::Interface;
 use pcr_serve::vda5050::version::Version;
@@ -56,15 +57,15 @@ pub(crate) struct Desk {
 
 impl Desk {
     pub(crate) fn open(broker: &Mosquitto, profiles: Vec<Profile>, session: &str, keep: Box<dyn Keep>) -> Self {
-        Self::with(broker, profiles, session, Supervisor::new(settings(), keep))
+        Self::at(&broker.address(), profiles, session, Supervisor::new(settings(), keep))
     }
 
-    pub(crate) fn with(broker: &Mosquitto, profiles: Vec<Profile>, session: &str, mut supervisor: Supervisor) -> Self {
+    pub(crate) fn at(broker: &Broker, profiles: Vec<Profile>, session: &str, mut supervisor: Supervisor) -> Self {
         let [manager, vehicles] = interfaces();
         let stop = Arc::new(AtomicBool::new(false));
         let settings = bridge::Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
         let mut bridge = Bridge::new(settings, profiles, &supervisor);
-        let mut station = Station::open(&broker.address(), &vehicles, &bridge, session).unwrap();
+        let mut station = Station::open(broker, &vehicles, &bridge, session).unwrap();
         let log = Arc::new(Mutex::new(Vec::new()));
         let (ended, lines) = (stop.clone(), log.clone());
         let thread = std::thread::spawn(move || {

@@ -76,6 +76,7 @@ impl Lane {
     /// Takes what the supervisor says of the vehicle.
     pub fn told(&mut self, event: &Event) {
         match event {
+            Event::Hold { path, hold, .. } => self.confirmed = Some((*path, *hold)),
             Event::Stop { .. } => self.ask_for("startPause"),
             Event::Go { .. } => self.ask_for("stopPause"),
             Event::Dropped { mission, why, .. } => {

@@ -23,8 +23,9 @@ const AHEAD: usize = 60;
 impl Lane {
     /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
-        let (Some(version), Some(state)) = (self.version, &self.state) else { return };
-        let Ok(robot) = supervisor.robot(&self.name) else { return };
+        let Some(version) = self.version else { return };
+        let Some(allowed) = self.allowed(supervisor) else { return };
+        let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };
         if job.cancel.is_some() || robot.stopped.is_some() {
             return;
@@ -39,11 +40,11 @@ impl Lane {
         }
         let is_first = job.sent.is_none();
         // It goes to its first node with its first order.
-        let may_begin = robot.told + job.offset(robot) + ROUNDING >= job.last().length;
+        let may_begin = allowed + job.offset(robot) + ROUNDING >= job.last().length;
         if is_first && !(may_begin && state.node_states.is_empty()) {
             return;
         }
-        let next = job.next(robot, self.profile.split);
+        let next = job.next(robot, allowed, self.profile.split);
         if next.is_empty() && !job.changed {
             return;
         }
@@ -55,6 +56,23 @@ impl Lane {
         let base = job.base();
         self.note(supervisor, "base", base);
         self.send(version);
+    }
+
+    /// How far the vehicle may go \[m\]. After a restart the supervisor counts more as told than it has told, so that nobody else gets it;
+    /// it is allowed only as far as the orders go.
+    fn allowed(&mut self, supervisor: &Supervisor) -> Option<f64> {
+        let place = supervisor.robots().iter().position(|robot| robot.name == self.name)?;
+        let robot = supervisor.robots().get(place)?;
+        if self.confirmed == Some((robot.path, robot.told)) {
+            return Some(robot.told);
+        }
+        let progress: Vec<_> = supervisor.robots().iter().map(Robot::progress).collect();
+        let (hold, _) = supervisor.orders().wait(&supervisor.fleet(), place, &progress).ok()?;
+        let allowed = hold.length(robot.course.length()).map_or(robot.at, |hold| hold.min(robot.told));
+        if allowed >= robot.told {
+            self.confirmed = Some((robot.path, robot.told));
+        }
+        Some(allowed)
     }
 
     fn send(&mut self, version: Version) {
@@ -70,9 +88,9 @@ impl Lane {
 
 impl Job {
     /// The stops up to where the robot has been allowed to go; none if there are no more.
-    fn next(&self, robot: &Robot, split: bool) -> Vec<Stop> {
+    fn next(&self, robot: &Robot, allowed: f64, split: bool) -> Vec<Stop> {
         let (offset, planned) = (self.offset(robot), self.planned(robot));
-        let hold = robot.told + offset;
+        let hold = allowed + offset;
         let last = self.last();
         let mut stops = Vec::new();
         let mut sequence = last.sequence;

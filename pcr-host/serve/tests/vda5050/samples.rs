@@ -1,0 +1,30 @@
+//! Messages of other projects.
+
+use pcr_serve::vda5050::door::{Limits, read};
+use pcr_serve::vda5050::held::Held;
+use pcr_serve::vda5050::order::Order;
+
+fn sample(name: &str) -> Vec<u8> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real/vda5050");
+    std::fs::read(format!("{folder}/{name}")).unwrap()
+}
+
+#[test]
+fn an_order_of_another_project_is_read_and_kept_whole() {
+    let bytes = sample("order_v2_flywei.json");
+    let order: Order = read(&bytes, Limits::default()).unwrap();
+    let held = Held::new(order.clone()).unwrap();
+    assert_eq!((held.nodes.len(), held.base), (2, 1));
+    // What is passed on has everything that was in it.
+    let written = serde_json::to_value(&order).unwrap();
+    assert_eq!(written, serde_json::from_slice::<serde_json::Value>(&bytes).unwrap());
+}
+
+#[test]
+fn null_is_nothing_and_numbers_that_do_not_follow_are_refused() {
+    let order: Order = read(&sample("order_v2_nulls_opentcs.json"), Limits::default()).unwrap();
+    assert_eq!(order.nodes.len(), 2);
+    assert!(!serde_json::to_string(&order).unwrap().contains("null"));
+    // All of its numbers are 0.
+    assert_eq!(Held::new(order).unwrap_err().refusal.field, "edges[0].sequenceId");
+}
