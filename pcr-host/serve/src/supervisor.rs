@@ -151,6 +151,15 @@ impl Supervisor {
         self.place(name).map(|place| &self.robots[place])
     }
 
+    /// For whom a robot has to wait where it may go to, if it is not the end of its path.
+    pub fn waits_for(&self, robot: &Robot) -> Option<&str> {
+        let wait = robot.hold?;
+        let end = robot.course.length();
+        let bound = wait.hold.length(end).unwrap_or(robot.granted);
+        let (by, _) = wait.by.filter(|_| bound < end && robot.granted >= bound)?;
+        self.robots.get(by).map(|by| by.name.as_str())
+    }
+
     /// The orders, of [`Supervisor::fleet`].
     pub fn orders(&self) -> &Table {
         &self.orders

@@ -3,7 +3,7 @@
 use crate::fixture::{PAPER, crossing, directory, file, run};
 use serde_json::Value;
 
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     "regions",
     "certify",
     "check",
@@ -14,6 +14,7 @@ const COMMANDS: [&str; 15] = [
     "traffic",
     "nodes",
     "import",
+    "serve",
     "compare",
     "evaluate",
     "demo",
