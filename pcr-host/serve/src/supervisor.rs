@@ -46,7 +46,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { width: 0.1, lookahead: 2.0, spare: 1.0, silence: 5.0, step: 0.05 }
+        Self { width: 0.1, lookahead: 2.0, spare: 2.0, silence: 5.0, step: 0.05 }
     }
 }
 
@@ -292,6 +292,7 @@ impl Supervisor {
         if self.entries.is_empty() {
             return Ok(());
         }
+        self.raise_ceilings();
         // With what is allowed go the places that it follows from: later ones alone would seem to be too far.
         let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
         let places = unsaved.map(|(unsaved, robot)| {

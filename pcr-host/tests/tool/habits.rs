@@ -73,6 +73,13 @@ fn options_that_do_nothing_are_refused() {
     assert!(run.status == 2 && run.err.starts_with("error: "), "{}", run.err);
 }
 
+#[cfg(not(feature = "serve"))]
+#[test]
+fn what_is_not_built_in_says_how_to_get_it() {
+    let message = run(&["serve", "--journal", "nowhere"]).failed(2);
+    assert!(message.contains("cargo install --path pcr-host --features serve"), "{message}");
+}
+
 #[test]
 fn wrong_kinds_of_files_are_named() {
     let scenario = file("habits", "kind.json", crossing().to_string());
