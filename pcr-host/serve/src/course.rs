@@ -161,7 +161,15 @@ impl Course {
     /// # Errors
     /// [`Invalid`] for the radius.
     pub fn motion(&self, radius: f64) -> Result<Motion<'_, f64>, Invalid> {
-        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, radius, 0.0)
+        self.motion_by(ProfileRef::new(&self.phases)?, radius)
+    }
+
+    /// As a disc that moves by a profile from the time 0 on.
+    ///
+    /// # Errors
+    /// [`Invalid`] for the radius, and a profile of another length.
+    pub fn motion_by<'a>(&'a self, profile: ProfileRef<'a, f64>, radius: f64) -> Result<Motion<'a, f64>, Invalid> {
+        Motion::new(PathRef::new(&self.segments)?, profile, radius, 0.0)
     }
 
     /// The part between two lengths \[m\].

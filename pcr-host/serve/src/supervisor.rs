@@ -46,7 +46,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { width: 0.1, lookahead: 2.0, spare: 1.0, silence: 5.0, step: 0.05 }
+        Self { width: 0.1, lookahead: 2.0, spare: 2.0, silence: 5.0, step: 0.05 }
     }
 }
 
@@ -149,6 +149,15 @@ impl Supervisor {
     /// [`Fault::NoSuchRobot`].
     pub fn robot(&self, name: &str) -> Result<&Robot, Fault> {
         self.place(name).map(|place| &self.robots[place])
+    }
+
+    /// For whom a robot has to wait where it may go to, if it is not the end of its path.
+    pub fn waits_for(&self, robot: &Robot) -> Option<&str> {
+        let wait = robot.hold?;
+        let end = robot.course.length();
+        let bound = wait.hold.length(end).unwrap_or(robot.granted);
+        let (by, _) = wait.by.filter(|_| bound < end && robot.granted >= bound)?;
+        self.robots.get(by).map(|by| by.name.as_str())
     }
 
     /// The orders, of [`Supervisor::fleet`].
@@ -295,6 +304,7 @@ impl Supervisor {
         if self.entries.is_empty() {
             return Ok(());
         }
+        self.raise_ceilings();
         // With what is allowed go the places that it follows from: later ones alone would seem to be too far.
         let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
         let places = unsaved.map(|(unsaved, robot)| {

@@ -33,12 +33,11 @@ impl Supervisor {
         self.lost(now, &mut limits);
         self.unordered(&mut limits);
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
-        for place in 0..self.robots.len() {
+        for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
             // Who stands has nothing to stop.
-            let by = limits[place].at.filter(|at| *at < robot.told && robot.told > robot.at);
-            let by = by.map(|_| limits[place].by);
-            let by = by.map(|by| self.robots[by].name.clone());
+            let by = limit.at.filter(|at| *at < robot.told && robot.told > robot.at);
+            let by = by.map(|_| self.robots[limit.by].name.clone());
             self.hazards |= by.is_some();
             let robot = &mut self.robots[place];
             let name = robot.name.clone();

@@ -46,6 +46,20 @@ impl Supervisor {
         }
     }
 
+    /// With a write that is made anyway goes what others will need soon, so that all of them together need few.
+    pub(super) fn raise_ceilings(&mut self) {
+        let spare = self.settings.spare;
+        for robot in &mut self.robots {
+            let ceiling = (robot.granted + spare).min(robot.course.length());
+            // After a restart it is not known to be right to go that far.
+            if robot.told == robot.granted && robot.granted > robot.at && robot.ceiling + 0.5 * spare < ceiling {
+                robot.ceiling = ceiling;
+                let (name, path) = (robot.name.clone(), robot.path);
+                self.entries.push(Entry::Ceiling { robot: name, path, ceiling });
+            }
+        }
+    }
+
     fn tell(&mut self, place: usize, limit: Option<&Limit>) {
         let Self { robots, settings, .. } = self;
         let robot = &robots[place];

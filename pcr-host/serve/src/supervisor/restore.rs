@@ -106,8 +106,9 @@ impl Supervisor {
                 kept.entry([known.name.clone(), order.with.clone()]).or_default().push(order.clone());
             }
             own.names.insert(known.name.clone(), own.robots.len());
-            own.turn = own.turn.max(known.waiting.as_ref().map_or(0, |waiting| waiting.turn + 1));
-            own.robots.push(robot(known));
+            let turn = known.waiting.as_ref().map_or(0, |waiting| waiting.turn);
+            own.robots.push(robot(known)?);
+            own.turn = own.turn.max(turn + 1);
         }
         let count = own.robots.len();
         (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![Reach::EMPTY; count], true);
@@ -177,9 +178,17 @@ impl Supervisor {
     }
 }
 
-fn robot(known: Known) -> Robot {
-    let mut robot = Robot::new(known.name, known.abilities, known.course);
+/// A number of a path or a turn is lower: it can be counted on.
+const MOST: u64 = 1 << 53;
+
+fn robot(known: Known) -> Result<Robot, Damaged> {
+    let abilities = known.abilities.checked().map_err(|why| Damaged(format!("{}: {why}", known.name)))?;
+    let mut robot = Robot::new(known.name, abilities, known.course);
     let end = robot.course.length();
+    let counts = known.path < MOST && known.waiting.as_ref().is_none_or(|waiting| waiting.turn < MOST);
+    if !counts || ![known.at, known.ceiling, known.origin].iter().all(|value| *value >= 0.0) {
+        return Err(Damaged(format!("{}: a number that cannot be", robot.name)));
+    }
     (robot.path, robot.origin) = (known.path, known.origin);
     robot.mission = known.mission;
     robot.at = known.at.min(end);
@@ -193,5 +202,5 @@ fn robot(known: Known) -> Robot {
     robot.alarm = known.alarm;
     robot.waiting = known.waiting;
     robot.notes = known.notes;
-    robot
+    Ok(robot)
 }
