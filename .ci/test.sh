@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests serve pages web schemas python packages instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -68,6 +68,15 @@ schemas() {
   fi
   # As the tests build it.
   cargo test --workspace --profile checked --features pcr-tests/peers --locked --test tool -- --ignored plant_models
+}
+
+# Vehicles, their manager and the supervisor at a real broker: fleets, and faults one after the other.
+# For hours: PCR_FAULTS=1000 .ci/test.sh serve
+serve() {
+  step "VDA 5050 over mosquitto, messages by the published schemas"
+  command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
+  # As the tests build it.
+  cargo test --workspace --profile checked --features pcr-tests/peers --locked --test vda5050 -- --ignored --test-threads=3
 }
 
 # A browser for the pages; a package of Debian, where there is none.
@@ -233,7 +242,7 @@ everything() {
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
-  for part in style docs features tests pages web schemas python proofs; do
+  for part in style docs features tests serve pages web schemas python proofs; do
     kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
     timed "$part"
   done

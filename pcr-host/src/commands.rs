@@ -7,6 +7,7 @@ mod completions;
 mod demo;
 mod evaluate;
 mod exclusions;
+mod fleet;
 mod help;
 mod import;
 mod locks;
@@ -88,6 +89,7 @@ enum Command {
     Serve(serve::Arguments),
     Compare(compare::Arguments),
     Evaluate(evaluate::Arguments),
+    Fleet(fleet::Arguments),
     Demo(demo::Arguments),
     Completions(completions::Shells),
     Man(completions::Manual),
@@ -116,6 +118,7 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
         Some(Command::Serve(arguments)) => arguments.run(),
         Some(Command::Compare(arguments)) => arguments.run(),
         Some(Command::Evaluate(arguments)) => arguments.run(),
+        Some(Command::Fleet(arguments)) => arguments.run(),
         Some(Command::Demo(arguments)) => arguments.run(),
         Some(Command::Completions(arguments)) => arguments.run(),
         Some(Command::Man(arguments)) => arguments.run(),

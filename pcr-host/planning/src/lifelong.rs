@@ -40,7 +40,19 @@ pub use ends::WellFormedness;
 pub use record::Certificate;
 pub use run::{Outcome, Report, run};
 
+use ends::Ends;
+use pcr_formats::import::Imported;
 use serde::Serialize;
+use site::Site;
+
+/// Where missions can be carried out on a layout without end by vehicles like this, and what stands against it.
+///
+/// # Errors
+/// An edge that is no path.
+pub fn well_formedness(imported: &Imported, seed: u64) -> Result<WellFormedness, String> {
+    let site = Site::new(imported)?;
+    Ok(Ends::of(&site, seed).report(&site, &imported.layout))
+}
 
 /// How robots are kept apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

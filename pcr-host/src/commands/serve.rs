@@ -1,7 +1,14 @@
 //! `pcr serve`, if the tool is built with it.
 
 #[cfg(feature = "serve")]
+mod bridge;
+#[cfg(feature = "serve")]
+mod demo;
+#[cfg(feature = "serve")]
 mod run;
+
+#[cfg(feature = "serve")]
+pub(super) use bridge::{broker, interfaces};
 
 use super::Stop;
 use clap::Args;
@@ -18,7 +25,9 @@ const EXAMPLES: &str = "\
 Examples:
   pcr serve --journal state                    lines of JSON on standard input and output (docs/serve.md)
   pcr serve --journal state --listen 7070      the same for clients over TCP on this machine
-  pcr serve --journal state --page 8080        and a page on http://localhost:8080 to watch it";
+  pcr serve --journal state --page 8080        and a page on http://localhost:8080 to watch it
+  pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json     VDA 5050
+  pcr serve --demo warehouse_graph.geojson     broker, vehicles, their manager and the page";
 
 /// Supervise a fleet: decide how far each robot may go, by exact passing orders
 #[derive(Args)]
@@ -46,6 +55,24 @@ pub(super) struct Arguments {
     /// A robot is silent when it was not heard for so long, in s
     #[arg(long, value_name = "S", default_value_t = 5.0)]
     silence: f64,
+    /// Broker of a fleet of VDA 5050, HOST:PORT; user and password from PCR_BROKER_USER and PCR_BROKER_PASSWORD
+    #[arg(long, value_name = "HOST:PORT", requires = "fleet")]
+    broker: Option<String>,
+    /// Certificate (PEM) of who has signed the broker's: TLS
+    #[arg(long, value_name = "FILE", requires = "broker")]
+    authority: Option<PathBuf>,
+    /// The vehicles, as docs/serve.md says
+    #[arg(long, value_name = "FILE", requires = "broker")]
+    fleet: Option<PathBuf>,
+    /// First levels of the topics of the fleet manager and of the vehicles
+    #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
+    topics: Vec<String>,
+    /// Start a broker, vehicles on this layout and their manager, too
+    #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]
+    demo: Option<PathBuf>,
+    /// Vehicles of the demo
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "demo")]
+    vehicles: usize,
     /// Logs on standard error: debug, info, warn or error
     #[arg(long, value_name = "LEVEL", default_value = "info")]
     log: String,

@@ -3,7 +3,7 @@
 use crate::fixture::{PAPER, crossing, directory, file, run};
 use serde_json::Value;
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "regions",
     "certify",
     "check",
@@ -18,6 +18,7 @@ const COMMANDS: [&str; 16] = [
     "compare",
     "evaluate",
     "demo",
+    "fleet",
     "completions",
     "man",
 ];

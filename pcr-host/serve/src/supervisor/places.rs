@@ -53,7 +53,8 @@ impl Supervisor {
         }
         self.alarm(place, None, now);
         let robot = &mut self.robots[place];
-        let lo = lo.min(robot.told);
+        // Whoever stands at its end has not left what is there, whatever rounding says of where that ends.
+        let lo = lo.min(robot.told).min(robot.course.length() - ROOM);
         if lo > robot.at {
             robot.at = lo;
             self.unsaved[place] = true;

@@ -138,6 +138,7 @@ impl Bridge {
     /// Takes what the supervisor has settled, and sends vehicles what they may do.
     pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[Event], now: f64) {
         self.told(events);
+        self.lanes.values_mut().for_each(|lane| lane.pause(supervisor, now));
         // A vehicle that has never said where it stands may stand anywhere.
         if self.lanes.values().all(|lane| supervisor.robot(lane.name()).is_ok()) {
             self.lanes.values_mut().for_each(|lane| lane.release(supervisor, now));

@@ -82,6 +82,8 @@ pub struct Lane {
     astray: Option<(u32, f64)>,
     /// The supervisor's path and how far the vehicle may go on it \[m\], once that is certain.
     confirmed: Option<(u64, f64)>,
+    /// Whether it was asked to pause or to go on, and when \[s\], until it does.
+    pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
 }
@@ -94,7 +96,20 @@ impl Lane {
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        Self { profile, name, version, newest, state: None, job, errors, astray: None, confirmed: None, sent, posts }
+        Self {
+            profile,
+            name,
+            version,
+            newest,
+            state: None,
+            job,
+            errors,
+            astray: None,
+            confirmed: None,
+            pause: None,
+            sent,
+            posts,
+        }
     }
 
     /// What the supervisor calls it.

@@ -10,9 +10,12 @@ use super::stamp;
 use super::topics::{Interface, Key, Kind};
 use super::version::Version;
 use crate::event::Event;
+use crate::fault::Fault;
+use crate::server::Handle;
 use crate::supervisor::Supervisor;
 use serde_json::{Map, Value};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long it is waited for the last will of one that may be gone: a little more than the broker does.
@@ -20,6 +23,9 @@ const PATIENCE: Duration = Duration::from_secs(9);
 
 /// How long messages are collected before they are answered together, at most.
 const GATHER: Duration = Duration::from_micros(500);
+
+/// So many of them at most.
+const MOST: usize = 1_000;
 
 /// Nothing happens for so long at most without a look at what waits.
 const TICK: Duration = Duration::from_millis(100);
@@ -47,6 +53,8 @@ pub struct Station {
     claim: Claim,
     begin: Instant,
     key: Key,
+    /// The vehicles are to be asked how things are.
+    greets: bool,
 }
 
 /// Why a station stops.
@@ -71,7 +79,7 @@ impl Station {
         })?;
         let now = Instant::now();
         let (session, claim) = (session.into(), Claim::Asking(now));
-        Ok(Self { link, news, session, topic, claim, begin: now, key })
+        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false })
     }
 
     /// Seconds since it was opened.
@@ -89,60 +97,118 @@ impl Station {
     /// # Errors
     /// [`Stopped`]: another one supervises, or the journal is broken.
     pub fn turn(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge) -> Result<Vec<Event>, Stopped> {
-        let mut first = self.news.recv_timeout(TICK);
-        let until = Instant::now() + GATHER;
-        while let Ok(news) = first {
-            self.take(supervisor, bridge, news)?;
-            first = match until.checked_duration_since(Instant::now()) {
-                Some(left) => self.news.recv_timeout(left),
-                None => Err(RecvTimeoutError::Timeout),
-            };
-        }
-        if first == Err(RecvTimeoutError::Disconnected) {
-            return Err(Stopped("the connection has ended".into()));
-        }
-        self.ask()?;
-        let broken = |fault: crate::fault::Fault| Stopped(fault.to_string());
+        let messages = self.messages()?;
         let now = self.now();
+        self.take(supervisor, bridge, &messages, now);
+        let broken = |fault: Fault| Stopped(fault.to_string());
         let mut events = supervisor.settle(now).map_err(broken)?;
-        if self.is_ours() && self.link.is_up() {
+        if self.works() {
             bridge.settled(supervisor, &events, now);
             // What lanes have to remember is in the journal before anybody is told.
             let more = supervisor.settle(now).map_err(broken)?;
             bridge.told(&more);
             events.extend(more);
-            for message in bridge.out() {
-                // What is not sent now is sent again.
-                let _ = self.link.publish(message);
-            }
+            self.send(bridge);
         } else {
             bridge.told(&events);
         }
         Ok(events)
     }
 
-    fn take(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge, news: News) -> Result<(), Stopped> {
-        match news {
-            News::Up => self.claim = Claim::Asking(Instant::now()),
-            News::Down(_) => {}
-            News::Message { topic, payload } if topic == self.topic => return self.heard(bridge, &payload),
-            News::Message { topic, payload } => {
-                let now = self.now();
-                bridge.receive(supervisor, &topic, &payload, now);
+    /// The same for a supervisor that another thread owns, which tells its events here. Returns why messages were refused.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn turn_at(
+        &mut self,
+        handle: &Handle,
+        bridge: &Arc<Mutex<Bridge>>,
+        events: &Receiver<Event>,
+    ) -> Result<Vec<String>, Stopped> {
+        let messages = self.messages()?;
+        let (own, greets) = (bridge.clone(), std::mem::take(&mut self.greets));
+        let ended = || Stopped("the supervisor has ended".into());
+        let taken = handle.ask(move |supervisor, _, now| {
+            let mut bridge = locked(&own);
+            if greets {
+                bridge.greet();
             }
+            for (topic, payload) in &messages {
+                bridge.receive(supervisor, topic, payload, now);
+            }
+        });
+        taken.ok_or_else(ended)?;
+        // The next question is taken after what came before it is settled and in the journal.
+        let (own, works) = (bridge.clone(), self.works());
+        handle.ask(|_, _, _| ()).ok_or_else(ended)?;
+        let told: Vec<Event> = events.try_iter().collect();
+        let released = handle.ask(move |supervisor, _, now| {
+            let mut bridge = locked(&own);
+            if works { bridge.settled(supervisor, &told, now) } else { bridge.told(&told) }
+        });
+        released.ok_or_else(ended)?;
+        handle.ask(|_, _, _| ()).ok_or_else(ended)?;
+        let mut bridge = locked(bridge);
+        if works {
+            self.send(&mut bridge);
         }
-        Ok(())
+        Ok(bridge.log())
+    }
+
+    /// Whether vehicles may be told something now.
+    fn works(&self) -> bool {
+        self.is_ours() && self.link.is_up()
+    }
+
+    fn send(&self, bridge: &mut Bridge) {
+        for message in bridge.out() {
+            // What is not sent now is sent again.
+            let _ = self.link.publish(message);
+        }
+    }
+
+    fn take(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge, messages: &[(String, Vec<u8>)], now: f64) {
+        if std::mem::take(&mut self.greets) {
+            bridge.greet();
+        }
+        for (topic, payload) in messages {
+            bridge.receive(supervisor, topic, payload, now);
+        }
+    }
+
+    /// What has come, after waiting for a little while.
+    fn messages(&mut self) -> Result<Vec<(String, Vec<u8>)>, Stopped> {
+        let mut messages = Vec::new();
+        let mut first = self.news.recv_timeout(TICK);
+        let until = Instant::now() + GATHER;
+        while let Ok(news) = first {
+            match news {
+                News::Up => self.claim = Claim::Asking(Instant::now()),
+                News::Down(_) => {}
+                News::Message { topic, payload } if topic == self.topic => self.heard(&payload)?,
+                News::Message { topic, payload } => messages.push((topic, payload)),
+            }
+            first = match until.checked_duration_since(Instant::now()) {
+                Some(left) if messages.len() < MOST => self.news.recv_timeout(left),
+                _ => Err(RecvTimeoutError::Timeout),
+            };
+        }
+        if first == Err(RecvTimeoutError::Disconnected) {
+            return Err(Stopped("the connection has ended".into()));
+        }
+        self.ask()?;
+        Ok(messages)
     }
 
     /// Somebody supervises, or does no longer.
-    fn heard(&mut self, bridge: &mut Bridge, payload: &[u8]) -> Result<(), Stopped> {
+    fn heard(&mut self, payload: &[u8]) -> Result<(), Stopped> {
         let said: Value = serde_json::from_slice(payload).unwrap_or_default();
         let text = |field: &str| said.get(field).and_then(Value::as_str).unwrap_or_default();
         let is_online = text("connectionState") == "ONLINE";
         match (&self.claim, text("session") == self.session) {
             (Claim::Sent, true) if is_online => {
                 self.claim = Claim::Ours;
-                bridge.greet();
+                self.greets = true;
             }
             // It may be gone: the broker will say so.
             (Claim::Asking(_), false) if is_online => {
@@ -192,4 +258,9 @@ fn claim(key: &Key, topic: &str, session: &str, state: &str) -> Publish {
     let message = Connection { header, connection_state: state.into(), rest };
     let payload = serde_json::to_vec(&message).unwrap_or_default();
     Publish { topic: topic.into(), payload, assured: true, retain: true }
+}
+
+/// The bridge; a thread that has panicked has left it as it was between two messages at worst.
+fn locked(bridge: &Mutex<Bridge>) -> MutexGuard<'_, Bridge> {
+    bridge.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -72,7 +72,7 @@ impl Desk {
             while !ended.load(Ordering::Relaxed) {
                 let events = station.turn(&mut supervisor, &mut bridge)?;
                 let mut lines = lines.lock().unwrap();
-                lines.extend(events.iter().map(|event| format!("{event:?}")));
+                lines.extend(events.iter().map(|event| format!("{:.2} {event:?}", station.now())));
                 lines.extend(bridge.log());
             }
             station.close();

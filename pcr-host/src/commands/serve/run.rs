@@ -2,7 +2,8 @@
 
 use super::super::printed::quiet;
 use super::super::{NOT_WRITTEN, Stop};
-use super::Arguments;
+use super::demo::Demo;
+use super::{Arguments, bridge};
 use pcr_drawing::live;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use pcr_serve::course::Shape;
@@ -10,7 +11,7 @@ use pcr_serve::entry::{Keep, Nowhere};
 use pcr_serve::http::{Drawn, Site};
 use pcr_serve::journal::Journal;
 use pcr_serve::log::{Level, Log};
-use pcr_serve::server::{Input, queue, serve};
+use pcr_serve::server::{Handle, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::{clients, http};
 use std::net::TcpListener;
@@ -22,26 +23,35 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         true => Ok(value),
         false => Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}"))),
     };
+    let demo =
+        arguments.demo.as_deref().map(|layout| Demo::start(layout, &arguments, log_of(&arguments)?)).transpose()?;
+    let at_broker = arguments.broker.is_some() || demo.is_some();
     let settings = Settings {
+        // Bases end at nodes, which may be far.
         width: within("--width", arguments.width, 0.001, 10.0)?,
-        lookahead: within("--lookahead", arguments.lookahead, 0.1, 600.0)?,
+        lookahead: if at_broker { FAR } else { within("--lookahead", arguments.lookahead, 0.1, 600.0)? },
         silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
         ..Settings::default()
     };
-    let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;
-    let log = Log::new(if quiet() { Level::Error } else { level });
+    let log = log_of(&arguments)?;
     let mut supervisor = open(&arguments, settings, log)?;
     let (handle, inputs) = queue();
+    let ends = match &demo {
+        Some(demo) => Some(bridge::start(&handle, &supervisor, demo.fleet(), log)?),
+        None => {
+            bridge::Fleet::of(&arguments)?.map(|fleet| bridge::start(&handle, &supervisor, fleet, log)).transpose()?
+        }
+    };
     if let Some(listener) = arguments.listen.as_deref().map(|place| bound("--listen", place, log)).transpose()? {
         let handle = handle.clone();
         thread::spawn(move || clients::listen(&handle, &listener));
     }
-    if let Some(listener) = arguments.page.as_deref().map(|place| bound("--page", place, log)).transpose()? {
+    if let Some(listener) = page(&arguments).map(|place| bound("--page", place, log)).transpose()? {
         let site = site(&listener);
         let handle = handle.clone();
         thread::spawn(move || http::listen(&handle, &listener, site));
     }
-    let stays = arguments.stay;
+    let stays = arguments.stay || demo.is_some();
     let own = handle.clone();
     thread::spawn(move || {
         clients::serve(&own, std::io::stdin(), std::io::stdout());
@@ -49,9 +59,49 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
             own.send(Input::Stop);
         }
     });
-    drop(handle);
-    serve(&mut supervisor, &inputs, log).map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
+    interrupted(handle);
+    let served = serve(&mut supervisor, &inputs, log);
+    drop(inputs);
+    // The bridge and the demo end in order, whatever has ended this.
+    let ended = ends.map_or(Ok(()), bridge::Work::end);
+    let done = demo.map_or(Ok(()), Demo::end);
+    served.map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
+    ended.and(done)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// As far as anybody may go \[s\].
+const FAR: f64 = 1e6;
+
+fn log_of(arguments: &Arguments) -> Result<Log, Stop> {
+    let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;
+    Ok(Log::new(if quiet() { Level::Error } else { level }))
+}
+
+/// Where the page is, if it is wanted.
+fn page(arguments: &Arguments) -> Option<&str> {
+    arguments.page.as_deref().or(arguments.demo.is_some().then_some("8080"))
+}
+
+/// Ctrl-C and its like end it in order.
+fn interrupted(handle: Handle) {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        for signal in [SIGINT, SIGTERM] {
+            // Where it cannot be caught, it ends the program as it does others: the journal bears that.
+            let _ = signal_hook::flag::register(signal, flag.clone());
+        }
+        thread::spawn(move || {
+            while !flag.load(std::sync::atomic::Ordering::Relaxed) {
+                thread::sleep(std::time::Duration::from_millis(50));
+            }
+            handle.send(Input::Stop);
+        });
+    }
+    #[cfg(not(unix))]
+    drop(handle);
 }
 
 fn open(arguments: &Arguments, settings: Settings, log: Log) -> Result<Supervisor, Stop> {

@@ -77,8 +77,6 @@ impl Lane {
     pub fn told(&mut self, event: &Event) {
         match event {
             Event::Hold { path, hold, .. } => self.confirmed = Some((*path, *hold)),
-            Event::Stop { .. } => self.ask_for("startPause"),
-            Event::Go { .. } => self.ask_for("stopPause"),
             Event::Dropped { mission, why, .. } => {
                 use super::super::held::Rejected;
                 use super::super::version::Error;

@@ -58,6 +58,23 @@ impl Lane {
         self.send(version);
     }
 
+    /// Stops the vehicle where it must not go on, and lets it go again: said again until it says so, as either may be lost.
+    pub fn pause(&mut self, supervisor: &Supervisor, now: f64) {
+        let Ok(robot) = supervisor.robot(&self.name) else { return };
+        let stops = robot.stopped.is_some();
+        let said = self.state.as_ref().and_then(|state| state.rest.get("paused")?.as_bool()).unwrap_or(false);
+        match self.pause {
+            // Who has paused it otherwise lets it go.
+            None if !stops => {}
+            Some((false, _)) if !stops && !said => self.pause = None,
+            Some((asked, at)) if asked == stops && (said == stops || now - at < AGAIN) => {}
+            _ => {
+                self.pause = Some((stops, now));
+                self.ask_for(if stops { "startPause" } else { "stopPause" });
+            }
+        }
+    }
+
     /// How far the vehicle may go \[m\]. After a restart the supervisor counts more as told than it has told, so that nobody else gets it;
     /// it is allowed only as far as the orders go.
     fn allowed(&mut self, supervisor: &Supervisor) -> Option<f64> {

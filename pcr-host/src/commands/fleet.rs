@@ -1,0 +1,85 @@
+//! `pcr fleet`, if the tool is built with `serve`.
+
+#[cfg(feature = "serve")]
+mod run;
+
+#[cfg(feature = "serve")]
+pub(super) use run::{Crew, Run, world};
+
+use super::Stop;
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const STATUSES: &str = "\
+Exit status:
+  0  done; of a record: nobody touched anybody, proved
+  1  of a record: there was a contact
+  2  wrong arguments, or a file that cannot be read or was refused
+  3  the record could not be written
+  4  of a record: so near that rounding does not tell";
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr fleet warehouse_graph.geojson --broker localhost:1883                     8 vehicles, until Ctrl-C
+  pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager           and a manager that gives them missions
+  pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager --record run.txt --time 600 --pace 10
+  pcr fleet --certify run.txt                                                   prove that nobody touched anybody";
+
+/// Simulate VDA 5050 vehicles at a broker, and their fleet manager
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[cfg_attr(not(feature = "serve"), allow(dead_code))]
+pub(super) struct Arguments {
+    /// Layout; vehicles stand at its safe ends and go from one to another
+    #[arg(required_unless_present = "certify")]
+    layout: Option<PathBuf>,
+    /// HOST:PORT; user and password from PCR_BROKER_USER and PCR_BROKER_PASSWORD
+    #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
+    broker: String,
+    /// How many
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    vehicles: usize,
+    /// A fleet manager, too
+    #[arg(long)]
+    manager: bool,
+    /// First levels of the topics of the fleet manager and of the vehicles
+    #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
+    topics: Vec<String>,
+    /// Their seconds in one of ours, 0.1 to 100
+    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    pace: f64,
+    /// End after so many of their seconds
+    #[arg(long, value_name = "S")]
+    time: Option<f64>,
+    /// Connections lost by each vehicle, an hour of ours
+    #[arg(long, value_name = "N", default_value_t = 0.0)]
+    drops: f64,
+    /// Part of the messages that is lost, comes twice, and comes up to 3 s late, each
+    #[arg(long, value_name = "PART", default_value_t = 0.0)]
+    weather: f64,
+    /// The same seed makes the same vehicles
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Where the vehicles really are
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Prove that the vehicles of a record never touched
+    #[arg(long, value_name = "FILE", conflicts_with = "layout")]
+    certify: Option<PathBuf>,
+    /// What the supervisor has to know of the vehicles, for `pcr serve --fleet`
+    #[arg(long, value_name = "FILE")]
+    profiles: Option<PathBuf>,
+}
+
+impl Arguments {
+    #[cfg(not(feature = "serve"))]
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        Err(Stop::arguments("this pcr was built without `serve`: cargo install --path pcr-host --features serve"))
+    }
+
+    #[cfg(feature = "serve")]
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        run::run(self)
+    }
+}

@@ -1,0 +1,149 @@
+//! VDA 5050 beside the thread that owns the supervisor.
+
+use super::super::Stop;
+use super::Arguments;
+use pcr_serve::log::{Level, Log};
+use pcr_serve::robot::Abilities;
+use pcr_serve::server::{Handle, Input};
+use pcr_serve::supervisor::Supervisor;
+use pcr_serve::vda5050::bridge::{Bridge, Settings};
+use pcr_serve::vda5050::door::Limits;
+use pcr_serve::vda5050::lane::Profile;
+use pcr_serve::vda5050::mqtt::Broker;
+use pcr_serve::vda5050::station::{Station, Stopped};
+use pcr_serve::vda5050::topics::{Interface, Key};
+use serde_json::Value;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Events that may wait.
+const EVENTS: usize = 1 << 16;
+
+/// Which vehicles, and where.
+pub(super) struct Fleet {
+    pub(super) broker: Broker,
+    pub(super) interfaces: [Interface; 2],
+    pub(super) profiles: Vec<Profile>,
+}
+
+impl Fleet {
+    /// What the command line says, if it does.
+    pub(super) fn of(arguments: &Arguments) -> Result<Option<Self>, Stop> {
+        let (Some(place), Some(file)) = (&arguments.broker, &arguments.fleet) else { return Ok(None) };
+        let broker = broker(place)?;
+        let broker = Broker { authority: arguments.authority.clone(), ..broker };
+        let interfaces = interfaces(&arguments.topics)?;
+        Ok(Some(Self { broker, interfaces, profiles: profiles(file)? }))
+    }
+}
+
+/// Topics of the manager and of the vehicles, which have to be different ones.
+pub(in super::super) fn interfaces(topics: &[String]) -> Result<[Interface; 2], Stop> {
+    let wrong = |why: String| Stop::arguments(format!("--topics: {why}"));
+    let [manager, vehicles] = topics else { return Err(wrong("two are expected".into())) };
+    if manager == vehicles {
+        return Err(wrong("the manager's and the vehicles' have to be different".into()));
+    }
+    Ok([Interface::new(manager).map_err(wrong)?, Interface::new(vehicles).map_err(wrong)?])
+}
+
+/// A broker at HOST:PORT.
+pub(in super::super) fn broker(place: &str) -> Result<Broker, Stop> {
+    let (host, port) = place.rsplit_once(':').unwrap_or((place, "1883"));
+    let port = port.parse().map_err(|_| Stop::arguments(format!("--broker {place}: HOST:PORT is expected")))?;
+    let host = host.trim_start_matches('[').trim_end_matches(']');
+    let login = std::env::var("PCR_BROKER_USER").ok();
+    let login = login.map(|user| (user, std::env::var("PCR_BROKER_PASSWORD").unwrap_or_default()));
+    Ok(Broker { login, ..Broker::new(host, port) })
+}
+
+/// The vehicles in a file.
+fn profiles(file: &Path) -> Result<Vec<Profile>, Stop> {
+    let text = std::fs::read_to_string(file).map_err(|error| Stop::wrong(file, error))?;
+    let value: Value = serde_json::from_str(&text).map_err(|error| Stop::wrong(file, error))?;
+    let list = value.get("vehicles").and_then(Value::as_array);
+    let list = list.ok_or_else(|| Stop::wrong(file, "vehicles: a list is expected"))?;
+    let profile =
+        |(k, value): (usize, &Value)| profile(value).map_err(|why| Stop::wrong(file, format!("vehicles[{k}]: {why}")));
+    let profiles: Vec<Profile> = list.iter().enumerate().map(profile).collect::<Result<_, _>>()?;
+    for (k, profile) in profiles.iter().enumerate() {
+        if profiles.iter().take(k).any(|other| other.key == profile.key) {
+            return Err(Stop::wrong(file, format!("vehicles[{k}]: {} is there twice", profile.key)));
+        }
+    }
+    Ok(profiles)
+}
+
+fn profile(value: &Value) -> Result<Profile, String> {
+    let Value::Object(members) = value else { return Err("an object is expected".into()) };
+    const KNOWN: [&str; 7] = ["manufacturer", "serialNumber", "radius", "margin", "speed", "acceleration", "split"];
+    if let Some(unknown) = members.keys().find(|name| !KNOWN.contains(&name.as_str())) {
+        return Err(format!("{unknown}: unknown; {} are read", KNOWN.join(", ")));
+    }
+    let text = |name: &str| value.get(name).and_then(Value::as_str).ok_or(format!("{name}: a text is expected"));
+    let number = |name: &str| value.get(name).and_then(Value::as_f64).ok_or(format!("{name}: a number is expected"));
+    let abilities = Abilities {
+        radius: number("radius")?,
+        margin: number("margin")?,
+        speed: number("speed")?,
+        acceleration: number("acceleration")?,
+    };
+    let split = match value.get("split") {
+        None => true,
+        Some(split) => split.as_bool().ok_or("split: true or false is expected")?,
+    };
+    Ok(Profile { key: Key::new(text("manufacturer")?, text("serialNumber")?)?, abilities: abilities.checked()?, split })
+}
+
+/// The bridge at work.
+pub(super) struct Work {
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<Result<(), Stopped>>,
+}
+
+/// Starts the bridge.
+pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log: Log) -> Result<Work, Stop> {
+    let Fleet { broker, interfaces: [manager, vehicles], profiles } = fleet;
+    let settings = Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
+    let bridge = Bridge::new(settings, profiles, supervisor);
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
+    let session = format!("{}-{now:x}", std::process::id());
+    let mut station = Station::open(&broker, &vehicles, &bridge, &session).map_err(Stop::arguments)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let (ended, handle) = (stop.clone(), handle.clone());
+    let (sender, events) = sync_channel(EVENTS);
+    handle.send(Input::Tell(sender));
+    let thread = std::thread::spawn(move || {
+        let bridge = Arc::new(Mutex::new(bridge));
+        while !ended.load(Ordering::Relaxed) {
+            match station.turn_at(&handle, &bridge, &events) {
+                Ok(lines) => {
+                    lines.iter().for_each(|line| log.write(Level::Warn, "a message was refused", &[("why", line)]));
+                }
+                Err(_) if ended.load(Ordering::Relaxed) => break,
+                Err(why) => {
+                    handle.send(Input::Stop);
+                    return Err(why);
+                }
+            }
+        }
+        station.close();
+        Ok(())
+    });
+    Ok(Work { stop, thread })
+}
+
+impl Work {
+    /// Ends it in order; an error is why it had ended by itself.
+    pub(super) fn end(self) -> Result<(), Stop> {
+        self.stop.store(true, Ordering::Relaxed);
+        match self.thread.join() {
+            Ok(Err(Stopped(why))) if why != "the supervisor has ended" => Err(Stop::arguments(why)),
+            _ => Ok(()),
+        }
+    }
+}

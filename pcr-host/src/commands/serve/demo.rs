@@ -1,0 +1,104 @@
+//! A broker, vehicles and their manager, to try a supervisor with.
+
+use super::super::Stop;
+use super::super::fleet::{self, Crew};
+use super::Arguments;
+use super::bridge::{Fleet, interfaces};
+use pcr_serve::log::{Level, Log};
+use pcr_serve::vda5050::lane::Profile;
+use pcr_serve::vda5050::mqtt::Broker;
+use pcr_serve::vda5050::topics::Interface;
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+/// All of it.
+pub(super) struct Demo {
+    broker: Broker,
+    child: Child,
+    folder: PathBuf,
+    interfaces: [Interface; 2],
+    profiles: Vec<Profile>,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<Result<(), String>>>,
+}
+
+impl Demo {
+    pub(super) fn start(layout: &Path, arguments: &Arguments, log: Log) -> Result<Self, Stop> {
+        let crew = Crew { vehicles: arguments.vehicles, ..Crew::default() };
+        let world = fleet::world(layout, &crew)?;
+        let interfaces = interfaces(&arguments.topics)?;
+        let (child, broker, folder) = mosquitto()?;
+        log.write(Level::Info, "broker", &[("port", &broker.port)]);
+        let profiles = world.profiles.clone();
+        let mut demo = Self { broker, child, folder, interfaces, profiles, stop: Arc::default(), thread: None };
+        let mut run = fleet::Run::open(world, &demo.broker, &demo.interfaces, &crew, std::io::sink())?;
+        let stop = demo.stop.clone();
+        demo.thread = Some(thread::spawn(move || {
+            while !stop.load(Ordering::Relaxed) {
+                run.step().map_err(|error| error.to_string())?;
+                thread::sleep(Duration::from_millis(10));
+            }
+            run.close().map(drop).map_err(|error| error.to_string())
+        }));
+        Ok(demo)
+    }
+
+    /// What the supervisor has to know.
+    pub(super) fn fleet(&self) -> Fleet {
+        let Self { broker, interfaces, profiles, .. } = self;
+        Fleet { broker: broker.clone(), interfaces: interfaces.clone(), profiles: profiles.clone() }
+    }
+
+    pub(super) fn end(mut self) -> Result<(), Stop> {
+        self.stop.store(true, Ordering::Relaxed);
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(Err(why))) => Err(Stop::arguments(why)),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Drop for Demo {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        // What is gone already needs no end.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// A broker of this machine only, on a port that is free.
+fn mosquitto() -> Result<(Child, Broker, PathBuf), Stop> {
+    let failed = |error: std::io::Error| Stop::arguments(format!("mosquitto: {error}"));
+    let port = TcpListener::bind("127.0.0.1:0").and_then(|it| it.local_addr()).map_err(failed)?.port();
+    let folder = std::env::temp_dir().join(format!("pcr-demo-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(failed)?;
+    let config = folder.join("mosquitto.conf");
+    let text = format!("listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\nlog_dest none\n");
+    std::fs::write(&config, text).map_err(failed)?;
+    // Debian has it where only root's search path leads.
+    let started = ["mosquitto", "/usr/sbin/mosquitto", "/usr/local/sbin/mosquitto"].into_iter().find_map(|program| {
+        let mut command = Command::new(program);
+        command.arg("-c").arg(&config).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()
+    });
+    let Some(mut child) = started else {
+        let _ = std::fs::remove_dir_all(&folder);
+        let how = "the demo needs the broker mosquitto: apt-get install mosquitto, or https://mosquitto.org/download";
+        return Err(Stop::arguments(how));
+    };
+    for _ in 0..500 {
+        if TcpStream::connect(("127.0.0.1", port)).is_ok() {
+            return Ok((child, Broker::new("127.0.0.1", port), folder));
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+    let _ = child.kill();
+    let _ = child.wait();
+    Err(Stop::arguments("mosquitto does not answer"))
+}
