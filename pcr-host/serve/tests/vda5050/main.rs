@@ -6,3 +6,4 @@ mod runs;
 mod samples;
 mod schemas;
 mod site;
+mod standing;

@@ -1,0 +1,64 @@
+//! Who stands at the end of a path is in the way of whoever would end there.
+
+use crate::site::settings;
+use pcr_serve::course::{Shape, Start};
+use pcr_serve::entry::Nowhere;
+use pcr_serve::robot::Abilities;
+use pcr_serve::supervisor::{Proposal, Report, Supervisor, Verdict};
+
+#[test]
+fn a_place_that_is_taken_is_nobodys_end() {
+    let abilities = |radius| Abilities { radius, margin: 0.072, speed: 1.0, acceleration: 0.5 };
+    for k in 0..200 {
+        let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let off = 0.001 * f64::from(k);
+        let lengths = [20.35 + off, 3.65, 4.5 + off, 5.5, 7.5, 4.0];
+        supervisor.add("a", abilities(0.3), Start { x: 0.1 * off, y: 30.0, heading: 0.3 * off }).unwrap();
+        let path: Vec<_> =
+            lengths.iter().flat_map(|&length| [Shape::Turn { sweep: 0.7 }, Shape::Line { length }]).collect();
+        let mission = |robot: &str, name: &str, path| Proposal {
+            robot: robot.into(),
+            mission: name.into(),
+            after: None,
+            start: None,
+            path,
+        };
+        supervisor.mission(&mission("a", "one", path), 0.0).unwrap();
+        supervisor.settle(0.0).unwrap();
+        let a = supervisor.robot("a").unwrap();
+        let (path, end) = (a.path, a.course.length());
+        assert_eq!(a.told, end);
+        let there = a.course.pose(end);
+        supervisor.position(&Report { robot: "a".into(), path, at: [end; 2], age: 0.0 }, 1.0).unwrap();
+        supervisor.settle(1.0).unwrap();
+        // Another one comes from afar, and would end there.
+        let start = Start { x: there.x - 12.0, y: there.y, heading: 0.0 };
+        supervisor.add("b", abilities(0.4), start).unwrap();
+        supervisor.settle(1.5).unwrap();
+        let verdict = supervisor.mission(&mission("b", "two", vec![Shape::Line { length: 12.0 }]), 2.0).unwrap();
+        assert!(matches!(verdict, Verdict::Waiting { .. }), "{k}: {verdict:?}");
+    }
+}
+
+#[test]
+fn a_path_that_goes_on_goes_on_where_it_was() {
+    for at in [0.0, 1.0, 4.999_999_999, 5.0, 5.000_000_001, 7.0, 9.9, 10.0, 10.000_000_001, 14.0, 15.0] {
+        let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let abilities = Abilities { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        supervisor.add("a", abilities, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+        let (line, turn) = (Shape::Line { length: 5.0 }, Shape::Turn { sweep: std::f64::consts::FRAC_PI_2 });
+        let path = vec![turn, line, turn, line, turn, line];
+        let mission =
+            |name: &str, path| Proposal { robot: "a".into(), mission: name.into(), after: None, start: None, path };
+        supervisor.mission(&mission("one", path), 0.0).unwrap();
+        supervisor.settle(0.0).unwrap();
+        let robot = supervisor.robot("a").unwrap();
+        let (path, end) = (robot.path, robot.course.pose(robot.course.length()));
+        assert!((end.x + 5.0).hypot(end.y) < 1e-9, "{end:?}");
+        supervisor.position(&Report { robot: "a".into(), path, at: [at; 2], age: 0.0 }, 1.0).unwrap();
+        supervisor.mission(&mission("two", vec![line]), 1.0).unwrap();
+        let robot = supervisor.robot("a").unwrap();
+        let end = robot.course.pose(robot.course.length());
+        assert!((end.x + 5.0).hypot(end.y + 5.0) < 1e-9, "at {at}: {end:?} {:?}", robot.course);
+    }
+}
