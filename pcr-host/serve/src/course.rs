@@ -190,10 +190,33 @@ impl Course {
         let (start, dropped) = match first.filter(|_| to > from) {
             // Nothing of it is ahead: a robot that stands.
             None => (self.arrival(from)?, from),
-            Some(first) => (self.pose(self.offsets[first]), self.offsets[first]),
+            Some(first) => (self.departure(first), self.offsets[first]),
         };
-        let kept = self.between(dropped, to).chain(shapes.iter().copied()).collect();
+        let first = first.filter(|_| to > from).unwrap_or(self.shapes.len());
+        let all = self.length();
+        let kept = (first..self.shapes.len()).filter_map(|k| {
+            let (begin, shape) = (self.offsets[k], self.shapes[k]);
+            let end = (begin + shape.length()).min(to);
+            match shape {
+                Shape::Turn { .. } => (begin < to || to >= all).then_some(shape),
+                _ => (end > begin).then(|| shape.part(shape.length(), 0.0, end - begin)),
+            }
+        });
+        let kept = kept.chain(shapes.iter().copied()).collect();
         Ok((Self::new(start, kept)?, dropped))
+    }
+
+    /// In which pose a shape begins, after the turns before it: which of two shapes a length belongs to is a matter of rounding there.
+    fn departure(&self, shape: usize) -> Start {
+        self.shapes.iter().take(shape).fold(self.start, |Start { x, y, heading }, shape| {
+            let (chord, sweep) = match *shape {
+                Shape::Line { length } => (length, 0.0),
+                Shape::Arc { radius, sweep } => (2.0 * radius * (0.5 * sweep.abs()).sin(), sweep),
+                Shape::Turn { sweep } => (0.0, sweep),
+            };
+            let (sin, cos) = (heading + 0.5 * sweep).sin_cos();
+            Start { x: x + chord * cos, y: y + chord * sin, heading: heading + sweep }
+        })
     }
 
     /// How it arrives at a length \[m\]: before a turn there, but at its end.

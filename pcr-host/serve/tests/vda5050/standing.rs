@@ -62,3 +62,64 @@ fn a_path_that_goes_on_goes_on_where_it_was() {
         assert!((end.x + 5.0).hypot(end.y + 5.0) < 1e-9, "at {at}: {end:?} {:?}", robot.course);
     }
 }
+
+/// Where a robot is after some more shapes, computed with nothing of the library.
+fn after(mut end: Start, shapes: &[Shape]) -> Start {
+    for shape in shapes {
+        match *shape {
+            Shape::Turn { sweep } => end.heading += sweep,
+            Shape::Line { length } => {
+                end.x += length * end.heading.cos();
+                end.y += length * end.heading.sin();
+            }
+            Shape::Arc { .. } => unreachable!("there are none here"),
+        }
+    }
+    end
+}
+
+/// Paths were cut before a turn where rounding put their beginning there: robots were believed to be elsewhere.
+#[test]
+fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
+    use pcr_serve::vehicles::random::Random;
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let mut random = Random::new(5);
+    for run in 0..100 {
+        let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let abilities = Abilities { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        let mut end = Start { x: 0.0, y: 0.0, heading: 0.0 };
+        supervisor.add("a", abilities, end).unwrap();
+        for mission in 0..20 {
+            let mut one = |of: &[f64]| of[random.below(of.len())];
+            let count = one(&[1.0, 2.0, 3.0, 4.0]) as usize;
+            let lengths: Vec<f64> = (0..count).map(|_| one(&[5.25, 1.75, 0.02, 3.85, 20.35])).collect();
+            let mut path = Vec::new();
+            for &length in &lengths {
+                path.push(Shape::Turn { sweep: one(&[0.0, FRAC_PI_2, -FRAC_PI_2, PI, -PI]) });
+                path.push(Shape::Line { length });
+            }
+            end = after(end, &path);
+            let name = mission.to_string();
+            let proposal = Proposal { robot: "a".into(), mission: name, after: None, start: None, path };
+            supervisor.mission(&proposal, 0.0).unwrap();
+            supervisor.settle(0.0).unwrap();
+            let robot = supervisor.robot("a").unwrap();
+            let (number, whole) = (robot.path, robot.course.length());
+            let there = robot.course.pose(whole);
+            assert!(
+                (there.x - end.x).hypot(there.y - end.y) < 1e-6,
+                "{run} {mission}: {there:?} {end:?} {:?}",
+                robot.course.shapes()
+            );
+            // At one of the stops, exactly or nearly, or somewhere.
+            let stop = whole - lengths.iter().skip(random.below(lengths.len() + 1)).sum::<f64>();
+            let at = match random.below(3) {
+                0 => stop.max(0.0),
+                1 => (stop - 1e-3 * random.unit()).max(0.0),
+                _ => whole * random.unit(),
+            };
+            supervisor.position(&Report { robot: "a".into(), path: number, at: [at; 2], age: 0.0 }, 1.0).unwrap();
+            supervisor.settle(1.0).unwrap();
+        }
+    }
+}
