@@ -142,3 +142,28 @@ fn silent_robots_keep_their_right() {
     assert_eq!(own.robot("east").unwrap().at, 1.0);
     assert_eq!(own.robot("north").unwrap().granted, hold);
 }
+
+#[test]
+fn missions_that_are_asked_for_again() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    // On the way of the other one, which stands there for good: it waits until another mission takes its place.
+    own.remove("north").unwrap();
+    own.add("stands", ABILITIES, place(5.0, 0.0, 0.0)).unwrap();
+    let verdict = own.mission(&mission("east", "2", 4.0), 1.0).unwrap();
+    assert!(matches!(&verdict, Verdict::Waiting { by: Some(by), .. } if by == "stands"), "{verdict:?}");
+    assert_eq!(own.mission(&mission("east", "2", 4.0), 1.1).unwrap(), verdict);
+    let admitted = own.mission(&mission("east", "3", 0.5), 1.2).unwrap();
+    assert!(matches!(admitted, Verdict::Admitted { path: 3, .. }));
+    let events = names(&own.settle(1.2).unwrap());
+    assert!(events.contains(&"dropped east".into()) && events.contains(&"admitted east".into()), "{events:?}");
+    for _ in 0..2 {
+        // Late and repeated: nothing twice, also after a restart.
+        assert_eq!(own.mission(&mission("east", "1", 6.0), 2.0).unwrap(), Verdict::Past);
+        assert_eq!(own.mission(&mission("east", "2", 4.0), 2.0).unwrap(), Verdict::Past);
+        assert!(matches!(own.mission(&mission("east", "3", 0.5), 2.0).unwrap(), Verdict::Admitted { path: 3, .. }));
+        assert!(own.robot("east").unwrap().waiting.is_none());
+        own.settle(2.0).unwrap();
+        own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    }
+}
