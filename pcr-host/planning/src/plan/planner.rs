@@ -3,7 +3,7 @@
 use super::delays::Objective;
 use super::starts::Known;
 use super::task::Planner;
-use super::{Answer, Method, Plan, Planned, Unsolved, bound, circle, speeds};
+use super::{Answer, Method, Plan, Planned, Unsolved, bound, speeds};
 use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::regions::Failure;
@@ -117,7 +117,7 @@ impl<'m> Planner<'_, 'm> {
     fn unsolved(&self, never: Never) -> Vec<Unsolved> {
         let ids = |agents: [usize; 2]| agents.map(|agent| self.id(agent));
         let mut unsolved = Vec::new();
-        if let Some(circle) = circle::circle(self.ecm, self.motions) {
+        if let Some(circle) = self.circle() {
             let why = "each has to let the next one pass first, the last one the first, however they move";
             unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
         }
