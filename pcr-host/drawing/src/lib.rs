@@ -229,7 +229,8 @@ fn draw_all(
                 }
             }
         };
-        let spawned = |sender: mpsc::Sender<_>| thread::Builder::new().spawn_scoped(scope, move || draw(sender)).is_ok();
+        let spawned =
+            |sender: mpsc::Sender<_>| thread::Builder::new().spawn_scoped(scope, move || draw(sender)).is_ok();
         let threads = (0..workers).take_while(|_| spawned(sender.clone())).count();
         if threads == 0 {
             // Where the system has no thread to give, this one draws.

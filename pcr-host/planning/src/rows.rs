@@ -188,10 +188,10 @@ pub(crate) fn gathered<'a, S: Format, T: Send>(
     let (mut all, mut held) = (Vec::new(), Held::default());
     for first in (0..motions.len()).step_by(GATHERED) {
         let stretch = first..motions.len().min(first + GATHERED);
-        let made = stretch.into_par_iter().with_min_len(STRETCH).map_init(
-            || Walk::new(motions, &grid),
-            |walk, ego| Ok(make(walk.row(ego)?)),
-        );
+        let made = stretch
+            .into_par_iter()
+            .with_min_len(STRETCH)
+            .map_init(|| Walk::new(motions, &grid), |walk, ego| Ok(make(walk.row(ego)?)));
         for made in made.collect::<Result<Vec<_>, Full>>()? {
             held.extend(&mut all, made, 0, what)?;
         }

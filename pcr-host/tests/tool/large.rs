@@ -54,9 +54,7 @@ fn comb(segments: usize) -> String {
         3 => turn(-std::f64::consts::PI),
         _ => json!({ "kind": "line", "length": 4 }),
     };
-    let agent = |id: u64, x: f64, y: f64, heading: f64, path: serde_json::Value| {
-        json!({ "id": id, "radius": 0.3, "v_max": 1, "a_max": 1, "start": { "x": x, "y": y, "heading": heading }, "path": path })
-    };
+    let agent = |id: u64, x: f64, y: f64, heading: f64, path: serde_json::Value| json!({ "id": id, "radius": 0.3, "v_max": 1, "a_max": 1, "start": { "x": x, "y": y, "heading": heading }, "path": path });
     let north = std::f64::consts::FRAC_PI_2;
     let path = (0..segments).map(piece).collect::<Vec<_>>();
     let line = json!([{ "kind": "line", "length": 3000 }]);

@@ -144,7 +144,10 @@ impl Forbidden {
         let pairs = self.met.iter().enumerate().flat_map(|(i, own)| {
             let those = own.chunk_by(|a, b| a.other == b.other).filter_map(move |same| same.first().zip(Some(same)));
             those.filter(move |(met, _)| met.other > i).map(move |(met, same)| {
-                Pair::new([i, met.other], same.iter().map(|met| met.ends.map(|end| -end)).map(|[hi, lo]| [lo, hi]).collect())
+                Pair::new(
+                    [i, met.other],
+                    same.iter().map(|met| met.ends.map(|end| -end)).map(|[hi, lo]| [lo, hi]).collect(),
+                )
             })
         });
         let pairs = pairs.collect();

@@ -65,7 +65,8 @@ impl<'m> Planner<'_, 'm> {
         let alone = match self.request.objective {
             Objective::Sum => self.motions.iter().map(least).sum(),
             Objective::Makespan => {
-                let ends = self.motions.iter().map(|motion| motion.time().lo + least(motion) - self.begin());
+                let begin = self.begin();
+                let ends = self.motions.iter().map(|motion| motion.time().lo + least(motion) - begin);
                 ends.fold(0.0, f64::max)
             }
         };
@@ -94,10 +95,11 @@ impl<'m> Planner<'_, 'm> {
             return Ok((plan, None));
         }
         plan.certificate = Some(proof);
+        let begin = self.begin();
         for (agent, (motion, planned)) in self.motions.iter().zip(planned).enumerate() {
             let [start, end] = [planned.time().lo, planned.time().hi];
             plan.agents.push(Planned { id: self.id(agent), delay: start - motion.time().lo, t_end: end });
-            plan.makespan = plan.makespan.max(end - self.begin());
+            plan.makespan = plan.makespan.max(end - begin);
             plan.sum_of_costs += end - motion.time().lo;
         }
         let mut order: Vec<usize> = (0..planned.len()).collect();

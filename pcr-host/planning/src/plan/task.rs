@@ -1,8 +1,8 @@
 //! What all attempts at a plan have in common: the fleet, what is asked for, orders to be tried, and what a plan costs.
 
+use super::circle;
 use super::delays::Objective;
 use super::{Priority, Request};
-use super::circle;
 use crate::fleet::HostEcm;
 use crate::regions::{self, Failure};
 use crate::rows;

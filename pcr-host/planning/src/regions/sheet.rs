@@ -114,7 +114,8 @@ impl<'s, S: Format> Sheet<'s, S> {
             grid.around(disc, &mut near);
             Row::new(motions, disc, &near)
         });
-        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(|full| Failure::Full(full).named(&self.bodies.scenario))?;
+        let rows =
+            rows.collect::<Result<Vec<_>, _>>().map_err(|full| Failure::Full(full).named(&self.bodies.scenario))?;
         let works = rows.iter().map(|row| {
             let (ids, fleet, slices) = (&self.ids[..], &self.bodies.fleet, self.request.slices);
             let (agents, motions, ecm) = (row.agents(), row.motions(), row.table());

@@ -43,8 +43,10 @@ pub(super) fn searched<'m>(
             best = Some(node.plan);
             continue;
         };
-        let mut ways: Vec<Node<'m>> =
-            [[i, j], [j, i]].into_iter().filter_map(|way| put_in_order(planner, ecm, &node, way, room, stations)).collect();
+        let mut ways: Vec<Node<'m>> = [[i, j], [j, i]]
+            .into_iter()
+            .filter_map(|way| put_in_order(planner, ecm, &node, way, room, stations))
+            .collect();
         // The last one is looked at first.
         ways.sort_by(|a, b| b.cost.total_cmp(&a.cost));
         open.append(&mut ways);
