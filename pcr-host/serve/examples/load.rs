@@ -50,7 +50,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         robots.push(Robot { name, path: 1, origin: 0.0, length: 0.0, at: 0.0, hold: 0.0, missions: 0 });
     }
     let begin = Instant::now();
-    let (mut times, mut decisions, mut messages, mut done) = (Vec::new(), Vec::new(), 0_u64, 0_u32);
+    // Room that is there from the start: what grows is the supervisor's.
+    let mut times = vec![1.0; (seconds * RATE * count) as usize];
+    times.clear();
+    let (mut decisions, mut messages, mut done) = (Vec::new(), 0_u64, 0_u32);
     let mut first = 0;
     for tick in 0..(seconds * RATE) as u64 {
         for k in 0..robots.len() {

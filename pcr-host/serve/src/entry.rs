@@ -81,6 +81,8 @@ pub struct Known {
     pub origin: f64,
     /// The mission that it has got last.
     pub mission: Option<String>,
+    /// Missions before.
+    pub past: Vec<String>,
     /// Where it was at least \[m\].
     pub at: f64,
     /// How far it may have been allowed to go \[m\].

@@ -109,6 +109,8 @@ pub struct Robot {
     pub origin: f64,
     /// The mission that it has got last.
     pub mission: Option<String>,
+    /// Missions that it had or waited for before, oldest first: who asks late for one of them again gets nothing twice.
+    pub past: Vec<String>,
     /// It is here or further on \[m\]; never less than before on the same path.
     pub at: f64,
     /// It was here or before \[m\] at the time `heard`.
@@ -148,6 +150,7 @@ impl Robot {
             path: 1,
             origin: 0.0,
             mission: None,
+            past: Vec::new(),
             at: 0.0,
             up_to: 0.0,
             heard: None,
@@ -162,6 +165,15 @@ impl Robot {
             silent: false,
             notes: BTreeMap::new(),
         }
+    }
+
+    /// Remembers a mission that is over.
+    pub fn outlives(past: &mut Vec<String>, mission: String) {
+        /// So many are remembered.
+        const MOST: usize = 32;
+        past.push(mission);
+        let first = past.len().saturating_sub(MOST);
+        past.drain(..first);
     }
 
     /// As a disc on its path.

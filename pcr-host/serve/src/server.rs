@@ -39,7 +39,7 @@ pub enum Input {
     Closed(u64),
     /// Something else: a page that wants to know what is so, a bridge to robots.
     Call(Call),
-    /// Everything that is told goes here, too.
+    /// Everything that is told goes here, too. Who reads too slowly is let go, which it sees by the end of its queue.
     Tell(SyncSender<Event>),
     /// No more is to come.
     Stop,
@@ -140,7 +140,13 @@ pub fn serve(supervisor: &mut Supervisor, inputs: &Receiver<(Instant, Input)>, l
             for client in watching {
                 send(&mut clients, client, &news, log);
             }
-            listeners.retain(|listener| listener.send(event.clone()).is_ok());
+            listeners.retain(|listener| {
+                let sent = listener.try_send(event.clone());
+                if let Err(TrySendError::Full(_)) = sent {
+                    log.write(Level::Error, "a listener reads too slowly and is let go", &[]);
+                }
+                sent.is_ok()
+            });
         }
         for client in closed {
             clients.remove(&client);

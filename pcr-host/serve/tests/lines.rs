@@ -174,7 +174,7 @@ fn clients_over_tcp_and_the_page() {
     let (mut out, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
     let mut answers = BufReader::new(out.try_clone().unwrap()).lines();
     let mut others = BufReader::new(other.try_clone().unwrap()).lines();
-    let mut next = |lines: &mut dyn Iterator<Item = std::io::Result<String>>| -> Value {
+    let next = |lines: &mut dyn Iterator<Item = std::io::Result<String>>| -> Value {
         serde_json::from_str(&lines.next().unwrap().unwrap()).unwrap()
     };
     other.write_all(b"{\"verb\": \"watch\"}\n").unwrap();

@@ -1,5 +1,6 @@
 //! The supervisor as users see it: runs of fleets, kills, lines.
 
+mod alarms;
 mod kills;
 mod lines;
 mod runs;

@@ -40,6 +40,8 @@ pub enum Verdict {
         /// How far the robot had been allowed to go, on this path \[m\]. More is told by and by.
         hold: f64,
     },
+    /// The robot had it, or it waited, and another one has taken its place since: nothing is done.
+    Past,
     /// It is tried again by and by.
     Waiting {
         /// Who is in the way, if one is.
@@ -82,6 +84,9 @@ impl Supervisor {
         if robot.mission.as_ref() == Some(&proposal.mission) {
             return Ok(admitted(robot));
         }
+        if robot.past.contains(&proposal.mission) {
+            return Ok(Verdict::Past);
+        }
         let after = proposal.after.unwrap_or(robot.course.length());
         let waiting = Waiting {
             mission: proposal.mission.clone(),
@@ -92,8 +97,20 @@ impl Supervisor {
         };
         self.joins(robot, after, proposal.start)?;
         self.counts.missions += 1;
-        let refused = self.attempt(place, &waiting)?;
-        let before = self.robots[place].waiting.take();
+        // Taken out now: a path that is admitted leaves nothing waiting.
+        let robot = &mut self.robots[place];
+        let (before, past) = (robot.waiting.take(), robot.past.clone());
+        if let Some(before) = &before {
+            Robot::outlives(&mut robot.past, before.mission.clone());
+        }
+        let refused = match self.attempt(place, &waiting) {
+            Ok(refused) => refused,
+            Err(fault) => {
+                let robot = &mut self.robots[place];
+                (robot.waiting, robot.past) = (before, past);
+                return Err(fault);
+            }
+        };
         if let Some(before) = before {
             let why = "another mission takes its place".into();
             self.counts.dropped += 1;
@@ -189,7 +206,9 @@ impl Supervisor {
         robot.path += 1;
         robot.origin += dropped;
         robot.course = course;
-        robot.mission = Some(mission.mission.clone());
+        if let Some(before) = robot.mission.replace(mission.mission.clone()) {
+            Robot::outlives(&mut robot.past, before);
+        }
         robot.waiting = None;
         let event = Event::Admitted {
             robot: robot.name.clone(),
@@ -242,6 +261,7 @@ impl Supervisor {
             path: robot.path,
             origin: robot.origin,
             mission: robot.mission.clone(),
+            past: robot.past.clone(),
             at: robot.at,
             ceiling: robot.ceiling,
             alarm: robot.alarm.clone(),
@@ -281,6 +301,7 @@ impl Supervisor {
             }
             Err(fault) => {
                 self.robots[place].waiting = None;
+                Robot::outlives(&mut self.robots[place].past, waiting.mission.clone());
                 self.tries.remove(&name);
                 self.counts.dropped += 1;
                 self.entries.push(Entry::Waiting { robot: name.clone(), waiting: None });

@@ -80,7 +80,12 @@ impl State {
                     }
                 }
             }
-            Entry::Waiting { robot, waiting } => self.robot(&robot)?.waiting = waiting,
+            Entry::Waiting { robot, waiting } => {
+                let known = self.robot(&robot)?;
+                if let Some(before) = std::mem::replace(&mut known.waiting, waiting) {
+                    Robot::outlives(&mut known.past, before.mission);
+                }
+            }
             Entry::Note { robot, key, note } => {
                 self.robot(&robot)?.notes.insert(key, note);
             }
@@ -190,7 +195,7 @@ fn robot(known: Known) -> Result<Robot, Damaged> {
         return Err(Damaged(format!("{}: a number that cannot be", robot.name)));
     }
     (robot.path, robot.origin) = (known.path, known.origin);
-    robot.mission = known.mission;
+    (robot.mission, robot.past) = (known.mission, known.past);
     robot.at = known.at.min(end);
     robot.up_to = robot.at;
     robot.ceiling = known.ceiling.max(robot.at).min(end);
