@@ -5,6 +5,7 @@ pub mod arguments;
 pub mod audit;
 pub mod certified;
 pub mod clearance;
+pub mod closed_loop;
 pub mod constants;
 pub mod disc;
 pub mod exact;

@@ -14,6 +14,7 @@
 //! nodes        what a layout holds                                   Listing
 //! plan         delays without conflicts                              Plan
 //! traffic      random missions on a layout, and their plan           Traffic
+//! execution    plans of others carried out while robots are late   Execution
 //! lifelong     robots that get a new mission whenever one is done    run, Outcome
 //! simulate     plans in closed loop, with noise and delays           run, Task
 //! report       JSON, CSV and tables
@@ -25,6 +26,7 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 mod checksum;
+pub mod execution;
 pub mod fleet;
 pub mod lifelong;
 pub mod locks;

@@ -13,7 +13,7 @@
 //! neither discs that are delayed together nor searches over thousands of orders. What a region forbids is the core's in both
 //! (`RegionRef::forbidden_delays`).
 
-use super::delays::{NEVER, Objective, Pair, Problem, Ticks};
+use super::delays::{NEVER, Objective, Pair, Problem, Ticks, earliest};
 use super::grown;
 use crate::bodies::Bodies;
 use crate::fleet::{HostEcm, build_ecm};
@@ -181,15 +181,7 @@ impl Forbidden {
                 .iter()
                 .map(move |&ends| ends.map(|end| if end.abs() < NEVER { end + delay } else { end }))
         });
-        let mut intervals: Vec<[i64; 2]> = intervals.collect();
-        intervals.sort_unstable();
-        let mut delay = 0;
-        for [lo, hi] in intervals {
-            if lo < delay && delay < hi {
-                delay = hi;
-            }
-        }
-        if delay < NEVER {
+        if let Some(delay) = earliest(intervals.collect()) {
             return Ok(delay);
         }
         let intervals = |other: usize| self.intervals[agent][other].iter();

@@ -28,6 +28,8 @@ pub(super) struct Starts {
     proved: bool,
     /// Agents that have no delays together.
     conflicts: Vec<Vec<usize>>,
+    /// Whether nobody more can have delays.
+    fewest: bool,
     /// Who cannot start in the order that was asked for.
     out: Vec<Out>,
     /// Whether discs of footprints were planned with.
@@ -47,7 +49,7 @@ impl Starts {
             schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Option<Vec<i64>>>()
         };
         let known: Vec<Vec<i64>> = schedules.iter().filter_map(in_ticks).collect();
-        let Outcome { delays, bound, proved, conflicts } = delays::best(&problem, &known, request.effort);
+        let Outcome { delays, bound, proved, conflicts, fewest } = delays::best(&problem, &known, request.effort);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
         let found = Self {
@@ -56,6 +58,7 @@ impl Starts {
             bound: ticks.seconds(bound),
             proved,
             conflicts,
+            fewest,
             out: Vec::new(),
             outlined,
         };
@@ -115,6 +118,17 @@ impl Starts {
                     let why = "two of them meet whenever they start";
                     unsolved.push(Unsolved::nowhere(ids(agents), why));
                 }
+            }
+        }
+        if !self.fewest && planner.request.leave_out {
+            let delays = self.delays.as_deref().unwrap_or_default();
+            let explained = |agent: &usize| self.conflicts.iter().any(|conflict| conflict.contains(agent));
+            let out: Vec<usize> =
+                (0..delays.len()).filter(|agent| delays[*agent].is_none() && !explained(agent)).collect();
+            if !out.is_empty() {
+                let why = "no start delays were found for them beside all others before the search was stopped; nor was it \
+                           proved that there are none";
+                unsolved.push(Unsolved::nowhere(ids(&out), why));
             }
         }
         let mut blocked = self.out.iter().filter(|out| !out.always);
