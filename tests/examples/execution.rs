@@ -26,10 +26,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             for &radius in &radii {
                 let orders = carried_out(&plan, radius, By::Orders, &stops)?;
                 println!(
-                    "{name} {kind} radius {radius}: travel {:.2} s, by cells {:.2} s, {:.3}; last {:.1}, {:.1} s; stuck {}, {}; {}, {}; orders in {:.2?}, run {:.2?}, by cells {:.2?}",
+                    "{name} {kind} radius {radius}: travel {:.2} s, by cells {:.2} s, {:.3}, alone {:.2} s; last {:.1}, {:.1} s; stuck {}, {}; {}, {}; orders in {:.2?}, run {:.2?}, by cells {:.2?}",
                     orders.travel,
                     cells.travel,
                     orders.travel / cells.travel,
+                    orders.alone,
                     orders.makespan,
                     cells.makespan,
                     orders.stuck,
@@ -49,7 +50,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn all_stops(file: &Path, plan: &GridPlan, rate: f64) -> Result<Vec<(&'static str, Stops)>, Box<dyn Error>> {
     let robots = plan.cells().len();
     let mut all = vec![("random", random_stops(robots, 2000, rate, 1))];
-    let published = file.with_file_name(format!("{}_sit_0.json", file.file_stem().unwrap_or_default().to_string_lossy()));
+    let published =
+        file.with_file_name(format!("{}_sit_0.json", file.file_stem().unwrap_or_default().to_string_lossy()));
     if published.exists() {
         all.push(("published", situation(&std::fs::read_to_string(published)?, robots)?));
     }

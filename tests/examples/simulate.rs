@@ -11,7 +11,7 @@ fn main() {
     let (first, count, largest) = (number(0, 0), number(1, 500), number(2, 50) as usize);
     let mut tally = Tally::default();
     let mut seed = first;
-    while tally.carried_out + tally.failed < count as usize {
+    while tally.carried_out + tally.told + tally.failed < count as usize {
         if let Some(failure) = fleet(seed, largest, &mut tally) {
             println!("{failure}");
         }

@@ -16,8 +16,8 @@ pub struct Tally {
     pub unplanned: usize,
     /// Fleets of which all robots have arrived without a contact.
     pub carried_out: usize,
-    /// Fleets that the tool says it cannot carry out, before anybody moves.
-    pub refused: usize,
+    /// Fleets of which it is said of each robot that has not arrived why it never set off; all others have arrived, without a contact.
+    pub told: usize,
     /// All other ones.
     pub failed: usize,
     /// Contacts of discs.
@@ -32,7 +32,7 @@ pub struct Tally {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { unplanned, carried_out, refused, failed, contacts, breaches, planning, speeds } = self;
+        let Self { unplanned, carried_out, told, failed, contacts, breaches, planning, speeds } = self;
         let sorted = |values: &[f64]| {
             let mut values = values.to_vec();
             values.sort_by(f64::total_cmp);
@@ -42,7 +42,7 @@ impl fmt::Display for Tally {
         let at = |values: &[f64], part: f64| values.get((values.len() as f64 * part) as usize).copied().unwrap_or(0.0);
         write!(
             f,
-            "{carried_out} fleets carried out, {refused} refused, {failed} not carried out ({unplanned} more without a plan); {contacts} contacts, \
+            "{carried_out} fleets carried out, {told} as far as their margins allow, {failed} not ({unplanned} more without a plan); {contacts} contacts, \
              {breaches} breaches; longest planning of a run: median {:.1} ms, 99 of 100 within {:.1} ms, at most {:.1} ms; faster than time by {:.0} at \
              least, {:.0} in the median",
             at(&planning, 0.5),
@@ -68,7 +68,7 @@ pub fn fleet(seed: u64, largest: usize, tally: &mut Tally) -> Option<String> {
     let settings = Settings { seed, replan: 2.0, disturbance: USUAL };
     let outcome = run(&task, Controller::Pcr, settings).expect("a fleet with a plan");
     let taken = begin.elapsed().as_secs_f64();
-    let Run { done, not_done, collisions, planning, duration, .. } = &outcome.run;
+    let Run { done, not_done, collisions, planning, duration, waiting_for, .. } = &outcome.run;
     let planning = planning.expect("a supervisor plans");
     tally.contacts += collisions.len();
     tally.breaches += planning.breaches;
@@ -78,9 +78,11 @@ pub fn fleet(seed: u64, largest: usize, tally: &mut Tally) -> Option<String> {
         tally.carried_out += 1;
         return None;
     }
-    tally.failed += 1;
+    let is_told = *not_done == waiting_for.len() && collisions.is_empty() && planning.breaches == 0;
+    *if is_told { &mut tally.told } else { &mut tally.failed } += 1;
     Some(format!(
-        "seed {seed}, {agents} robots: {done} done, {not_done} not, {} contacts, {} breaches, planned {} times, {} kept, {duration:.0} s in {taken:.2} s",
+        "{}, seed {seed}, {agents} robots: {done} done, {not_done} not, {} contacts, {} breaches, planned {} times, {} kept, {duration:.0} s in {taken:.2} s",
+        if is_told { "told" } else { "failed" },
         collisions.len(),
         planning.breaches,
         planning.count,

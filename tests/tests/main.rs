@@ -4,6 +4,7 @@
 mod broad_phase;
 mod certify;
 mod closed_forms;
+mod closed_loop;
 mod compare;
 mod conflicts;
 mod conflicts_first;
@@ -18,6 +19,7 @@ mod firmware;
 mod footprints;
 mod formats;
 mod golden;
+mod grid_plans;
 mod import_ccbs;
 mod import_damage;
 mod import_factsheet;

@@ -65,7 +65,9 @@ impl By {
 pub struct Outcome {
     /// Mean time until a robot that has a way is at its end \[s\].
     pub travel: f64,
-    /// The same of the last one \[s\].
+    /// The same if nobody waited for anybody: what the stops alone cost \[s\].
+    pub alone: f64,
+    /// Until the last one is at its end \[s\].
     pub makespan: f64,
     /// Robots that wait for one another for ever.
     pub stuck: usize,
@@ -81,6 +83,15 @@ pub struct Outcome {
 trait Holds {
     /// How far a robot may go when all are here \[m\]; more than `wanted` does not matter. It never decreases.
     fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64;
+}
+
+/// Nobody is in anybody's way.
+struct Nobody;
+
+impl Holds for Nobody {
+    fn hold(&mut self, _: usize, _: &[f64], _: f64) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// Carries a plan out with discs of a radius \[m\], below half a cell, that are stopped at times.
@@ -108,10 +119,11 @@ pub fn carried_out(plan: &GridPlan, radius: f64, by: By, stops: &Stops) -> Resul
     let times = [known, begin.elapsed() - known];
     let done = run.scenario(plan.scenario(radius).map_err(|error| error.to_string())?);
     let proof = Proof::of::<f64>(&done).map_err(|refused| refused.to_string())?;
-    let travels: Vec<f64> = run.arrivals.iter().copied().filter(|&end| end > 0.0).collect();
+    let alone = Run::new(&motions, stops).driven(&mut Nobody);
     Ok(Outcome {
-        travel: travels.iter().sum::<f64>() / travels.len().max(1) as f64,
-        makespan: travels.iter().copied().fold(0.0, f64::max),
+        travel: run.travel(),
+        alone: alone.travel(),
+        makespan: run.arrivals.iter().copied().fold(0.0, f64::max),
         stuck: (0..motions.len()).filter(|&robot| !run.has_arrived(robot)).count(),
         done,
         proof,
@@ -174,6 +186,12 @@ impl<'a> Run<'a> {
         let ends = motions.iter().map(|motion| motion.path().length()).collect();
         let (at, arrivals) = (vec![0.0; count], vec![0.0; count]);
         Self { stops, ends, at, passed: vec![0; count], arrivals, done: vec![Vec::new(); count] }
+    }
+
+    /// Mean time until a robot that has a way is at its end \[s\].
+    fn travel(&self) -> f64 {
+        let travels: Vec<f64> = self.arrivals.iter().copied().filter(|&end| end > 0.0).collect();
+        travels.iter().sum::<f64>() / travels.len().max(1) as f64
     }
 
     fn has_arrived(&self, robot: usize) -> bool {

@@ -11,8 +11,8 @@ mod tests;
 use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
-    Scalar, Segment, Turn,
+    Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
+    Radians, Region, Scalar, Segment, Turn,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};

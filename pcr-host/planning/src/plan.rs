@@ -28,6 +28,7 @@ use pcr_formats::scenario::{Labels, Scenario};
 pub use reason::Spot;
 use serde::Serialize;
 use starts::Starts;
+pub(crate) use starts::some as start_delays;
 use task::Planner;
 
 /// How conflicts are avoided.

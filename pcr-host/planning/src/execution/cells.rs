@@ -46,8 +46,7 @@ impl Cells {
             visits.sort_by_key(|visit| visit.time);
             for pair in visits.windows(2).filter(|pair| pair[0].robot != pair[1].robot) {
                 let [before, after] = [pair[0], pair[1]];
-                let wait =
-                    Wait { at: after.place as f64 - 1.0, first: before.robot, needs: before.place as f64 + 1.0 };
+                let wait = Wait { at: after.place as f64 - 1.0, first: before.robot, needs: before.place as f64 + 1.0 };
                 waits[after.robot].push(wait);
             }
         }

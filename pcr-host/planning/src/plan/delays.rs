@@ -41,6 +41,8 @@ const ROUNDS: usize = 200;
 const FACTOR: u32 = 8;
 /// Attempts if nothing has to be proved.
 const ATTEMPTS: u32 = 2;
+/// Rounds where some delays are enough.
+const SOME: usize = 20;
 /// Nodes of a search in which it matters whether there are delays at all, for few agents and for many: less for more of them, as each
 /// node takes longer.
 const DECIDING: u64 = 200_000;
@@ -83,6 +85,16 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<i64>], effort: Effort) -> Out
         delays
     });
     Outcome { delays, bound: rest.bound, proved: rest.proved, conflicts: left.conflicts, fewest: left.fewest }
+}
+
+/// Delays of all agents, or of most of them, in milliseconds where a fleet has dozens of agents: not the best ones.
+pub(crate) fn some(problem: &Problem) -> Vec<Option<i64>> {
+    let clock = || false;
+    let found = insert::inserted(problem);
+    match found.iter().copied().collect::<Option<Vec<i64>>>() {
+        Some(all) => improve::improved(problem, all, SOME, &clock).into_iter().map(Some).collect(),
+        None => leave::left(problem, Stop { nodes: NODES, clock: &clock }).delays,
+    }
 }
 
 struct Solved {

@@ -1,11 +1,12 @@
 //! Start delays of a scenario, for all of its agents or for as many as can have one, and how good they are.
 
 use super::circle;
-use super::delays::{self, Outcome};
+use super::delays::{self, Objective, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
 use super::{Priority, Unsolved};
 use crate::regions::Failure;
+use pcr_core::Motion;
 
 /// Delays of some agents of a fleet, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,14 @@ pub(super) struct Known {
     pub(super) bound: f64,
     /// Whether that is reached but for rounding.
     pub(super) proved: bool,
+}
+
+/// Start delays of motions \[s\], none for those that are left out because of others; all of them where they can be found in no time.
+pub(crate) fn some(motions: &[Motion<'_, f64>]) -> Option<Vec<Option<f64>>> {
+    let forbidden = Forbidden::of_motions(motions).ok()?;
+    let ticks = forbidden.ticks();
+    let found = delays::some(&forbidden.problem(Objective::Sum));
+    Some(found.into_iter().map(|delay| delay.map(|delay| ticks.seconds(delay.into()))).collect())
 }
 
 pub(super) struct Starts {
