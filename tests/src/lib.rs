@@ -18,6 +18,7 @@ pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
+pub mod roadmap_tasks;
 pub mod rules;
 pub mod search;
 pub mod settings;

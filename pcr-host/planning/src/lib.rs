@@ -13,6 +13,7 @@
 //! checksum     of files that are read in parts
 //! nodes        what a layout holds                                   Listing
 //! plan         delays without conflicts                              Plan
+//! queue        the conflicts of a fleet whose motions change         Queue
 //! traffic      random missions on a layout, and their plan           Traffic
 //! execution    plans of others carried out while robots are late   Execution
 //! lifelong     robots that get a new mission whenever one is done    run, Outcome
@@ -33,6 +34,7 @@ pub mod locks;
 pub mod memory;
 pub mod nodes;
 pub mod plan;
+pub mod queue;
 pub mod random;
 pub mod regions;
 pub mod report;

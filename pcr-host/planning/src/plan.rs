@@ -20,8 +20,7 @@ use crate::fleet::Fleet;
 use crate::regions::{self, Failure};
 pub(crate) use circle::sides;
 pub use delays::{Effort, Objective};
-pub(crate) use forbidden::Forbidden;
-pub use forbidden::{Out, Schedule};
+pub use forbidden::{Forbidden, Out, Schedule};
 use pcr_core::{Encounter, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
 

@@ -22,7 +22,8 @@ use pcr_core::{Motion, Scalar};
 use pcr_formats::scenario::{Agent, Scenario};
 
 /// For each agent and each other one the differences of their delays, own less other, at which they meet.
-pub(crate) struct Forbidden {
+#[derive(Clone, Debug)]
+pub struct Forbidden {
     /// \[ticks\], outward.
     intervals: Vec<Vec<Vec<[i64; 2]>>>,
     ticks: Ticks,
@@ -65,7 +66,7 @@ impl Forbidden {
     ///
     /// # Errors
     /// [`Failure`] where a value does not fit, or the table cannot hold the fleet.
-    pub(crate) fn of(scenario: &Scenario) -> Result<Self, Failure> {
+    pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let bodies = Bodies::<f64>::new(&without_loads(scenario))?;
         let motions = grown(&bodies.fleet);
         let ecm = regions::table(&bodies.scenario, &motions)?;
@@ -77,7 +78,7 @@ impl Forbidden {
     ///
     /// # Errors
     /// [`Failure`] where the table cannot hold them.
-    pub(crate) fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
+    pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
         let ecm = build_ecm(motions).map_err(Failure::Full)?;
         let owners: Vec<usize> = (0..motions.len()).collect();
         Ok(Self::between(motions, &ecm, &owners, motions.len()))
@@ -121,6 +122,18 @@ impl Forbidden {
         Self { intervals, ticks, ends, first }
     }
 
+    /// What the delay of an agent less that of another one must not be, by their places: open intervals in no order, which may overlap
+    /// \[s\]; without an end on a side where it is infinite. None for agents that are not there.
+    pub fn intervals(&self, agent: usize, other: usize) -> impl Iterator<Item = [f64; 2]> {
+        let intervals = self.intervals.get(agent).and_then(|row| row.get(other)).into_iter().flatten();
+        let seconds = |end: i64| match end {
+            end if end <= -NEVER => f64::NEG_INFINITY,
+            end if end >= NEVER => f64::INFINITY,
+            end => self.ticks.seconds(end.into()),
+        };
+        intervals.map(move |ends| ends.map(seconds))
+    }
+
     /// The delays to be found for all agents.
     pub(crate) fn problem(&self, objective: Objective) -> Problem {
         let pair = |i: usize, j: usize| {
@@ -137,12 +150,17 @@ impl Forbidden {
     }
 
     /// Number of agents.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.intervals.len()
     }
 
+    /// Whether there are no agents.
+    pub fn is_empty(&self) -> bool {
+        self.intervals.is_empty()
+    }
+
     /// The order, but for agents that have to start before others.
-    pub(crate) fn respecting(&self, mut order: Vec<usize>) -> Vec<usize> {
+    pub fn respecting(&self, mut order: Vec<usize>) -> Vec<usize> {
         let mut placed = vec![false; self.len()];
         let mut respecting = Vec::with_capacity(order.len());
         while !order.is_empty() {
@@ -156,7 +174,7 @@ impl Forbidden {
     }
 
     /// One agent after the other, each as early as those before it allow; one that cannot start is left out.
-    pub(crate) fn in_order(&self, order: Vec<usize>) -> Schedule {
+    pub fn in_order(&self, order: Vec<usize>) -> Schedule {
         let mut delays = vec![None; self.len()];
         let mut out = Vec::new();
         let mut before = Vec::new();

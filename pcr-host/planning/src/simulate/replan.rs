@@ -21,6 +21,9 @@ const FIRST: usize = 8;
 /// orders are kept without.
 pub(super) const SEARCHED: usize = 15;
 
+/// Robots that are made to stay, each once, where not all can go.
+const STAYING: usize = 20;
+
 /// A robot as it is now.
 #[derive(Clone, Debug)]
 pub(super) struct State {
@@ -77,13 +80,17 @@ impl Problem<'_> {
     pub(super) fn delayed(&self) -> Option<Plan> {
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
-        let standing = self.standing()?;
-        if self.robots.iter().any(|robot| robot.speed > 0.0)
-            || !motions.iter().all(|motion| is_clear(motion, &standing))
+        let mut standing = self.standing()?;
+        let goes = |motion: &&Motion<'_, f64>| motion.path().length() > 0.0;
+        standing.extend(motions.iter().filter(|motion| !goes(motion)));
+        let going: Vec<Motion<'_, f64>> = motions.iter().filter(goes).copied().collect();
+        if self.robots.iter().any(|robot| robot.speed > 0.0) || !going.iter().all(|motion| is_clear(motion, &standing))
         {
             return None;
         }
-        let delays = start_delays(&motions)?.into_iter().collect::<Option<Vec<f64>>>()?;
+        let mut found = start_delays(&going)?.into_iter();
+        let delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
+        let delays = motions.iter().map(delay).collect::<Option<Vec<f64>>>()?;
         let later = |(robot, delay): (&State, &f64)| Problem { now: self.now + delay, ..*self }.through(robot);
         let drives: Vec<Drive> = self.robots.iter().zip(&delays).map(later).collect::<Option<_>>()?;
         let cost = delays.iter().zip(&motions).map(|(delay, motion)| delay + motion.time().length()).sum();
@@ -92,9 +99,21 @@ impl Problem<'_> {
         Some(Plan { drives, order, cost })
     }
 
+    /// Of robots that all stand, as many as have start delays together while all others stay where they are; of those that shall go. Who stays
+    /// matters: all whose paths lead past there stay, too. So each is made to stay once.
+    pub(super) fn most(&self, wanted: &[bool]) -> Option<Vec<bool>> {
+        let count = |going: &Vec<bool>| going.iter().filter(|goes| **goes).count();
+        let without = |robot: Option<usize>| {
+            let going = wanted.iter().enumerate().map(|(place, &wanted)| wanted && robot != Some(place));
+            self.with_delays(going.collect())
+        };
+        let robots = (0..wanted.len()).filter(|&robot| wanted[robot]).take(STAYING);
+        std::iter::once(None).chain(robots.map(Some)).filter_map(without).max_by_key(count)
+    }
+
     /// Of robots that all stand, those that have start delays together while all others stay where they are. `wanted` are those that
     /// shall go.
-    pub(super) fn with_delays(&self, mut wanted: Vec<bool>) -> Option<Vec<bool>> {
+    fn with_delays(&self, mut wanted: Vec<bool>) -> Option<Vec<bool>> {
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
         let stays: Vec<Drive> = self.robots.iter().map(|robot| self.staying(robot)).collect::<Option<_>>()?;

@@ -241,13 +241,14 @@ impl Supervisor {
         let stands = self.agents.iter().all(|agent| agent.speed <= 0.0 && agent.at.lo >= agent.course.length());
         let together = |margin: usize| {
             let robots = self.states(margin, pending)?;
-            let taken = Problem { now, robots: &robots, obstacles: &self.obstacles }.with_delays(pending.to_vec())?;
+            let taken = Problem { now, robots: &robots, obstacles: &self.obstacles }.most(pending)?;
             let robots = self.states(margin, &taken)?;
             let plan = Problem { now, robots: &robots, obstacles: &self.obstacles }.delayed()?;
             self.found(plan, self.offsets(&taken), &taken, margin)
         };
+        let count = |found: &Found| found.taken.iter().filter(|taken| **taken).count();
         match stands {
-            true => [1, 0].into_iter().find_map(together),
+            true => [0, 1].into_iter().filter_map(together).max_by_key(count),
             false => [1, 0].into_iter().find_map(|margin| self.one_beside(now, pending, margin)),
         }
     }
