@@ -64,6 +64,7 @@ mod refuted;
 mod regressions;
 mod regressions_shared;
 mod regressions_tangent;
+mod roadmap_tasks;
 mod safe;
 mod search;
 mod shadow;

@@ -68,17 +68,21 @@ fn read(path: &Path) -> Result<String, Problem> {
     fs::read_to_string(path).map_err(|error| Problem::File(path.to_owned(), format!("cannot be read: {error}")))
 }
 
-/// The plans in a directory, by their names.
+/// The plans in a directory, the smallest first.
 fn plans(directory: &Path) -> Result<Vec<PathBuf>, Problem> {
     let failed = |error: std::io::Error| Problem::File(directory.to_owned(), format!("cannot be read: {error}"));
-    let entries = fs::read_dir(directory).map_err(failed)?.collect::<Result<Vec<_>, _>>().map_err(failed)?;
-    let paths = entries.into_iter().map(|entry| entry.path());
-    let mut plans: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|it| it == "path")).collect();
+    let mut plans = Vec::new();
+    for entry in fs::read_dir(directory).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        if entry.path().extension().is_some_and(|it| it == "path") {
+            plans.push((entry.metadata().map_err(failed)?.len(), entry.path()));
+        }
+    }
     plans.sort();
     if plans.is_empty() {
         return Err(Problem::File(directory.to_owned(), "there is no plan in it".into()));
     }
-    Ok(plans)
+    Ok(plans.into_iter().map(|(_, path)| path).collect())
 }
 
 /// The stops that are published with a plan, if there are any, and random ones.
