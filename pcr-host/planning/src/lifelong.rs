@@ -15,6 +15,7 @@
 //! way        from node to node, and times without waits
 //! book       regions of the ways, and who goes first
 //! forecast   whether all can finish, and when
+//! tasks      places where robots begin, and tasks that come      Tasks
 //! dispatch   ways and orders for a mission
 //! record     what was done, for the independent checker        Certificate
 //! run        a run                                             Outcome
@@ -33,12 +34,14 @@ mod robot;
 mod routes;
 mod run;
 mod site;
+mod tasks;
 mod way;
 
 pub use answer::{Driven, Lifelong};
 pub use ends::WellFormedness;
 pub use record::Certificate;
-pub use run::{Outcome, Report, run};
+pub use run::{Outcome, Report, run, run_tasks};
+pub use tasks::Tasks;
 
 use serde::Serialize;
 

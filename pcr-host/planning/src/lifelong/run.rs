@@ -8,6 +8,7 @@ use super::record::{Certificate, Window};
 use super::robot::Robot;
 use super::routes::{From, routes};
 use super::site::Site;
+use super::tasks::{Queue, Tasks};
 use super::way::Way;
 use super::{Method, Request};
 use crate::random::Random;
@@ -85,6 +86,8 @@ pub struct Report {
     pub decisions: Vec<Duration>,
     /// Time of all but the certificate.
     pub time: Duration,
+    /// When the last goal was reached \[s\].
+    pub last_arrival: f64,
 }
 
 impl Report {
@@ -126,6 +129,9 @@ struct Run {
     decisions: Vec<Duration>,
     travel: (f64, f64),
     steady: usize,
+    last_arrival: f64,
+    /// Tasks that are not given yet, where not everybody has a mission of its own.
+    tasks: Option<Queue>,
 }
 
 /// Runs a fleet on a layout.
@@ -133,7 +139,19 @@ struct Run {
 /// # Errors
 /// Where an edge is no path, or there is no room for anybody.
 pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
-    let mut run = Run::new(imported, request)?;
+    driven(Run::new(imported, request, None)?, imported, request)
+}
+
+/// Runs a fleet on a layout that has tasks to do, the robots that the tasks say; until all are done, or for the duration of the request.
+/// Each task is given to the idle robot that is nearest, the oldest task first.
+///
+/// # Errors
+/// As [`run`], and where a place is none of the layout.
+pub fn run_tasks(imported: &Imported, request: Request, tasks: &Tasks) -> Result<Report, String> {
+    driven(Run::new(imported, request, Some(tasks))?, imported, request)
+}
+
+fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report, String> {
     let layout = run.ends.report(&run.site, &imported.layout);
     let mut certificate = Certificate::new();
     let mut window = Window::new(&run.site, &run.robots);
@@ -142,7 +160,7 @@ pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
     let rest = 1200.0;
     for tick in 0.. {
         let now = tick as f64 * STEP;
-        let open = now < request.duration;
+        let open = now < request.duration && run.has_work();
         let ended = now > request.duration + rest || (!open && run.robots.iter().all(Robot::has_arrived));
         if (tick > 0 && tick % WINDOW == 0) || ended {
             certificate.window(&run.site, &mut run.robots, &mut window, imported.vehicle.radius, now);
@@ -163,11 +181,11 @@ pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
         time += begin.elapsed();
     }
     run.outcome.certificate = certificate;
-    Ok(Report { outcome: run.finished(), layout, decisions: run.decisions, time })
+    Ok(Report { outcome: run.finished(), layout, decisions: run.decisions, time, last_arrival: run.last_arrival })
 }
 
 impl Run {
-    fn new(imported: &Imported, request: Request) -> Result<Self, String> {
+    fn new(imported: &Imported, request: Request, tasks: Option<&Tasks>) -> Result<Self, String> {
         let site = Site::new(imported)?;
         // Tests do without, as it takes a while where nothing is optimized.
         if !cfg!(debug_assertions) {
@@ -175,7 +193,10 @@ impl Run {
         }
         let ends = Ends::of(&site, request.seed);
         let abilities = Abilities::of(&imported.vehicle);
-        let starts = starts(&site, &ends, request.agents, request.seed);
+        let starts = match tasks {
+            Some(tasks) => tasks.starts(&site)?,
+            None => starts(&site, &ends, request.agents, request.seed),
+        };
         if starts.is_empty() {
             return Err("the layout has no two nodes that can be reached from one another".into());
         }
@@ -215,11 +236,44 @@ impl Run {
             decisions: Vec::new(),
             travel: (0.0, 0.0),
             steady: 0,
+            last_arrival: 0.0,
+            tasks: tasks.map(Queue::of),
         })
+    }
+
+    /// Whether there are missions yet.
+    fn has_work(&self) -> bool {
+        self.tasks.as_ref().is_none_or(|tasks| !tasks.is_empty() || self.missions.iter().any(Option::is_some))
+    }
+
+    /// Gives tasks to those who have none, the nearest ones.
+    fn assign(&mut self, mut tasks: Queue, now: f64) -> Queue {
+        while let Some(goal) = tasks.due(now) {
+            let at = self.site.points[goal];
+            let away = |robot: usize| {
+                let here = self.robots[robot].way.point(&self.site, self.robots[robot].at);
+                (here[0] - at[0]).hypot(here[1] - at[1])
+            };
+            let idle = (0..self.robots.len()).filter(|&robot| self.missions[robot].is_none());
+            let Some(robot) = idle.min_by(|&a, &b| away(a).total_cmp(&away(b))) else { break };
+            let since = tasks.take();
+            let it = &self.robots[robot];
+            if it.has_arrived() && it.way.end() == goal {
+                self.outcome.missions += 1;
+                self.last_arrival = now;
+                continue;
+            }
+            self.missions[robot] = Some(Mission { goal, since, alone: 0.0, admitted: false, next_try: now });
+        }
+        tasks
     }
 
     /// Gives a mission to everybody who has none.
     fn give(&mut self, now: f64) {
+        if let Some(tasks) = self.tasks.take() {
+            self.tasks = Some(self.assign(tasks, now));
+            return;
+        }
         for robot in 0..self.robots.len() {
             if self.missions[robot].is_some() {
                 continue;
@@ -349,6 +403,7 @@ impl Run {
 
     fn arrived(&mut self, robot: usize, now: f64) {
         self.outcome.missions += 1;
+        self.last_arrival = now;
         if now > START * self.request.duration && now <= self.request.duration {
             self.steady += 1;
         }
