@@ -139,6 +139,20 @@ fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
         })
 }
 
+/// How many nodes robots on these nodes cut off from most others, with those who stand for good on so many atoms.
+pub(super) fn cut_off(site: &Site, nodes: &[usize], parked: &[u16], more: &[u16]) -> usize {
+    /// The largest part is found from one of so many nodes, but for odd layouts.
+    const HUBS: usize = 4;
+    let open = |atom: usize| parked[atom] + more[atom] == 0;
+    let free: Vec<usize> = nodes.iter().copied().filter(|&node| open(site.standing(node))).collect();
+    let sizes = (0..HUBS.min(free.len())).map(|k| {
+        let hub = free[k * free.len() / HUBS.min(free.len())];
+        let both = [false, true].map(|back| reached(site, hub, back, open));
+        free.iter().filter(|&&node| both[0][node] && both[1][node]).count()
+    });
+    nodes.len() - sizes.max().unwrap_or(0)
+}
+
 /// Two-way edges without which not all nodes can be reached from one another.
 fn bridges(site: &Site, nodes: &[usize]) -> Vec<usize> {
     let Some(&hub) = nodes.first() else { return Vec::new() };

@@ -73,7 +73,8 @@ fn add(region: &Region, place: Option<usize>, at: [f64; 2], into: &mut Vec<Wait>
 }
 
 fn sort(waits: &mut [Wait]) {
-    waits.sort_unstable_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
+    // Made of runs that are in order: stable sorting makes use of that.
+    waits.sort_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
 }
 
 /// When robots would be where.
@@ -125,14 +126,11 @@ impl<'t> Trial<'t> {
         let mut waits: Vec<Wait> = Vec::new();
         let mut ranges = Vec::with_capacity(count);
         for robot in 0..count {
-            let (way, at) = self.way(robot);
             let it = &self.robots[robot];
-            let departs = match self.changed {
-                Some((changed, _, _, departs, _)) if changed == robot => departs,
-                _ => it.departs,
-            };
-            let late = (departs - self.time).max(it.stopped_until - self.time).max(0.0);
-            lines.push(Timeline { start: way.time(at) - late, delays: Vec::new() });
+            let changed =
+                self.changed.filter(|changed| changed.0 == robot).map(|(_, way, at, departs, _)| (way, at, departs));
+            let start = it.progress(changed, self.time, self.abilities);
+            lines.push(Timeline { start, delays: Vec::new() });
             let from = waits.len();
             self.gates(robot, &mut waits);
             ranges.push((from, waits.len()));
@@ -185,8 +183,8 @@ impl<'t> Trial<'t> {
         }
         let cost = (0..count).map(|robot| {
             let way = self.way(robot).0;
-            let goal = way.goal.map_or(0.0, |goal| lines[robot].time(way, goal));
-            goal + TAIL * lines[robot].time(way, way.length())
+            let goals: f64 = way.goals.iter().map(|&goal| lines[robot].time(way, goal)).sum();
+            goals + TAIL * lines[robot].time(way, way.length())
         });
         let cost = cost.sum();
         Ok(Forecast { lines, cost })

@@ -2,21 +2,20 @@
 
 use super::abilities::Abilities;
 use super::book::Book;
-use super::dispatch::{Admitted, Refused, Scene};
-use super::ends::{Ends, WellFormedness};
+use super::dispatch::Admitted;
+use super::draws::{self, STEP, disturb, starts};
+use super::ends::Ends;
+use super::locks::Locks;
+use super::outcome::{Outcome, Report, Shares};
 use super::record::{Certificate, Window};
 use super::robot::Robot;
-use super::routes::{From, routes};
+use super::routes::routes;
+use super::scene::Scene;
 use super::site::Site;
 use super::way::Way;
 use super::{Method, Request};
-use crate::random::Random;
 use pcr_formats::import::Imported;
-use serde::Serialize;
 use std::time::{Duration, Instant};
-
-/// Time between two controls \[s\].
-const STEP: f64 = 0.1;
 
 /// Between two tries for the same mission \[s\].
 const AGAIN: f64 = 1.0;
@@ -24,8 +23,14 @@ const AGAIN: f64 = 1.0;
 /// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
 const PATIENCE: f64 = 2.0;
 
-/// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\].
-const REVIEW: [f64; 2] = [0.3, 2.0];
+/// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\], and whoever does not wait so often.
+const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
+
+/// The way for the next mission is looked for so long before the goal \[s\].
+const AHEAD: f64 = 10.0;
+
+/// Robots that are asked to go elsewhere for one mission at a time.
+const MOVES: usize = 4;
 
 /// Decisions between two controls.
 const TRIES: usize = 4;
@@ -35,67 +40,6 @@ const WINDOW: usize = 200;
 
 /// The first part of the time, in which robots start from their ends, is not steady.
 const START: f64 = 0.1;
-
-/// Steps between two values of the slip.
-const SLIPS: usize = 50;
-
-/// How it went.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Outcome {
-    /// How robots were kept apart.
-    pub method: Method,
-    /// Robots that found a place to start.
-    pub robots: usize,
-    /// Goals reached.
-    pub missions: usize,
-    /// The same an hour, after the first tenth of the time.
-    pub missions_per_hour: f64,
-    /// Mean of the times from when missions were given until goals were reached, over those of a robot alone; none without any.
-    pub travel_over_unimpeded: Option<f64>,
-    /// What the independent checker has found.
-    pub certificate: Certificate,
-    /// Controls at which a robot was beyond what its orders allow.
-    pub breaches: usize,
-    /// Robots that have not come to the end of their way long after the last mission: deadlocks.
-    pub stuck: usize,
-    /// Longest time for which nobody moved \[s\].
-    pub standstill: f64,
-    /// Tries for a mission that were refused; they are repeated.
-    pub refused: usize,
-    /// Robots that were asked to go elsewhere, as they stood in the way.
-    pub moved: usize,
-    /// Ways and orders that were exchanged for better ones.
-    pub revised: usize,
-    /// Longest time from when a mission was given until it was admitted \[s\].
-    pub longest_wait: f64,
-    /// The same of those that still wait in the end \[s\].
-    pub waiting: f64,
-    /// How many do so for longer than ten minutes.
-    pub starved: usize,
-}
-
-/// A run with what was measured on the machine.
-#[derive(Clone, Debug)]
-pub struct Report {
-    /// What is the same on every machine.
-    pub outcome: Outcome,
-    /// Of the layout.
-    pub layout: WellFormedness,
-    /// Time of each decision.
-    pub decisions: Vec<Duration>,
-    /// Time of all but the certificate.
-    pub time: Duration,
-}
-
-impl Report {
-    /// Time within which this part of the decisions was made \[s\].
-    pub fn decided_within(&self, part: f64) -> f64 {
-        let mut times = self.decisions.clone();
-        times.sort_unstable();
-        let place = (times.len() as f64 * part).ceil() as usize;
-        times.get(place.saturating_sub(1)).map_or(0.0, Duration::as_secs_f64)
-    }
-}
 
 /// A mission that a robot has.
 #[derive(Clone, Copy, Debug)]
@@ -116,6 +60,7 @@ struct Run {
     request: Request,
     robots: Vec<Robot>,
     book: Book,
+    locks: Locks,
     /// How many robots stand for good in the way of an atom.
     parked: Vec<u16>,
     missions: Vec<Option<Mission>>,
@@ -199,9 +144,11 @@ impl Run {
             longest_wait: 0.0,
             waiting: 0.0,
             starved: 0,
+            time: Shares::default(),
         };
         Ok(Self {
             book: Book::new(&site, &robots),
+            locks: Locks::new(count),
             site,
             ends,
             abilities,
@@ -225,16 +172,17 @@ impl Run {
                 continue;
             }
             let it = &self.robots[robot];
-            let place = self.site.atoms[it.way.atoms[it.way.atom(it.at)]].ends[1];
-            let goal = goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], place);
+            let from = it.way.kept(&self.site, it.at, it.at, it.turned).on;
+            let place = from.node;
+            let goal = draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], place);
             self.given[robot] += 1;
-            let from = From { node: place, heading: None };
             let way = routes((&self.site, &self.abilities), from, |_| 0.0, |node| node == goal, Some(goal), 1);
             let alone = way.first().map_or(0.0, |atoms| {
-                let way = Way::new(&self.site, place, atoms, None, &self.abilities);
+                let way = Way::new(&self.site, from, atoms, &[], &self.abilities);
                 way.time(way.length()) + self.abilities.stop()
             });
-            self.missions[robot] = Some(Mission { goal, since: now, alone, admitted: false, next_try: now });
+            let admitted = !it.way.goals.is_empty();
+            self.missions[robot] = Some(Mission { goal, since: now, alone, admitted, next_try: now });
         }
     }
 
@@ -243,8 +191,10 @@ impl Run {
             site: &self.site,
             robots: &self.robots,
             book: &self.book,
+            locks: &self.locks,
             abilities: &self.abilities,
             ends: &self.ends.safe,
+            nodes: &self.ends.nodes,
             parked: &self.parked,
             time: now,
             method: self.request.method,
@@ -265,6 +215,26 @@ impl Run {
         if self.request.method != Method::Orders {
             return;
         }
+        for robot in 0..self.robots.len() {
+            let Some(mission) = self.missions[robot].filter(|mission| mission.admitted && mission.next_try <= now)
+            else {
+                continue;
+            };
+            let it = &self.robots[robot];
+            let [goal] = it.way.goals[..] else { continue };
+            if tries >= TRIES || it.way.time(goal) - it.progress(None, now, &self.abilities) > AHEAD {
+                continue;
+            }
+            tries += 1;
+            let next = draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], mission.goal);
+            let begin = Instant::now();
+            let found = self.scene(now).dispatch(robot, &[mission.goal, next]);
+            self.decisions.push(begin.elapsed());
+            match found {
+                Ok(admitted) => self.take(robot, admitted),
+                Err(_) => self.missions[robot] = Some(Mission { next_try: now + 2.0 * AGAIN, ..mission }),
+            }
+        }
         let held = |robot: usize| {
             let it = &self.robots[robot];
             let waits = it.speed == 0.0 && !it.has_arrived() && now - it.still_since > REVIEW[0];
@@ -274,15 +244,29 @@ impl Run {
             (0..self.robots.len()).filter(|&robot| held(robot) && now - self.reviewed[robot] > REVIEW[1]).collect();
         held.sort_by(|&a, &b| self.reviewed[a].total_cmp(&self.reviewed[b]));
         for robot in held.into_iter().take(TRIES.saturating_sub(tries)) {
+            tries += 1;
             self.reviewed[robot] = now;
             self.review(robot, now);
+        }
+        if tries < TRIES {
+            let due = |robot: &usize| {
+                !self.robots[*robot].has_arrived()
+                    && self.missions[*robot].is_some_and(|it| it.admitted)
+                    && now - self.reviewed[*robot] > REVIEW[2]
+            };
+            let next =
+                (0..self.robots.len()).filter(due).min_by(|&a, &b| self.reviewed[a].total_cmp(&self.reviewed[b]));
+            if let Some(robot) = next {
+                self.reviewed[robot] = now;
+                self.review(robot, now);
+            }
         }
     }
 
     fn try_mission(&mut self, robot: usize, now: f64) {
         let Some(mission) = self.missions[robot] else { return };
         let begin = Instant::now();
-        let found = self.scene(now).dispatch(robot, mission.goal);
+        let found = self.scene(now).dispatch(robot, &[mission.goal]);
         self.decisions.push(begin.elapsed());
         match found {
             Ok(admitted) => {
@@ -290,17 +274,43 @@ impl Run {
                 self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.since);
                 self.missions[robot] = Some(Mission { admitted: true, ..mission });
             }
-            Err(Refused { by }) => {
+            Err(_) => {
                 self.outcome.refused += 1;
                 self.missions[robot] = Some(Mission { next_try: now + AGAIN, ..mission });
-                let Some(by) = by.filter(|&by| by != robot && now - mission.since > PATIENCE) else { return };
-                if self.robots[by].has_arrived()
-                    && let Some(admitted) = self.scene(now).make_way(by, robot, mission.goal)
-                {
+                if now - mission.since > PATIENCE {
+                    if let Some(route) = self.scene(now).wanted(robot, mission.goal) {
+                        self.clear(robot, &[route], now, &mut MOVES.clone());
+                    }
+                }
+            }
+        }
+    }
+
+    /// Asks those who stand on the last of some routes to go where they are on none of them, and those who stand in their way likewise.
+    fn clear(&mut self, robot: usize, routes: &[Vec<usize>], now: f64, tries: &mut usize) {
+        let standing = self.scene(now).standing_on(robot, routes.last().map_or(&[], Vec::as_slice));
+        for by in standing {
+            if *tries == 0 || self.missions[by].is_some_and(|mission| mission.admitted) {
+                continue;
+            }
+            *tries -= 1;
+            let begin = Instant::now();
+            let found = self.scene(now).make_way(by, routes);
+            self.decisions.push(begin.elapsed());
+            match found {
+                Ok(admitted) => {
                     self.take(by, admitted);
                     self.outcome.moved += 1;
                 }
+                Err(Some(route)) if routes.len() < 6 => {
+                    let mut routes = routes.to_vec();
+                    routes.push(route);
+                    self.clear(by, &routes, now, tries);
+                }
+                Err(_) => {}
             }
+            // In the way of the others behind it.
+            return;
         }
     }
 
@@ -309,8 +319,12 @@ impl Run {
         /// So much sooner in all \[s\].
         const GAIN: f64 = 1.0;
         let Some(goal) = self.missions[robot].map(|mission| mission.goal) else { return };
+        let mut goals = vec![goal];
+        if self.robots[robot].way.goals.len() > 1 {
+            goals.push(draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], goal));
+        }
         let begin = Instant::now();
-        let found = self.scene(now).better(robot, goal, GAIN);
+        let found = self.scene(now).better(robot, &goals, GAIN);
         self.decisions.push(begin.elapsed());
         if let Some(admitted) = found {
             self.take(robot, admitted);
@@ -319,11 +333,12 @@ impl Run {
     }
 
     fn take(&mut self, robot: usize, admitted: Admitted) {
-        let Admitted { way, before, regions, departs, .. } = admitted;
+        let Admitted { way, kept, before, regions, departs, .. } = admitted;
         let it = &mut self.robots[robot];
         self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
         self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);
         self.book.exchange(robot, &it.way, &way, regions);
+        self.locks.exchange(robot, kept);
         it.take(way, before);
         it.departs = departs;
     }
@@ -331,13 +346,22 @@ impl Run {
     /// Everybody goes on for a step.
     fn step(&mut self, tick: usize, now: f64, open: bool) {
         let far = |robot: usize| self.robots[robot].horizon(&self.abilities, STEP);
-        let holds: Vec<f64> =
-            (0..self.robots.len()).map(|robot| self.book.hold(robot, &self.robots, far(robot))).collect();
+        if self.request.method == Method::EdgeLocks {
+            self.locks.give(&self.site, &self.robots, far);
+        }
+        let hold = |robot: usize| match self.request.method {
+            Method::EdgeLocks => self.locks.hold(robot, &self.robots[robot].way),
+            _ => self.book.hold(robot, &self.robots, far(robot)),
+        };
+        let holds: Vec<f64> = (0..self.robots.len()).map(hold).collect();
         for (robot, hold) in holds.into_iter().enumerate() {
             let it = &mut self.robots[robot];
             let stop = it.stop(&self.abilities);
             self.outcome.breaches += usize::from(stop > hold + 1e-9 && stop > it.at);
             disturb(it, robot, tick, now, open, &self.request);
+            if open {
+                *share(&mut self.outcome.time, it, hold, now) += 1.0;
+            }
             if it.drive(hold, now, STEP, &self.abilities) {
                 self.arrived(robot, now + STEP);
             }
@@ -363,6 +387,7 @@ impl Run {
         let waits = |mission: &Mission| if mission.admitted { 0.0 } else { request.duration - mission.since };
         let waits: Vec<f64> = self.missions.iter().flatten().map(waits).collect();
         let mut outcome = self.outcome.clone();
+        outcome.time.norm();
         outcome.waiting = waits.iter().copied().fold(0.0, f64::max);
         outcome.starved = waits.iter().filter(|wait| **wait > 600.0).count();
         outcome.stuck = self.robots.iter().filter(|robot| !robot.has_arrived()).count();
@@ -372,46 +397,21 @@ impl Run {
     }
 }
 
-/// A robot is stopped, or slips, as it would be under any method.
-fn disturb(robot: &mut Robot, number: usize, tick: usize, now: f64, open: bool, request: &Request) {
-    let delays = request.delays;
-    let mut random = Random(request.seed ^ (number as u64).wrapping_mul(0x9e37_79b9) ^ ((tick as u64) << 24));
-    let rate = delays.stopped * STEP / delays.stop / (1.0 - delays.stopped);
-    if open && robot.stopped_until <= now && random.unit() < rate {
-        robot.stopped_until = now + 2.0 * delays.stop * random.unit();
+/// What a robot spends its time on now.
+fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: f64, now: f64) -> &'s mut f64 {
+    /// A robot so near its hold waits there \[m\].
+    const NEAR: f64 = 0.01;
+    if robot.stopped_until > now {
+        &mut shares.stopped
+    } else if robot.has_arrived() {
+        &mut shares.idle
+    } else if robot.turning > now {
+        &mut shares.turning
+    } else if robot.speed == 0.0 && hold - robot.at < NEAR {
+        &mut shares.held
+    } else if robot.way.goals.is_empty() {
+        &mut shares.aside
+    } else {
+        &mut shares.driving
     }
-    if tick % SLIPS == number % SLIPS {
-        robot.slip = delays.slip * random.unit();
-    }
-}
-
-/// The goal of the mission of this number of a robot: another node than where it is, whatever anybody does.
-fn goal(site: &Site, ends: &Ends, seed: u64, robot: usize, number: u64, place: usize) -> usize {
-    let mut random = Random(seed.wrapping_mul(0x2545_f491).wrapping_add((robot as u64) << 32).wrapping_add(number));
-    random.bits();
-    loop {
-        let goal = ends.nodes[random.below(ends.nodes.len())];
-        if !site.collide(goal, place) {
-            return goal;
-        }
-    }
-}
-
-/// Nodes apart from one another, safe ends first.
-fn starts(site: &Site, ends: &Ends, count: usize, seed: u64) -> Vec<usize> {
-    let mut random = Random(seed ^ 0x5741_5254);
-    let mut starts: Vec<usize> = Vec::new();
-    let mut taken = vec![false; site.atoms.len()];
-    let mut nodes = random.shuffled(&ends.safe);
-    nodes.extend(random.shuffled(&ends.nodes));
-    if ends.nodes.len() < 2 {
-        return starts;
-    }
-    for node in nodes {
-        if starts.len() < count && !taken[site.standing(node)] {
-            site.covers(node).iter().for_each(|&atom| taken[atom] = true);
-            starts.push(node);
-        }
-    }
-    starts
 }
