@@ -23,7 +23,9 @@
 //! record     what was done, for the independent checker        Certificate
 //! outcome    what comes of a run                               Outcome
 //! draws      goals, delays, starts
-//! run        a run                                             Outcome
+//! state      the fleet, its missions, what has come of it
+//! decide     who looks for a way when
+//! run        a run
 //! answer     what `pcr traffic --hours` prints                 Lifelong
 //! ```
 
@@ -31,6 +33,7 @@ mod abilities;
 mod answer;
 mod book;
 mod clearing;
+mod decide;
 mod dispatch;
 mod draws;
 mod ends;
@@ -45,6 +48,7 @@ mod run;
 mod scene;
 mod search;
 mod site;
+mod state;
 mod way;
 
 pub use answer::{Driven, Lifelong};

@@ -40,7 +40,7 @@ impl Scene<'_> {
                 && self.is_free(robot, node)
                 && !routes.iter().flatten().any(|&atom| self.site.passes(atom, node))
         };
-        let ends = self.routes(robot, &kept, TOLLS[0], |node| clear(node) && self.ends.contains(&node), None, PLACES);
+        let ends = self.routes(robot, &kept, TOLLS[0], |node| clear(node) && self.ends[node], None, PLACES);
         let found = if ends.is_empty() {
             let good = self.harmless(robot, clear);
             self.routes(robot, &kept, TOLLS[0], |node| good.contains(&node), None, PLACES)

@@ -74,7 +74,7 @@ impl Scene<'_> {
             if marks.len() < goals.len() {
                 continue;
             }
-            let safe = |node: usize| self.is_free(robot, node) && self.ends.contains(&node);
+            let safe = |node: usize| self.is_free(robot, node) && self.ends[node];
             let mut onward = self.onward(robot, from, tolls, safe, None, ENDS);
             if onward.is_empty() {
                 // More robots than ends: wherever nobody stands.

@@ -36,13 +36,17 @@ pub(super) struct Ends {
     /// Nodes that can all be reached from one another.
     pub(super) nodes: Vec<usize>,
     pub(super) safe: Vec<usize>,
+    /// Of each node whether it is one.
+    pub(super) is_safe: Vec<bool>,
 }
 
 impl Ends {
     pub(super) fn of(site: &Site, seed: u64) -> Self {
         let nodes = strongest(site);
         let safe = if nodes.len() <= SMALL { drawn(site, &nodes, seed) } else { dead_ends(site, &nodes) };
-        Self { nodes, safe }
+        let mut is_safe = vec![false; site.points.len()];
+        safe.iter().for_each(|&end| is_safe[end] = true);
+        Self { nodes, safe, is_safe }
     }
 
     /// What is told of them.

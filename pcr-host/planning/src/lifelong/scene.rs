@@ -23,8 +23,8 @@ pub(super) struct Scene<'s> {
     pub(super) book: &'s Book,
     pub(super) locks: &'s Locks,
     pub(super) abilities: &'s Abilities,
-    /// Nodes where robots may stand for good.
-    pub(super) ends: &'s [usize],
+    /// Whether robots may stand at a node for good.
+    pub(super) ends: &'s [bool],
     /// Nodes that can all be reached from one another.
     pub(super) nodes: &'s [usize],
     /// How many robots stand for good in the way of an atom.
