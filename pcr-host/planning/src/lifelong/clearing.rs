@@ -47,7 +47,8 @@ impl Scene<'_> {
         } else {
             ends
         };
-        if let Ok(admitted) = self.admitted(robot, &kept, found.into_iter().map(|route| (route, Vec::new())).collect())
+        if let Some(admitted) =
+            self.admitted(robot, &kept, found.into_iter().map(|route| (route, Vec::new())).collect())
         {
             return Ok(admitted);
         }

@@ -61,8 +61,8 @@ impl Run {
             let found = self.scene(now).dispatch(robot, &[mission.goal, next]);
             self.decisions.push(begin.elapsed());
             match found {
-                Ok(admitted) => self.take(robot, admitted),
-                Err(_) => self.missions[robot] = Some(Mission { next_try: now + 2.0 * AGAIN, ..mission }),
+                Some(admitted) => self.take(robot, admitted),
+                None => self.missions[robot] = Some(Mission { next_try: now + 2.0 * AGAIN, ..mission }),
             }
         }
     }
@@ -103,12 +103,12 @@ impl Run {
         let found = self.scene(now).dispatch(robot, &[mission.goal]);
         self.decisions.push(begin.elapsed());
         match found {
-            Ok(admitted) => {
+            Some(admitted) => {
                 self.take(robot, admitted);
                 self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.since);
                 self.missions[robot] = Some(Mission { admitted: true, ..mission });
             }
-            Err(_) => {
+            None => {
                 self.outcome.refused += 1;
                 self.missions[robot] = Some(Mission { next_try: now + AGAIN, ..mission });
                 if now - mission.since > PATIENCE

@@ -4,7 +4,7 @@
 use super::Method;
 use super::book::Region;
 use super::forecast::{Trial, Waits};
-use super::scene::{Refused, Scene, TOLLS};
+use super::scene::{Scene, TOLLS};
 use super::search::Case;
 use super::site::From;
 use super::way::{Kept, Way};
@@ -42,11 +42,8 @@ pub(super) struct Admitted {
 type Route = (Vec<usize>, Vec<usize>);
 
 impl Scene<'_> {
-    /// Finds a way for a robot to its goals and on to an end.
-    ///
-    /// # Errors
-    /// Who is in the way.
-    pub(super) fn dispatch(&self, robot: usize, goals: &[usize]) -> Result<Admitted, Refused> {
+    /// Finds a way for a robot to its goals and on to an end; none if none is admitted now.
+    pub(super) fn dispatch(&self, robot: usize, goals: &[usize]) -> Option<Admitted> {
         let kept = self.kept(robot);
         self.admitted(robot, &kept, self.candidates(robot, &kept, goals))
     }
@@ -54,7 +51,7 @@ impl Scene<'_> {
     /// Another way and other orders for a robot that has a mission, with which all are expected to arrive sooner by `gain` \[s\].
     pub(super) fn better(&self, robot: usize, goals: &[usize], gain: f64) -> Option<Admitted> {
         let cost = self.base().ok()?.cost;
-        self.dispatch(robot, goals).ok().filter(|found| found.cost + gain < cost)
+        self.dispatch(robot, goals).filter(|found| found.cost + gain < cost)
     }
 
     /// Routes to goals and on to an end.
@@ -92,7 +89,7 @@ impl Scene<'_> {
     }
 
     /// The way and orders with which all are expected to arrive soonest, of those that are admitted.
-    pub(super) fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Result<Admitted, Refused> {
+    pub(super) fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Option<Admitted> {
         if self.method == Method::EdgeLocks {
             return self.locked(robot, kept, candidates);
         }
@@ -105,7 +102,6 @@ impl Scene<'_> {
         let base = &alone.forecast().unwrap_or_default();
         let [least, most] = FORECASTS;
         let budget = &Cell::new((WORK / waits.len().max(1)).clamp(least, most));
-        let mut refused = Refused::default();
         let ways = candidates.into_iter().map(|(route, goals)| {
             let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
             let goals: Vec<usize> = goals.iter().map(|goal| kept.atoms.len() + goal).collect();
@@ -117,16 +113,12 @@ impl Scene<'_> {
             let regions = self.book.regions(self.site, self.robots, robot, &way, at);
             let case = Case { scene: self, base, waits, robot, way: &way, at, stop, budget };
             let solved = match self.method {
-                Method::RouteLocks => match regions.first() {
-                    None => Ok((regions.clone(), self.time, way.time(way.length()))),
-                    Some(region) => Err(Refused { by: Some(region.robots[1]) }),
-                },
+                Method::RouteLocks => regions.is_empty().then(|| (Vec::new(), self.time, way.time(way.length()))),
                 Method::StartDelays => case.delayed(regions.clone()),
                 _ => case.ordered(regions.clone(), 0.0).map(|(regions, cost)| (regions, self.time, cost)),
             };
-            match solved {
-                Ok((regions, departs, cost)) => found.push(Found { place: tried.len(), regions, departs, cost }),
-                Err(by) => refused = by,
+            if let Some((regions, departs, cost)) = solved {
+                found.push(Found { place: tried.len(), regions, departs, cost });
             }
             tried.push((way, regions));
         }
@@ -143,52 +135,45 @@ impl Scene<'_> {
                     if budget.get() == 0 {
                         break;
                     }
-                    if let Ok((regions, cost)) = case.ordered(regions.clone(), shift) {
+                    if let Some((regions, cost)) = case.ordered(regions.clone(), shift) {
                         found.push(Found { place, regions, departs: self.time, cost });
                     }
                 }
             }
         }
-        let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).ok_or(refused)?;
+        let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
         let Found { place, mut regions, departs, mut cost } = best;
         let way = tried.swap_remove(place).0;
         if self.method == Method::Orders {
             let case = Case { scene: self, base, waits, robot, way: &way, at, stop, budget };
             (regions, cost) = case.improved(regions, cost);
         }
-        Ok(Admitted { way, kept: kept.atoms.len(), before: kept.before, regions, departs, cost })
+        Some(Admitted { way, kept: kept.atoms.len(), before: kept.before, regions, departs, cost })
     }
 }
 
 impl Scene<'_> {
     /// The first way of which all edges can be got one after the other: nobody stands on it for good, its end is on nobody's way, and
     /// all can finish.
-    fn locked(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Result<Admitted, Refused> {
-        let mut refused = Refused::default();
+    fn locked(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Option<Admitted> {
         for (route, goals) in candidates {
             let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
             let goals: Vec<usize> = goals.iter().map(|goal| kept.atoms.len() + goal).collect();
             let way = Way::new(self.site, kept.from, &atoms, &goals, self.abilities);
-            let stands = |&other: &usize| {
+            let stands = |other: usize| {
                 let end = self.robots[other].way.end();
                 other != robot && way.atoms.iter().any(|&atom| self.site.passes(atom, end))
             };
-            let passes = || {
-                let near = self.site.contacts(self.site.standing(way.end()));
-                near.flat_map(|(near, _)| self.book.others_on(near, robot, self.robots)).map(|(other, _)| other).next()
-            };
-            if let Some(by) = (0..self.robots.len()).find(stands).or_else(passes) {
-                refused.by = Some(by);
-                continue;
-            }
+            let mut near = self.site.contacts(self.site.standing(way.end()));
+            let is_passed = near.any(|(near, _)| self.book.others_on(near, robot, self.robots).next().is_some());
             let at = self.robots[robot].at - kept.before;
-            let cost = way.time(way.length());
-            if self.locks.is_safe(self.site, self.robots, Some((robot, &way, at, kept.atoms.len()))) {
-                let (kept, before) = (kept.atoms.len(), kept.before);
-                return Ok(Admitted { way, kept, before, regions: Vec::new(), departs: self.time, cost });
+            let is_safe = || self.locks.is_safe(self.site, self.robots, Some((robot, &way, at, kept.atoms.len())));
+            if !is_passed && !(0..self.robots.len()).any(stands) && is_safe() {
+                let (kept, before, cost) = (kept.atoms.len(), kept.before, way.time(way.length()));
+                return Some(Admitted { way, kept, before, regions: Vec::new(), departs: self.time, cost });
             }
         }
-        Err(refused)
+        None
     }
 }
 

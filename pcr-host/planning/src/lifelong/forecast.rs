@@ -88,9 +88,7 @@ pub(super) struct Forecast {
 /// A robot that waits for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stuck {
-    pub(super) robot: usize,
-    pub(super) by: usize,
-    /// Place of the region among those of the robot that has another way.
+    /// Place of the region at which it does, among those of the robot that has another way.
     pub(super) region: Option<usize>,
 }
 
@@ -174,8 +172,8 @@ impl<'t> Trial<'t> {
         let stuck: Vec<Stuck> = (0..count)
             .filter(|&robot| next[robot] < ranges[robot].1)
             .map(|robot| {
-                let Wait { first, region, .. } = waits[next[robot]];
-                Stuck { robot, by: first, region }
+                let Wait { region, .. } = waits[next[robot]];
+                Stuck { region }
             })
             .collect();
         if !stuck.is_empty() {

@@ -33,12 +33,6 @@ pub(super) struct Scene<'s> {
     pub(super) method: Method,
 }
 
-/// Why no way was admitted: who is in the way, if anybody is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Refused {
-    pub(super) by: Option<usize>,
-}
-
 impl Scene<'_> {
     /// When all are where with the ways and orders that they have.
     pub(super) fn base(&self) -> Result<Forecast, Vec<Stuck>> {

@@ -3,7 +3,7 @@
 
 use super::book::Region;
 use super::forecast::{Forecast, Stuck, Trial, Waits};
-use super::scene::{Refused, Scene};
+use super::scene::Scene;
 use super::way::Way;
 use std::cell::Cell;
 
@@ -47,7 +47,7 @@ impl Case<'_> {
     }
 
     /// Orders by what is forecast, mended, and turned round where that is better.
-    pub(super) fn ordered(&self, mut regions: Vec<Region>, shift: f64) -> Result<(Vec<Region>, f64), Refused> {
+    pub(super) fn ordered(&self, mut regions: Vec<Region>, shift: f64) -> Option<(Vec<Region>, f64)> {
         regions.sort_by(|a, b| a.hull[0].lo.total_cmp(&b.hull[0].lo));
         let mut open = Vec::with_capacity(regions.len());
         let mut late = shift;
@@ -58,7 +58,7 @@ impl Case<'_> {
                 [true, true] => usize::from(ahead >= behind),
                 [true, false] => 0,
                 [false, true] => 1,
-                [false, false] => return Err(Refused { by: Some(region.robots[1]) }),
+                [false, false] => return None,
             };
             if region.first == 1 {
                 late += behind;
@@ -66,7 +66,7 @@ impl Case<'_> {
             open.push(sides == [true, true]);
         }
         let forecast = self.repaired(&mut regions, &open)?;
-        Ok((regions, forecast.cost))
+        Some((regions, forecast.cost))
     }
 
     /// Turns orders round where all are expected to arrive sooner by that.
@@ -109,19 +109,17 @@ impl Case<'_> {
     }
 
     /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
-    fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Result<Forecast, Refused> {
+    fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
         let mut tried = vec![false; regions.len()];
-        let mut last = Refused::default();
         for _ in 0..REPAIRS {
             if self.budget.get() == 0 {
-                return Err(last);
+                return None;
             }
             self.budget.set(self.budget.get() - 1);
             let stuck = match self.forecast(regions, self.scene.time) {
-                Ok(forecast) => return Ok(forecast),
+                Ok(forecast) => return Some(forecast),
                 Err(stuck) => stuck,
             };
-            last.by = stuck.iter().find(|stuck| stuck.robot == self.robot).or(stuck.first()).map(|stuck| stuck.by);
             let mendable = |first: usize| {
                 let places = stuck.iter().filter_map(|stuck| stuck.region);
                 places.into_iter().find(|&place| open[place] && !tried[place] && regions[place].first == first)
@@ -135,12 +133,11 @@ impl Case<'_> {
                 region.first = 1;
             }
         }
-        self.forecast(regions, self.scene.time).map_err(|_| last)
+        self.forecast(regions, self.scene.time).ok()
     }
 
     /// The least start delay with which the robot waits for nobody and nobody for it, as all are expected to be.
-    pub(super) fn delayed(&self, mut regions: Vec<Region>) -> Result<(Vec<Region>, f64, f64), Refused> {
-        let mut refused = Refused::default();
+    pub(super) fn delayed(&self, mut regions: Vec<Region>) -> Option<(Vec<Region>, f64, f64)> {
         'delays: for k in 0..DELAYS.1 {
             let late = DELAYS.0 * f64::from(k);
             for region in &mut regions {
@@ -149,17 +146,14 @@ impl Case<'_> {
                 region.first = match (sides[0] && ahead <= 0.0, sides[1] && behind <= 0.0) {
                     (true, _) => 0,
                     (false, true) => 1,
-                    (false, false) => {
-                        refused.by = Some(region.robots[1]);
-                        continue 'delays;
-                    }
+                    (false, false) => continue 'delays,
                 };
             }
             let departs = self.scene.time + late;
             if let Ok(forecast) = self.forecast(&regions, departs) {
-                return Ok((regions, departs, forecast.cost));
+                return Some((regions, departs, forecast.cost));
             }
         }
-        Err(refused)
+        None
     }
 }
