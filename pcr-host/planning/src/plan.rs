@@ -14,6 +14,8 @@ mod reason;
 mod speeds;
 mod starts;
 mod task;
+#[cfg(test)]
+mod tests;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;

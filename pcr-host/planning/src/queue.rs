@@ -101,7 +101,7 @@ mod tests {
         let mut motions = fleet.motions();
         let mut queue = Queue::of(&motions);
         let told = |queue: &Queue| queue.all().collect::<Vec<_>>();
-        assert!(queue.len() > 10);
+        assert!(!queue.is_empty());
         for (round, agent) in [0, 7, 3, 3, 11, 5].into_iter().enumerate() {
             motions[agent] = motions[agent].delayed(1.5 * (round as f64 + 1.0)).expect("a delay");
             queue.update(&motions, agent);

@@ -123,10 +123,17 @@ fn take_in(problem: &Problem, delays: &mut [Option<i64>], stop: Stop<'_>) {
 
 /// The fewest agents of which each conflict has one. If the search for them is stopped `fewest` becomes false, and they are few.
 fn hitting(conflicts: &[Vec<usize>], agents: usize, stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
-    let mut search =
-        Hitting { conflicts, out: vec![false; agents], kept: vec![false; agents], best: None, nodes: 0, stop };
+    let mut search = Hitting {
+        conflicts,
+        out: vec![false; agents],
+        kept: vec![false; agents],
+        best: None,
+        nodes: 0,
+        cut: false,
+        stop,
+    };
     search.node(0);
-    *fewest &= search.nodes <= stop.nodes;
+    *fewest &= !search.cut;
     // The first dive ends with some, however many nodes it takes.
     search.best.unwrap_or_else(|| (0..agents).collect())
 }
@@ -138,6 +145,8 @@ struct Hitting<'a> {
     kept: Vec<bool>,
     best: Option<Vec<usize>>,
     nodes: u64,
+    /// Whether it was stopped with some that are few.
+    cut: bool,
     stop: Stop<'a>,
 }
 
@@ -156,7 +165,9 @@ impl Hitting<'_> {
             }
         }
         let most = self.best.as_ref().map_or(usize::MAX, Vec::len);
-        if count + needed >= most || (self.nodes > self.stop.nodes && self.best.is_some()) {
+        let stopped = self.nodes > self.stop.nodes || (self.stop.clock)();
+        self.cut |= stopped && self.best.is_some();
+        if count + needed >= most || self.cut {
             return;
         }
         let frequency = |agent: usize| open.iter().filter(|conflict| conflict.contains(&agent)).count();
