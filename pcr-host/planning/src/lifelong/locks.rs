@@ -109,7 +109,8 @@ impl Locks {
 impl<'w> Claim<'w> {
     fn of(site: &Site, way: &'w Way, at: f64, given: usize, arrived: bool) -> Self {
         let end = site.standing(way.end());
-        let first = way.atom(at);
+        // At the end of what it has, rounding may have put it beyond.
+        let first = way.atom(at - SHORT);
         let held = match (arrived, given) {
             (true, _) => vec![end],
             (false, 0) => vec![site.standing(site.atoms[way.atoms[0]].ends[0])],

@@ -23,7 +23,7 @@ pub struct Outcome {
     pub certificate: Certificate,
     /// Controls at which a robot was beyond what its orders allow.
     pub breaches: usize,
-    /// Robots that have not come to the end of their way long after the last mission: deadlocks.
+    /// Robots that do not come to the end of their way after the last mission, as nobody moves any more: deadlocks.
     pub stuck: usize,
     /// Longest time for which nobody moved \[s\].
     pub standstill: f64,

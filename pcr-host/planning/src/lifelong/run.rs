@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 /// Each so many controls what was done is certified.
 const WINDOW: usize = 200;
 
+/// Where nobody has moved for so long after the last mission, nobody ever will \[s\].
+const REST: f64 = 300.0;
+
 /// The first part of the time, in which robots start from their ends, is not steady.
 const START: f64 = 0.1;
 
@@ -38,12 +41,10 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
     let mut certificate = Certificate::new();
     let mut window = Window::new(&run.site, &run.robots);
     let (mut still, mut time) = (0.0, Duration::ZERO);
-    // Whoever has a way has come to its end by then.
-    let rest = 1200.0;
     for tick in 0.. {
         let now = tick as f64 * STEP;
         let open = now < request.duration && run.has_work();
-        let ended = now > request.duration + rest || (!open && run.robots.iter().all(Robot::has_arrived));
+        let ended = !open && (still > REST || run.robots.iter().all(Robot::has_arrived));
         if (tick > 0 && tick % WINDOW == 0) || ended {
             certificate.window(&run.site, &mut run.robots, &mut window, imported.vehicle.radius, now);
         }
