@@ -6,6 +6,7 @@ pub mod audit;
 pub mod certified;
 pub mod clearance;
 pub mod constants;
+pub mod delays;
 pub mod disc;
 pub mod exact;
 pub mod execution;
