@@ -121,7 +121,9 @@ impl Exact {
         if !(lo <= hi) {
             return Err(format!("no interval: {lo} {hi}"));
         }
-        let middle = Twofold::from(0.5 * (lo + hi));
+        // Rounding may lead to where nobody is.
+        let there = |delay: f64| Twofold::from(delay).clamp(-other.duration, self.duration);
+        let middle = there(0.5 * (lo + hi));
         let inside = self.nearest(other, middle).ok_or("both are never under way in the middle")?;
         for (end, beyond, inward) in [(lo, lo.next_down(), excess[1]), (hi, hi.next_up(), -excess[1])] {
             // Beyond the end nobody is there any more, or they are apart and the farther the more: f is convex.
@@ -130,10 +132,11 @@ impl Exact {
             {
                 return Err(format!("contacts beyond {end} s are missing: {} m", apart.sqrt().to_f64()));
             }
-            let end = Twofold::from(end);
-            let within = self.nearest(other, end + Twofold::from(inward)).ok_or("nobody is there just inside")?;
+            let half = 0.5 * (hi - lo);
+            let inner = there(end + inward.clamp(-half, half));
+            let within = self.nearest(other, inner).ok_or("nobody is there just inside")?;
             if within > square(wide) {
-                let (end, apart) = (end.to_f64(), within.sqrt().to_f64());
+                let apart = within.sqrt().to_f64();
                 return Err(format!("too wide: just inside {end} s they are {apart} m apart"));
             }
         }
