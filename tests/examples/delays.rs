@@ -22,11 +22,13 @@ const TIMES: usize = 5;
 fn main() -> ExitCode {
     let (stats, roadmaps): (Vec<String>, Vec<String>) =
         std::env::args().skip(1).partition(|file| file.ends_with("stats.json"));
-    let published: Option<Value> = stats.first().map(|file| {
-        serde_json::from_str(&read_to_string(file).expect("a file of published times")).expect("JSON")
-    });
+    let published: Option<Value> = stats
+        .first()
+        .map(|file| serde_json::from_str(&read_to_string(file).expect("a file of published times")).expect("JSON"));
     let mut right = !roadmaps.is_empty();
-    println!("roadmap nodes edges | pairs unsafe missing wide | cut conic: wrong | table [ms] | published [s] times faster");
+    println!(
+        "roadmap nodes edges | pairs unsafe missing wide | cut conic: wrong | table [ms] | published [s] times faster"
+    );
     for file in &roadmaps {
         let name = Path::new(file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let set = name.split('_').next().unwrap_or_default().replace("set", "set_");
@@ -58,8 +60,9 @@ fn main() -> ExitCode {
         let reach = 2.0 * RADIUS;
         let (mut pairs, mut missing, mut wide, mut wrong) = (0, 0, 0, 0);
         let ends = (0..roadmap.edges.len()).map(|edge| roadmap.ends(edge));
-        let all: Vec<_> =
-            ends.map(|[a, b]| (Exact::new(a, b, SPEED), Straight::new(a, b, SPEED).expect("an edge"), [a, b])).collect();
+        let all: Vec<_> = ends
+            .map(|[a, b]| (Exact::new(a, b, SPEED), Straight::new(a, b, SPEED).expect("an edge"), [a, b]))
+            .collect();
         for (a, (exact, straight, ends)) in all.iter().enumerate() {
             for (b, (other_exact, other, other_ends)) in all.iter().enumerate().skip(a) {
                 pairs += 1;

@@ -29,7 +29,9 @@ const CROSS: [Line; 2] = [[[-4.0, 0.0], [4.0, 0.0]], [[0.0, -4.0], [0.0, 4.0]]];
 #[test]
 fn all_agree_where_edges_cross_far_from_their_ends() {
     let half = 2.0_f64.sqrt();
-    for found in [whole_conic(CROSS[0], CROSS[1], 1.0), cut_conic(CROSS[0], CROSS[1], 1.0), ours(CROSS[0], CROSS[1], 1.0)] {
+    for found in
+        [whole_conic(CROSS[0], CROSS[1], 1.0), cut_conic(CROSS[0], CROSS[1], 1.0), ours(CROSS[0], CROSS[1], 1.0)]
+    {
         assert!(near(found, [-half, half]), "{found:?}");
     }
 }

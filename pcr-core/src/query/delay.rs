@@ -51,7 +51,9 @@ impl<S: Scalar> RegionRef<'_, S> {
     fn delays_inside(&self) -> impl Iterator<Item = S> {
         let when = |motion: &Motion<'_, S>, length| motion.time_in(Interval::new(length, length)).lo;
         let points = self.inner_points();
-        points.map(move |[length, other_length]| when(self.other_motion(), other_length) - when(self.ego_motion(), length))
+        points.map(move |[length, other_length]| {
+            when(self.other_motion(), other_length) - when(self.ego_motion(), length)
+        })
     }
 
     /// The delays that the ranges of the region allow.

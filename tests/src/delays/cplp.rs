@@ -57,12 +57,8 @@ impl Roadmap {
                 deviation: 0.0,
             }
         });
-        let layout = Layout {
-            levels: vec![String::new()],
-            nodes: nodes.collect(),
-            edges: edges.collect(),
-            ..Layout::default()
-        };
+        let layout =
+            Layout { levels: vec![String::new()], nodes: nodes.collect(), edges: edges.collect(), ..Layout::default() };
         let vehicle = Vehicle {
             name: None,
             radius: RADIUS,

@@ -37,8 +37,10 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     );
     let mut all = Vec::new();
     for &nodes in sizes {
-        let measured = measured(&roadmap(nodes, 1)).map_err(|error| Problem::Method("locks".into(), error.to_string()))?;
-        let each = |[count, seconds]: [f64; 2]| format!("{count} | {} | {}", digits(seconds), digits(1e6 * seconds / count));
+        let measured =
+            measured(&roadmap(nodes, 1)).map_err(|error| Problem::Method("locks".into(), error.to_string()))?;
+        let each =
+            |[count, seconds]: [f64; 2]| format!("{count} | {} | {}", digits(seconds), digits(1e6 * seconds / count));
         let _ = writeln!(text, "| {} | {} | {} |", measured.edges, each(measured.locks), each(measured.delays));
         all.push(measured);
     }
@@ -116,5 +118,8 @@ fn roadmap(count: usize, seed: u64) -> Imported {
         rotation_acceleration: 1.0,
     };
     let nodes = places.iter().enumerate().map(node).collect();
-    Imported { layout: Layout { levels: vec![String::new()], nodes, edges: edges.collect(), ..Layout::default() }, vehicle }
+    Imported {
+        layout: Layout { levels: vec![String::new()], nodes, edges: edges.collect(), ..Layout::default() },
+        vehicle,
+    }
 }

@@ -75,7 +75,8 @@ impl Delays {
     pub fn new(imported: &Imported, driving: Driving, nodes: bool) -> Result<Self, ImportError> {
         let (layout, rides) = (&imported.layout, Rides::new(imported));
         if rides.vehicle().footprint.is_some() {
-            let problem = "delays are of discs: when an outline turns at a node is not known; --radius takes it as a disc";
+            let problem =
+                "delays are of discs: when an outline turns at a node is not known; --radius takes it as a disc";
             return Err(ImportError::new(problem));
         }
         let mut order: Vec<&Edge> = layout.edges.iter().collect();
@@ -98,11 +99,14 @@ impl Delays {
             areas: Vec::new(),
         };
         let speed = |edge: &Edge| edge.speed.map_or(driving.speed, |limit| limit.min(driving.speed));
-        all.straight = steps.iter().map(|step| {
-            let [from, to] = straight_ends(layout, step.edge).filter(|_| driving.acceleration.is_none())?;
-            let [from, to] = if step.backward { [to, from] } else { [from, to] };
-            Straight::new(from, to, speed(step.edge))
-        }).collect();
+        all.straight = steps
+            .iter()
+            .map(|step| {
+                let [from, to] = straight_ends(layout, step.edge).filter(|_| driving.acceleration.is_none())?;
+                let [from, to] = if step.backward { [to, from] } else { [from, to] };
+                Straight::new(from, to, speed(step.edge))
+            })
+            .collect();
         if all.straight.iter().all(Option::is_some) {
             let half = 0.5 * all.reach;
             let ends = all.straight.iter().flatten().map(Straight::ends);

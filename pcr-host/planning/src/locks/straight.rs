@@ -52,8 +52,13 @@ impl Straight {
         let direction = if length > 0.0 { [way[0] / length, way[1] / length] } else { [1.0, 0.0] };
         let duration = length / speed;
         let is_valid = from.iter().all(|x| x.abs() <= 1e9) && speed > 0.0 && speed <= 1e9;
-        (is_valid && length <= 1e9 && duration <= 1e9)
-            .then_some(Self { start: from, direction, length, speed, duration })
+        (is_valid && length <= 1e9 && duration <= 1e9).then_some(Self {
+            start: from,
+            direction,
+            length,
+            speed,
+            duration,
+        })
     }
 
     /// Where it begins and ends.

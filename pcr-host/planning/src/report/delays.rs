@@ -84,8 +84,10 @@ impl DelayTable {
             held += found.len() as u64 * (size_of::<Delay>() + 64) as u64;
             if held > memory::STEP {
                 let count = table.delays.len();
-                memory::ask(held + 2 * (count * size_of::<Delay>()) as u64, || format!("a table of over {count} delays"))
-                    .map_err(|large| ImportError::new(large.to_string()))?;
+                memory::ask(held + 2 * (count * size_of::<Delay>()) as u64, || {
+                    format!("a table of over {count} delays")
+                })
+                .map_err(|large| ImportError::new(large.to_string()))?;
                 held = 0;
             }
             found.into_iter().for_each(|found| table.add(delays, found));
