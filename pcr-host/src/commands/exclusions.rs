@@ -8,7 +8,6 @@ use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Settings, Target, report};
 use pcr_formats::import::{Format, Imported, Options};
 use pcr_formats::input;
-use pcr_planning::locks::Locks;
 use pcr_planning::report::json;
 use std::fs;
 use std::io::{Read, Write};
@@ -131,7 +130,7 @@ fn audit(
     })?;
     let wrong = |error| Stop::wrong(source, error);
     let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
-    let locks = Locks::of(&imported, true).map_err(wrong)?;
+    let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
     let audit = Audit::of(&imported, &locks, &rules, target);
     if let Some(directory) = output {
         picture::write_audit(&imported, &locks, &rules, &audit, directory)

@@ -122,7 +122,8 @@ impl Straight {
         let (own, their) = (moved(own, self.direction, self.speed), moved(their, other.direction, other.speed));
         let passing = moved(own, their, -1.0);
         let square = dot(passing, passing);
-        let turn = self.speed * cross(self.direction, other.direction) * other.speed;
+        // As `passing` is rounded: with the product of the two directions edges that hardly turn would lose digits.
+        let turn = cross(passing, their);
         if turn == 0.0 || square == 0.0 {
             return [None; 2];
         }
