@@ -1,7 +1,7 @@
 //! `pcr locks`.
 
 use super::exclusions::Asked;
-use super::help::STANDING;
+use super::help::{DRIVING, STANDING};
 use super::printed::notes;
 use super::sources::{layout, source};
 use super::{Form, Printed, Stop};
@@ -30,7 +30,6 @@ Examples:
   pcr locks warehouse.geojson --radius 0.4 -o locks             and a page in which an edge shows what it blocks
   pcr locks roadmap.xml --radius 0.5 --index roadmap.locks      a table of any size in a file
   pcr locks roadmap.locks --edge e17                            what an edge shares its time with, from that file
-  pcr locks roadmap.xml --radius 0.5 --delays --speed 1 --lines    how long not to set off after another, for planners
   pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
   pcr locks warehouse.geojson --radius 0.4 --write nav2 -o guarded.geojson     and edges to be closed, into the file
   pcr locks plant.xml --radius 0.5 --audit -o audit             what the blocks of the file do not keep apart";
@@ -139,7 +138,7 @@ impl Arguments {
             return Err(Stop::arguments("--delays are of one speed: say which, --speed"));
         };
         let driving = Driving { speed, acceleration: self.import.acceleration };
-        let imported = layout(file, &self.import, "locks", driving.acceleration.is_some())?;
+        let imported = layout(file, &self.import, DRIVING, driving.acceleration.is_some())?;
         let wrong = |error: ImportError| Stop::wrong(file, error);
         let progress = Progress::new(format!("{}: pairs of edges", file.display()));
         let told: Told<'_> = &|done, total| progress.set(done, total);

@@ -145,7 +145,7 @@ impl Straight {
         let slack = ROUNDINGS * ULP * (to[0].abs() + to[1].abs() + self.length + reach);
         let [lo, hi] = covered(self.direction, self.length, to, reach + slack)?;
         let rounding = 8.0 * ULP * self.duration;
-        Some([lo / self.speed - rounding, hi / self.speed + rounding])
+        Some([(lo / self.speed - rounding).max(0.0), hi / self.speed + rounding])
     }
 
     /// ε of [`Straight::delays`]: of lengths \[m\], and of times \[s\].
