@@ -22,8 +22,13 @@ pub enum Invalid {
     SweepOverOneTurn,
     /// It does not begin where its predecessor ends.
     Disconnected(&'static str),
-    /// The profile does not end where the path does.
-    LengthMismatch,
+    /// The profile does not end where the path does: their lengths, rounded down \[mm\].
+    LengthMismatch {
+        /// That of the path.
+        path: u32,
+        /// What the profile travels.
+        profile: u32,
+    },
     /// The capacity is used up.
     Full(&'static str),
 }
@@ -38,7 +43,14 @@ impl fmt::Display for Invalid {
             Self::TooSmall(what) => write!(f, "{what} is too small for the number format"),
             Self::SweepOverOneTurn => f.write_str("the arc sweeps more than one turn"),
             Self::Disconnected(what) => write!(f, "the {what} does not begin where its predecessor ends"),
-            Self::LengthMismatch => f.write_str("the profile does not travel the length of the path"),
+            Self::LengthMismatch { path, profile } if path == profile => {
+                let [metres, rest] = [path / 1000, path % 1000];
+                write!(f, "the profile misses the end of the path, {metres}.{rest:03} m, by less than 1 mm")
+            }
+            Self::LengthMismatch { path, profile } => {
+                let [metres, rest, own, own_rest] = [profile / 1000, profile % 1000, path / 1000, path % 1000];
+                write!(f, "the profile travels {metres}.{rest:03} m, the path has {own}.{own_rest:03} m")
+            }
             Self::Full(what) => write!(f, "there is no room for another {what}"),
         }
     }
@@ -181,7 +193,7 @@ pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::{Full, Mismatch, Unchanged};
+    use super::{Full, Invalid, Mismatch, Unchanged};
     use core::fmt::Write;
     use heapless::String;
 
@@ -193,6 +205,9 @@ mod tests {
         };
         let pair = text(&Full::Pair([3, 17])).unwrap();
         assert_eq!(pair, "agents 3 and 17 of the fleet have more than 32767 pieces");
+        let lengths = |path, profile| text(&Invalid::LengthMismatch { path, profile }).unwrap();
+        assert_eq!(lengths(10_004, 7_500), "the profile travels 7.500 m, the path has 10.004 m");
+        assert_eq!(lengths(1_050, 1_050), "the profile misses the end of the path, 1.050 m, by less than 1 mm");
         assert_eq!(text(&Unchanged::from(Mismatch::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
         assert_eq!(
             text(&Unchanged::from(Mismatch::OnlyRow(4))).unwrap(),

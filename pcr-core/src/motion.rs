@@ -41,7 +41,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let extent = bounds.extent().max(path.length()) + radius.double();
         let gap = (profile.length() - path.length()).abs();
         if gap > S::slack(extent) {
-            return Err(Invalid::LengthMismatch);
+            let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
+            return Err(Invalid::LengthMismatch { path, profile });
         }
         // `count` would check for overflow.
         let (arcs, diameter) =

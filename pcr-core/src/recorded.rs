@@ -125,6 +125,9 @@ impl Scalar for N {
     fn digest(self) -> u32 {
         0
     }
+    fn millimetres(self) -> u32 {
+        0
+    }
     fn portion(self, _: Self, _: Self) -> Self {
         left_out()
     }

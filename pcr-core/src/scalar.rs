@@ -75,6 +75,8 @@ pub trait Scalar:
     fn is_finite(self) -> bool;
     /// Its bits, folded to 32: what tells one number from another in a checksum.
     fn digest(self) -> u32;
+    /// A length in whole millimetres, for messages; 0 for what is less, the largest number for what is more.
+    fn millimetres(self) -> u32;
     /// `self · rhs`, wide.
     fn times(self, rhs: Self) -> Self::Wide;
     /// `self · by`, rounded to nearest.

@@ -38,6 +38,10 @@ impl<const F: u32> Scalar for Q<F> {
     fn digest(self) -> u32 {
         self.0 as u32
     }
+    fn millimetres(self) -> u32 {
+        // Not above 2³¹ for 12 digits and more behind the point.
+        (i64::from(self.0.max(0)).wrapping_mul(1000) >> F) as u32
+    }
     fn times(self, rhs: Self) -> Product<F> {
         Product::from_bits(i64::from(self.0) * i64::from(rhs.0))
     }

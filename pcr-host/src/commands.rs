@@ -95,6 +95,7 @@ enum Command {
 pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     survive_limits();
     let Some(arguments) = help::parse(words)? else { return Ok(ExitCode::SUCCESS) };
+    spread();
     if arguments.quiet {
         printed::be_quiet();
         progress::silence();
@@ -119,12 +120,26 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     }
 }
 
-/// A limit on the size of files is an error of a write, with its message, and no signal that ends the program.
+/// A limit on the size of files is an error of a write, with its message, and no signal that ends the program. Where memory is
+/// refused that nobody has asked for before, the message of the allocator ("memory allocation of N bytes failed") has to do, and
+/// the status is that of an input that is too large: not that of a crash.
 fn survive_limits() {
     #[cfg(unix)]
     {
-        // Where the signal cannot be caught, it ends the program as it does others; no file is damaged by that.
-        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
+        use signal_hook::consts::{SIGABRT, SIGXFSZ};
+        use std::sync::{Arc, atomic::AtomicBool};
+        // Where a signal cannot be caught, it ends the program as it does others; no file is damaged by that.
+        let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+        let always = Arc::new(AtomicBool::new(true));
+        let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, WRONG_INPUT.into(), always);
+    }
+}
+
+/// Work on all cores; where the system has no more threads, on this one.
+fn spread() {
+    if rayon::ThreadPoolBuilder::new().build_global().is_err() {
+        // Without another thread nothing can be refused, and a pool that is there already will do.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
     }
 }
 

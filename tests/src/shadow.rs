@@ -120,6 +120,9 @@ impl<X: Shadowed> Scalar for Number<X> {
     fn digest(self) -> u32 {
         self.value.digest()
     }
+    fn millimetres(self) -> u32 {
+        self.value.millimetres()
+    }
     fn times(self, rhs: Self) -> Product<X> {
         Product { value: self.value.times(rhs.value), exact: self.exact * rhs.exact }
     }

@@ -61,7 +61,7 @@ impl From<Invalid> for PcrStatus {
             Invalid::NonPositive(_) => Self::NonPositive,
             Invalid::TooSmall(_) => Self::TooSmall,
             Invalid::SweepOverOneTurn => Self::SweepOverOneTurn,
-            Invalid::LengthMismatch => Self::LengthMismatch,
+            Invalid::LengthMismatch { .. } => Self::LengthMismatch,
             Invalid::Full(_) => Self::NoRoom,
             _ => Self::OutOfRange,
         }

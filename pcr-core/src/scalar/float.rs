@@ -64,6 +64,10 @@ macro_rules! impl_float {
                 let bits = u64::from(self.to_bits());
                 (bits ^ (bits >> 32)) as u32
             }
+            fn millimetres(self) -> u32 {
+                // A cast saturates.
+                (1e3 * self) as u32
+            }
             fn half(self) -> Self {
                 0.5 * self
             }

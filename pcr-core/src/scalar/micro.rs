@@ -72,6 +72,9 @@ impl Scalar for Micro {
     fn digest(self) -> u32 {
         self.0.to_bits()
     }
+    fn millimetres(self) -> u32 {
+        self.0.millimetres()
+    }
     fn half(self) -> Self {
         Self(0.5 * self.0)
     }

@@ -1,5 +1,7 @@
 //! Places for labels: each goes to the first of its candidate places that is free, or to the least crowded one.
 
+use std::collections::HashMap;
+
 /// A box: left, top, right, bottom \[px\].
 type Area = [f64; 4];
 
@@ -12,11 +14,19 @@ pub(super) const SPACING: f64 = 3.0;
 /// Weight of each step down the list of candidates.
 const RANK: f64 = 0.6;
 
+/// Side of the cells in which points are kept \[px\]: about as large as a label.
+const CELL: f64 = 16.0;
+
 /// The labels of a picture, and what they should keep off.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Labels {
     taken: Vec<Area>,
-    lines: Vec<(f64, [f64; 2])>,
+    /// Points of lines, by their cells.
+    lines: HashMap<[i64; 2], Vec<(f64, [f64; 2])>>,
+}
+
+fn cell([x, y]: [f64; 2]) -> [i64; 2] {
+    [x, y].map(|value| (value / CELL).floor() as i64)
 }
 
 impl Labels {
@@ -27,7 +37,17 @@ impl Labels {
 
     /// Keeps labels off a line through these points, [`SPACING`] apart; each that a label covers weighs `weight`.
     pub(super) fn avoid(&mut self, weight: f64, points: impl IntoIterator<Item = [f64; 2]>) {
-        self.lines.extend(points.into_iter().map(|point| (weight, point)));
+        for point in points {
+            self.lines.entry(cell(point)).or_default().push((weight, point));
+        }
+    }
+
+    /// The weights of the points in an area.
+    fn crossed(&self, area: Area) -> f64 {
+        let [from, to] = [cell([area[0], area[1]]), cell([area[2], area[3]])];
+        let cells = (from[0]..=to[0]).flat_map(|column| (from[1]..=to[1]).map(move |row| [column, row]));
+        let points = cells.filter_map(|cell| self.lines.get(&cell)).flatten();
+        points.filter(|(_, point)| holds(area, *point)).map(|(weight, _)| weight).sum()
     }
 
     /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. A
@@ -48,8 +68,7 @@ impl Labels {
             if best.is_some_and(|(least, _)| least <= cost) {
                 continue;
             }
-            let crossed = self.lines.iter().filter(|(_, point)| holds(area, *point));
-            let cost = cost + crossed.map(|(weight, _)| weight).sum::<f64>();
+            let cost = cost + self.crossed(area);
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, candidate));
             }

@@ -103,11 +103,10 @@ pub fn write(
 /// Those of writing files.
 pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
-    let formats = Formats::new();
     for level in 0..imported.layout.levels.len() {
         let svg = Ground { imported, level }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
-        files.extend(formats.files(&name, svg)?);
+        files.extend(self::files(&name, svg)?);
     }
     output::folder(directory)?;
     let write = |(name, content): (String, Vec<u8>)| {
@@ -130,11 +129,10 @@ pub fn write_audit(
 ) -> io::Result<Vec<PathBuf>> {
     let page = locks::page_of_audit(imported, locks, rules, audit);
     let mut files = vec![("audit.html".to_owned(), page.into_bytes())];
-    let formats = Formats::new();
     for level in 0..imported.layout.levels.len() {
         let svg = audit::picture(Ground { imported, level }, rules, audit);
         let name = if level > 0 { format!("audit-{}", level + 1) } else { "audit".to_owned() };
-        files.extend(formats.files(&name, svg)?);
+        files.extend(self::files(&name, svg)?);
     }
     output::folder(directory)?;
     let write = |(name, content): (String, Vec<u8>)| {
@@ -186,41 +184,26 @@ enum Picture {
 type Files = Vec<(String, Vec<u8>)>;
 
 impl Picture {
-    fn draw(self, scene: &Scene<'_>, formats: &Formats) -> io::Result<Files> {
+    fn draw(self, scene: &Scene<'_>) -> io::Result<Files> {
         let (name, svg) = match self {
             Self::Page => return Ok(vec![("index.html".to_owned(), page::page(scene).into_bytes())]),
             Self::Overview => ("overview".to_owned(), overview::picture(scene)),
             Self::Workspace => ("workspace".to_owned(), workspace::picture(scene)),
             Self::Map(ego) => (format!("ecm-{}", scene.id(ego)), map::picture(scene, ego)),
         };
-        formats.files(&name, svg)
+        self::files(&name, svg)
     }
 }
 
-/// What a picture is written as.
-struct Formats {
+/// The files of a picture.
+fn files(name: &str, svg: String) -> io::Result<Files> {
     #[cfg(feature = "png")]
-    raster: raster::Raster,
-}
-
-impl Formats {
-    fn new() -> Self {
-        Self {
-            #[cfg(feature = "png")]
-            raster: raster::Raster::new(),
-        }
-    }
-
-    /// The files of a picture.
-    fn files(&self, name: &str, svg: String) -> io::Result<Files> {
+    let png = raster::png(&svg)?;
+    Ok(vec![
+        (format!("{name}.svg"), svg.into_bytes()),
         #[cfg(feature = "png")]
-        let png = self.raster.png(&svg)?;
-        Ok(vec![
-            (format!("{name}.svg"), svg.into_bytes()),
-            #[cfg(feature = "png")]
-            (format!("{name}.png"), png),
-        ])
-    }
+        (format!("{name}.png"), png),
+    ])
 }
 
 /// Draws on all cores; hands over each picture with its place in the list, in the order in which they are done.
@@ -231,24 +214,27 @@ fn draw_all(
 ) -> io::Result<()> {
     let workers = thread::available_parallelism().map_or(1, usize::from).min(pictures.len());
     let next = AtomicUsize::new(0);
-    let formats = Formats::new();
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
-        for _ in 0..workers {
-            let sender = sender.clone();
-            let (next, formats) = (&next, &formats);
-            scope.spawn(move || {
-                loop {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(picture) = pictures.get(place) else {
-                        break;
-                    };
-                    // Nobody listens any more after an error.
-                    if sender.send((place, picture.draw(scene, formats))).is_err() {
-                        break;
-                    }
+        let next = &next;
+        let draw = |sender: mpsc::Sender<_>| {
+            loop {
+                let place = next.fetch_add(1, Ordering::Relaxed);
+                let Some(picture) = pictures.get(place) else {
+                    break;
+                };
+                // Nobody listens any more after an error.
+                if sender.send((place, picture.draw(scene))).is_err() {
+                    break;
                 }
-            });
+            }
+        };
+        let spawned =
+            |sender: mpsc::Sender<_>| thread::Builder::new().spawn_scoped(scope, move || draw(sender)).is_ok();
+        let threads = (0..workers).take_while(|_| spawned(sender.clone())).count();
+        if threads == 0 {
+            // Where the system has no thread to give, this one draws.
+            draw(sender.clone());
         }
         drop(sender);
         receiver.into_iter().try_for_each(|(place, drawn)| take(place, drawn))

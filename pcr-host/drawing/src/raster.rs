@@ -1,8 +1,9 @@
-//! From SVG to PNG, with a font that is part of the program: the same picture on every machine.
+//! From SVG to PNG.
+
+mod font;
 
 use resvg::{tiny_skia, usvg};
 use std::io;
-use std::sync::Arc;
 
 /// Pixels of the PNG for each of the SVG: 300 dots an inch at the width of a column (85 mm).
 const SCALE: f32 = 2.0;
@@ -10,35 +11,19 @@ const SCALE: f32 = 2.0;
 /// Largest width and height of a PNG \[px\].
 const LARGEST: f32 = 8192.0;
 
-static FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
-
-/// Draws SVG pictures as PNG.
-pub(super) struct Raster {
-    options: usvg::Options<'static>,
-}
-
-impl Raster {
-    /// With the font loaded.
-    pub(super) fn new() -> Self {
-        let mut options = usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
-        Arc::make_mut(&mut options.fontdb).load_font_data(FONT.to_vec());
-        Self { options }
-    }
-
-    /// The PNG of a picture.
-    ///
-    /// # Errors
-    /// Those of the drawing library.
-    pub(super) fn png(&self, svg: &str) -> io::Result<Vec<u8>> {
-        let tree = usvg::Tree::from_str(svg, &self.options).map_err(io::Error::other)?;
-        let size = tree.size();
-        let scale = SCALE.min(LARGEST / size.width()).min(LARGEST / size.height());
-        let side = |pixels: f32| (pixels * scale).ceil().max(1.0) as u32;
-        let mut pixmap = tiny_skia::Pixmap::new(side(size.width()), side(size.height()))
-            .ok_or_else(|| io::Error::other("picture without extent"))?;
-        resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
-        encode(&pixmap)
-    }
+/// The PNG of a picture.
+///
+/// # Errors
+/// Those of the drawing library.
+pub(super) fn png(svg: &str) -> io::Result<Vec<u8>> {
+    let tree = usvg::Tree::from_str(&font::outlined(svg)?, &usvg::Options::default()).map_err(io::Error::other)?;
+    let size = tree.size();
+    let scale = SCALE.min(LARGEST / size.width()).min(LARGEST / size.height());
+    let side = |pixels: f32| (pixels * scale).ceil().max(1.0) as u32;
+    let mut pixmap = tiny_skia::Pixmap::new(side(size.width()), side(size.height()))
+        .ok_or_else(|| io::Error::other("picture without extent"))?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
+    encode(&pixmap)
 }
 
 /// The PNG without its alpha channel, which is 1 everywhere. Line art packs best without any filter.
@@ -67,7 +52,7 @@ mod tests {
     fn pixels(text: &str) -> (u32, Vec<u8>) {
         let mut svg = Svg::new(40.0, 20.0, "");
         svg.label([4.0, 14.0], "start", &[("font-size", &"12")], text);
-        let file = Raster::new().png(&svg.finish()).unwrap();
+        let file = png(&svg.finish()).unwrap();
         let mut reader = png::Decoder::new(io::Cursor::new(file)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         let frame = reader.next_frame(&mut pixels).unwrap();
@@ -88,6 +73,6 @@ mod tests {
 
     #[test]
     fn what_is_no_svg_is_refused() {
-        assert!(Raster::new().png("<svg").is_err());
+        assert!(png("<svg").is_err());
     }
 }

@@ -3,10 +3,11 @@
 use super::contour::{Outline, trace};
 use super::layout::Ground;
 use super::palette::{Colour, colour};
-use pcr_core::{Bounds, Crossing, Interval, Motion, PieceType, RegionRef, crossings};
+use pcr_core::{Bounds, Crossing, Interval, Motion, PieceRef, PieceType, RegionRef, crossings};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::HostEcm;
+use std::collections::HashMap;
 
 /// A fleet with its regions.
 pub(super) struct Scene<'a> {
@@ -106,12 +107,12 @@ impl Scene<'_> {
         let Some(motion) = self.motions.get(ego) else {
             return Vec::new();
         };
-        let mut all: Vec<Crossing<f64>> = Vec::new();
+        let mut all = Crossings::new();
         let mut of = None;
         let shape = |region: RegionRef<'_, f64>| {
             if of != Some(region.other()) {
                 of = Some(region.other());
-                all = crossings(motion, region.other_motion()).collect();
+                all = by_segments(crossings(motion, region.other_motion()));
             }
             Shape::new(&region, motion, &all, pixel)
         };
@@ -119,8 +120,19 @@ impl Scene<'_> {
     }
 }
 
+/// The crossings of two paths with their places in the order of all, by the segments that cross.
+type Crossings = HashMap<[usize; 2], Vec<(usize, Crossing<f64>)>>;
+
+fn by_segments(crossings: impl Iterator<Item = Crossing<f64>>) -> Crossings {
+    let mut all = Crossings::new();
+    for (place, crossing) in crossings.enumerate() {
+        all.entry(crossing.segments).or_default().push((place, crossing));
+    }
+    all
+}
+
 impl Shape {
-    fn new(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, all: &[Crossing<f64>], pixel: [f64; 2]) -> Self {
+    fn new(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, all: &Crossings, pixel: [f64; 2]) -> Self {
         let time = region.time();
         let travel = region.other_motion().time();
         let strip = |open: bool, at: f64| if open { region.slice_at(at).collect() } else { Vec::new() };
@@ -130,13 +142,17 @@ impl Shape {
                 types.push(piece.piece_type());
             }
         }
-        let inside = |crossing: &&Crossing<f64>| {
-            region.pieces().any(|piece| {
-                piece.segments == crossing.segments
-                    && piece.length.contains(crossing.length)
-                    && piece.other_length.contains(crossing.other_length)
-            })
+        let inside = |piece: PieceRef<'_, f64>| {
+            let those = all.get(&piece.segments).into_iter().flatten();
+            let held = move |(_, crossing): &&(usize, Crossing<f64>)| {
+                piece.length.contains(crossing.length) && piece.other_length.contains(crossing.other_length)
+            };
+            those.filter(held).copied()
         };
+        let mut crossings: Vec<(usize, Crossing<f64>)> = region.pieces().flat_map(inside).collect();
+        // A crossing may be in two pieces.
+        crossings.sort_by_key(|(place, _)| *place);
+        crossings.dedup_by_key(|(place, _)| *place);
         let slices = (0..LABEL_SLICES).flat_map(|k| {
             let part = (k as f64 + 0.5) / LABEL_SLICES as f64;
             let at = time.lo + part * time.length();
@@ -152,7 +168,7 @@ impl Shape {
             slices: slices.collect(),
             types,
             pieces: region.pieces().count(),
-            crossings: all.iter().filter(inside).copied().collect(),
+            crossings: crossings.into_iter().map(|(_, crossing)| crossing).collect(),
         }
     }
 }

@@ -17,7 +17,7 @@ mod task;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;
-use crate::regions::{self, Failure};
+use crate::regions::Failure;
 pub(crate) use circle::sides;
 pub use delays::{Effort, Objective};
 pub(crate) use forbidden::Forbidden;
@@ -171,8 +171,7 @@ impl Plan {
     pub fn of(scenario: &Scenario, request: &Request) -> Result<Answer, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
         let motions = grown(&fleet);
-        let ecm = regions::table(scenario, &motions)?;
-        let planner = Planner { scenario, request, motions: &motions, ecm: &ecm };
+        let planner = Planner { scenario, request, motions: &motions };
         let starts = Starts::of(&planner)?;
         let everybody = starts.of_all();
         let (plan, solved) = match request.method {
@@ -191,14 +190,12 @@ impl Plan {
         };
         let fleet = Fleet::<f64>::new(&rest)?;
         let motions = grown(&fleet);
-        let ecm = regions::table(&rest, &motions)?;
-        let of_rest = Planner { scenario: &rest, request, motions: &motions, ecm: &ecm };
+        let of_rest = Planner { scenario: &rest, request, motions: &motions };
         let (mut partial, solved) = of_rest.plan(Some(starts.known(&staying)))?;
         partial.labels = plan.labels;
-        partial.left_out = (0..planner.motions.len())
-            .filter(|agent| !staying.contains(agent))
-            .map(|agent| planner.id(agent))
-            .collect();
+        // Those that stay are in order.
+        let leaves = |agent: &usize| staying.binary_search(agent).is_err();
+        partial.left_out = (0..planner.motions.len()).filter(leaves).map(|agent| planner.id(agent)).collect();
         partial.unsolved.splice(0..0, plan.unsolved);
         Ok((partial, solved))
     }

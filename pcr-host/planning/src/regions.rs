@@ -10,7 +10,7 @@ mod sheet;
 use crate::bodies::{Bodies, Disced};
 use crate::certificate;
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
-use crate::memory::TooLarge;
+use crate::memory::{self, TooLarge};
 use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
 use pcr_formats::footprint::Disc;
@@ -97,6 +97,15 @@ pub enum Failure {
     Ambiguous(String, Vec<u64>),
     /// The memory does not hold what was asked for.
     TooLarge(TooLarge),
+    /// Something is done for fewer agents only: it would take too long.
+    TooMany {
+        /// What.
+        what: &'static str,
+        /// Agents that there are.
+        agents: usize,
+        /// Agents for which it is done, at most.
+        most: usize,
+    },
 }
 
 impl fmt::Display for Failure {
@@ -107,6 +116,7 @@ impl fmt::Display for Failure {
             Self::Refused(refused) => refused.fmt(f),
             Self::Full(full) => full.fmt(f),
             Self::TooLarge(too_large) => too_large.fmt(f),
+            Self::TooMany { what, agents, most } => write!(f, "{what} for {most} agents at most; there are {agents}"),
             Self::Overfull([i, j]) => write!(
                 f,
                 "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
@@ -136,6 +146,20 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
+impl Failure {
+    /// With the numbers of the agents that it is about, where it has their places in a scenario.
+    pub(crate) fn named(self, scenario: &Scenario) -> Self {
+        let id = |agent: usize| scenario.agents.get(agent).map(|agent| agent.id);
+        match self {
+            Self::Full(Full::Pair(agents)) => match agents.map(id) {
+                [Some(i), Some(j)] => Self::Overfull([i, j]),
+                _ => self,
+            },
+            other => other,
+        }
+    }
+}
+
 impl From<Refused> for Failure {
     fn from(refused: Refused) -> Self {
         Self::Refused(refused)
@@ -159,18 +183,16 @@ impl From<Full> for Failure {
 /// # Errors
 /// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
 pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Failure> {
-    let id = |agent: usize| scenario.agents.get(agent).map(|agent| agent.id);
     build_ecm(motions).map_err(|full| match full {
-        Full::Pair(agents) => match agents.map(id) {
-            [Some(i), Some(j)] => Failure::Overfull([i, j]),
-            _ => Failure::Full(full),
-        },
         Full::Regions | Full::Pieces => {
             TooLarge::of(format!("the table of all pairs of {} discs", motions.len())).into()
         }
-        _ => Failure::Full(full),
+        full => Failure::Full(full).named(scenario),
     })
 }
+
+/// What a pair of discs takes in a certificate and in the checker \[bytes\].
+const PAIR_BYTES: u64 = 128;
 
 /// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
 ///
@@ -185,6 +207,8 @@ pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
         tables.push(motions.iter().map(|motion| motion.inflated()).collect());
     }
     let certificate = |motions: &Vec<_>| {
+        let pairs = motions.len() as u64 * motions.len().saturating_sub(1) as u64 / 2;
+        memory::ask(pairs * PAIR_BYTES, || format!("the certificate of all {pairs} pairs of discs"))?;
         let agents = certificate::agents(&fleet, motions, &ids);
         Ok(certificate::table(agents, motions, &table(&discs, motions)?))
     };

@@ -10,6 +10,8 @@ mod grid;
 pub use grid::Grid;
 
 use crate::fleet::{Format, HostEcm, table_of};
+use crate::memory::Held;
+use crate::regions::Failure;
 use pcr_core::{Full, Mismatch, Motion, RegionRef, excess};
 use rayon::prelude::*;
 
@@ -169,6 +171,33 @@ pub fn each<'a, S: Format>(motions: &[Motion<'a, S>], take: impl Fn(&Row<'a, S>)
 
 /// Fewest agents that a thread takes at once, neighbours of one another: few enough that a fleet of 100 has some for every core.
 const STRETCH: usize = 16;
+
+/// Agents whose rows are computed between two questions for memory.
+const GATHERED: usize = 1024;
+
+/// What is made of each row, one after the other by their agents; rows are computed on all cores, and none is kept.
+///
+/// # Errors
+/// As [`Row::new`], and [`TooLarge`](crate::memory::TooLarge) where memory does not hold `what` they make.
+pub(crate) fn gathered<'a, S: Format, T: Send>(
+    motions: &[Motion<'a, S>],
+    what: &str,
+    make: impl Fn(&Row<'a, S>) -> Vec<T> + Sync,
+) -> Result<Vec<T>, Failure> {
+    let grid = grid(motions);
+    let (mut all, mut held) = (Vec::new(), Held::default());
+    for first in (0..motions.len()).step_by(GATHERED) {
+        let stretch = first..motions.len().min(first + GATHERED);
+        let made = stretch
+            .into_par_iter()
+            .with_min_len(STRETCH)
+            .map_init(|| Walk::new(motions, &grid), |walk, ego| Ok(make(walk.row(ego)?)));
+        for made in made.collect::<Result<Vec<_>, Full>>()? {
+            held.extend(&mut all, made, 0, what)?;
+        }
+    }
+    Ok(all)
+}
 
 /// All rows, by their agents, computed on all cores.
 ///

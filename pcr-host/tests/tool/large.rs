@@ -44,3 +44,72 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
     let (status, message) = limited(400_000, &["regions", &heap, "--format", "csv"]);
     assert_eq!((status, message.as_str()), (Some(0), ""));
 }
+
+/// A path of so many segments that crosses a line again and again.
+#[cfg(target_os = "linux")]
+fn comb(segments: usize) -> String {
+    let turn = |sweep: f64| json!({ "kind": "arc", "radius": 0.5, "sweep": sweep });
+    let piece = |k: usize| match k % 4 {
+        1 => turn(std::f64::consts::PI),
+        3 => turn(-std::f64::consts::PI),
+        _ => json!({ "kind": "line", "length": 4 }),
+    };
+    let agent = |id: u64, x: f64, y: f64, heading: f64, path: serde_json::Value| json!({ "id": id, "radius": 0.3, "v_max": 1, "a_max": 1, "start": { "x": x, "y": y, "heading": heading }, "path": path });
+    let north = std::f64::consts::FRAC_PI_2;
+    let path = (0..segments).map(piece).collect::<Vec<_>>();
+    let line = json!([{ "kind": "line", "length": 3000 }]);
+    json!({ "agents": [agent(1, -2.0, 0.0, 0.0, path.into()), agent(2, 0.0, -10.0, north, line)] }).to_string()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn whatever_memory_there_is_every_command_ends_with_a_reason() {
+    let heap = file("limits", "heap.json", discs(200, 0.001));
+    let many = file("limits", "many.json", discs(4_000, 3.0));
+    let comb = file("limits", "comb.json", comb(1_000));
+    let site = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+    let maps = crate::fixture::directory("limits").join("maps").to_str().unwrap().to_owned();
+    // Below the first one the system does not load the program.
+    let least = (0..60).map(|step| 8_000 + 4_000 * step).find(|&limit| limited(limit, &["--version"]).0 == Some(0));
+    let least = least.unwrap();
+    let (mut refused, mut done) = (0, 0);
+    for more in [0, 1_000, 3_000, 6_000, 12_000, 24_000, 60_000, 200_000] {
+        for arguments in [
+            &["check", &many][..],
+            &["regions", &heap, "--json"],
+            &["plan", &many],
+            &["plan", &heap],
+            &["map", &comb, "-o", &maps],
+            &["certify", &heap],
+            &["locks", site, "--radius", "0.4"],
+        ] {
+            let (status, message) = limited(least + more, arguments);
+            match status {
+                Some(0 | 1) => done += 1,
+                Some(2) => {
+                    refused += 1;
+                    assert!(!message.is_empty(), "{arguments:?} with {} kB", least + more);
+                }
+                _ => panic!("{arguments:?} with {} kB: {status:?}: {message}", least + more),
+            }
+        }
+    }
+    assert!(refused > 5 && done > 5, "{refused} refused, {done} done");
+}
+
+#[test]
+fn what_is_nested_too_deep_is_refused() {
+    for (name, begin, again) in [
+        ("nested.json", "", "["),
+        ("agents.json", "", "{\"agents\":"),
+        ("nested.xodr", "<OpenDRIVE>", "<a>"),
+        ("nested.building.yaml", "levels: ", "["),
+        ("flow.building.yaml", "levels: ", "{a: "),
+        ("nested.geojson", "{\"type\":\"FeatureCollection\",\"features\":", "["),
+    ] {
+        let name = file("nested", name, begin.to_owned() + &again.repeat(100_000));
+        for command in ["check", "plan", "locks"] {
+            let _ = run(&[command, &name]).failed(2);
+        }
+    }
+}

@@ -65,6 +65,7 @@ pub mod data;
 pub mod dump;
 pub mod motion;
 pub mod mover;
+mod near;
 pub mod pair;
 pub mod path;
 pub mod plane;

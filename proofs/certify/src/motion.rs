@@ -14,7 +14,9 @@ use crate::ball::{Ball, Real, Tri};
 use crate::mover::{Course, Leg};
 
 pub use crate::mover::Mover;
+use crate::near::Near;
 use crate::twofold::Twofold;
+use std::collections::HashMap;
 
 /// Two discs in contact, or so near that rounding does not tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +45,16 @@ pub struct Meetings {
 /// Intervals of one pair at most.
 const MOST: usize = 2_000_000;
 
-/// All pairs of agents with different numbers, at all times.
+/// All pairs of agents with different numbers, at all times. Those whose boxes are apart have no contact.
 pub fn meetings(movers: &[Mover]) -> Meetings {
-    let mut found = Meetings::default();
+    let pairs_of = |discs: usize| discs * discs.saturating_sub(1) / 2;
+    let mut bodies: HashMap<u64, usize> = HashMap::new();
+    movers.iter().for_each(|mover| *bodies.entry(mover.id).or_default() += 1);
+    let own: usize = bodies.values().map(|&discs| pairs_of(discs)).sum();
+    let mut found = Meetings { pairs: pairs_of(movers.len()) - own, ..Meetings::default() };
+    let near = Near::new(movers);
     for (place, own) in movers.iter().enumerate() {
-        for other in movers.get(place + 1..).unwrap_or_default().iter().filter(|other| other.id != own.id) {
-            found.pairs += 1;
+        for other in near.after(place).into_iter().map(|other| &movers[other]).filter(|other| other.id != own.id) {
             pair(own, other, &mut found);
         }
     }
@@ -116,8 +122,12 @@ impl Both<'_> {
     /// Where a leg ends, nearest to the middle, or the middle; nowhere, if there is no number in between.
     fn cut(&self) -> Option<f64> {
         let inside = |cut: &f64| self.lo < *cut && *cut < self.hi;
-        let ends = [self.own, self.other].into_iter().flat_map(|mover| mover.legs.iter().map(|(from, _)| *from));
         let middle = self.middle();
+        // Legs are in order: the nearest ones end just before the middle and behind it.
+        let ends = [self.own, self.other].into_iter().flat_map(|mover| {
+            let after = mover.legs.partition_point(|(from, _)| *from < middle);
+            mover.legs[after.saturating_sub(1)..].iter().take(3).map(|(from, _)| *from)
+        });
         let far = |end: f64| (end - middle).abs();
         let nearest = ends.filter(inside).min_by(|a, b| far(*a).total_cmp(&far(*b)));
         nearest.or(Some(middle).filter(inside))
@@ -138,7 +148,7 @@ impl Both<'_> {
         let meets = radius.above(distance + off);
         let clearance = (distance - radius).to_f64();
         let ways = k * (number(self.own.speed) + number(self.other.speed));
-        let all = number(self.own.legs.iter().chain(&self.other.legs).map(|(_, leg)| leg.off).fold(0.0, f64::max));
+        let all = number(self.own.off.max(self.other.off));
         let mut clear = distance.above(radius + ways + all + all);
         // The leg that begins with the end of the interval counts from there on.
         let until = |mover: &Mover, place: usize| {

@@ -6,6 +6,7 @@
 
 use crate::ball::{Ball, Real};
 use crate::data::{Agent, Phase};
+use crate::near::Area;
 use crate::path::{Stretch, stretches};
 use crate::plane::{Carrier, Vector};
 use crate::travel::{self, Ramp};
@@ -62,6 +63,10 @@ pub struct Mover {
     /// Each from its time on \[s\]; the first one from the beginning of time.
     pub(crate) legs: Vec<(f64, Leg)>,
     pub(crate) speed: f64,
+    /// How far it may be from where any leg says \[m\].
+    pub(crate) off: f64,
+    /// Around its disc wherever it passes, outward.
+    pub(crate) area: Area,
     /// When it is there at all \[s\].
     pub(crate) time: [f64; 2],
     /// From setting off to arrival \[s\].
@@ -101,12 +106,39 @@ impl Mover {
         // A length beyond the end of the path is none: the agent is at its end.
         legs.iter_mut().for_each(|(_, leg)| leg.off += gap);
         let speed = legs.iter().map(|(_, leg)| leg.speed).fold(0.0, f64::max);
-        Ok(Self { id: agent.id, radius: agent.radius, legs, speed, time, moves: [travel.start, arrival] })
+        let off = legs.iter().map(|(_, leg)| leg.off).fold(0.0, f64::max);
+        let area = area(&stretches, (agent.radius + off).next_up());
+        Ok(Self { id: agent.id, radius: agent.radius, legs, speed, off, area, time, moves: [travel.start, arrival] })
     }
 
     pub(crate) fn leg(&self, time: f64) -> usize {
         self.legs.partition_point(|(from, _)| *from <= time).saturating_sub(1)
     }
+}
+
+/// The box around all stretches, grown by a reach. No point of a stretch is farther from its nearer end than half its length, and a line
+/// lies between its ends.
+fn area(stretches: &[Stretch], reach: f64) -> Area {
+    let mut area = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    for stretch in stretches {
+        let (carrier, length) = (stretch.placed.exact, stretch.placed.length);
+        let bulge = match carrier {
+            Carrier::Line { .. } => 0.0,
+            Carrier::Circle { .. } => (0.5 * length.to_f64()).next_up().next_up(),
+        };
+        for end in [Ball::from(0.0), exact(length)].map(|along| carrier.point(along)) {
+            let mut add = |axis: usize, value: Ball<Twofold>| {
+                // Once for each sum: the number itself is rounded, too.
+                let grown = (value.err + bulge).next_up() + reach;
+                let (middle, grown) = (value.mid.to_f64(), grown.next_up());
+                area[axis] = area[axis].min((middle.next_down() - grown).next_down());
+                area[axis + 2] = area[axis + 2].max((middle.next_up() + grown).next_up());
+            };
+            add(0, end.x);
+            add(1, end.y);
+        }
+    }
+    area
 }
 
 fn exact(value: Twofold) -> Ball<Twofold> {
@@ -125,7 +157,9 @@ fn add_legs(legs: &mut Vec<(f64, Leg)>, stretches: &[Stretch], phase: &Phase, st
     let top = a.max(b).max(c.max(d));
     let top = (top.to_f64() + top.err) * (1.0 + f64::EPSILON);
     let mut from = ends[0];
-    for (place, stretch) in stretches.iter().enumerate() {
+    // Those before it are passed already.
+    let begin = stretches.partition_point(|stretch| stretch.before + stretch.placed.length <= Twofold::from(lo));
+    for (place, stretch) in stretches.iter().enumerate().skip(begin.min(stretches.len().saturating_sub(1))) {
         let (before, after) = (stretch.before, stretch.before + stretch.placed.length);
         let last = place + 1 == stretches.len();
         if (after <= Twofold::from(lo) && !last) || (before >= Twofold::from(hi) && place > 0 && from >= ends[1]) {

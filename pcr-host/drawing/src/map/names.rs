@@ -5,6 +5,7 @@ use super::super::labels::{Labels, SPACING};
 use super::super::scene::{Scene, Shape};
 use super::super::svg::{Pixels, Svg, text_width};
 use pcr_core::Interval;
+use pcr_planning::rows::Grid;
 
 /// Size of the labels of regions \[px\].
 const LABEL_SIZE: f64 = 9.5;
@@ -14,6 +15,9 @@ const WEIGHTS: [f64; 2] = [8.0, 1.0];
 
 /// Weight of a label that lies in the region of another agent.
 const MISLEADING: f64 = 12.0;
+
+/// Labels of a map at most, those of its largest regions: more would only hide one another.
+const MOST: usize = 400;
 
 /// Writes the labels.
 pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
@@ -59,17 +63,20 @@ pub(in super::super) fn places(
     for contour in outlines.iter().flatten() {
         labels.avoid(WEIGHTS[1], spaced(contour));
     }
+    let boxes = Grid::new(outlines.iter().map(around).collect());
     // Small regions have the smallest choice.
     let mut order: Vec<(usize, &Shape)> = shapes.iter().enumerate().collect();
     let area = |shape: &Shape| shape.time.length() * shape.length.length();
     order.sort_by(|a, b| area(a.1).total_cmp(&area(b.1)));
     let mut places = vec![None; shapes.len()];
-    for (k, shape) in order {
+    for (k, shape) in order.into_iter().skip(shapes.len().saturating_sub(MOST)) {
         let text = scene.id(shape.other).to_string();
         let size = [text_width(&text, label_size) + 2.0, label_size];
         let misleading = |place: [f64; 2]| {
-            let others = outlines.iter().enumerate().filter(|(other, _)| *other != k);
-            MISLEADING * others.filter(|(_, outline)| encloses(outline, place)).count() as f64
+            let near = boxes.near(&[place[0], place[1], place[0], place[1]]);
+            let others = near.into_iter().map(|other| other as usize).filter(|other| *other != k);
+            let around = others.filter(|&other| outlines.get(other).is_some_and(|outline| encloses(outline, place)));
+            MISLEADING * around.count() as f64
         };
         let candidates = candidates(shape, size, frame).into_iter().map(|place| (misleading(place), place));
         places[k] = labels.place(size, candidates, frame.edges);
@@ -115,6 +122,14 @@ fn candidates(shape: &Shape, [width, height]: [f64; 2], frame: &Frame) -> Vec<[f
     });
     places.extend(cramped.into_iter().take(1));
     places.into_iter().map(|(_, place)| place).chain(beside_slices).chain(around).collect()
+}
+
+/// The box around an outline: left, top, right and bottom \[px\].
+fn around(outline: &Vec<Vec<[f64; 2]>>) -> [f64; 4] {
+    let hull = |b: [f64; 4], [x, y]: &[f64; 2]| [b[0].min(*x), b[1].min(*y), b[2].max(*x), b[3].max(*y)];
+    let nowhere = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    let found = outline.iter().flatten().fold(nowhere, hull);
+    if found[0] <= found[2] { found } else { [0.0; 4] }
 }
 
 /// Whether a point lies inside of an outline: a ray from it to the right crosses the outline an odd number of times.

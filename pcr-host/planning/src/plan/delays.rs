@@ -41,6 +41,9 @@ const FACTOR: u32 = 8;
 const ATTEMPTS: u32 = 2;
 /// Nodes of a search in which it matters whether there are delays at all.
 const DECIDING: u64 = 200_000;
+/// Pairs of agents that forbid one another something up to which a part is searched, unless a search is asked for: of a larger one
+/// the best of the orders of priority that were tried stands, with a bound.
+const SEARCHED: usize = 20_000;
 
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +59,8 @@ pub(crate) struct Outcome {
 }
 
 /// The best delays, or who cannot have any together and the best delays of all others. `known` delays are the worst that
-/// come out.
-pub(crate) fn best(problem: &Problem, known: &[Vec<i64>], effort: Effort) -> Outcome {
+/// come out, in each part in which all have one.
+pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort) -> Outcome {
     let begin = Instant::now();
     let clock = || effort.time.is_some_and(|time| begin.elapsed() >= time);
     let of_all = solved(problem, known, effort, &clock);
@@ -65,7 +68,9 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<i64>], effort: Effort) -> Out
         let delays = of_all.delays.map(|delays| delays.into_iter().map(Some).collect());
         return Outcome { delays, bound: of_all.bound, proved: of_all.proved, conflicts: Vec::new() };
     }
-    let Some(left) = leave::left(problem, Stop { nodes: DECIDING, clock: &clock }) else {
+    let is_searched = problem.pairs.len() <= SEARCHED || effort != Effort::default();
+    let left = is_searched.then(|| leave::left(problem, Stop { nodes: DECIDING, clock: &clock }));
+    let Some(left) = left.flatten() else {
         return Outcome { delays: None, bound: 0, proved: false, conflicts: leave::impossible(problem) };
     };
     let staying: Vec<usize> = (0..problem.len()).filter(|agent| !left.out.contains(agent)).collect();
@@ -88,12 +93,11 @@ struct Solved {
 }
 
 /// The parts that forbid one another nothing, each for itself.
-fn solved(problem: &Problem, known: &[Vec<i64>], effort: Effort, clock: &dyn Fn() -> bool) -> Solved {
+fn solved(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, clock: &dyn Fn() -> bool) -> Solved {
     let mut delays = Some(vec![0; problem.len()]);
     let (mut bound, mut proved) = (0_i128, true);
-    for agents in problem.parts() {
-        let part = problem.of(&agents);
-        let known = known.iter().map(|known| agents.iter().map(|&agent| known[agent]).collect::<Vec<_>>());
+    for (agents, part) in problem.apart() {
+        let known = known.iter().filter_map(|known| agents.iter().map(|&agent| known[agent]).collect());
         let found = connected(&part, known, effort, clock);
         if !found.possible {
             return found;
@@ -129,6 +133,12 @@ fn connected(
     let mut delays = known.filter(|delays| problem.allows(delays)).min_by_key(|delays| problem.cost(delays));
     let limit = |delays: &Option<Vec<i64>>| delays.as_ref().map_or(i128::MAX, |delays| problem.cost(delays));
     let mut bound = problem.cost(&vec![0; problem.len()]);
+    if problem.pairs.len() > SEARCHED && effort == Effort::default() {
+        // What all plans have in common: none of it, and there is no plan.
+        let root = Search::new(problem, Stop { nodes: 0, clock }).root();
+        bound = root.as_ref().map_or(bound, |root| bound.max(problem.cost(root))).min(limit(&delays));
+        return Solved { proved: bound >= limit(&delays), delays, bound, possible: root.is_some() };
+    }
     let (mut nodes, mut rounds, mut attempt) = (NODES, ROUNDS, 0);
     loop {
         let found = Search::new(problem, Stop { nodes, clock }).run([], limit(&delays));

@@ -16,15 +16,28 @@
 use super::delays::{NEVER, Objective, Pair, Problem, Ticks};
 use super::grown;
 use crate::bodies::Bodies;
-use crate::fleet::{HostEcm, build_ecm};
-use crate::regions::{self, Failure};
+use crate::memory;
+use crate::regions::Failure;
+use crate::rows;
 use pcr_core::{Motion, Scalar};
 use pcr_formats::scenario::{Agent, Scenario};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
-/// For each agent and each other one the differences of their delays, own less other, at which they meet.
+/// What an agent and another one forbid: differences of their delays, own less other, at which they meet \[ticks\], outward.
+#[derive(Clone, Copy, Debug)]
+struct Met {
+    other: usize,
+    ends: [i64; 2],
+}
+
+/// What a region takes until its delays are found \[bytes\].
+const BYTES: u64 = 256;
+
+/// For each agent and each other one that it meets the differences of their delays at which they do.
 pub(crate) struct Forbidden {
-    /// \[ticks\], outward.
-    intervals: Vec<Vec<Vec<[i64; 2]>>>,
+    /// Sorted by the other agent.
+    met: Vec<Vec<Met>>,
     ticks: Ticks,
     /// When each agent arrives without a delay \[s\].
     ends: Vec<f64>,
@@ -68,9 +81,8 @@ impl Forbidden {
     pub(crate) fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let bodies = Bodies::<f64>::new(&without_loads(scenario))?;
         let motions = grown(&bodies.fleet);
-        let ecm = regions::table(&bodies.scenario, &motions)?;
         let owners: Vec<usize> = bodies.discs.iter().map(|disc| disc.agent).collect();
-        Ok(Self::between(&motions, &ecm, &owners, scenario.agents.len()))
+        Self::between(&motions, &owners, scenario.agents.len()).map_err(|failure| failure.named(&bodies.scenario))
     }
 
     /// What some motions forbid one another, each with its own delay.
@@ -78,24 +90,26 @@ impl Forbidden {
     /// # Errors
     /// [`Failure`] where the table cannot hold them.
     pub(crate) fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
-        let ecm = build_ecm(motions).map_err(Failure::Full)?;
         let owners: Vec<usize> = (0..motions.len()).collect();
-        Ok(Self::between(motions, &ecm, &owners, motions.len()))
+        Self::between(motions, &owners, motions.len())
     }
 
     /// The discs of so many agents, and whose they are.
-    fn between(motions: &[Motion<'_, f64>], ecm: &HostEcm<f64>, owners: &[usize], count: usize) -> Self {
-        let mut found = Vec::new();
-        let regions = (0..motions.len())
-            .flat_map(|disc| ecm.row(motions, disc).expect("the table of the fleet").map(move |region| (disc, region)));
-        // The other direction of a pair is the same, with the sign turned round.
-        for (disc, region) in regions.filter(|(disc, region)| region.other() > *disc) {
-            let (Some(&agent), Some(&other)) = (owners.get(disc), owners.get(region.other())) else { continue };
-            if agent != other {
+    fn between(motions: &[Motion<'_, f64>], owners: &[usize], count: usize) -> Result<Self, Failure> {
+        // A row holds those after its disc: the other direction of a pair is the same, with the sign turned round.
+        let found = rows::gathered(motions, "start delays that regions forbid", |row| {
+            let discs = row.agents();
+            let owner = |place: usize| discs.get(place).and_then(|&disc| owners.get(disc as usize)).copied();
+            let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
+            let forbidden = regions.filter_map(|region| {
+                let (agent, other) = (owner(row.place())?, owner(region.other())?);
                 let delays = region.forbidden_delays();
-                found.push(([agent, other], [delays.lo, delays.hi]));
-            }
-        }
+                (agent != other).then_some(([agent, other], [delays.lo, delays.hi]))
+            });
+            forbidden.collect()
+        })?;
+        let many = || format!("start delays that {} regions forbid", found.len());
+        memory::ask(found.len() as u64 * BYTES, many)?;
         let limit = <f64 as Scalar>::LIMIT;
         let mut ends = vec![f64::NEG_INFINITY; count];
         for (disc, motion) in motions.iter().enumerate() {
@@ -107,27 +121,36 @@ impl Forbidden {
         let waits = found.iter().flat_map(|(_, delays)| delays).map(|end| end.abs()).filter(|end| *end < limit);
         let times = motions.iter().flat_map(|motion| [motion.time().lo, motion.time().hi]).map(f64::abs);
         let ticks = Ticks::up_to(times.fold(0.0, f64::max) + count as f64 * waits.fold(0.0, f64::max));
-        let mut intervals = vec![vec![Vec::new(); count]; count];
+        let mut met = vec![Vec::new(); count];
         for ([agent, other], delays) in found {
             let [lo, hi] = ticks.outward(delays, limit);
-            intervals[agent][other].push([lo, hi]);
-            intervals[other][agent].push([-hi, -lo]);
+            met[agent].push(Met { other, ends: [lo, hi] });
+            met[other].push(Met { other: agent, ends: [-hi, -lo] });
         }
-        let goes_first = |agent: usize, other: usize| {
-            let mut intervals = intervals[agent][other].iter();
-            intervals.any(|&[lo, hi]: &[i64; 2]| lo <= -NEVER && hi < NEVER)
+        met.iter_mut().for_each(|own| own.sort_by_key(|met| met.other));
+        let goes_first = |own: &Vec<Met>| {
+            let sided = own.iter().filter(|met| met.ends[0] <= -NEVER && met.ends[1] < NEVER);
+            let mut first: Vec<usize> = sided.map(|met| met.other).collect();
+            first.dedup();
+            first
         };
-        let first = (0..count).map(|agent| (0..count).filter(|&other| goes_first(agent, other)).collect()).collect();
-        Self { intervals, ticks, ends, first }
+        let first = met.iter().map(goes_first).collect();
+        Ok(Self { met, ticks, ends, first })
     }
 
     /// The delays to be found for all agents.
     pub(crate) fn problem(&self, objective: Objective) -> Problem {
-        let pair = |i: usize, j: usize| {
-            let intervals = &self.intervals[j][i];
-            (!intervals.is_empty()).then(|| Pair::new([i, j], intervals.clone()))
-        };
-        let pairs = (0..self.len()).flat_map(|i| (i + 1..self.len()).filter_map(move |j| pair(i, j))).collect();
+        // Of each pair once, seen from the second agent.
+        let pairs = self.met.iter().enumerate().flat_map(|(i, own)| {
+            let those = own.chunk_by(|a, b| a.other == b.other).filter_map(move |same| same.first().zip(Some(same)));
+            those.filter(move |(met, _)| met.other > i).map(move |(met, same)| {
+                Pair::new(
+                    [i, met.other],
+                    same.iter().map(|met| met.ends.map(|end| -end)).map(|[hi, lo]| [lo, hi]).collect(),
+                )
+            })
+        });
+        let pairs = pairs.collect();
         Problem { objective, ends: self.ends.iter().map(|&end| self.ticks.nearest(end)).collect(), pairs }
     }
 
@@ -138,19 +161,43 @@ impl Forbidden {
 
     /// Number of agents.
     pub(crate) fn len(&self) -> usize {
-        self.intervals.len()
+        self.met.len()
     }
 
     /// The order, but for agents that have to start before others.
-    pub(crate) fn respecting(&self, mut order: Vec<usize>) -> Vec<usize> {
+    pub(crate) fn respecting(&self, order: Vec<usize>) -> Vec<usize> {
+        let mut ranks = vec![0; self.len()];
+        order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);
+        let mut after = vec![Vec::new(); self.len()];
+        let mut missing: Vec<usize> = self.first.iter().map(Vec::len).collect();
+        for (agent, first) in self.first.iter().enumerate() {
+            first.iter().for_each(|&other| after[other].push(agent));
+        }
+        let mut ready: BinaryHeap<Reverse<usize>> =
+            order.iter().filter(|&&agent| missing[agent] == 0).map(|&agent| Reverse(ranks[agent])).collect();
         let mut placed = vec![false; self.len()];
         let mut respecting = Vec::with_capacity(order.len());
-        while !order.is_empty() {
-            let is_next = |agent: &usize| self.first[*agent].iter().all(|&other| placed[other]);
-            // In a circle any of them is as good.
-            let agent = order.remove(order.iter().position(is_next).unwrap_or(0));
-            placed[agent] = true;
+        let mut begin = 0;
+        while respecting.len() < order.len() {
+            // In a circle any of them is as good: the first one that is left.
+            let rank = ready.pop().map_or_else(
+                || (begin..order.len()).find(|&rank| !placed[order[rank]]).unwrap_or(begin),
+                |Reverse(rank)| rank,
+            );
+            let agent = order[rank];
+            if std::mem::replace(&mut placed[agent], true) {
+                continue;
+            }
+            while order.get(begin).is_some_and(|&agent| placed[agent]) {
+                begin += 1;
+            }
             respecting.push(agent);
+            for &other in &after[agent] {
+                missing[other] -= 1;
+                if missing[other] == 0 && !placed[other] {
+                    ready.push(Reverse(ranks[other]));
+                }
+            }
         }
         respecting
     }
@@ -159,13 +206,11 @@ impl Forbidden {
     pub(crate) fn in_order(&self, order: Vec<usize>) -> Schedule {
         let mut delays = vec![None; self.len()];
         let mut out = Vec::new();
-        let mut before = Vec::new();
-        for &agent in &order {
-            match self.earliest(&delays, &before, agent) {
-                Ok(delay) => {
-                    delays[agent] = Some(delay);
-                    before.push(agent);
-                }
+        let mut ranks = vec![0; self.len()];
+        for (rank, &agent) in order.iter().enumerate() {
+            ranks[agent] = rank;
+            match self.earliest(&delays, &ranks, agent) {
+                Ok(delay) => delays[agent] = Some(delay),
                 Err(Blocked { by, always }) => out.push(Out { agent, by, always }),
             }
         }
@@ -173,15 +218,12 @@ impl Forbidden {
         Schedule { delays: delays.into_iter().map(seconds).collect(), out, order }
     }
 
-    /// The least delay of an agent that those before it allow.
-    fn earliest(&self, delays: &[Option<i64>], before: &[usize], agent: usize) -> Result<i64, Blocked> {
-        let intervals = before.iter().flat_map(|&other| {
-            let delay = delays[other].unwrap_or(0);
-            self.intervals[agent][other]
-                .iter()
-                .map(move |&ends| ends.map(|end| if end.abs() < NEVER { end + delay } else { end }))
-        });
-        let mut intervals: Vec<[i64; 2]> = intervals.collect();
+    /// The least delay of an agent that those allow that have one.
+    fn earliest(&self, delays: &[Option<i64>], ranks: &[usize], agent: usize) -> Result<i64, Blocked> {
+        let before = || self.met[agent].iter().filter_map(|met| Some((met, delays[met.other]?)));
+        let mut intervals: Vec<[i64; 2]> = before()
+            .map(|(met, delay)| met.ends.map(|end| if end.abs() < NEVER { end + delay } else { end }))
+            .collect();
         intervals.sort_unstable();
         let mut delay = 0;
         for [lo, hi] in intervals {
@@ -192,10 +234,12 @@ impl Forbidden {
         if delay < NEVER {
             return Ok(delay);
         }
-        let intervals = |other: usize| self.intervals[agent][other].iter();
-        let always = |other: usize| intervals(other).any(|&[lo, hi]| lo <= -NEVER && hi >= NEVER);
-        let worst = before.iter().copied().find(|&other| always(other));
-        let first = before.iter().copied().find(|&other| intervals(other).any(|&[_, hi]| hi >= NEVER));
+        // The first in the order of priority of whom it holds.
+        let first_of = |holds: &dyn Fn([i64; 2]) -> bool| {
+            before().filter(|(met, _)| holds(met.ends)).map(|(met, _)| met.other).min_by_key(|&other| ranks[other])
+        };
+        let worst = first_of(&|[lo, hi]| lo <= -NEVER && hi >= NEVER);
+        let first = first_of(&|[_, hi]| hi >= NEVER);
         Err(Blocked { by: worst.or(first).unwrap_or(agent), always: worst.is_some() })
     }
 }

@@ -3,7 +3,7 @@
 use super::delays::Objective;
 use super::starts::Known;
 use super::task::Planner;
-use super::{Answer, Method, Plan, Planned, Unsolved, bound, circle, speeds};
+use super::{Answer, Method, Plan, Planned, Unsolved, bound, speeds};
 use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::regions::Failure;
@@ -65,7 +65,8 @@ impl<'m> Planner<'_, 'm> {
         let alone = match self.request.objective {
             Objective::Sum => self.motions.iter().map(least).sum(),
             Objective::Makespan => {
-                let ends = self.motions.iter().map(|motion| motion.time().lo + least(motion) - self.begin());
+                let begin = self.begin();
+                let ends = self.motions.iter().map(|motion| motion.time().lo + least(motion) - begin);
                 ends.fold(0.0, f64::max)
             }
         };
@@ -94,10 +95,11 @@ impl<'m> Planner<'_, 'm> {
             return Ok((plan, None));
         }
         plan.certificate = Some(proof);
+        let begin = self.begin();
         for (agent, (motion, planned)) in self.motions.iter().zip(planned).enumerate() {
             let [start, end] = [planned.time().lo, planned.time().hi];
             plan.agents.push(Planned { id: self.id(agent), delay: start - motion.time().lo, t_end: end });
-            plan.makespan = plan.makespan.max(end - self.begin());
+            plan.makespan = plan.makespan.max(end - begin);
             plan.sum_of_costs += end - motion.time().lo;
         }
         let mut order: Vec<usize> = (0..planned.len()).collect();
@@ -117,7 +119,7 @@ impl<'m> Planner<'_, 'm> {
     fn unsolved(&self, never: Never) -> Vec<Unsolved> {
         let ids = |agents: [usize; 2]| agents.map(|agent| self.id(agent));
         let mut unsolved = Vec::new();
-        if let Some(circle) = circle::circle(self.ecm, self.motions) {
+        if let Some(circle) = self.circle() {
             let why = "each has to let the next one pass first, the last one the first, however they move";
             unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
         }

@@ -5,6 +5,7 @@ mod branching;
 
 use super::Priority;
 use super::task::Planner;
+use crate::fleet::HostEcm;
 use crate::regions::Failure;
 use pcr_core::{Drive, Motion, Profile, Station, Unsolved as Never, plan_speed, plan_speeds};
 
@@ -38,6 +39,7 @@ pub(super) fn plan<'m>(
     known: Option<Vec<Motion<'m, f64>>>,
     pool: &'m mut [Speeds],
 ) -> Result<Result<Vec<Motion<'m, f64>>, Never>, Failure> {
+    let ecm = &planner.ecm()?;
     // What is kept back is for the last step.
     let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
     let (mut room, mut last) = (pool.iter_mut(), kept_back.iter_mut());
@@ -54,7 +56,7 @@ pub(super) fn plan<'m>(
     let mut best: Result<Vec<Motion<'m, f64>>, Never> = known.ok_or(Never::Full(0));
     let mut kept = Vec::new();
     for order in orders {
-        kept = attempt(planner, order, &mut best, &mut room, &mut stations);
+        kept = attempt(planner, ecm, order, &mut best, &mut room, &mut stations);
     }
     if planner.request.priority == Priority::Best {
         for _ in 0..ROUNDS {
@@ -63,17 +65,17 @@ pub(super) fn plan<'m>(
             let latest = (0..plan.len()).max_by(|&a, &b| late(planner, plan, a).total_cmp(&late(planner, plan, b)));
             let Some(latest) = latest.filter(|latest| kept.first() != Some(latest)) else { break };
             let order = std::iter::once(latest).chain(kept.into_iter().filter(|&agent| agent != latest)).collect();
-            kept = attempt(planner, order, &mut best, &mut room, &mut stations);
+            kept = attempt(planner, ecm, order, &mut best, &mut room, &mut stations);
             if best.as_ref().is_ok_and(|plan| planner.cost(plan) >= cost) {
                 break;
             }
         }
         let limit = best.as_ref().map_or(f64::INFINITY, |plan| planner.cost(plan));
-        if let Some(plan) = branching::searched(planner, limit, &mut room, &mut stations) {
+        if let Some(plan) = branching::searched(planner, ecm, limit, &mut room, &mut stations) {
             best = Ok(plan);
         }
         if let Ok(plan) = &mut best {
-            again(planner, plan, &mut last, &mut stations);
+            again(planner, ecm, plan, &mut last, &mut stations);
         }
     }
     Ok(best)
@@ -87,13 +89,14 @@ fn late(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>], agent: usize) -> f6
 /// One after the other; the order that it led to.
 fn attempt<'m>(
     planner: &Planner<'_, 'm>,
+    ecm: &HostEcm<f64>,
     mut order: Vec<usize>,
     best: &mut Result<Vec<Motion<'m, f64>>, Never>,
     room: &mut Room<'m>,
     stations: &mut [Station<f64>],
 ) -> Vec<usize> {
     let mut plan = planner.motions.to_vec();
-    let done = plan_speeds(planner.ecm, planner.motions, &mut plan, &mut order, room, stations);
+    let done = plan_speeds(ecm, planner.motions, &mut plan, &mut order, room, stations);
     match (done, &best) {
         (Ok(()), Ok(before)) if planner.cost(&plan) >= planner.cost(before) => {}
         (Ok(()), _) => *best = Ok(plan),
@@ -106,6 +109,7 @@ fn attempt<'m>(
 /// Plans each agent again, those first that lose most, while all others move as they do.
 fn again<'m>(
     planner: &Planner<'_, 'm>,
+    ecm: &HostEcm<f64>,
     plan: &mut [Motion<'m, f64>],
     room: &mut Room<'m>,
     stations: &mut [Station<f64>],
@@ -116,7 +120,7 @@ fn again<'m>(
         let mut sooner = false;
         for agent in order {
             let motion = planner.motions[agent];
-            let regions = planner.ecm.row(plan, agent).expect("the table of the fleet");
+            let regions = ecm.row(plan, agent).expect("the table of the fleet");
             let Ok(found) = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, stations) else { continue };
             if found.end() >= plan[agent].time().hi - SOONER {
                 continue;

@@ -1,6 +1,5 @@
 //! Start delays of a scenario, for all of its agents or for as many as can have one, and how good they are.
 
-use super::circle;
 use super::delays::{self, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
@@ -44,9 +43,9 @@ impl Starts {
         let schedules: Vec<Schedule> = schedules.collect();
         let is_best = request.priority == Priority::Best;
         let in_ticks = |schedule: &Schedule| {
-            schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Option<Vec<i64>>>()
+            schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Vec<Option<i64>>>()
         };
-        let known: Vec<Vec<i64>> = schedules.iter().filter_map(in_ticks).collect();
+        let known: Vec<Vec<Option<i64>>> = schedules.iter().map(in_ticks).collect();
         let Outcome { delays, bound, proved, conflicts } = delays::best(&problem, &known, request.effort);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
@@ -64,7 +63,8 @@ impl Starts {
         }
         let Some(Schedule { delays, out, order }) = schedules.into_iter().next() else { return Ok(found) };
         let whole = delays.iter().all(Option::is_some);
-        let reached = known.first().is_some_and(|known| problem.cost(known) <= bound + delays::slack(&problem));
+        let first: Option<Vec<i64>> = known.first().and_then(|known| known.iter().copied().collect());
+        let reached = first.is_some_and(|known| problem.cost(&known) <= bound + delays::slack(&problem));
         // A bound for other agents is none for these.
         let bound = if whole { found.bound } else { 0.0 };
         Ok(Self { delays: Some(delays), order, out, bound, proved: found.proved && whole && reached, ..found })
@@ -85,10 +85,11 @@ impl Starts {
     /// For those that have delays.
     pub(super) fn known(&self, staying: &[usize]) -> Known {
         let delays = self.delays.as_deref().unwrap_or_default();
-        let place = |agent: &usize| staying.iter().position(|stays| stays == agent);
+        let mut places = vec![None; delays.len()];
+        staying.iter().enumerate().for_each(|(place, &agent)| places[agent] = Some(place));
         Known {
             delays: staying.iter().filter_map(|&agent| delays[agent]).collect(),
-            order: self.order.iter().filter_map(place).collect(),
+            order: self.order.iter().filter_map(|&agent| places[agent]).collect(),
             bound: self.bound,
             proved: self.proved,
         }
@@ -99,7 +100,7 @@ impl Starts {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
         let mut unsolved: Vec<Unsolved> = Vec::new();
         // Of footprints it would be no proof: the discs around them may have to wait where they do not.
-        let circle = if self.outlined { None } else { circle::circle(planner.ecm, planner.motions) };
+        let circle = if self.outlined { None } else { planner.circle() };
         if let Some(circle) = &circle {
             let why = "each has to let the next one pass first, the last one the first, however they move";
             unsolved.push(Unsolved::nowhere(ids(circle), why));

@@ -1,11 +1,16 @@
 //! What all attempts at a plan have in common: the fleet, what is asked for, orders to be tried, and what a plan costs.
 
+use super::circle;
 use super::delays::Objective;
 use super::{Priority, Request};
 use crate::fleet::HostEcm;
-use crate::regions::Failure;
+use crate::regions::{self, Failure};
+use crate::rows;
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
+
+/// Agents of which the table of all pairs is asked for again and again, at most.
+const MOST: usize = 2_000;
 
 /// What all attempts have in common.
 pub(super) struct Planner<'a, 'm> {
@@ -13,12 +18,35 @@ pub(super) struct Planner<'a, 'm> {
     pub(super) request: &'a Request,
     /// Grown.
     pub(super) motions: &'a [Motion<'m, f64>],
-    pub(super) ecm: &'a HostEcm<f64>,
 }
 
 impl Planner<'_, '_> {
     pub(super) fn id(&self, agent: usize) -> u64 {
         self.scenario.agents.get(agent).map_or(0, |agent| agent.id)
+    }
+
+    /// The table of all pairs, which speeds are planned with.
+    pub(super) fn ecm(&self) -> Result<HostEcm<f64>, Failure> {
+        match self.motions.len() {
+            ..=MOST => regions::table(self.scenario, self.motions),
+            agents => Err(Failure::TooMany { what: "speeds are planned", agents, most: MOST }),
+        }
+    }
+
+    /// Agents of which each has to let the next one pass first, all around; in large fleets they are not looked for.
+    pub(super) fn circle(&self) -> Option<Vec<usize>> {
+        circle::circle(&self.ecm().ok()?, self.motions)
+    }
+
+    /// How many regions each agent has.
+    fn counts(&self) -> Result<Vec<usize>, Failure> {
+        let pairs = rows::gathered(self.motions, "regions", |row| {
+            let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
+            regions.map(|region| [row.agents()[row.place()], row.agents()[region.other()]]).collect()
+        })?;
+        let mut counts = vec![0; self.motions.len()];
+        pairs.into_iter().flatten().for_each(|agent| counts[agent as usize] += 1);
+        Ok(counts)
     }
 
     /// The orders to be tried.
@@ -33,8 +61,7 @@ impl Planner<'_, '_> {
             order
         };
         let longest = || sorted(&|agent| self.motions[agent].time().length());
-        let crowded =
-            || sorted(&|agent| self.ecm.row(self.motions, agent).expect("the table of the fleet").count() as f64);
+        let crowded = || self.counts().map(|counts| sorted(&|agent| counts[agent] as f64));
         Ok(match &self.request.priority {
             Priority::Given(given) => {
                 let mut order = given.iter().map(place).collect::<Result<Vec<usize>, Failure>>()?;
@@ -43,8 +70,8 @@ impl Planner<'_, '_> {
                 vec![order]
             }
             Priority::Longest => vec![longest()],
-            Priority::Crowded => vec![crowded()],
-            Priority::Best => vec![file.clone(), longest(), crowded()],
+            Priority::Crowded => vec![crowded()?],
+            Priority::Best => vec![file.clone(), longest(), crowded()?],
         })
     }
 

@@ -7,7 +7,7 @@ use crate::bodies::Bodies;
 use crate::fleet::Format;
 use crate::memory::Held;
 use crate::rows::{self, Grid, Row};
-use pcr_core::{Full, Motion};
+use pcr_core::Motion;
 use pcr_formats::scenario::{Labels, Scenario};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -114,7 +114,8 @@ impl<'s, S: Format> Sheet<'s, S> {
             grid.around(disc, &mut near);
             Row::new(motions, disc, &near)
         });
-        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(|full| self.failure(full))?;
+        let rows =
+            rows.collect::<Result<Vec<_>, _>>().map_err(|full| Failure::Full(full).named(&self.bodies.scenario))?;
         let works = rows.iter().map(|row| {
             let (ids, fleet, slices) = (&self.ids[..], &self.bodies.fleet, self.request.slices);
             let (agents, motions, ecm) = (row.agents(), row.motions(), row.table());
@@ -130,17 +131,6 @@ impl<'s, S: Format> Sheet<'s, S> {
             a.j.cmp(&b.j).then(starts)
         });
         Ok(regions)
-    }
-
-    fn failure(&self, full: Full) -> Failure {
-        let id = |disc: usize| self.bodies.scenario.agents.get(disc).map(|agent| agent.id);
-        match full {
-            Full::Pair(discs) => match discs.map(id) {
-                [Some(i), Some(j)] => Failure::Overfull([i, j]),
-                _ => Failure::Full(full),
-            },
-            full => Failure::Full(full),
-        }
     }
 
     /// The answer without its regions.

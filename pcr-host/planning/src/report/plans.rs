@@ -2,7 +2,8 @@
 
 use super::columns::Columns;
 use super::{all_called, called, heading, quoted};
-use crate::plan::Plan;
+use crate::plan::{Plan, Planned};
+use std::collections::HashMap;
 use std::io::{self, Write};
 
 /// The header line of [`plan_csv`].
@@ -42,7 +43,8 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     }
     let title = if plan.labels.is_empty() { "agent" } else { "<agent" };
     let mut columns = Columns::new(&[title, "delay [s]", "t_end [s]"]);
-    let by_priority = plan.order.iter().filter_map(|id| plan.agents.iter().find(|agent| agent.id == *id));
+    let agents: HashMap<u64, &Planned> = plan.agents.iter().map(|agent| (agent.id, agent)).collect();
+    let by_priority = plan.order.iter().filter_map(|id| agents.get(id));
     for agent in by_priority {
         columns.row(vec![called(&plan.labels, agent.id), format!("{:.3}", agent.delay), format!("{:.3}", agent.t_end)]);
     }

@@ -197,15 +197,42 @@ impl Problem {
         Self { objective: self.objective, ends: agents.iter().map(|&agent| self.ends[agent]).collect(), pairs }
     }
 
-    /// The agents in groups that forbid one another nothing, each group in order.
+    /// The agents in groups that forbid one another nothing, each group in order. O(agents + pairs), nearly.
     pub(crate) fn parts(&self) -> Vec<Vec<usize>> {
-        let mut part: Vec<usize> = (0..self.len()).collect();
-        for pair in &self.pairs {
-            let [kept, joined] = pair.agents.map(|agent| part[agent]);
-            part.iter_mut().filter(|part| **part == joined).for_each(|part| *part = kept);
+        let mut above: Vec<usize> = (0..self.len()).collect();
+        fn first(above: &mut [usize], mut agent: usize) -> usize {
+            while above[agent] != agent {
+                above[agent] = above[above[agent]];
+                agent = above[agent];
+            }
+            agent
         }
-        let members =
-            |name: usize| part.iter().enumerate().filter(move |(_, part)| **part == name).map(|(agent, _)| agent);
-        (0..self.len()).map(|name| members(name).collect::<Vec<_>>()).filter(|part| !part.is_empty()).collect()
+        for pair in &self.pairs {
+            let [a, b] = pair.agents.map(|agent| first(&mut above, agent));
+            above[a.max(b)] = a.min(b);
+        }
+        let mut parts = vec![Vec::new(); self.len()];
+        (0..self.len()).for_each(|agent| parts[first(&mut above, agent)].push(agent));
+        parts.retain(|part| !part.is_empty());
+        parts
+    }
+
+    /// These groups, each with its own problem. O(agents + pairs), nearly.
+    pub(super) fn apart(&self) -> Vec<(Vec<usize>, Self)> {
+        let parts = self.parts();
+        let mut places = vec![[0; 2]; self.len()];
+        for (name, agents) in parts.iter().enumerate() {
+            agents.iter().enumerate().for_each(|(place, &agent)| places[agent] = [name, place]);
+        }
+        let part = |agents: Vec<usize>| {
+            let ends = agents.iter().map(|&agent| self.ends[agent]).collect();
+            (agents, Self { objective: self.objective, ends, pairs: Vec::new() })
+        };
+        let mut apart: Vec<(Vec<usize>, Self)> = parts.into_iter().map(part).collect();
+        for pair in &self.pairs {
+            let [[name, first], [_, second]] = pair.agents.map(|agent| places[agent]);
+            apart[name].1.pairs.push(Pair { agents: [first, second], forbidden: pair.forbidden.clone() });
+        }
+        apart
     }
 }

@@ -10,6 +10,8 @@ use super::problem::{Constraint, Objective, Problem};
 
 /// Violated pairs of which both sides are tried before one is chosen, at most.
 const TRIED: usize = 16;
+/// Agents that have to wait, or let wait, up to which cliques of them are looked for: a bound that takes their square.
+const MOST_WAITING: usize = 2_000;
 /// Nodes after which the clock is looked at.
 const TICK: u64 = 32;
 
@@ -233,19 +235,28 @@ impl<'a> Search<'a> {
         if self.problem.objective != Objective::Sum {
             return 0;
         }
-        let count = self.problem.len();
+        // Those of whom one has to wait, in order: others are in no clique.
+        let mut waiting: Vec<usize> = violated.iter().flat_map(|pair| pair.agents).collect();
+        waiting.sort_unstable();
+        waiting.dedup();
+        let count = waiting.len();
+        if count > MOST_WAITING {
+            return 0;
+        }
+        let place = |agent: usize| waiting.partition_point(|&other| other < agent);
+        let places: Vec<[usize; 2]> = violated.iter().map(|pair| pair.agents.map(place)).collect();
         // By how much more the column is delayed if it comes after the row.
         let mut raises = vec![None; count * count];
-        for Violated { agents: [i, j], raises: [first, second], .. } in violated {
-            (raises[j * count + i], raises[i * count + j]) = (Some(*first), Some(*second));
+        for (&[i, j], pair) in places.iter().zip(violated) {
+            (raises[j * count + i], raises[i * count + j]) = (Some(pair.raises[0]), Some(pair.raises[1]));
         }
         let mut used = vec![false; count];
         let mut sum = 0;
-        for pair in violated {
-            if pair.agents.iter().any(|&agent| used[agent]) {
+        for agents in &places {
+            if agents.iter().any(|&agent| used[agent]) {
                 continue;
             }
-            let mut clique = pair.agents.to_vec();
+            let mut clique = agents.to_vec();
             let meets =
                 |agent: usize, clique: &[usize]| clique.iter().all(|&other| raises[agent * count + other].is_some());
             for (agent, used) in used.iter().enumerate() {

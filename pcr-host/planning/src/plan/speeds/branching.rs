@@ -2,6 +2,7 @@
 //! round, and who comes second is planned again, and so are those who come after it; depth first, the cheaper way first.
 
 use super::{PHASES, Room};
+use crate::fleet::HostEcm;
 use crate::plan::task::Planner;
 use pcr_core::{Drive, Interval, Motion, Station, first_overlap, plan_speed};
 
@@ -20,6 +21,7 @@ struct Node<'m> {
 /// A plan that costs less than a limit, the best one that is found.
 pub(super) fn searched<'m>(
     planner: &Planner<'_, 'm>,
+    ecm: &HostEcm<f64>,
     mut limit: f64,
     room: &mut Room<'m>,
     stations: &mut [Station<f64>],
@@ -27,7 +29,7 @@ pub(super) fn searched<'m>(
     let count = planner.motions.len();
     let mut root = Node { plan: planner.motions.to_vec(), above: vec![Vec::new(); count], cost: 0.0 };
     for agent in 0..count {
-        plan_again(planner, &mut root, agent, room, stations)?;
+        plan_again(planner, ecm, &mut root, agent, room, stations)?;
     }
     root.cost = planner.cost(&root.plan);
     let (mut open, mut best) = (vec![root], None);
@@ -36,13 +38,15 @@ pub(super) fn searched<'m>(
         if node.cost >= limit {
             continue;
         }
-        let Some([i, j]) = collision(planner, &node.plan) else {
+        let Some([i, j]) = collision(ecm, &node.plan) else {
             limit = node.cost;
             best = Some(node.plan);
             continue;
         };
-        let mut ways: Vec<Node<'m>> =
-            [[i, j], [j, i]].into_iter().filter_map(|way| put_in_order(planner, &node, way, room, stations)).collect();
+        let mut ways: Vec<Node<'m>> = [[i, j], [j, i]]
+            .into_iter()
+            .filter_map(|way| put_in_order(planner, ecm, &node, way, room, stations))
+            .collect();
         // The last one is looked at first.
         ways.sort_by(|a, b| b.cost.total_cmp(&a.cost));
         open.append(&mut ways);
@@ -51,10 +55,10 @@ pub(super) fn searched<'m>(
 }
 
 /// Two agents that collide.
-fn collision(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]> {
+fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]> {
     let all = plan.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
     (0..plan.len()).find_map(|agent| {
-        let regions = planner.ecm.row(plan, agent).expect("the table of the fleet");
+        let regions = ecm.row(plan, agent).expect("the table of the fleet");
         let after = regions.filter(|region| region.other() > agent);
         first_overlap(&plan[agent], after, all).map(|met| [agent, met.other])
     })
@@ -63,6 +67,7 @@ fn collision(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>]) -> Option<[usi
 /// The node with one more priority, if there is a plan for all who have to give way.
 fn put_in_order<'m>(
     planner: &Planner<'_, 'm>,
+    ecm: &HostEcm<f64>,
     node: &Node<'m>,
     [first, second]: [usize; 2],
     room: &mut Room<'m>,
@@ -82,7 +87,7 @@ fn put_in_order<'m>(
         .collect();
     below.sort_unstable();
     for (_, agent) in below {
-        plan_again(planner, &mut node, agent, room, stations)?;
+        plan_again(planner, ecm, &mut node, agent, room, stations)?;
     }
     node.cost = planner.cost(&node.plan);
     Some(node)
@@ -106,6 +111,7 @@ fn superiors(above: &[Vec<usize>], agent: usize) -> Vec<usize> {
 /// The earliest arrival of an agent behind those that it gives way to.
 fn plan_again<'m>(
     planner: &Planner<'_, 'm>,
+    ecm: &HostEcm<f64>,
     node: &mut Node<'m>,
     agent: usize,
     room: &mut Room<'m>,
@@ -113,7 +119,7 @@ fn plan_again<'m>(
 ) -> Option<()> {
     let above = superiors(&node.above, agent);
     let motion = planner.motions[agent];
-    let regions = planner.ecm.row(&node.plan, agent).expect("the table of the fleet");
+    let regions = ecm.row(&node.plan, agent).expect("the table of the fleet");
     let regions = regions.filter(|region| above.contains(&region.other()));
     let found = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, stations).ok()?;
     let profile = room.next()?;

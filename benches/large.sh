@@ -1,0 +1,30 @@
+#!/bin/bash
+# benches/large.sh PCR [AGENTS...]: what `check` and `regions` take for fleets of pairs that cross, 8 m apart: processor time an agent and
+# memory, as a table. The time is that of all cores, reading and printing included, and hardly depends on what else the machine does.
+set -euo pipefail
+tool=${1:?the tool}
+shift
+[ $# -gt 0 ] || set -- 10000 100000 1000000
+folder=$(mktemp -d)
+trap 'rm -r "$folder"' EXIT
+echo "| agents | \`check\`, an agent | memory | \`regions\`, an agent | memory |"
+echo "|---:|---:|---:|---:|---:|"
+for agents in "$@"; do
+    awk -v agents="$agents" 'BEGIN {
+        pairs = agents / 2; side = int(sqrt(pairs)) + 1
+        printf "{\"agents\":["
+        for (k = 0; k < pairs; k++) {
+            x = k % side * 8; y = int(k / side) * 8
+            line = "\"radius\":0.3,\"v_max\":1,\"a_max\":1,\"path\":[{\"kind\":\"line\",\"length\":4}],\"start\":{\"x\":%d,\"y\":%d,\"heading\":%s}}"
+            printf "%s{\"id\":%d," line ",{\"id\":%d," line, k ? "," : "", 2 * k + 1, x - 2, y, "0", 2 * k + 2, x, y - 2, "1.5707963"
+        }
+        printf "]}"
+    }' > "$folder/fleet.json"
+    row="| $agents |"
+    for command in check regions; do
+        # They collide: exit status 1 is an answer.
+        /usr/bin/time -o "$folder/time" -f '%U %S %M' "$tool" "$command" "$folder/fleet.json" --format csv > /dev/null || [ $? = 1 ]
+        row+=$(tail -1 "$folder/time" | awk -v agents="$agents" '{ printf " %.1f µs | %d MB |", ($1 + $2) / agents * 1e6, $3 / 1000 }')
+    done
+    echo "$row"
+done
