@@ -7,6 +7,7 @@ pub mod certified;
 pub mod clearance;
 pub mod closed_loop;
 pub mod constants;
+pub mod delays;
 pub mod disc;
 pub mod exact;
 pub mod execution;
