@@ -236,7 +236,8 @@ impl<R: Real> Ball<R> {
     /// Its magnitude.
     #[must_use]
     pub fn abs(self) -> Self {
-        if self.mid.to_f64() < 0.0 { -self } else { self }
+        // By its sign: a zero may be negative, and the angle to a negative zero is the other one.
+        if self.mid.to_f64().is_sign_negative() { -self } else { self }
     }
 
     /// The lesser one of two: it moves by no more than either does.
@@ -383,6 +384,16 @@ mod tests {
         }
         assert!(worst < f64::TRIG, "{worst:e}");
         assert!(worst > 0.01 * f64::TRIG, "{worst:e}: too good to be measured");
+    }
+
+    #[test]
+    fn the_angle_to_a_negative_zero_is_half_a_turn() {
+        for zero in [0.0, -0.0] {
+            let angle = Ball::<f64>::angle(Ball::from(-1.0), Ball::from(zero));
+            assert!((angle.mid - PI).abs() <= angle.err && angle.err < 1e-14, "{angle:?}");
+            let angle = Ball::<Twofold>::angle(Ball::from(-1.0), Ball::from(zero));
+            assert!((angle.to_f64() - PI).abs() < 1e-14, "{angle:?}");
+        }
     }
 
     #[test]
