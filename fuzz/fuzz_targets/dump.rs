@@ -11,7 +11,8 @@ const MOST: usize = 16;
 /// The lines up to the end, and their CRC-32 of IEEE 802.3, as the checker asks for it.
 fn sealed(text: &str) -> String {
     let lines = text.lines().skip_while(|line| !line.trim_start().starts_with("pcr-table"));
-    let body: String = lines.take_while(|line| !line.trim_start().starts_with("end")).flat_map(|line| [line, "\n"]).collect();
+    let body: String =
+        lines.take_while(|line| !line.trim_start().starts_with("end")).flat_map(|line| [line, "\n"]).collect();
     let sum = body.bytes().fold(!0_u32, |sum, byte| {
         (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 })
     });

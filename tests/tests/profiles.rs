@@ -31,10 +31,12 @@ fn trapezoid(length: f64, v: f64, a: f64) -> impl Fn(f64) -> f64 {
     let (ramp, duration) = (peak / a, length / peak + peak / a);
     move |time: f64| {
         let time = time.clamp(0.0, duration);
-        match () {
-            () if time < ramp => 0.5 * a * time * time,
-            () if time > duration - ramp => length - 0.5 * a * (duration - time) * (duration - time),
-            () => 0.5 * peak * ramp + peak * (time - ramp),
+        if time < ramp {
+            0.5 * a * time * time
+        } else if time > duration - ramp {
+            length - 0.5 * a * (duration - time) * (duration - time)
+        } else {
+            0.5 * peak * ramp + peak * (time - ramp)
         }
     }
 }
