@@ -30,6 +30,16 @@ fn apart(routes: &[Route; 2], at: [f64; 2]) -> f64 {
     (a[0] - b[0]).to_f64().hypot((a[1] - b[1]).to_f64())
 }
 
+/// Whether a joint or an end of the path is as near to this length \[m\].
+fn beside_joint(disc: &Disc, at: f64, near: f64) -> bool {
+    let mut joint = 0.0;
+    let joints = disc.legs.iter().map(|leg| {
+        joint += leg.length();
+        joint
+    });
+    [0.0].into_iter().chain(joints).any(|joint| (joint - at).abs() <= near)
+}
+
 /// The crossings of two discs.
 struct Found {
     /// Along both paths \[m\].
@@ -49,10 +59,9 @@ fn found<S: Format>(pair: [&Disc; 2]) -> Option<Found> {
     let (mut lengths, mut worst) = (Vec::new(), 0.0_f64);
     for crossing in crossings(&first, &second) {
         let at = [crossing.length, crossing.other_length].map(S::to_f64);
-        // Up to four slacks beyond an end of a path it is told, at the end.
-        let ends = [(crossing.length, first.path()), (crossing.other_length, second.path())];
-        let at_end = ends.iter().any(|(at, path)| *at <= S::ZERO || *at >= path.length());
-        worst = worst.max(apart(&routes, at) / sigma / if at_end { 5.0 } else { 1.0 });
+        // Up to four slacks before a joint or beyond an end of a path it is told by the point there.
+        let beside = [0, 1].map(|k| beside_joint(&rounded[k], at[k], 4.5 * sigma)).contains(&true);
+        worst = worst.max(apart(&routes, at) / sigma / if beside { 5.0 } else { 1.0 });
         lengths.push(at);
     }
     let joints = [0, 1]
