@@ -219,7 +219,7 @@ proofs() {
 }
 
 fuzz() {
-  step "fuzzing: scenario files, pairs and importers"
+  step "fuzzing: scenario files, pairs, importers and tables of microcontrollers"
   fuzz/run.sh
 }
 

@@ -260,7 +260,8 @@ pub struct RegionRecord<S: Number> {
     pub pieces: u16,
 }
 
-/// A piece of a region as it is sent.
+/// A piece of a region as it is sent: a rectangle of lengths that holds all of its contacts. Which of two laps of an arc it stands
+/// for is not told, so that slices cannot be had from it, which may be less than the rectangle; `dump::table` prints all.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct PieceRecord<S: Number> {
