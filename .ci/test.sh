@@ -210,6 +210,7 @@ c() {
 firmware() {
   step "firmware: cross-built, run in QEMU, measured"
   (cd firmware && cargo fmt --all --check)
+  (cd firmware/examples && cargo fmt --all --check)
   firmware/check.sh
 }
 

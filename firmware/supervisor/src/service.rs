@@ -98,7 +98,9 @@ where
             Request::Replace { agent, with } => self.replace(usize::from(agent), &with),
             Request::Remove { agent } => self.remove(usize::from(agent)),
             Request::Order(terms) => self.order(terms),
-            Request::Report { agent, edition, at } => self.report(usize::from(agent), edition, at, &mut |each| replies.send(each)),
+            Request::Report { agent, edition, at } => {
+                self.report(usize::from(agent), edition, at, &mut |each| replies.send(each))
+            }
             Request::Orders { agent } => self.orders(usize::from(agent), &mut |each| replies.send(each)),
             Request::Admit { agent, heading, limits, path } => self.admit(usize::from(agent), heading, limits, path),
         };
@@ -165,7 +167,8 @@ where
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
         if self.table.regions().regions(&motions).is_err() {
-            build(&mut self.table, &motions, replies).map_err(|unchanged| needed(&mut self.table, &motions, unchanged, replies))?;
+            build(&mut self.table, &motions, replies)
+                .map_err(|unchanged| needed(&mut self.table, &motions, unchanged, replies))?;
         }
         let table = self.table.regions();
         Ok(Answer::Computed { regions: short(table.len()), pieces: short(table.pieces()) })

@@ -284,7 +284,9 @@ fn after_the_last_number_a_new_supervisor_is_still_told_from_an_old_one() {
         let frame = client.frame().to_vec();
         let mut events = Vec::new();
         frame.iter().for_each(|&byte| {
-            supervisor.take(byte, &mut |bytes: &[u8]| events.extend(bytes.iter().filter_map(|&byte| client.take::<f32>(byte))));
+            supervisor.take(byte, &mut |bytes: &[u8]| {
+                events.extend(bytes.iter().filter_map(|&byte| client.take::<f32>(byte)))
+            });
         });
         assert_eq!(events, [Event::Last(Answer::Done)], "round {round}");
         if round == 65_534 {
