@@ -17,8 +17,8 @@ WORKSPACES = [".", "firmware", "firmware/examples", "fuzz"]
 ALLOWED = {"MIT", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "CC0-1.0", "0BSD", "ISC",
            "MIT-0", "MPL-2.0", "NCSA", "OFL-1.1", "Unicode-3.0", "Unlicense", "Zlib"}
 REGISTRY = "registry+https://github.com/rust-lang/crates.io-index"
-# Named by a derive or a linker script, and nowhere in the source.
-BY_OTHERS = set()
+# Named in no source: start-up code and critical sections, which macros, features and the linker ask for.
+BY_OTHERS = {"cortex-m", "cortex-m-rt", "portable-atomic"}
 
 
 def metadata(folder):
@@ -73,9 +73,11 @@ def check():
         for package in found["packages"]:
             name = f"{package['name']} {package['version']}"
             if package["id"] in members:
+                told = ["license"] + (["description", "keywords", "categories", "rust_version"] if package["publish"] is None else [])
+                wrong += [f"{folder}: {package['name']} has no {key}" for key in told if not package[key]]
                 for dependency in package["dependencies"]:
                     feature = any(f"dep:{dependency['name']}" in made or dependency["name"] in made for made in package["features"].values())
-                    if dependency["kind"] != "build" and not used(package, dependency) and not feature and (package["name"], dependency["name"]) not in BY_OTHERS:
+                    if dependency["kind"] != "build" and not used(package, dependency) and not feature and dependency["name"] not in BY_OTHERS:
                         wrong.append(f"{folder}: {package['name']} does not use {dependency['name']}")
             elif package["source"]:
                 crates.add(name)

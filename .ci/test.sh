@@ -24,6 +24,7 @@ style() {
     echo "unsafe code outside pcr-core/src/scalar/vsqrt.rs" >&2
     return 1
   fi
+  .ci/dependencies.py
   .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
@@ -39,6 +40,8 @@ docs() {
   step "documentation"
   peer_libraries
   RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features pcr-tests/peers --locked
+  step "the public interface of pcr-core, as it was reviewed"
+  .ci/api.py "${CARGO_TARGET_DIR:-target}/doc"
 }
 
 tests() {

@@ -47,7 +47,7 @@ impl Line for Port {
 async fn main(_spawner: Spawner) {
     let board = embassy_nrf::init(Default::default());
     let mut config = Config::default();
-    config.baudrate = Baudrate::BAUD115200;
+    config.baudrate = Baudrate::Baud115200;
     let uart = BufferedUarte::new(
         board.UARTE0,
         board.TIMER0,
@@ -65,7 +65,7 @@ async fn main(_spawner: Spawner) {
     let mut config = wdt::Config::default();
     config.timeout_ticks = WATCHDOG_MS * 32_768 / 1000;
     // It stands still while the processor sleeps: waiting for bytes is no fault.
-    config.action_during_sleep = wdt::SleepConfig::PAUSE;
+    config.action_during_sleep = wdt::SleepConfig::Pause;
     let (_, [watchdog]) = defmt::unwrap!(Watchdog::try_new(board.WDT, config).ok());
     let (mut port, supervisor) = (Port { tx, watchdog }, supervisor());
     loop {
