@@ -15,6 +15,8 @@ def items(folder):
     """Path of each public item: what it is, and the names of its own functions, fields, variants and constants."""
     found = {}
     for link in re.findall(r'<a href="([\w/.]+\.html)">', (folder / "all.html").read_text()):
+        if link.count(".") < 2 or link.startswith(".."):
+            continue
         kind, name = pathlib.Path(link).name.removesuffix(".html").split(".")
         path = "::".join([*pathlib.Path(link).parent.parts, name])
         page = (folder / link).read_text()
@@ -38,7 +40,7 @@ def main():
     text = REVIEW.read_text()
     lines, seen, wrong = [], set(), []
     for line in text.splitlines():
-        if m := re.match(r"\| `([\w:]+)` \| [^|]* \| ([^|]*) \| [^|]* \|$", line):
+        if m := re.match(r"\| `([\w:]+)` \|[^|]*\|([^|]*)\|[^|]*\|$", line):
             path, why = m[1], m[2].strip()
             seen.add(path)
             if path not in found:
