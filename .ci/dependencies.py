@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the workspaces depend on, from `cargo metadata`:
 
-  dependencies.py            licences, origins, and whether every dependency is used; fails where something is wrong
+  dependencies.py            licences, origins, the Rust that they need, and whether each is used; fails where something is wrong
   dependencies.py sbom       the bill of materials of the tool, CycloneDX 1.5, on the standard output: the same bytes for the same lock file
 
 Instead of cargo-deny and cargo-machete, which take minutes to build. Advisories are not looked at: their database is not in a registry."""
@@ -55,6 +55,16 @@ def allowed(expression):
     return any_of()
 
 
+def release(version):
+    return [int(part) for part in version.split(".")]
+
+
+def oldest(found):
+    """The Rust that the members of a workspace ask for."""
+    members = set(found["workspace_members"])
+    return next((package["rust_version"] for package in found["packages"] if package["id"] in members and package["rust_version"]), "999")
+
+
 def used(package, dependency):
     """Whether the source of a package names a dependency."""
     name = (dependency["rename"] or dependency["name"]).replace("-", "_")
@@ -81,13 +91,15 @@ def check():
                         wrong.append(f"{folder}: {package['name']} does not use {dependency['name']}")
             elif package["source"]:
                 crates.add(name)
+                if package["rust_version"] and release(package["rust_version"]) > release(oldest(found)):
+                    wrong.append(f"{folder}: {name} needs Rust {package['rust_version']}, more than {oldest(found)}")
                 if package["source"] != REGISTRY:
                     wrong.append(f"{folder}: {name} comes from {package['source']}")
                 if not package["license"] or not allowed(package["license"]):
                     wrong.append(f"{folder}: {name} has the licence {package['license'] or package['license_file']}")
     if wrong:
         sys.exit("\n".join(sorted(set(wrong))))
-    print(f"{len(crates)} crates of others: licences, origins and use are in order")
+    print(f"{len(crates)} crates of others: licences, origins, the Rust they need and use are in order")
 
 
 def sbom():
