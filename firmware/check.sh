@@ -217,7 +217,7 @@ budgets() {
     riscv32imc*) limit "$file" "bytes of code of the library in it" "$riscv_budget" ;;
   esac
   case $target:$format in
-    thumbv7em*:f32) limit "$file" "instructions: table of all agents" 600000 ;;
+    thumbv7em*:f32 | thumbv8m*:f32) limit "$file" "instructions: table of all agents" 600000 ;;
     thumb*:q*)
       tools/fwcheck.py "$programs/pipeline" --no-float || fail "floating point in a fixed-point program"
       ;;

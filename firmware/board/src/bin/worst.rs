@@ -16,15 +16,13 @@ use static_cell::ConstStaticCell;
 /// Lines and arcs of a path, and how many pairs of such paths there are.
 const SIZES: [(u32, u32); 4] = [(1, 4096), (2, 1024), (4, 256), (8, 64)];
 const ONE: Number = <Number as pcr_supervisor::Number>::ONE;
-/// Regions and pieces of a pair.
-const ROOM: usize = 128;
 
-static STORE: ConstStaticCell<Store<Number, 2, 16>> = ConstStaticCell::new(Store::new());
-static TABLE: ConstStaticCell<Ecm<Number, [Region; ROOM], [Piece<Number>; ROOM]>> =
-    ConstStaticCell::new(Ecm::new([Region::EMPTY; ROOM], [Piece::EMPTY; ROOM]));
-static FLEET: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
-    ConstStaticCell::new(Store::new());
-static ALL: ConstStaticCell<Ecm<Number, [Region; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>> =
+type Fleet = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
+type Table = Ecm<Number, [Region; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
+
+// The pairs of paths, and then the 12 agents.
+static STORE: ConstStaticCell<Fleet> = ConstStaticCell::new(Store::new());
+static TABLE: ConstStaticCell<Table> =
     ConstStaticCell::new(Ecm::new([Region::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
 #[entry]
@@ -70,7 +68,7 @@ fn run() -> Option<bool> {
         };
         report(percent(most, bound)?, what, pairs);
     }
-    let (took, pairs) = twelve(&meter)?;
+    let (took, pairs) = twelve(&meter, store, table)?;
     let bound = longest.saturating_mul(pairs);
     holds &= took <= bound;
     report(percent(took, bound)?, b"percent of the bound: table of all agents", 0);
@@ -83,8 +81,9 @@ fn percent(part: u32, whole: u32) -> Option<u32> {
 
 /// Instructions of the table of the 12 agents, and the pairs of segments of any two of them.
 #[inline(never)]
-fn twelve(meter: &Meter) -> Option<(u32, u32)> {
-    let (store, table) = (FLEET.try_take()?, ALL.try_take()?);
+fn twelve(meter: &Meter, store: &mut Fleet, table: &mut Table) -> Option<(u32, u32)> {
+    store.clear();
+    table.clear();
     AGENTS.iter().try_for_each(|agent| store.add(agent).map(drop)).ok()?;
     let fleet = store.motions().ok()?;
     let (mut took, mut pairs, mut before) = (0_u32, 0_u32, 0_u32);
@@ -124,7 +123,7 @@ impl Random {
     }
 
     /// An agent on lines and arcs that begin in a square of two metres: most of them meet others.
-    fn add(&mut self, store: &mut Store<Number, 2, 16>, steps: usize) -> Option<()> {
+    fn add(&mut self, store: &mut Fleet, steps: usize) -> Option<()> {
         let least = ONE.half().half().half();
         let mut path = [Step { curve: Curve::Line, length: least }; 8];
         let path = path.get_mut(..steps)?;
