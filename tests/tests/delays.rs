@@ -107,7 +107,7 @@ fn slip<S: Format>(
 }
 
 proptest! {
-    #![proptest_config(settings(1_500, 25, 43))]
+    #![proptest_config(settings(500, 25, 43))]
     #[test]
     fn regions_forbid_what_the_definition_forbids_f64((pair, drives) in driven_pairs()) {
         audited::<f64>([&pair.0, &pair.1], &drives)?;
@@ -120,7 +120,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(settings(1_500, 25, 43))]
+    #![proptest_config(settings(500, 25, 43))]
     #[test]
     fn regions_forbid_what_the_definition_forbids_q16((pair, drives) in driven_pairs()) {
         audited::<Q16>([&pair.0, &pair.1], &drives)?;
