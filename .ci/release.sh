@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # What a release consists of, built twice from clean clones in two folders and compared bit for bit:
-#   .ci/release.sh OUT          everything: some ten minutes of two cores for each of the two
-#   .ci/release.sh OUT quick    without the tool: the wheel, the library for C and the module for browsers; what else there is takes seconds
+#   .ci/release.sh OUT            everything
+#   .ci/release.sh OUT PART...    some: tool wheel library playground
 # OUT gets the tool as a static binary with completions and its manual page, the Python wheel, the library for C, the playground, the
 # bill of materials (CycloneDX) and SHA256SUMS. What is not committed is not in it.
 set -euo pipefail
-[ $# -ge 1 ] || { sed -n '2,6s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 1 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
-what=${2:-all}
+shift
+parts=" ${*:-tool wheel library playground} "
 cd "$(dirname "$0")/.."
 root=$PWD
 if [ -n "$(git status --porcelain)" ]; then echo "release: what is not committed is not in it" >&2; fi
@@ -85,14 +86,12 @@ playground() {
 
 # once FOLDER: a release, from a clone there.
 once() {
-  local here=$scratch/$1/source made=$scratch/$1/made target
+  local here=$scratch/$1/source made=$scratch/$1/made target part
   git clone -q "$root" "$here"
   mkdir -p "$made"
   cd "$here"
-  if [ "$what" = all ]; then for target in "${targets[@]}"; do tool "$target" "$here" "$made"; done; fi
-  wheel "$here" "$made"
-  library "$here" "$made"
-  playground "$here" "$made"
+  if [[ $parts == *" tool "* ]]; then for target in "${targets[@]}"; do tool "$target" "$here" "$made"; done; fi
+  for part in wheel library playground; do if [[ $parts == *" $part "* ]]; then $part "$here" "$made"; fi; done
   .ci/dependencies.py sbom >"$made/pcr-$version.cdx.json"
   (cd "$made" && find . -maxdepth 1 -type f ! -name SHA256SUMS -printf '%f\n' | sort | xargs sha256sum >SHA256SUMS)
   cd "$root"

@@ -103,6 +103,8 @@ python() {
 # The crates that could be published: licences, a README and all that they need are in them.
 packages() {
   step "packages, built and tested outside of the workspace"
+  # Of what .ci/release.sh makes, all else takes long.
+  .ci/dependencies.py sbom >/dev/null
   local target=${CARGO_TARGET_DIR:-target} crates=() crate
   for crate in $(sed -n '/^members/,/^\]/s/^ *"\(.*\)",/\1/p' Cargo.toml); do
     grep -q '^publish = false' "$crate/Cargo.toml" || crates+=("$(sed -n 's/^name = "\(.*\)"/\1/p' "$crate/Cargo.toml" | head -1)")
