@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages release instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -103,8 +103,6 @@ python() {
 # The crates that could be published: licences, a README and all that they need are in them.
 packages() {
   step "packages, built and tested outside of the workspace"
-  # Of what .ci/release.sh makes, all else takes long.
-  .ci/dependencies.py sbom >/dev/null
   local target=${CARGO_TARGET_DIR:-target} crates=() crate
   for crate in $(sed -n '/^members/,/^\]/s/^ *"\(.*\)",/\1/p' Cargo.toml); do
     grep -q '^publish = false' "$crate/Cargo.toml" || crates+=("$(sed -n 's/^name = "\(.*\)"/\1/p' "$crate/Cargo.toml" | head -1)")
@@ -122,6 +120,11 @@ packages() {
   done
   # What is recorded for the proofs is compared in the repository, where the proofs are.
   (cd "$target/package"/pcr-core-*[0-9] && CARGO_TARGET_DIR=.. cargo test -q --lib --examples --features std -- --skip recorded::)
+}
+
+release() {
+  step "the quick parts of a release, built twice from clean clones: the same bit for bit"
+  .ci/release.sh "${CARGO_TARGET_DIR:-target}/release-parts" library playground
 }
 
 instructions() {
@@ -235,7 +238,7 @@ everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions fuzz packages >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions fuzz packages release >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
