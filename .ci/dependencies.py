@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What the workspaces depend on, from `cargo metadata`:
 
-  dependencies.py            licences, origins, the Rust that they need, and whether each is used; fails where something is wrong
-  dependencies.py sbom       the bill of materials of the tool, CycloneDX 1.5, on the standard output: the same bytes for the same lock file
+  dependencies.py             licences, origins, the Rust that they need, and whether each is used; fails where something is wrong
+  dependencies.py sbom CRATE  the bill of materials of a crate, CycloneDX 1.5, on the standard output: the same bytes for the same lock file
 
 Instead of cargo-deny and cargo-machete, which take minutes to build. Advisories are not looked at: their database is not in a registry."""
 import json
@@ -102,11 +102,11 @@ def check():
     print(f"{len(crates)} crates of others: licences, origins, the Rust they need and use are in order")
 
 
-def sbom():
+def sbom(name):
     found = metadata(".")
     packages = {package["id"]: package for package in found["packages"]}
     edges = {node["id"]: [d["pkg"] for d in node["deps"] if any(kind["kind"] is None for kind in d["dep_kinds"])] for node in found["resolve"]["nodes"]}
-    tool = next(package for package in packages.values() if package["name"] == "pcr-host")
+    tool = next(package for package in packages.values() if package["name"] == name)
     reached, ahead = set(), [tool["id"]]
     while ahead:
         if (here := ahead.pop()) not in reached:
@@ -137,4 +137,4 @@ def sbom():
 
 
 if __name__ == "__main__":
-    sbom() if sys.argv[1:] == ["sbom"] else check()
+    sbom(sys.argv[2]) if sys.argv[1:2] == ["sbom"] else check()

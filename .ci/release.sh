@@ -66,7 +66,9 @@ wheel() {
     python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
     "$python/bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2"
   fi
-  env "$name=$(flags "$here")" "$python/bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$made"
+  .ci/dependencies.py sbom pcr-py >"$here/pcr-py.cdx.json"
+  env "$name=$(flags "$here")" "$python/bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$made" \
+    --sbom-include "$here/pcr-py.cdx.json"
 }
 
 library() {
@@ -92,7 +94,7 @@ once() {
   cd "$here"
   if [[ $parts == *" tool "* ]]; then for target in "${targets[@]}"; do tool "$target" "$here" "$made"; done; fi
   for part in wheel library playground; do if [[ $parts == *" $part "* ]]; then $part "$here" "$made"; fi; done
-  .ci/dependencies.py sbom >"$made/pcr-$version.cdx.json"
+  .ci/dependencies.py sbom pcr-host >"$made/pcr-$version.cdx.json"
   (cd "$made" && find . -maxdepth 1 -type f ! -name SHA256SUMS -printf '%f\n' | sort | xargs sha256sum >SHA256SUMS)
   cd "$root"
 }
