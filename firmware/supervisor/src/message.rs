@@ -6,7 +6,9 @@ use crate::fleet::Rejected;
 use crate::frame::Damage;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Encounter, Full, Interval, Invalid, Limits, Mismatch, Motion, Pass, PieceRef, Refused, RegionRef};
+use pcr_core::{
+    Encounter, Full, Interval, Invalid, Limits, Mismatch, Motion, Pass, PieceRef, Refused, RegionRef, Unchanged,
+};
 use serde::{Deserialize, Serialize};
 
 /// A request to the supervisor. Each is answered before the next is read.
@@ -331,7 +333,7 @@ pub enum Refusal {
         /// What is wrong with it.
         why: Reason,
     },
-    /// The table has no room for all regions; there is no table now.
+    /// The table has no room for two agents, or for what they need to be under way; there is no table now.
     TableFull(Room),
     /// There is no such agent.
     NoSuchAgent {
@@ -370,6 +372,13 @@ pub enum Refusal {
     Blocked([u16; 2]),
     /// A robot may greet, report, and ask for its orders.
     Robot,
+    /// The table has no room for all regions of the fleet, which needs as many as this, or more where it is 65535; there is no table now.
+    Needs {
+        /// Regions, each for both directions of a pair; as many orders, where there are any.
+        regions: u16,
+        /// Pieces of these.
+        pieces: u16,
+    },
 }
 
 impl From<Refused> for Refusal {
@@ -472,6 +481,15 @@ impl From<Full> for Refusal {
             Full::Pair(agents) => Room::Pair(agents.map(short)),
             _ => Room::Other,
         })
+    }
+}
+
+impl From<Unchanged> for Refusal {
+    fn from(unchanged: Unchanged) -> Self {
+        match unchanged {
+            Unchanged::Full(full) => full.into(),
+            Unchanged::Mismatch(mismatch) => mismatch.into(),
+        }
     }
 }
 
