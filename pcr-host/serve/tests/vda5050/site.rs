@@ -45,7 +45,7 @@ pub(crate) fn interfaces() -> [Interface; 2] {
 
 pub(crate) fn settings() -> Settings {
     // Holds as far as the way is free: bases end at nodes that may be far.
-    Settings { lookahead: 1e3, ..Settings::default() }
+    Settings { lookahead: 1e3, width: 0.3, ..Settings::default() }
 }
 
 /// A supervisor at work.

@@ -28,7 +28,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     let at_broker = arguments.broker.is_some() || demo.is_some();
     let settings = Settings {
         // Bases end at nodes, which may be far.
-        width: within("--width", arguments.width, 0.001, 10.0)?,
+        width: within("--width", arguments.width, 0.001, 10.0)?.max(if at_broker { STOPS } else { 0.0 }),
         lookahead: if at_broker { FAR } else { within("--lookahead", arguments.lookahead, 0.1, 600.0)? },
         silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
         ..Settings::default()
@@ -69,6 +69,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     ended.and(done)?;
     Ok(ExitCode::SUCCESS)
 }
+
+/// Vehicles of VDA 5050 are told to stop, and say where they are, so much before where they may be \[m\].
+const STOPS: f64 = 0.3;
 
 /// As far as anybody may go \[s\].
 const FAR: f64 = 1e6;

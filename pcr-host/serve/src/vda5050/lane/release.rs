@@ -15,7 +15,7 @@ const AGAIN: f64 = 1.0;
 const ROUNDING: f64 = 1e-4;
 
 /// A part of an edge that is released alone is no shorter \[m\].
-const PART: f64 = 0.25;
+const PART: f64 = 0.05;
 
 /// Nodes ahead that a vehicle is told at most: it need not know all of a long order.
 const AHEAD: usize = 60;
@@ -125,12 +125,7 @@ impl Job {
         let from = stops.last().map_or(last.length, |stop| stop.length);
         let is_short = from - (robot.up_to + offset) < 2.0 * robot.abilities.braking() + 2.0 * robot.abilities.speed;
         let next = self.way.node(reached + 1).filter(|_| reached < planned);
-        if split
-            && is_short
-            && self.can_split(reached)
-            && next.is_some_and(|next| hold < next - 0.1)
-            && hold - from >= PART
-        {
+        if split && is_short && self.can_split(reached) && next.is_some() && hold - from >= PART {
             push(&mut stops, hold, reached, true);
         }
         stops
