@@ -32,8 +32,8 @@ impl Vehicle {
         Pose {
             x: x + noise * angle.cos(),
             y: y + noise * angle.sin(),
-            // The schema has fewer digits of π.
-            theta: theta.clamp(-3.141_592_653, 3.141_592_653),
+            // The schemas have fewer digits of π.
+            theta: theta * (1.0 - 1e-9),
             map_id: self.map_id.clone(),
             position_initialized: (!is_third).then_some(true),
             localized: is_third.then_some(true),
