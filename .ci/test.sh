@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests pages web schemas python packages release instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,6 +24,7 @@ style() {
     echo "unsafe code outside pcr-core/src/scalar/vsqrt.rs" >&2
     return 1
   fi
+  .ci/dependencies.py
   .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing,serve}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
@@ -39,6 +40,8 @@ docs() {
   step "documentation"
   peer_libraries
   RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features pcr-tests/peers --locked
+  step "the public interface of pcr-core, as it was reviewed"
+  .ci/api.py "${CARGO_TARGET_DIR:-target}/doc"
 }
 
 tests() {
@@ -117,6 +120,11 @@ packages() {
   done
   # What is recorded for the proofs is compared in the repository, where the proofs are.
   (cd "$target/package"/pcr-core-*[0-9] && CARGO_TARGET_DIR=.. cargo test -q --lib --examples --features std -- --skip recorded::)
+}
+
+release() {
+  step "the quick parts of a release, built twice from clean clones: the same bit for bit"
+  .ci/release.sh "${CARGO_TARGET_DIR:-target}/release-parts" library playground
 }
 
 instructions() {
@@ -210,6 +218,7 @@ c() {
 firmware() {
   step "firmware: cross-built, run in QEMU, measured"
   (cd firmware && cargo fmt --all --check)
+  (cd firmware/examples && cargo fmt --all --check)
   firmware/check.sh
 }
 
@@ -219,7 +228,7 @@ proofs() {
 }
 
 fuzz() {
-  step "fuzzing: scenario files, pairs and importers"
+  step "fuzzing: scenario files, pairs, importers and tables of microcontrollers"
   fuzz/run.sh
 }
 
@@ -229,7 +238,7 @@ everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions fuzz packages >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions fuzz packages release >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT

@@ -3,13 +3,14 @@
 # with the host and with the files in expected/. Any part that cannot run is a failure.
 #   check.sh                     everything
 #   check.sh TARGET:FORMAT...    some
+#   check.sh examples            those for boards
 #   UPDATE=1 check.sh ...        writes the files in expected/ instead of comparing with them; budgets hold all the same
 # Installs what is missing as root on Debian, and says so; elsewhere it says what to install.
 set -euo pipefail
 cd "$(dirname "$0")"
 
-matrix=(thumbv7em-none-eabihf:f32 thumbv7em-none-eabihf:micro thumbv7m-none-eabi:q16 thumbv6m-none-eabi:q16
-  riscv32imc-unknown-none-elf:q16)
+matrix=(thumbv7em-none-eabihf:f32 thumbv7em-none-eabihf:micro thumbv8m.main-none-eabihf:f32 thumbv7m-none-eabi:q16
+  thumbv6m-none-eabi:q16 riscv32imc-unknown-none-elf:q16)
 # Further formats, for the proof that nothing panics.
 proofs=(thumbv6m-none-eabi:q12 thumbv6m-none-eabi:q20)
 
@@ -87,6 +88,29 @@ behaviour() {
   if [ "$format" = f32 ]; then ./qemu-run.sh "$programs/roots"; fi
 }
 
+# The very images of the Cortex-M4F on a Cortex-M7: the same output, and the same instructions.
+cortex_m7() {
+  local programs=$out/thumbv7em-none-eabihf/release
+  step "the images of the Cortex-M4F on a Cortex-M7"
+  export QEMU_MACHINE=mps2-an500
+  ./qemu-run.sh "$programs/demo" | diff "$scratch/host" - || fail "the table differs on a Cortex-M7"
+  SERIAL=stdio link serial f32 ./qemu-run.sh "$programs/supervisor"
+  ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /' >"$scratch/m7"
+  unset QEMU_MACHINE
+  grep -Fxf "$scratch/figures" "$scratch/m7" | diff - "$scratch/m7" || fail "other instruction counts on a Cortex-M7"
+}
+
+# An STM32F405 has less memory, at other addresses, and another UART.
+stm32f405() {
+  local programs=$out/thumbv7em-none-eabihf/release
+  step "STM32F405"
+  build thumbv7em-none-eabihf f32,stm32f405 demo supervisor
+  export QEMU_MACHINE=netduinoplus2
+  ./qemu-run.sh "$programs/demo" | diff "$scratch/host" - || fail "the table differs on an STM32F405"
+  SERIAL=stdio link serial f32 ./qemu-run.sh "$programs/supervisor"
+  unset QEMU_MACHINE
+}
+
 # Fixed point with the overflow checks that the size figures are without.
 overflow() {
   local target=$1 format=$2
@@ -146,6 +170,7 @@ figures() {
   # What the robot has told, while it was run above.
   sed 's/^\( *[0-9]*  \)/\1instructions: /' "$scratch/robot"
   ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /'
+  ICOUNT=7 ./qemu-run.sh "$programs/worst"
 }
 
 # object ELF NAME: bytes of a static.
@@ -192,7 +217,7 @@ budgets() {
     riscv32imc*) limit "$file" "bytes of code of the library in it" "$riscv_budget" ;;
   esac
   case $target:$format in
-    thumbv7em*:f32) limit "$file" "instructions: table of all agents" 600000 ;;
+    thumbv7em*:f32 | thumbv8m*:f32) limit "$file" "instructions: table of all agents" 600000 ;;
     thumb*:q*)
       tools/fwcheck.py "$programs/pipeline" --no-float || fail "floating point in a fixed-point program"
       ;;
@@ -234,7 +259,7 @@ compare() {
 }
 
 one() {
-  local target=$1 format=$2 bins=(proof demo supervisor robot pipeline nothing measure)
+  local target=$1 format=$2 bins=(proof demo supervisor robot pipeline nothing measure worst)
   if [ "$format" = f32 ]; then bins+=(roots); fi
   step "$target, $format: build; no public function can panic, or its proof would not link"
   build "$target" "$format" "${bins[@]}"
@@ -242,10 +267,34 @@ one() {
   compare "$target" "$format"
   case $target:$format in
     thumbv6m-none-eabi:q16) overflow "$target" "$format" ;;
-    thumbv7em-none-eabihf:f32) control "$target" "$format" ;;
+    thumbv7em-none-eabihf:f32)
+      cortex_m7
+      stm32f405
+      control "$target" "$format"
+      ;;
   esac
 }
 
+# Examples for boards: that they compile and link, and fit into the memory of their board. Nothing here can run them.
+examples() {
+  local target board
+  while read -r target board; do
+    step "example for a board: $board"
+    [ "$(wc -l <examples/"$board"/src/main.rs)" -lt 120 ] || fail "the example for $board is no longer short"
+    (cd examples && ../cross.sh "$target" build --locked --release --quiet -p "example-$board" </dev/null)
+    readelf -SW "${CARGO_TARGET_DIR:-examples/target}/$target/release/example-$board" | grep -q "[.]defmt" || fail "$board logs nothing"
+  done <<'BOARDS'
+thumbv7em-none-eabihf stm32f4
+thumbv7em-none-eabihf nrf52840
+thumbv6m-none-eabi rp2040
+riscv32imc-unknown-none-elf esp32c3
+BOARDS
+}
+
+if [ "$*" = examples ]; then
+  examples
+  exit
+fi
 tools
 if [ $# -gt 0 ]; then
   for pair in "$@"; do one "${pair%%:*}" "${pair##*:}"; done
@@ -255,5 +304,6 @@ else
     step "${pair%%:*}, ${pair##*:}: no public function can panic, or its proof would not link"
     build "${pair%%:*}" "${pair##*:}" proof
   done
+  examples
 fi
 step "firmware: all passed"

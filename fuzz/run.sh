@@ -14,7 +14,7 @@ fi
 jobs=("$@")
 # A minute or two in all, building aside; those that take longest for a run get fewest.
 if [ $# -eq 0 ]; then
-  jobs=(scenario=1500 pair=500 limits=300 fleet=200 rmf=200 nav2=300 lif=2000 vda5050=3000 opendrive=500 opentcs=500 ccbs=500 path=500 serve=500 journal=1000)
+  jobs=(scenario=1500 pair=500 limits=300 fleet=200 rmf=200 nav2=300 lif=2000 vda5050=3000 opendrive=500 opentcs=500 ccbs=500 grid=500 path=500 dump=2000 serve=500 journal=1000)
 fi
 for run in "${jobs[@]}"; do
   target=${run%%=*} runs=${run##*=}
@@ -31,8 +31,10 @@ for run in "${jobs[@]}"; do
     opendrive) seeds=("$small/track.xodr") ;;
     opentcs) seeds=("$small/plant.xml") ;;
     ccbs) seeds=("$real/ccbs/example_grid_task_log.xml" "$small/roadmap.xml") ;;
+    grid) seeds=("$small/grid.path") ;;
     fleet) seeds=("$small/factsheet.json" "$real"/rmf/config/*.yaml) ;;
     path) seeds=("$small/points.path") ;;
+    dump) seeds=(tests/data/dumps/pair-*.txt) ;;
     *) seeds=() ;;
   esac
   if [ ${#seeds[@]} -gt 0 ]; then cp "${seeds[@]}" "$corpus"; fi

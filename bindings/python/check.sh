@@ -12,7 +12,7 @@ if ! "$python" -m venv "$environment" >/dev/null 2>&1; then
   "$python" -m venv "$environment"
 fi
 bin=$environment/bin
-"$bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2" numpy mypy
+"$bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2" numpy mypy matplotlib
 rm -rf "$wheels"
 "$bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$wheels"
 wheel=$(ls "$wheels"/pcr_py-*.whl)
@@ -46,6 +46,8 @@ with contextlib.redirect_stdout(out):
     exec(program, {})
 sys.exit(0 if out.getvalue() == said else f"the README says\n{said}but it prints\n{out.getvalue()}")
 README
+# The notebook says what it says in the file.
+"$bin/python" bindings/python/notebooks/run.py bindings/python/notebooks/paper.ipynb
 "$bin/mypy" --config-file bindings/python/pyproject.toml -p pcr
 "$bin/mypy" --config-file bindings/python/pyproject.toml bindings/python/tests/test_pcr.py
 "$bin/stubtest" pcr._pcr --ignore-disjoint-bases

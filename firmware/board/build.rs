@@ -5,13 +5,20 @@ use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rustc-check-cfg=cfg(armv6m)");
+    println!("cargo:rustc-check-cfg=cfg(armv6m, armv8m)");
     let target = env::var("TARGET")?;
     // Origin of flash and of RAM, and their sizes in KiB.
     let memory = match target.as_str() {
         "thumbv6m-none-eabi" => {
             println!("cargo:rustc-cfg=armv6m");
             regions(0x0000_0000, 256, 0x2000_0000, 16) // microbit
+        }
+        "thumbv7em-none-eabihf" if env::var_os("CARGO_FEATURE_STM32F405").is_some() => {
+            regions(0x0800_0000, 1024, 0x2000_0000, 128) // netduinoplus2
+        }
+        "thumbv8m.main-none-eabihf" => {
+            println!("cargo:rustc-cfg=armv8m");
+            regions(0x1000_0000, 4096, 0x3800_0000, 2048) // mps2-an505
         }
         "thumbv7m-none-eabi" | "thumbv7em-none-eabihf" => regions(0x0000_0000, 4096, 0x2000_0000, 4096), // mps2
         "riscv32imc-unknown-none-elf" => {

@@ -10,6 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 COLUMNS = [
     ("thumbv7em-none-eabihf", "f32", "Cortex-M4F"),
     ("thumbv7em-none-eabihf", "micro", "Cortex-M4F"),
+    ("thumbv8m.main-none-eabihf", "f32", "Cortex-M33"),
     ("thumbv7m-none-eabi", "q16", "Cortex-M3"),
     ("thumbv6m-none-eabi", "q16", "Cortex-M0"),
     ("riscv32imc-unknown-none-elf", "q16", "RV32IMC"),

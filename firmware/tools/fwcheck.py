@@ -21,13 +21,13 @@ for what in ("float", "alloc", "panic"):
 arguments = parser.parse_args()
 
 HEAD = re.compile(r"^[0-9a-f]+ <(.+)>:$")
-LINE = re.compile(r"^\s+[0-9a-f]+:\t(\S+)\s*(.*)$")
+LINE = re.compile(r"^\s*[0-9a-f]+:\t(\S+)\s*(.*)$")
 TARGET = re.compile(r"<(.+?)(\+0x[0-9a-f]+)?>$")
 
 
 class Function:
     def __init__(self):
-        self.frame, self.calls, self.unproven, self.fpu = 0, set(), [], False
+        self.frame, self.calls, self.unproven, self.fpu, self.read = 0, set(), [], False, False
 
 
 def plain(symbol):
@@ -76,7 +76,7 @@ listing = subprocess.run(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", a
                          text=True).stdout
 # Thumb-1 moves sp by more than 508 bytes through a register: down by a constant from the literal pool, which is negative,
 # and back up by way of the frame pointer r7.
-words = {int(a, 16): int(w, 16) for a, w in re.findall(r"^\s+([0-9a-f]+):\t\.word\s+0x([0-9a-f]+)", listing, re.M)}
+words = {int(a, 16): int(w, 16) for a, w in re.findall(r"^\s*([0-9a-f]+):\t\.word\s+0x([0-9a-f]+)", listing, re.M)}
 constants = {}
 for line in listing.splitlines():
     if m := HEAD.match(line):
@@ -90,8 +90,9 @@ for line in listing.splitlines():
     # What the linker puts between functions looks like jumps.
     if not m or not current or int(line.split(":", 1)[0], 16) >= end:
         continue
+    current.read = True
     op, text = m[1], re.sub(r"\s*[@;].*$", "", m[2])
-    if m := re.match(r"\s+[0-9a-f]+:\tldr\s+(r\d), \[pc, #\d+\]\s*[@;] \(([0-9a-f]+)", line):
+    if m := re.match(r"\s*[0-9a-f]+:\tldr\s+(r\d), \[pc, #\d+\]\s*[@;] \(([0-9a-f]+)", line):
         word = words.get(int(m[2], 16), 0)
         constants[m[1]] = 2**32 - word if word >= 2**31 else None
     elif m := re.match(r"subs (r\d), (?:r7, )?#\d+$", op + " " + text):
@@ -113,6 +114,9 @@ for line in listing.splitlines():
     elif re.match(r"b[a-z.]*$", op) and target:
         current.calls.add(target[1])
 
+# A listing of another form would have no stack and nothing forbidden.
+if not functions or sum(function.read for function in functions.values()) * 2 < len(functions):
+    sys.exit(f"fwcheck: the disassembly of {arguments.elf} was not understood")
 for name, function in functions.items():
     function.calls &= functions.keys()
     function.calls.discard(name)  # branches inside it; recursion of one function is looked for below

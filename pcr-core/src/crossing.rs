@@ -5,6 +5,7 @@
 
 use crate::geometry::Direction;
 use crate::motion::Motion;
+use crate::pair::Pair;
 use crate::pair::footprint::Footprint;
 use crate::pair::lengths::Lengths;
 use crate::pair::offset::{Carrier, Relative};
@@ -50,7 +51,10 @@ pub struct Crossing<S: Scalar> {
 
 /// The crossings of two paths, in the order of the other's segments. Each end of a segment belongs to one of
 /// its neighbours, so that a crossing at a joint counts once. Where paths touch, or run on one another, they do not
-/// cross: the angle has to move the paths apart by more than the slack over the length of a combined radius.
+/// cross: the angle has to move the paths apart by more than four slacks over the length of a combined radius.
+///
+/// Where paths cross at an angle whose sine is 1/4 or more, a crossing at a joint counts once; below, rounding may make it two or
+/// none (`docs/errors.md`).
 ///
 /// Cost: a box test a pair of segments; a square root and a few arctangents where they overlap.
 pub fn crossings<'a, S: Scalar>(
@@ -79,9 +83,9 @@ fn numbered<'a, S: Scalar>(motion: &'a Motion<'_, S>) -> impl Iterator<Item = (u
     (0..segments.len()).zip(segments)
 }
 
-/// How far rounding may move a crossing along a segment.
+/// How far rounding may move a crossing along a segment: what distances are off by the sine of the angle, down to 1/4.
 fn margin<S: Scalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> S {
-    S::slack(ego.extent().max(other.extent())).double().double()
+    Pair::new(ego, other).slack.double().double()
 }
 
 impl<S: Scalar> Crossing<S> {

@@ -116,6 +116,28 @@ def ramp_slow_end():
     return proved(Implies(And(v >= 0, a >= 0, e >= 0), 2 * (v + a * e / 2) * e >= (v + a * e) * e))
 
 
+def two_laps():
+    """Two laps of less than half a turn, shown by an error of e in their ends: d² - 2ed + 2Rδ <= 0 only for δ <= e²/2R"""
+    radius, delta, e = Reals("radius delta e")
+    shown = And(radius > 0, e >= 0, d >= 0, d * d - 2 * e * d + 2 * radius * delta <= 0)
+    return proved(Implies(shown, 2 * radius * delta <= e * e))
+
+
+def two_roots():
+    """Errors of ±1/2 in the roots p of N and q of F: 2pq(qa - pb) / (p² + q²) of r², with r >= p, are 0.61 of r at most"""
+    p, q, a, b = Reals("p q a b")
+    half = Fraction(1, 2)
+    halves = And(p > 0, q > 0, ABS(a, half), ABS(b, half), r >= p)
+    return proved(Implies(halves, ABS(p * q * (q * a - p * b), Fraction(61, 100) * r * (p * p + q * q))))
+
+
+def through_both_ends():
+    """A phase told by both ends: an error e of the speed at its slow end is one of e T/4 of a length at most"""
+    whole, t, e = Reals("whole t e")
+    inside = And(0 <= t, t <= whole, whole > 0, e >= 0)
+    return proved(Implies(inside, e * t * (whole - t) * 4 <= e * whole * whole))
+
+
 # The polynomials of trig.rs, by fractions: within a step the difference from the series is bounded by its value and slope in
 # the middle and its second derivative, in which every term is taken at its largest.
 
@@ -171,7 +193,7 @@ LEMMAS = {
     function.__name__.replace("_", "-"): function
     for function in (
         offset_identity, offset_y, offset_x, half_width, residual, residual_bound, diameter, moved, covers, turned, amplified,
-        common_factor, ramp_slow_end, polynomials,
+        common_factor, ramp_slow_end, two_laps, two_roots, through_both_ends, polynomials,
     )
 }
 

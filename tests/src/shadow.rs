@@ -1,7 +1,7 @@
 //! The shadow scalar: a number of a format that decides every branch, beside an enclosure of what it would be without rounding.
 //!
 //! The generic kernels of the library run on it as they are. Each operation rounds as the format does and encloses the exact
-//! result in an interval of `f64`, rounded outward; comparisons look at the format's own value. How far the two are apart is
+//! result in a number of 106 bits with a bound on its error; comparisons look at the format's own value. How far the two are apart is
 //! then what rounding has done along the very branches that were taken. A root of a quadratic is told as it is: it is to be
 //! held against the geometry that it stands for, at which it is exact input ([`Number::exact`]). One that is real by its doubt
 //! alone is marked: its exact value may be anything ([`Number::is_doubted`]).
@@ -22,8 +22,8 @@ pub trait Shadowed: Copy + Debug + Default + PartialEq + 'static {
     type S: Scalar;
     /// The value of a number.
     fn number(value: Self::S) -> f64;
-    /// The value of an angle \[rad\].
-    fn angle(value: <Self::S as Scalar>::Angle) -> f64;
+    /// The exact value of an angle \[rad\].
+    fn angle(value: <Self::S as Scalar>::Angle) -> Enclosure;
 }
 
 macro_rules! shadow {
@@ -93,7 +93,7 @@ impl<X: Shadowed> Number<X> {
 impl<X: Shadowed> Turned<X> {
     /// An angle of the format as exact input.
     pub fn exact(value: <X::S as Scalar>::Angle) -> Self {
-        Self { value, exact: Enclosure::at(X::angle(value)) }
+        Self { value, exact: X::angle(value) }
     }
 }
 
@@ -275,7 +275,7 @@ impl<X: Shadowed> Angle<N<X>> for Turned<X> {
     }
     fn atan2(y: N<X>, x: N<X>) -> Self {
         let value = <X::S as Scalar>::Angle::atan2(y.value, x.value);
-        Self { value, exact: y.exact.atan2(x.exact, X::angle(value)) }
+        Self { value, exact: y.exact.atan2(x.exact, X::angle(value).to_f64()) }
     }
     fn arc_length(self, radius: N<X>) -> N<X> {
         Number { value: self.value.arc_length(radius.value), exact: self.exact * radius.exact }

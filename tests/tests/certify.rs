@@ -18,6 +18,7 @@ use pcr_planning::regions::table_of;
 use pcr_planning::regions::{Answer, Request};
 use pcr_tests::certified::run;
 use pcr_tests::outward::run_on_all_processors;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// Layouts that there are in the test data, at least.
@@ -256,6 +257,18 @@ fn what_is_no_table_is_refused() {
     assert!(wrong(&|table| table.agents[0].radius = f64::NAN).contains("out of range"));
     assert!(wrong(&|table| table.agents[0].path.start[0] = f64::INFINITY).contains("out of range"));
     assert!(wrong(&|table| table.agents[0].path.segments[0].to += 1e-6).contains("segment"));
+    // More than one turn, by more than rounding: three laps of it could be covered at once.
+    let turns = |by: f64| {
+        let mut other = table.clone();
+        let mut segments = other.agents.iter_mut().flat_map(|agent| &mut agent.path.segments);
+        let arc = segments.find(|segment| segment.radius.is_some()).expect("an arc");
+        arc.radius = Some(arc.length / (TAU * by));
+        Checker::new(&other).map(drop)
+    };
+    assert!(turns(1.0 + 1e-16).is_ok() && turns(0.99).is_ok());
+    for by in [1.0 + 1e-12, 1.05] {
+        assert!(turns(by).is_err_and(|problem| problem.contains("longer than a turn")), "{by}");
+    }
     assert!(wrong(&|table| table.pairs[with].excess = 0.0).contains("excess"));
     assert!(wrong(&|table| table.pairs[with].regions.clear()).contains("region"));
     assert!(wrong(&|table| table.pairs[with].regions.extend_from_within(..1)).contains("lengths"));

@@ -46,23 +46,27 @@ fn audited<S: Format>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(
     let (lo, hi) = ((their.lo - own.hi).to_f64() - 1.0, (their.hi - own.lo).to_f64() + 1.0);
     let ends = forbidden.iter().flat_map(|interval| [interval.lo, interval.hi]).filter(|end| end.abs() < S::LIMIT);
     let even = (0..=SAMPLES).map(|k| S::from_f64(lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES)));
-    for delay in even.chain(ends) {
+    for delay in even.clone().chain(ends) {
         let Ok(delayed) = fleet[0].delayed(delay) else { continue };
         let encounter = Encounter::new(&delayed, &fleet[1]);
         // Long before and after: both stand.
         let one = S::from_f64(1.0);
         let during = Interval::new(encounter.time().lo - one, encounter.time().hi + one);
-        let closest = encounter.closest(during);
-        let clearance = (closest.separation - encounter.radius()).to_f64();
-        // Inside the closed interval, but not at its ends, where the search stopped outside.
-        let is_forbidden = forbidden.iter().any(|interval| interval.lo < delay && delay < interval.hi);
-        let slip = slip(&encounter, &fleet[0], &fleet[1]);
-        if is_forbidden {
-            prop_assert!(clearance <= slip, "free at {delay:?} by {clearance}: {forbidden:?}");
-        } else {
-            let tolerance = encounter.tolerance().to_f64();
-            prop_assert!(clearance >= -tolerance, "met at {delay:?} by {clearance}: {forbidden:?}");
-        }
+        compared(&encounter, [&fleet[0], &fleet[1]], &forbidden, delay, [Some(during); 2])?;
+    }
+
+    // The same while both are under way. Just inside of an end they may be so for no time.
+    let passing: Vec<Interval<S>> = union(regions.iter().map(RegionRef::passing_delays)).collect();
+    let ends = passing.iter().flat_map(|interval| [interval.lo, interval.hi]);
+    for delay in even.chain(ends) {
+        let Ok(delayed) = fleet[0].delayed(delay) else { continue };
+        let encounter = Encounter::new(&delayed, &fleet[1]);
+        let (own, other) = (delayed.time(), fleet[1].time());
+        let (lo, hi) = (own.lo.max(other.lo), own.hi.min(other.hi));
+        let slack = bracket(&fleet[0], &fleet[1]).double();
+        let during = (lo <= hi).then(|| Interval::new(lo, hi));
+        let about = (lo - slack <= hi + slack).then(|| Interval::new(lo - slack, hi + slack));
+        compared(&encounter, [&fleet[0], &fleet[1]], &passing, delay, [about, during])?;
     }
 
     // The earliest start is free, and no later than the end of what is forbidden; discs that just touch all the time may
@@ -94,14 +98,42 @@ fn audited<S: Format>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(
     Ok(())
 }
 
+/// What is forbidden is met in the first interval of time, what is not is free in the second.
+fn compared<S: Format>(
+    encounter: &Encounter<'_, S>,
+    fleet: [&pcr_core::Motion<'_, S>; 2],
+    forbidden: &[Interval<S>],
+    delay: S,
+    during: [Option<Interval<S>>; 2],
+) -> Result<(), TestCaseError> {
+    let clearance = |during: Option<Interval<S>>| {
+        during.map_or(f64::INFINITY, |during| (encounter.closest(during).separation - encounter.radius()).to_f64())
+    };
+    // Inside the closed interval, but not at its ends, where the search stopped outside.
+    if forbidden.iter().any(|interval| interval.lo < delay && delay < interval.hi) {
+        let clearance = clearance(during[0]);
+        let slip = slip(encounter, fleet[0], fleet[1]);
+        prop_assert!(clearance <= slip, "free at {delay:?} by {clearance}: {forbidden:?}");
+    } else {
+        let (clearance, tolerance) = (clearance(during[1]), encounter.tolerance().to_f64());
+        prop_assert!(clearance >= -tolerance, "met at {delay:?} by {clearance}: {forbidden:?}");
+    }
+    Ok(())
+}
+
+/// What the bracket of a delay may be off as a time.
+fn bracket<S: Format>(ego: &pcr_core::Motion<'_, S>, other: &pcr_core::Motion<'_, S>) -> S {
+    let latest = |time: Interval<S>| time.lo.abs().max(time.hi.abs());
+    S::tolerance(latest(ego.time()).max(latest(other.time())))
+}
+
 /// What the bracket of a delay may be off, as a distance at top speed and as a time.
 fn slip<S: Format>(
     encounter: &Encounter<'_, S>,
     ego: &pcr_core::Motion<'_, S>,
     other: &pcr_core::Motion<'_, S>,
 ) -> f64 {
-    let latest = |time: Interval<S>| time.lo.abs().max(time.hi.abs());
-    let bracket = S::tolerance(latest(ego.time()).max(latest(other.time()))).to_f64();
+    let bracket = bracket(ego, other).to_f64();
     let speed = ego.profile().top_speed().to_f64() + other.profile().top_speed().to_f64();
     encounter.tolerance().to_f64() + 2.0 * bracket * speed.max(1.0)
 }

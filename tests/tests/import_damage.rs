@@ -6,7 +6,7 @@ use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 
 /// One file of every kind.
-const FILES: [(Format, &str); 12] = [
+const FILES: [(Format, &str); 13] = [
     (Format::Nav2, include_str!("../data/real/nav2/sample_graph.geojson")),
     (Format::Nav2, include_str!("../data/real/nav2/aws_graph.geojson")),
     (Format::Lif, include_str!("../data/real/lif/example_17.lif.json")),
@@ -17,6 +17,7 @@ const FILES: [(Format, &str); 12] = [
     (Format::Ccbs, include_str!("../data/small/roadmap.xml")),
     (Format::OpenDrive, include_str!("../data/small/track.xodr")),
     (Format::OpenTcs, include_str!("../data/small/plant.xml")),
+    (Format::Grid, include_str!("../data/small/grid.path")),
     (Format::Path, include_str!("../data/small/points.path")),
     (Format::Rmf, include_str!("../data/real/rmf/triple_H.building.yaml")),
 ];

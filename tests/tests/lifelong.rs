@@ -1,28 +1,36 @@
 //! Fleets that run for a while on a real layout: no contact, nobody beyond its hold, everybody arrives in the end.
 
-use pcr_formats::import::{self, Format, Options, Warnings};
-use pcr_planning::lifelong::{Delays, Method, Outcome, Request, run};
+use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_planning::lifelong::{Delays, Method, Outcome, Request, Shares, run};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 
-fn warehouse(agents: usize, minutes: f64, stopped: f64, method: Method) -> Outcome {
+fn layout(format: Format, text: &str, radius: f64) -> Imported {
     let options = Options {
-        radius: Some(0.4),
+        radius: Some(radius),
         speed: Some(1.0),
         acceleration: Some(0.5),
         rotation: Some(1.0),
         rotation_acceleration: Some(1.0),
         ..Options::default()
     };
-    let imported = import::layout(Format::Nav2, WAREHOUSE, &options, &mut Warnings::default())
-        .expect("a layout of the repository");
+    import::layout(format, text, &options, &mut Warnings::default()).expect("a layout")
+}
+
+fn warehouse(agents: usize, minutes: f64, stopped: f64, method: Method) -> Outcome {
+    driven(&layout(Format::Nav2, WAREHOUSE, 0.4), agents, minutes, stopped, method)
+}
+
+fn driven(imported: &Imported, agents: usize, minutes: f64, stopped: f64, method: Method) -> Outcome {
     let delays = Delays { stopped, ..Delays::default() };
     let request = Request { agents, duration: 60.0 * minutes, delays, seed: 3, method };
-    let report = run(&imported, request).expect("a run");
+    let report = run(imported, request).expect("a run");
     let outcome = report.outcome;
     assert!(report.decisions.len() >= outcome.missions);
     assert_eq!((outcome.certificate.verdict, outcome.breaches, outcome.stuck), ("proved", 0, 0), "{outcome:?}");
     assert!(outcome.standstill < 60.0 && outcome.certificate.steps > 0, "{outcome:?}");
+    let Shares { driving, turning, stopped: stops, held, aside, idle } = outcome.time;
+    assert!((driving + turning + stops + held + aside + idle - 1.0).abs() < 1e-9, "{outcome:?}");
     outcome
 }
 
@@ -40,11 +48,60 @@ fn robots_that_are_stopped_at_random_arrive_all_the_same() {
     assert!(outcome.missions > 3, "{outcome:?}");
 }
 
+#[test]
+fn locks_on_edges_let_everybody_arrive() {
+    let outcome = warehouse(8, if cfg!(optimized) { 15.0 } else { 3.0 }, 0.2, Method::EdgeLocks);
+    assert!(outcome.missions > 3 && outcome.revised == 0, "{outcome:?}");
+}
+
+/// Others of the repository, certified; nobody gets stuck with any method.
+#[test]
+fn orders_do_more_missions_than_locks_on_other_layouts() {
+    let (agents, minutes) = if cfg!(optimized) { (10, 6.0) } else { (4, 3.0) };
+    let layouts = [
+        (Format::Nav2, include_str!("../data/real/nav2/aws_graph.geojson")),
+        (Format::Rmf, include_str!("../data/real/rmf/office.building.yaml")),
+        (Format::Rmf, include_str!("../data/real/rmf/triple_H.building.yaml")),
+    ];
+    for (format, text) in layouts {
+        let imported = layout(format, text, 0.3);
+        let [orders, locks @ ..] = [Method::Orders, Method::RouteLocks, Method::EdgeLocks]
+            .map(|method| driven(&imported, agents, minutes, 0.02, method).missions);
+        assert!(locks.iter().all(|&missions| missions > 0 && missions < orders), "{format}: {orders}, {locks:?}");
+    }
+}
+
+/// There are 17 safe ends: the others stand where they cut off few, and go away when asked.
+#[test]
+fn more_robots_than_safe_ends_go_on_all_the_same() {
+    let (agents, minutes) = if cfg!(optimized) { (25, 6.0) } else { (19, 2.0) };
+    let outcome = warehouse(agents, minutes, 0.02, Method::Orders);
+    assert!(outcome.robots == agents && outcome.missions > agents / 2, "{outcome:?}");
+}
+
 /// The same missions, the same delays.
 #[test]
 fn orders_do_more_missions_than_locks_and_start_delays() {
     let minutes = if cfg!(optimized) { 20.0 } else { 4.0 };
-    let [orders, others @ ..] = Method::ALL.map(|method| warehouse(8, minutes, 0.02, method).missions);
-    assert!(others.iter().all(|&missions| missions > 0 && missions < orders), "{orders} {others:?}");
-    assert!(2 * others[0] < orders, "{orders}, locks on routes {}", others[0]);
+    let [orders, routes, edges, delays] = Method::ALL.map(|method| warehouse(8, minutes, 0.02, method).missions);
+    assert!([routes, edges, delays].iter().all(|&missions| missions > 0 && missions < orders), "{orders}");
+    assert!(2 * routes < orders, "{orders}, locks on routes {routes}, on edges {edges}");
+}
+
+/// To and fro between two nodes 10 m apart: 10 m at 1 m/s, 2 s for the ramps at 0.5 m/s², and half a turn at 1 rad/s, ramps of 1 s.
+#[test]
+fn robots_turn_before_they_go_back() {
+    let corridor = r#"{"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"id": 0}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+        {"type": "Feature", "properties": {"id": 1}, "geometry": {"type": "Point", "coordinates": [10, 0]}},
+        {"type": "Feature", "properties": {"id": 2, "startid": 0, "endid": 1},
+            "geometry": {"type": "LineString", "coordinates": [[0, 0], [10, 0]]}},
+        {"type": "Feature", "properties": {"id": 3, "startid": 1, "endid": 0},
+            "geometry": {"type": "LineString", "coordinates": [[10, 0], [0, 0]]}}]}"#;
+    let delays = Delays { stopped: 0.0, stop: 5.0, slip: 0.0 };
+    let request = Request { agents: 1, duration: 1000.0, delays, seed: 1, method: Method::Orders };
+    let outcome = run(&layout(Format::Nav2, corridor, 0.4), request).expect("a run").outcome;
+    let alone = 10.0 + 2.0 + std::f64::consts::PI + 1.0;
+    let missions = 1000.0 / alone;
+    assert!((outcome.missions as f64 - missions).abs() < 3.0, "{outcome:?}, expected {missions}");
 }

@@ -197,6 +197,9 @@ fn drift<S: Format>(disc: &Disc) -> (f64, f64) {
         let [x, y] = [exact[0] - point.x.to_f64().into(), exact[1] - point.y.to_f64().into()].map(Twofold::to_f64);
         x.hypot(y)
     };
+    // Sums of lengths are compensated: rounded once.
+    let rounded = (Twofold::from(motion.path().length().to_f64()) - route.length()).abs().to_f64();
+    assert!(rounded <= S::EPSILON * route.length().to_f64(), "{}: lengths are off by {rounded:e}", S::NAME);
     let slack = 0.5 * excess(&motion, &motion).to_f64();
     ((0..=4000).map(distance).fold(0.0, f64::max), slack)
 }

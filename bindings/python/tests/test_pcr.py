@@ -43,6 +43,20 @@ class Tool(unittest.TestCase):
         told = tool("locks", GRAPH, "--radius", 0.4)["locks"]
         self.assertEqual(found, [[lock[k] for k in ("a", "b", "a_length", "b_length")] for lock in told])
 
+    def test_layouts_of_every_format_are_read(self) -> None:
+        real = TOP / "tests/data/real"
+        files = [GRAPH, real / "lif/example_02.lif.json", real / "rmf/office.building.yaml", real / "opendrive/Town01.planview.xodr",
+                 real / "opentcs/Demo-01.xml", real / "ccbs/sparse_map.xml"]
+        for file in files:
+            with self.subTest(file.name):
+                told = tool("locks", file, "--radius", 0.3)["locks"]
+                found = [[lock.a, lock.b, list(lock.a_length), list(lock.b_length)] for lock in pcr.Layout.read(file, radius=0.3).locks()]
+                self.assertEqual(found, [[lock[k] for k in ("a", "b", "a_length", "b_length")] for lock in told])
+                self.assertGreater(len(found), 0)
+        wide = pcr.Layout.read(GRAPH, radius=0.4).locks()
+        self.assertEqual(pcr.Layout.read(GRAPH, radius=0.1).locks(0.4), wide)
+        self.assertLess(len(pcr.Layout.read(GRAPH, radius=0.4).locks(0.1)), len(wide))
+
     def test_files_go_both_ways(self) -> None:
         fleet = pcr.Fleet.read(TWELVE)
         self.assertEqual(pcr.Fleet.from_json(fleet.to_json()).to_json(), fleet.to_json())
@@ -57,6 +71,19 @@ class Answers(unittest.TestCase):
         self.assertGreater(len(rows), 100)
         for place, other, lo, hi in rows:
             self.assertTrue(any(r.j == other and r.t[0] <= place * 0.1 <= r.t[1] and r.l[0] - 1e-9 <= lo <= hi <= r.l[1] + 1e-9 for r in regions))
+
+    def test_outlines_are_slices(self) -> None:
+        fleet = pcr.Fleet.read(TWELVE)
+        for region in list(fleet.regions())[::7]:
+            rows = region.outline(5)
+            self.assertGreaterEqual(len(rows), 5)
+            inner = [region.t[0] + (region.t[1] - region.t[0]) * (k / 6) for k in range(1, 6)]
+            self.assertEqual(sorted({t for t, _, _ in rows}), inner)
+            for t, lo, hi in rows:
+                self.assertTrue(region.l[0] - 1e-9 <= lo <= hi <= region.l[1] + 1e-9)
+                self.assertTrue(any(j == region.j and a <= lo + 1e-9 and hi <= b + 1e-9 for _, j, a, b in fleet.map(region.i, t, 1.0, 1)))
+        with self.assertRaises(pcr.Error):
+            fleet.regions()[0].outline(-1)
 
     def test_safe_intervals_leave_out_conflicts(self) -> None:
         fleet = pcr.Fleet.read(TWELVE)

@@ -3,6 +3,8 @@
 //! On ARM the SysTick timer runs on that clock, with two ticks an instruction or more, so that rounding gives the
 //! count; a loop of known length calibrates it. On RISC-V `minstret` is the count.
 
+use core::cell::Cell;
+
 #[cfg(target_arch = "arm")]
 mod clock {
     const CONTROL: *mut u32 = 0xE000_E010 as *mut u32;
@@ -85,8 +87,8 @@ mod clock {
     }
 }
 
-/// Instructions of the calibration.
-const KNOWN: u32 = 1 << 20;
+/// Instructions of the calibration. The STM32F405 has 21 ticks an instruction where the others have 3.
+const KNOWN: u32 = if cfg!(feature = "stm32f405") { 1 << 19 } else { 1 << 20 };
 
 /// The calibrated clock.
 #[derive(Debug)]
@@ -117,10 +119,53 @@ impl Meter {
         let from = clock::now();
         let result = work();
         let to = clock::now();
-        let ticks = u64::from(clock::between(from, to).saturating_sub(self.nothing));
-        let scaled = ticks.wrapping_mul(u64::from(KNOWN)).wrapping_add(self.known / 2);
-        let count = scaled.checked_div(self.known).unwrap_or(0) as u32;
+        let count = self.instructions(u64::from(clock::between(from, to).saturating_sub(self.nothing)));
         (if clock::ran_out() { u32::MAX } else { count }, result)
+    }
+
+    fn instructions(&self, ticks: u64) -> u32 {
+        let scaled = ticks.wrapping_mul(u64::from(KNOWN)).wrapping_add(self.known / 2);
+        scaled.checked_div(self.known).unwrap_or(0) as u32
+    }
+
+    /// Begins to count work in parts.
+    pub fn laps(&self) -> Laps<'_> {
+        clock::wind();
+        let _ = clock::ran_out();
+        let from = Cell::new(clock::now());
+        Laps { meter: self, from, ticks: Cell::new(0), longest: Cell::new(0), lost: Cell::new(false) }
+    }
+}
+
+/// Instructions of work that tells when a part of it is done; only a part must not be longer than the clock can count.
+#[derive(Debug)]
+pub struct Laps<'a> {
+    meter: &'a Meter,
+    from: Cell<u32>,
+    ticks: Cell<u64>,
+    longest: Cell<u32>,
+    lost: Cell<bool>,
+}
+
+impl Laps<'_> {
+    /// A part is done.
+    #[inline(always)]
+    pub fn lap(&self) {
+        let ticks = clock::between(self.from.get(), clock::now());
+        self.lost.set(self.lost.get() || clock::ran_out());
+        self.ticks.set(self.ticks.get().wrapping_add(u64::from(ticks)));
+        self.longest.set(self.longest.get().max(ticks));
+        clock::wind();
+        let _ = clock::ran_out();
+        self.from.set(clock::now());
+    }
+
+    /// Instructions of all parts, and of the longest; `u32::MAX` where a part was too long to count.
+    pub fn counts(&self) -> [u32; 2] {
+        if self.lost.get() {
+            return [u32::MAX; 2];
+        }
+        [self.ticks.get(), u64::from(self.longest.get())].map(|ticks| self.meter.instructions(ticks))
     }
 }
 

@@ -36,10 +36,38 @@ mod nrf51 {
 #[cfg(all(target_arch = "arm", armv6m))]
 use nrf51 as line;
 
-#[cfg(all(target_arch = "arm", not(armv6m)))]
+#[cfg(feature = "stm32f405")]
+mod stm32 {
+    //! USART 1 of the STM32F405: reference manual RM0090, section 30.6. Clocks are as QEMU has them: on a board the USART and its pins
+    //! are switched on first, and the divider follows from their clock (`firmware/examples/stm32f4`).
+    const BASE: usize = 0x4001_1000;
+    const STATUS: usize = 0x0;
+    const DATA: usize = 0x4;
+    const DIVIDER: usize = 0x8;
+    const CONTROL: usize = 0xC;
+
+    pub(super) fn start() {
+        super::write(BASE + DIVIDER, 0x2D9); // 115200 at 84 MHz
+        super::write(BASE + CONTROL, 1 << 13 | 1 << 3 | 1 << 2);
+    }
+
+    pub(super) fn read() -> u8 {
+        while super::read(BASE + STATUS) & 1 << 5 == 0 {}
+        super::read(BASE + DATA) as u8
+    }
+
+    pub(super) fn write(byte: u8) {
+        while super::read(BASE + STATUS) & 1 << 7 == 0 {}
+        super::write(BASE + DATA, u32::from(byte));
+    }
+}
+#[cfg(feature = "stm32f405")]
+use stm32 as line;
+
+#[cfg(all(target_arch = "arm", not(armv6m), not(feature = "stm32f405")))]
 mod cmsdk {
-    //! UART 0 of ARM's MPS2 boards: Cortex-M System Design Kit, DDI 0479, section 4.3.
-    const BASE: usize = 0x4000_4000;
+    //! UART 0 of ARM's MPS2 boards: Cortex-M System Design Kit, DDI 0479, section 4.3. On the AN505 it is a secure peripheral.
+    const BASE: usize = if cfg!(armv8m) { 0x5020_0000 } else { 0x4000_4000 };
     const DATA: usize = 0x0;
     const STATE: usize = 0x4;
     const CONTROL: usize = 0x8;
@@ -60,7 +88,7 @@ mod cmsdk {
         super::write(BASE + DATA, u32::from(byte));
     }
 }
-#[cfg(all(target_arch = "arm", not(armv6m)))]
+#[cfg(all(target_arch = "arm", not(armv6m), not(feature = "stm32f405")))]
 use cmsdk as line;
 
 #[cfg(target_arch = "riscv32")]

@@ -138,7 +138,7 @@ pub(crate) fn here<S: Rounded>() -> Here<S> {
 impl<S: Rounded> Supervisor for Here<S> {
     fn exchange(&mut self, bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
         let mut said = Vec::new();
-        bytes.iter().for_each(|&byte| self.take(byte, |frame| said.extend_from_slice(frame)));
+        bytes.iter().for_each(|&byte| self.take(byte, &mut |frame: &[u8]| said.extend_from_slice(frame)));
         Ok(said)
     }
 }

@@ -47,7 +47,7 @@ fn ask<S: Rounded>(
 ) -> Result<Answer<S>, Box<dyn Error>> {
     assert!(client.ask(request), "a request fits a frame");
     let (mut said, mut last) = (Vec::new(), None);
-    client.frame().iter().for_each(|&byte| supervisor.take(byte, |frame| said.extend_from_slice(frame)));
+    client.frame().iter().for_each(|&byte| supervisor.take(byte, &mut |frame: &[u8]| said.extend_from_slice(frame)));
     for byte in said {
         if let Some(Event::Answer(answer) | Event::Last(answer)) = client.take(byte) {
             hear(&answer);
@@ -93,7 +93,7 @@ pub(crate) fn check<S: Rounded>(command: &[&str]) -> Result<(), Box<dyn Error>> 
         }
         // Behind what the others have said.
         let mut said = Vec::new();
-        frame.drain(..).for_each(|byte| supervisor.take(byte, |frame| said.extend_from_slice(frame)));
+        frame.drain(..).for_each(|byte| supervisor.take(byte, &mut |frame: &[u8]| said.extend_from_slice(frame)));
         to.write_all(&said)?;
         to.flush()?;
     }

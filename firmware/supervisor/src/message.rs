@@ -6,7 +6,9 @@ use crate::fleet::Rejected;
 use crate::frame::Damage;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Encounter, Full, Interval, Invalid, Limits, Mismatch, Motion, Pass, PieceRef, Refused, RegionRef};
+use pcr_core::{
+    Encounter, Full, Interval, Invalid, Limits, Mismatch, Motion, Pass, PieceRef, Refused, RegionRef, Unchanged,
+};
 use serde::{Deserialize, Serialize};
 
 /// A request to the supervisor. Each is answered before the next is read.
@@ -260,7 +262,8 @@ pub struct RegionRecord<S: Number> {
     pub pieces: u16,
 }
 
-/// A piece of a region as it is sent.
+/// A piece of a region as it is sent: a rectangle of lengths that holds all of its contacts. Which of two laps of an arc it stands
+/// for is not told, so that slices cannot be had from it, which may be less than the rectangle; `dump::table` prints all.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct PieceRecord<S: Number> {
@@ -330,7 +333,7 @@ pub enum Refusal {
         /// What is wrong with it.
         why: Reason,
     },
-    /// The table has no room for all regions; there is no table now.
+    /// The table has no room for two agents, or for what they need to be under way; there is no table now.
     TableFull(Room),
     /// There is no such agent.
     NoSuchAgent {
@@ -369,6 +372,13 @@ pub enum Refusal {
     Blocked([u16; 2]),
     /// A robot may greet, report, and ask for its orders.
     Robot,
+    /// The table has no room for all regions of the fleet, which needs as many as this, or more where it is 65535; there is no table now.
+    Needs {
+        /// Regions, each for both directions of a pair; as many orders, where there are any.
+        regions: u16,
+        /// Pieces of these.
+        pieces: u16,
+    },
 }
 
 impl From<Refused> for Refusal {
@@ -471,6 +481,15 @@ impl From<Full> for Refusal {
             Full::Pair(agents) => Room::Pair(agents.map(short)),
             _ => Room::Other,
         })
+    }
+}
+
+impl From<Unchanged> for Refusal {
+    fn from(unchanged: Unchanged) -> Self {
+        match unchanged {
+            Unchanged::Full(full) => full.into(),
+            Unchanged::Mismatch(mismatch) => mismatch.into(),
+        }
     }
 }
 

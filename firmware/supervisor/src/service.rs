@@ -7,10 +7,27 @@ use crate::message::{
 };
 use crate::number::Number;
 use crate::table::Table;
+use core::cell::RefCell;
 use heapless::Vec;
-use pcr_core::{Ecm, Interval, Limits, Piece, Pose, Region, Unchanged, earliest_start};
+use pcr_core::{Ecm, Interval, Limits, Motion, Piece, Pose, Region, Unchanged, earliest_start};
 
 pub use crate::table::Regions;
+
+/// Where answers go; a closure that takes them is one.
+pub trait Replies<S: Number> {
+    /// Takes the next answer.
+    fn send(&mut self, answer: Answer<S>);
+
+    /// Between two parts of a long job: after one agent against all before it, one pair of agents, one region of a replan. Feed the
+    /// watchdog here, and after every answer. docs/firmware.md has the instructions from one to the next.
+    fn pause(&mut self) {}
+}
+
+impl<S: Number, F: FnMut(Answer<S>)> Replies<S> for F {
+    fn send(&mut self, answer: Answer<S>) {
+        self(answer);
+    }
+}
 
 /// A fleet and its table, made to be a `static`: at most `A` agents with `N` segments in all, those of an agent that comes
 /// in the place of another one included while both are there, `R` regions and `P` pieces of them. Without orders, or with them
@@ -44,8 +61,8 @@ where
     T: Table<S, R, P>,
 {
     // What it calls is not inlined: the stack of the one would lie under that of the other.
-    /// Answers a request: one call of `send` for each answer. `next` is the sequence number that a greeting tells.
-    pub fn answer(&mut self, request: Request<S>, next: u16, mut send: impl FnMut(Answer<S>)) {
+    /// Answers a request: one call of [`Replies::send`] for each answer. `next` is the sequence number that a greeting tells.
+    pub fn answer(&mut self, request: Request<S>, next: u16, mut replies: impl Replies<S>) {
         let outcome = match request {
             Request::Hello => Ok(Answer::Hello {
                 format: text(S::NAME),
@@ -71,19 +88,23 @@ where
                 Err(Refusal::Running)
             }
             Request::Add(agent) => self.add(&agent),
-            Request::Load => self.load(),
-            Request::Compute => self.compute(),
-            Request::Row { ego } => self.row(usize::from(ego), &mut send),
-            Request::Conflicts => self.conflicts(&mut send),
-            Request::Replan { agent } => self.replan(usize::from(agent)).map(|time| Answer::Replanned { agent, time }),
+            Request::Load => self.load(&mut replies),
+            Request::Compute => self.compute(&mut replies),
+            Request::Row { ego } => self.row(usize::from(ego), &mut replies),
+            Request::Conflicts => self.conflicts(&mut replies),
+            Request::Replan { agent } => {
+                self.replan(usize::from(agent), &mut replies).map(|time| Answer::Replanned { agent, time })
+            }
             Request::Replace { agent, with } => self.replace(usize::from(agent), &with),
             Request::Remove { agent } => self.remove(usize::from(agent)),
             Request::Order(terms) => self.order(terms),
-            Request::Report { agent, edition, at } => self.report(usize::from(agent), edition, at, &mut send),
-            Request::Orders { agent } => self.orders(usize::from(agent), &mut send),
+            Request::Report { agent, edition, at } => {
+                self.report(usize::from(agent), edition, at, &mut |each| replies.send(each))
+            }
+            Request::Orders { agent } => self.orders(usize::from(agent), &mut |each| replies.send(each)),
             Request::Admit { agent, heading, limits, path } => self.admit(usize::from(agent), heading, limits, path),
         };
-        send(outcome.unwrap_or_else(Answer::Refused));
+        replies.send(outcome.unwrap_or_else(Answer::Refused));
     }
 
     fn clear(&mut self) {
@@ -103,10 +124,13 @@ where
     }
 
     #[inline(never)]
-    fn load(&mut self) -> Result<Answer<S>, Refusal> {
+    fn load(&mut self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         self.clear();
         let built_in = self.built_in;
-        let loaded = built_in.iter().try_for_each(|agent| self.add(agent).map(drop));
+        let loaded = built_in.iter().try_for_each(|agent| {
+            replies.pause();
+            self.add(agent).map(drop)
+        });
         if loaded.is_err() {
             self.clear();
         }
@@ -139,11 +163,12 @@ where
 
     /// Computes the table, if it is not that of the fleet already.
     #[inline(never)]
-    fn compute(&mut self) -> Result<Answer<S>, Refusal> {
+    fn compute(&mut self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
         if self.table.regions().regions(&motions).is_err() {
-            self.table.fill(&motions)?;
+            build(&mut self.table, &motions, replies)
+                .map_err(|unchanged| needed(&mut self.table, &motions, unchanged, replies))?;
         }
         let table = self.table.regions();
         Ok(Answer::Computed { regions: short(table.len()), pieces: short(table.pieces()) })
@@ -222,39 +247,47 @@ where
 
     /// When the agent moves now.
     #[inline(never)]
-    fn replan(&mut self, agent: usize) -> Result<Interval<S>, Refusal> {
+    fn replan(&mut self, agent: usize, replies: &mut impl Replies<S>) -> Result<Interval<S>, Refusal> {
         let mut motions = Motions::new();
         self.put_of(agent, &mut motions)?;
-        let delay = earliest_start(self.table.regions().row(&motions, agent)?, S::ZERO).ok_or(Refusal::NoPlan)?;
+        // The regions are gone through more than once: what goes through them is cloned.
+        let replies = RefCell::new(replies);
+        let row = self.table.regions().row(&motions, agent)?.inspect(|_| {
+            if let Ok(mut replies) = replies.try_borrow_mut() {
+                replies.pause();
+            }
+        });
+        let delay = earliest_start(row, S::ZERO).ok_or(Refusal::NoPlan)?;
         drop(motions);
         // The table is of paths: it stays as it is.
         self.fleet.delay(agent, delay).map_err(|rejected| Refusal::change(agent, rejected))
     }
 
     #[inline(never)]
-    fn row(&self, ego: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
+    fn row(&self, ego: usize, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
         self.put_of(ego, &mut motions)?;
         let mut count = 0_u16;
         for region in self.table.regions().row(&motions, ego)? {
-            send(Answer::Region(RegionRecord::of(&region)));
-            region.pieces().for_each(|piece| send(Answer::Piece(PieceRecord::of(&piece))));
+            replies.send(Answer::Region(RegionRecord::of(&region)));
+            region.pieces().for_each(|piece| replies.send(Answer::Piece(PieceRecord::of(&piece))));
             count = count.saturating_add(1);
         }
         Ok(Answer::End { count })
     }
 
     #[inline(never)]
-    fn conflicts(&self, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
+    fn conflicts(&self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
         let mut count = 0_u16;
         for first in 0..motions.len() {
             for second in first.saturating_add(1)..motions.len() {
                 if let Some(conflict) = ConflictRecord::first(&motions, [first, second])? {
-                    send(Answer::Conflict(conflict));
+                    replies.send(Answer::Conflict(conflict));
                     count = count.saturating_add(1);
                 }
+                replies.pause();
             }
         }
         Ok(Answer::End { count })
@@ -267,4 +300,45 @@ fn put<'a, S: Number, const A: usize, const N: usize>(
     motions: &mut Motions<'a, S, A>,
 ) -> Result<(), Refusal> {
     fleet.put_motions(motions).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+}
+
+/// The table of a fleet, an agent at a time; where there is no room, it is that of nobody.
+fn build<S: Number, const R: usize, const P: usize>(
+    table: &mut impl Table<S, R, P>,
+    fleet: &[Motion<'_, S>],
+    replies: &mut impl Replies<S>,
+) -> Result<(), Unchanged> {
+    table.clear();
+    for agent in 0..fleet.len() {
+        let inserted = table.insert(fleet.get(..=agent).unwrap_or_default(), agent);
+        if inserted.is_err() {
+            table.clear();
+            return inserted;
+        }
+        replies.pause();
+    }
+    Ok(())
+}
+
+/// Of what there is too little room: how much the fleet needs, counted pair by pair in the table that is too small for all of them.
+#[inline(never)]
+fn needed<S: Number, const R: usize, const P: usize>(
+    table: &mut impl Table<S, R, P>,
+    fleet: &[Motion<'_, S>],
+    unchanged: Unchanged,
+    replies: &mut impl Replies<S>,
+) -> Refusal {
+    let [mut regions, mut pieces] = [0_usize; 2];
+    for (agent, first) in fleet.iter().enumerate() {
+        for second in fleet.iter().skip(agent.saturating_add(1)) {
+            // It is too small for two of them, or no table is large enough.
+            if build(table, &[*first, *second], replies).is_err() {
+                return unchanged.into();
+            }
+            regions = regions.saturating_add(table.regions().len());
+            pieces = pieces.saturating_add(table.regions().pieces());
+        }
+    }
+    table.clear();
+    Refusal::Needs { regions: short(regions), pieces: short(pieces) }
 }

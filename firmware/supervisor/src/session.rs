@@ -10,7 +10,7 @@ use crate::agent::{Agent, Step};
 use crate::frame::{self, Reads, Receiver, Tag};
 use crate::message::{Answer, Refusal, Request};
 use crate::number::Number;
-use crate::service::{Regions, Service};
+use crate::service::{self, Regions, Service};
 use crate::table::Table;
 
 /// The sequence number after this one.
@@ -18,6 +18,21 @@ pub const fn after(sequence: u16) -> u16 {
     match sequence.checked_add(1) {
         Some(next) => next,
         None => 2,
+    }
+}
+
+/// The way out to the line; a closure that takes frames is one.
+pub trait Line {
+    /// Sends a frame.
+    fn send(&mut self, frame: &[u8]);
+
+    /// Between two parts of a long job, as [`Replies::pause`](service::Replies::pause).
+    fn pause(&mut self) {}
+}
+
+impl<F: FnMut(&[u8])> Line for F {
+    fn send(&mut self, frame: &[u8]) {
+        self(frame);
     }
 }
 
@@ -58,21 +73,21 @@ where
     S: Number,
     T: Table<S, R, P>,
 {
-    /// Takes a byte from the line: one call of `send` for each frame to be sent.
-    pub fn take(&mut self, byte: u8, send: impl FnMut(&[u8])) {
+    /// Takes a byte from the line: one call of [`Line::send`] for each frame to be sent.
+    pub fn take(&mut self, byte: u8, line: &mut impl Line) {
         let Some(received) = self.receiver.take::<Request<S>>(byte) else { return };
-        let mut replies = Replies { tag: Tag { who: Tag::PLANNER, sequence: 0, place: 0 }, send };
+        let mut replies = Replies { tag: Tag { who: Tag::PLANNER, sequence: 0, place: 0 }, line, last: None };
         match received {
-            Err(damage) => replies.send(&Answer::<S>::Refused(Refusal::Frame(damage))),
+            Err(damage) => replies.say(&Answer::<S>::Refused(Refusal::Frame(damage))),
             Ok(frame) => {
                 (replies.tag.who, replies.tag.sequence) = (frame.tag.who, frame.tag.sequence);
                 if frame.tag.who == Tag::PLANNER {
-                    self.done(frame.tag.sequence, frame.check, frame.message, &mut replies);
+                    self.done(frame.tag.sequence, frame.check, frame.message, replies);
                 } else if frame.message.is_of_robots() {
                     let next = self.next();
-                    self.service.answer(frame.message, next, |each| replies.send(&each));
+                    self.service.answer(frame.message, next, replies);
                 } else {
-                    replies.send(&Answer::<S>::Refused(Refusal::Robot));
+                    replies.say(&Answer::<S>::Refused(Refusal::Robot));
                 }
             }
         }
@@ -83,7 +98,7 @@ where
         self.last.as_ref().map_or(1, |last| after(last.sequence))
     }
 
-    fn done(&mut self, sequence: u16, check: u32, request: Request<S>, replies: &mut Replies<impl FnMut(&[u8])>) {
+    fn done(&mut self, sequence: u16, check: u32, request: Request<S>, mut replies: Replies<'_, S, impl Line>) {
         let next = self.next();
         let answer = match &self.last {
             _ if request == Request::Hello => None,
@@ -92,14 +107,12 @@ where
             _ => Some(Answer::Refused(Refusal::Sequence { next })),
         };
         if let Some(answer) = answer {
-            return replies.send(&answer);
+            return replies.say(&answer);
         }
-        let mut answer = None;
         let (greeting, changes) = (request == Request::Hello, request.changes());
-        self.service.answer(request, next, |each| {
-            replies.send(&each);
-            answer = changes.then_some(each);
-        });
+        let mut answer = None;
+        let last = changes.then_some(&mut answer);
+        self.service.answer(request, next, Replies { tag: replies.tag, line: replies.line, last });
         if !greeting {
             self.last = Some(Last { sequence, check, answer });
         }
@@ -107,17 +120,32 @@ where
 }
 
 /// Sends the answers to a request, each with its place.
-struct Replies<F> {
+struct Replies<'a, S: Number, L> {
     tag: Tag,
-    send: F,
+    line: &'a mut L,
+    /// Where the last answer is kept, if it is to be.
+    last: Option<&'a mut Option<Answer<S>>>,
 }
 
-impl<F: FnMut(&[u8])> Replies<F> {
-    fn send<S: Number>(&mut self, answer: &Answer<S>) {
+impl<S: Number, L: Line> Replies<'_, S, L> {
+    fn say(&mut self, answer: &Answer<S>) {
         // Every answer is shorter than a frame may be (`tests/wire.rs`); one that is not would leave its place empty.
         if let Some(bytes) = frame::encode(self.tag, answer) {
-            (self.send)(&bytes);
+            self.line.send(&bytes);
         }
         self.tag.place = self.tag.place.saturating_add(1);
+    }
+}
+
+impl<S: Number, L: Line> service::Replies<S> for Replies<'_, S, L> {
+    fn send(&mut self, answer: Answer<S>) {
+        self.say(&answer);
+        if let Some(last) = &mut self.last {
+            **last = Some(answer);
+        }
+    }
+
+    fn pause(&mut self) {
+        self.line.pause();
     }
 }

@@ -3,7 +3,7 @@
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms};
 use crate::number::Number;
-use pcr_core::{Ecm, Full, Interval, Mismatch, Motion, Piece, Region, Unchanged};
+use pcr_core::{Ecm, Interval, Mismatch, Motion, Piece, Region, Unchanged};
 
 /// A table of at most `R` regions in `P` pieces.
 pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [Region; R], [Piece<S>; P]>;
@@ -13,11 +13,11 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
     /// The regions.
     fn regions(&self) -> &Regions<S, R, P>;
 
-    /// Becomes the table of a fleet.
+    /// Adds the last agent of a fleet whose table this is but for that agent.
     ///
     /// # Errors
-    /// [`Full`]; it is then that of nobody.
-    fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full>;
+    /// [`Unchanged`].
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged>;
 
     /// Exchanges an agent, and computes its regions only.
     ///
@@ -110,8 +110,8 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
 
     // By itself, with a stack of its own; so are those below.
     #[inline(never)]
-    fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
-        Ecm::fill(self, fleet)
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+        Ecm::insert(self, fleet, agent)
     }
 
     #[inline(never)]

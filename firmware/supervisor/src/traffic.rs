@@ -13,7 +13,7 @@ use crate::message::{Answer, Edition, Refusal, Terms, short};
 use crate::number::Number;
 use crate::table::{Regions, Table};
 use pcr_core::{
-    Full, Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, Tolerances,
+    Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, Tolerances,
     Unchanged,
 };
 
@@ -80,8 +80,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
     }
 
     #[inline(never)]
-    fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
-        self.orders.fill(fleet)
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+        self.orders.insert(fleet, agent)
     }
 
     #[inline(never)]

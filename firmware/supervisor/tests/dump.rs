@@ -45,6 +45,9 @@ fn the_table_that_is_printed_is_proved_in_every_format() {
 fn what_is_printed_is_in_the_test_data() {
     assert_eq!(printed(&scenario::float::AGENTS), include_str!("../../../tests/data/dumps/paper12-f32.txt"));
     assert_eq!(printed(&scenario::q16::AGENTS), include_str!("../../../tests/data/dumps/paper12-q16.txt"));
+    // Small ones, of the first two agents, from which fuzzing begins.
+    assert_eq!(printed(&scenario::float::AGENTS[..2]), include_str!("../../../tests/data/dumps/pair-f32.txt"));
+    assert_eq!(printed(&scenario::q16::AGENTS[..2]), include_str!("../../../tests/data/dumps/pair-q16.txt"));
 }
 
 /// The same lines, with the check of these.

@@ -98,7 +98,7 @@ impl Link {
     fn supervise(&mut self) {
         let Self { random, bad, supervisor, back, faults, .. } = self;
         for byte in std::mem::take(&mut self.there.arriving).into_iter().flatten() {
-            supervisor.take(byte, |frame| back.send(random, *bad, frame, faults));
+            supervisor.take(byte, &mut |frame: &[u8]| back.send(random, *bad, frame, faults));
         }
     }
 
@@ -212,7 +212,7 @@ fn said(supervisor: &mut Supervisor, bytes: &[u8]) -> Vec<(u16, Answer<f32>)> {
     let mut receiver = pcr_supervisor::frame::Receiver::new(Reads::Answers);
     let mut said = Vec::new();
     for &byte in bytes {
-        supervisor.take(byte, |frame| {
+        supervisor.take(byte, &mut |frame: &[u8]| {
             for &byte in frame {
                 if let Some(frame) = receiver.take::<Answer<f32>>(byte) {
                     let frame = frame.expect("a good frame");
@@ -270,7 +270,7 @@ fn a_supervisor_does_not_answer_itself() {
     let (mut supervisor, mut client) = (Supervisor::new(&BUILT_IN), Client::new());
     let [load] = &frames(&mut client, &[Request::Load])[..] else { panic!() };
     let mut echo = Vec::new();
-    load.iter().for_each(|&byte| supervisor.take(byte, |frame| echo.extend_from_slice(frame)));
+    load.iter().for_each(|&byte| supervisor.take(byte, &mut |frame: &[u8]| echo.extend_from_slice(frame)));
     assert_eq!(said(&mut supervisor, &echo), []);
     let hears = |client: &mut Client| load.iter().filter_map(|&byte| client.take::<f32>(byte)).count();
     assert_eq!(hears(&mut client), 0, "nor does one who asks");
@@ -284,7 +284,9 @@ fn after_the_last_number_a_new_supervisor_is_still_told_from_an_old_one() {
         let frame = client.frame().to_vec();
         let mut events = Vec::new();
         frame.iter().for_each(|&byte| {
-            supervisor.take(byte, |bytes| events.extend(bytes.iter().filter_map(|&byte| client.take::<f32>(byte))));
+            supervisor.take(byte, &mut |bytes: &[u8]| {
+                events.extend(bytes.iter().filter_map(|&byte| client.take::<f32>(byte)))
+            });
         });
         assert_eq!(events, [Event::Last(Answer::Done)], "round {round}");
         if round == 65_534 {

@@ -4,7 +4,7 @@
 use pcr_core::{Curve, Invalid, Limits, Point, Pose, Radians, Turn};
 use pcr_supervisor::fleet::Rejected;
 use pcr_supervisor::message::{Reason, Refusal, Room, text};
-use pcr_supervisor::{Agent, Answer, Request, Service, Step, Store};
+use pcr_supervisor::{Agent, Answer, Replies, Request, Service, Step, Store};
 use std::f32::consts::{FRAC_PI_2, PI};
 
 type Small = Service<f32, 3, 6, 4, 8>;
@@ -139,7 +139,7 @@ fn a_table_goes_on_when_an_agent_is_replaced_or_removed() {
     change(Request::Replace { agent: 1, with: agent(1.0) }, 2, &[agent(0.0), agent(1.0)]);
     change(Request::Replace { agent: 0, with: agent(1.0) }, 2, &[agent(1.0), agent(FRAC_PI_2)]);
     change(Request::Remove { agent: 0 }, 1, &[agent(FRAC_PI_2)]);
-    // Where the new agent's regions have no room, there is no table, and it is said which room.
+    // Where the new agent's regions have no room, there is no table, and it is said how much is needed.
     let mut service = Service::<f32, 3, 6, 1, 8>::new(&[]);
     let mut said = Vec::new();
     let aside = Agent { start: Pose { position: Point::new(-2.0, 9.0), heading: Radians(0.0) }, ..agent(0.0) };
@@ -158,7 +158,7 @@ fn a_table_goes_on_when_an_agent_is_replaced_or_removed() {
         Answer::Computed { regions: 1, pieces: 1 },
         Answer::Fleet { agents: 3 },
         refused(Refusal::NotComputed),
-        refused(Refusal::TableFull(Room::Regions)),
+        refused(Refusal::Needs { regions: 3, pieces: 3 }),
     ];
     assert_eq!(said[3..], expected);
 }
@@ -173,15 +173,64 @@ fn a_built_in_fleet_is_there_as_a_whole_or_not_at_all() {
 }
 
 #[test]
-fn a_full_table_is_told_and_is_none() {
-    let mut service = Service::<f32, 3, 6, 2, 8>::new(&[]);
-    let mut said = Vec::new();
-    for request in [Request::Add(agent(0.0)), Request::Add(agent(0.6)), Request::Add(agent(FRAC_PI_2))] {
-        service.answer(request, 1, drop);
+fn a_full_table_is_none_and_tells_what_the_fleet_needs() {
+    fn said<const R: usize, const P: usize>() -> Vec<Answer<f32>> {
+        let mut service = Service::<f32, 3, 6, R, P>::new(&[]);
+        let mut said = Vec::new();
+        for request in [Request::Add(agent(0.0)), Request::Add(agent(0.6)), Request::Add(agent(FRAC_PI_2))] {
+            service.answer(request, 1, drop);
+        }
+        service.answer(Request::Compute, 1, |answer| said.push(answer));
+        service.answer(Request::Row { ego: 0 }, 1, |answer| said.push(answer));
+        said
     }
-    service.answer(Request::Compute, 1, |answer| said.push(answer));
-    service.answer(Request::Row { ego: 0 }, 1, |answer| said.push(answer));
-    assert_eq!(said, [refused(Refusal::TableFull(Room::Regions)), refused(Refusal::NotComputed)]);
+    let none = refused(Refusal::NotComputed);
+    let needs = refused(Refusal::Needs { regions: 3, pieces: 3 });
+    assert_eq!(said::<2, 8>(), [needs.clone(), none.clone()]);
+    assert_eq!(said::<8, 2>(), [needs, none.clone()]);
+    assert_eq!(
+        said::<3, 3>().first(),
+        Some(&Answer::Computed { regions: 3, pieces: 3 }),
+        "as much as was told is enough"
+    );
+    // Not even two of them fit.
+    assert_eq!(said::<0, 8>(), [refused(Refusal::TableFull(Room::Regions)), none.clone()]);
+    assert_eq!(said::<8, 0>(), [refused(Refusal::TableFull(Room::Pieces)), none]);
+}
+
+/// Who has a watchdog to feed while a long job is done.
+#[derive(Default)]
+struct Parts {
+    answers: usize,
+    pauses: usize,
+}
+
+impl Replies<f32> for &mut Parts {
+    fn send(&mut self, _: Answer<f32>) {
+        self.answers += 1;
+    }
+
+    fn pause(&mut self) {
+        self.pauses += 1;
+    }
+}
+
+#[test]
+fn long_jobs_are_done_in_parts() {
+    let mut service = Small::new(&PARALLEL);
+    let mut parts = |request: Request<f32>| {
+        let mut parts = Parts::default();
+        service.answer(request, 1, &mut parts);
+        (parts.answers, parts.pauses)
+    };
+    assert_eq!(parts(Request::Load), (1, 2), "an agent each");
+    assert_eq!(parts(Request::Add(agent(FRAC_PI_2))), (1, 0));
+    assert_eq!(parts(Request::Compute), (1, 3), "an agent each");
+    assert_eq!(parts(Request::Compute), (1, 0), "it is there");
+    let (_, pauses) = parts(Request::Conflicts);
+    assert_eq!(pauses, 3, "a pair each");
+    let (_, pauses) = parts(Request::Replan { agent: 2 });
+    assert!(pauses >= 2, "each region that is looked at: {pauses}");
 }
 
 /// It passes the standing disc at the sum of the radii, turns round, and drives through it.

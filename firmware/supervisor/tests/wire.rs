@@ -118,6 +118,7 @@ fn every_message_comes_back_as_it_was() {
         Refusal::Stuck([65535; 2]),
         Refusal::Blocked([65535; 2]),
         Refusal::Robot,
+        Refusal::Needs { regions: 65535, pieces: 65535 },
     ] {
         there_and_back(Answer::<f32>::Refused(refusal));
     }

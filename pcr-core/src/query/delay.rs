@@ -25,14 +25,35 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// makes of them; a region in which the discs only touch may forbid all that its ranges allow. Cost: for each finite end
     /// 10 to 30 searches for contacts.
     pub fn forbidden_delays(&self) -> Interval<S> {
-        let when = |motion: &Motion<'_, S>, length| motion.time_in(Interval::new(length, length)).lo;
-        let mut delays = self
-            .inner_points()
-            .map(|[length, other_length]| when(self.other_motion(), other_length) - when(self.ego_motion(), length));
         let possible = self.possible_delays();
-        let met = delays.find(|&delay| possible.contains(delay) && self.contact_after(delay).is_some());
+        let met = self.delays_inside().find(|&delay| possible.contains(delay) && self.contact_after(delay).is_some());
         let ends = [possible.lo, possible.hi].map(|beyond| met.map_or(beyond, |met| self.end_of_delays(met, beyond)));
         self.with_lateness(Interval::new(ends[0], ends[1]))
+    }
+
+    /// The delays of the ego's start \[s\] at which it meets this region while both are under way, rounded outward: what either
+    /// does before its start and after its arrival does not count, as if they came from nowhere and were gone then. For tables of
+    /// the edges of a roadmap.
+    ///
+    /// Accuracy, lateness and cost as of [`RegionRef::forbidden_delays`].
+    pub fn passing_delays(&self) -> Interval<S> {
+        let possible = self.delays_of(self.ego_motion().time_in(self.length()));
+        let meets = |delay| self.contact_in_passing(delay);
+        let met = self.delays_inside().find(|&delay| possible.contains(delay) && meets(delay).is_some());
+        let end = |outside| {
+            let bracket = |inside| Bracket { inside, outside, resolution: self.resolution() };
+            met.map_or(outside, |met| bracket(met).shrunk(meets))
+        };
+        self.with_lateness(Interval::new(end(possible.lo), end(possible.hi)))
+    }
+
+    /// Delays that bring the agents to points inside the region.
+    fn delays_inside(&self) -> impl Iterator<Item = S> {
+        let when = |motion: &Motion<'_, S>, length| motion.time_in(Interval::new(length, length)).lo;
+        let points = self.inner_points();
+        points.map(move |[length, other_length]| {
+            when(self.other_motion(), other_length) - when(self.ego_motion(), length)
+        })
     }
 
     /// The delays that the ranges of the region allow.
@@ -84,12 +105,27 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.ego_motion().delayed(delay).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, self.length(), -S::LIMIT))
     }
 
+    /// How long the ego meets the region while both are under way if it starts later by this delay, if it does.
+    fn contact_in_passing(&self, delay: S) -> Option<S> {
+        let Ok(ego) = self.ego_motion().delayed(delay) else { return Some(S::ZERO) };
+        let under_way = ego.time().common(self.other_motion().time());
+        if under_way.lo > under_way.hi {
+            return None;
+        }
+        self.contact_during(&ego, self.length(), under_way)
+    }
+
     /// How long the ego, in another motion along its path, first meets the region on a part of it from a time on \[s\], if
     /// it does.
     pub(super) fn contact_of(&self, ego: &Motion<'_, S>, part: Interval<S>, from: S) -> Option<S> {
+        let Interval { lo, hi } = ego.time().hull(self.other_motion().time());
+        self.contact_during(ego, part, Interval::new(lo.max(from), hi))
+    }
+
+    /// The same in an interval of time \[s\].
+    fn contact_during(&self, ego: &Motion<'_, S>, part: Interval<S>, all: Interval<S>) -> Option<S> {
         let other = self.other_motion();
         let encounter = Encounter::new(ego, other);
-        let all = Interval::new(encounter.time().lo.max(from), encounter.time().hi);
         let (own, their) = (times(ego, part, all)?, times(other, self.other_length(), all)?);
         let during = Interval::new(own.lo.max(their.lo), own.hi.min(their.hi));
         // A contact is connected, hence part of one region; at a grazing one only its deepest point may be inside. No region

@@ -10,9 +10,12 @@
 //! traffic     random missions in a real warehouse
 //! plans       costs of start delays, and what is proved of them
 //! lifelong    fleets that run there for an hour
+//! execution   plans on grids carried out while robots are late
+//! roadmaps    tables of locks and of unsafe delays
 //! scale       fleets of up to 100,000 agents
 //! ```
 
+mod execution;
 mod figures;
 mod fleets;
 mod grazing;
@@ -20,6 +23,7 @@ mod lifelong;
 mod machine;
 mod memory;
 mod plans;
+mod roadmaps;
 mod scale;
 mod shares;
 mod traffic;
@@ -113,7 +117,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 9] = [
+    const PARTS: [Part; 11] = [
         fleets::section,
         shares::section,
         figures::section,
@@ -122,6 +126,8 @@ pub fn write(
         traffic::section,
         plans::section,
         lifelong::section,
+        execution::section,
+        roadmaps::section,
         scale::section,
     ];
     let mut text = machine::preamble(extent);

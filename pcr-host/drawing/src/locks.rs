@@ -14,7 +14,7 @@ const PAGE: Page = Page {
     connect: "",
     body: include_str!("locks/locks.html"),
     style: concat!(include_str!("locks/locks.css"), include_str!("locks/layers.css")),
-    script: concat!(include_str!("locks/locks.js"), include_str!("locks/layers.js")),
+    script: concat!(include_str!("locks/locks.js"), include_str!("locks/layers.js"), include_str!("locks/print.js")),
 };
 
 /// The page.
@@ -31,7 +31,7 @@ pub(super) fn page_of_audit(imported: &Imported, locks: &Locks, rules: &Rules, a
     PAGE.fill(name, &all)
 }
 
-/// Numbers of the page: lengths in metres, coordinates and path data in steps of a millimetre, y up.
+/// Numbers of the page: lengths of edges in metres, all else in steps of a millimetre, y up.
 fn data(imported: &Imported, locks: &Locks) -> Value {
     let (layout, vehicle) = (&imported.layout, &locks.vehicle);
     let steps = |point: [f64; 2]| point.map(|x| x * STEPS);
@@ -57,10 +57,11 @@ fn data(imported: &Imported, locks: &Locks) -> Value {
         json!({ "id": node.id.to_string(), "level": node.level, "x": x, "y": y })
     });
     let places: HashMap<&Id, usize> = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
-    let locks = locks
-        .locks
-        .iter()
-        .filter_map(|lock| Some(json!([places.get(&lock.a)?, places.get(&lock.b)?, lock.a_length, lock.b_length])));
+    // Six numbers a lock, in one list: a roadmap has a million of them.
+    let locks = locks.locks.iter().filter_map(|lock| {
+        let [a, b] = [places.get(&lock.a)?, places.get(&lock.b)?].map(|&place| place as u64);
+        Some([[a, b], outward(lock.a_length), outward(lock.b_length)])
+    });
     let [x, y] = bounds(layout, None, vehicle.radius);
     let bounds = [x.lo, -y.hi, x.length(), y.length()].map(|length| length * STEPS);
     json!({
@@ -70,8 +71,14 @@ fn data(imported: &Imported, locks: &Locks) -> Value {
         "bounds": bounds,
         "edges": edges.collect::<Vec<_>>(),
         "nodes": nodes.collect::<Vec<_>>(),
-        "locks": locks.collect::<Vec<_>>(),
+        "locks": locks.collect::<Vec<_>>().as_flattened().as_flattened(),
     })
+}
+
+/// Lengths in millimetres, outward.
+fn outward([from, to]: [f64; 2]) -> [u64; 2] {
+    // What rounding adds is no millimetre; a cast saturates.
+    [(from * STEPS + 1e-6).floor() as u64, (to * STEPS - 1e-6).ceil() as u64]
 }
 
 #[cfg(test)]
@@ -102,7 +109,7 @@ mod tests {
         let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).unwrap();
         let data: Value = serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap();
         assert_eq!(data["edges"].as_array().unwrap().len(), 172);
-        assert_eq!(data["locks"].as_array().unwrap().len(), locks.locks.len());
+        assert_eq!(data["locks"].as_array().unwrap().len(), 6 * locks.locks.len());
         assert!(!locks.locks.is_empty());
     }
 

@@ -46,7 +46,24 @@ pub use settings::Settings;
 pub use write::{Written, write};
 
 use pcr_formats::import::{Format, ImportError, Imported};
+use pcr_planning::locks::Locks;
+use pcr_planning::memory;
 use std::fmt;
+
+/// What a lock takes again in what is made of the table: names, and members of groups \[bytes\].
+const LOCK_BYTES: u64 = 256;
+
+/// The table that exclusions are made of, or judged by: all of it has to be in memory.
+///
+/// # Errors
+/// Those of [`Locks::of`]; and, before it is tried, for a table of which what is made takes more memory than there is.
+pub fn table(imported: &Imported) -> Result<Locks, ImportError> {
+    let locks = Locks::of(imported, true)?;
+    let count = locks.locks.len();
+    let asked = memory::ask(count as u64 * LOCK_BYTES, || format!("what is made of a table of {count} locks"));
+    asked.map_err(|large| ImportError::new(large.to_string()))?;
+    Ok(locks)
+}
 
 /// Formats of exclusions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 //! A written file is read again, by the reader that audits files of others, and is not given away if anything can touch.
 
 use crate::settings::{Notes, Settings};
-use crate::{Audit, Target, nav2, opentcs, own, read, rmf, vda5050};
+use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};
 use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
-use pcr_planning::locks::{LockVehicle, Locks};
+use pcr_planning::locks::LockVehicle;
 use serde::Serialize;
 
 /// What has been written.
@@ -96,7 +96,7 @@ pub fn write(
         }
         None => (text.to_owned(), imported),
     };
-    let locks = Locks::of(&imported, true)?;
+    let locks = table(&imported)?;
     let written = match target {
         Target::Nav2 => nav2::write(&text, &imported, &locks)?,
         Target::Rmf => rmf::write(&text, &imported, &locks, &mut notes)?,

@@ -10,6 +10,7 @@
 //! opendrive   reference lines of roads (XML)
 //! opentcs     plant models (XML)
 //! ccbs        roadmaps and plans of Continuous-CBS (XML)
+//! grid        plans on grids (text)                                        GridPlan
 //! trajectory  NURBS as VDA 5050 and LIF write them
 //! nurbs       NURBS to Bézier curves
 //! biarc       curves to lines and arcs, with a certified distance
@@ -32,6 +33,7 @@
 mod biarc;
 mod ccbs;
 mod factsheet;
+mod grid;
 mod layout;
 mod lif;
 mod loads;
@@ -54,8 +56,10 @@ mod vehicle;
 mod warnings;
 mod xml;
 
+pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
 pub use route::{Step, cheapest, ride, turn};
+pub use timed::sectioned;
 pub use useful::Kind;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
@@ -85,6 +89,8 @@ pub enum Format {
     OpenTcs,
     /// Roadmap or plan of Continuous-CBS (.xml, by its content)
     Ccbs,
+    /// Plan on a grid, `Agent 0: (1,2)->(1,3)->` a line (by its content)
+    Grid,
     /// Points of paths, `x y` a line, an empty line between agents (.path, .csv)
     Path,
     /// Orders and states of VDA 5050 (JSON, by their content)
@@ -100,6 +106,7 @@ impl fmt::Display for Format {
             Self::OpenDrive => "opendrive",
             Self::OpenTcs => "opentcs",
             Self::Ccbs => "ccbs",
+            Self::Grid => "grid",
             Self::Path => "path",
             Self::Vda5050 => "vda5050",
         })
@@ -146,6 +153,9 @@ impl Format {
         }
         if name.ends_with(".yaml") || name.ends_with(".yml") {
             return Some(Self::Rmf);
+        }
+        if grid::is_plan(text) {
+            return Some(Self::Grid);
         }
         if name.ends_with(".path") || name.ends_with(".csv") {
             return Some(Self::Path);
@@ -222,6 +232,7 @@ fn imported(
         Format::OpenDrive => opendrive::read(text, options, warnings),
         Format::OpenTcs => opentcs::read(text, options, warnings),
         Format::Ccbs => ccbs::roadmap(text, options, warnings),
+        Format::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
         Format::Path => Err(ImportError::new("paths of agents are not a layout")),
         Format::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
     })?;
@@ -313,7 +324,13 @@ pub fn scenario(
         return Err(ImportError::new("empty"));
     }
     let mut scenario = match format {
-        Format::Ccbs if xml::root_of(text) != Some("graphml") => plan(text, options, warnings)?,
+        Format::Ccbs if xml::root_of(text) != Some("graphml") => {
+            ccbs::log(text, &of_plan(options, "the default of the program", warnings)?)?
+        }
+        Format::Grid => {
+            let largest = "the largest with which no plan on a grid has a contact";
+            GridPlan::read(text)?.scenario(of_plan(options, largest, warnings)?.radius)?
+        }
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
             route::scenario(&layout, &vehicle, options, warnings)?
@@ -335,14 +352,14 @@ pub fn scenario(
     checked(&scenario)
 }
 
-/// The plan in a log of Continuous-CBS, which gives no radius.
-fn plan(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Scenario, ImportError> {
+/// The vehicle of a plan, which gives no radius.
+fn of_plan(options: &Options, why: &str, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
     let mut given = given(options, warnings)?;
     if options.radius.is_none() && given.radius.is_none() && given.footprint.is_none() {
-        warnings.add("radius", "not in the file; the default of the program, √2/4, is taken");
+        warnings.add("radius", format!("not in the file; {why}, √2/4, is taken"));
         given.radius = Some(ccbs::RADIUS);
     }
-    ccbs::log(text, &options.vehicle(&given, false, warnings))
+    Ok(options.vehicle(&given, false, warnings))
 }
 
 /// The scenario as its file would be read: what a scenario file may not hold is refused here as well.

@@ -11,8 +11,8 @@ mod tests;
 use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
-    Scalar, Segment, Turn,
+    Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
+    Radians, Region, Scalar, Segment, Turn,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
@@ -332,6 +332,28 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 /// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
     Ecm::grown(motions)
+}
+
+/// A table of passing orders on the heap.
+pub type HostOrders<S> = Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>>;
+
+/// The table of passing orders of a fleet of any size, nothing decided: the storage grows until it is large enough for all regions.
+///
+/// # Errors
+/// As [`build_ecm`].
+pub fn build_orders<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Full> {
+    let [mut regions, mut pieces] = [16, 32].map(|each| each * (motions.len() + 1));
+    loop {
+        let room = |full| move |_: memory::TooLarge| full;
+        memory::for_list(regions, (size_of::<Region>() + size_of::<Order<S>>()) as u64).map_err(room(Full::Regions))?;
+        memory::for_list(pieces, size_of::<Piece<S>>() as u64).map_err(room(Full::Pieces))?;
+        let storage = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; regions]);
+        match Orders::build(storage.0, storage.1, storage.2, motions) {
+            Err(Full::Regions | Full::Orders) => regions *= 2,
+            Err(Full::Pieces) => pieces *= 2,
+            answer => return answer,
+        }
+    }
 }
 
 /// The same with the regions of one agent with all others only.

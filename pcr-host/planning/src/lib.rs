@@ -13,7 +13,9 @@
 //! checksum     of files that are read in parts
 //! nodes        what a layout holds                                   Listing
 //! plan         delays without conflicts                              Plan
+//! queue        the conflicts of a fleet whose motions change         Queue
 //! traffic      random missions on a layout, and their plan           Traffic
+//! execution    plans of others carried out while robots are late   Execution
 //! lifelong     robots that get a new mission whenever one is done    run, Outcome
 //! simulate     plans in closed loop, with noise and delays           run, Task
 //! report       JSON, CSV and tables
@@ -25,12 +27,14 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 mod checksum;
+pub mod execution;
 pub mod fleet;
 pub mod lifelong;
 pub mod locks;
 pub mod memory;
 pub mod nodes;
 pub mod plan;
+pub mod queue;
 pub mod random;
 pub mod regions;
 pub mod report;

@@ -15,30 +15,50 @@
 //! way        from node to node, and times without waits
 //! book       regions of the ways, and who goes first
 //! forecast   whether all can finish, and when
+//! tasks      places where robots begin, and tasks that come      Tasks
+//! locks      edges one at a time, for comparison
+//! scene      the fleet as it is now, and routes through it
+//! search     orders on a way
 //! dispatch   ways and orders for a mission
+//! clearing   robots that stand in the way of a mission
 //! record     what was done, for the independent checker        Certificate
-//! run        a run                                             Outcome
+//! outcome    what comes of a run                               Outcome
+//! draws      goals, delays, starts
+//! state      the fleet, its missions, what has come of it
+//! decide     who looks for a way when
+//! run        a run
 //! answer     what `pcr traffic --hours` prints                 Lifelong
 //! ```
 
 mod abilities;
 mod answer;
 mod book;
+mod clearing;
+mod decide;
 mod dispatch;
+mod draws;
 mod ends;
 mod forecast;
 mod gates;
+mod locks;
+mod outcome;
 mod record;
 mod robot;
 mod routes;
 mod run;
+mod scene;
+mod search;
 mod site;
+mod state;
+mod tasks;
 mod way;
 
 pub use answer::{Driven, Lifelong};
 pub use ends::WellFormedness;
+pub use outcome::{Outcome, Report, Shares};
 pub use record::Certificate;
-pub use run::{Outcome, Report, run};
+pub use run::{run, run_tasks};
+pub use tasks::Tasks;
 
 use serde::Serialize;
 
@@ -50,20 +70,22 @@ pub enum Method {
     Orders,
     /// A robot sets off when nobody else has anything in its way, up to its end.
     RouteLocks,
+    /// A robot gets one edge after the other, if all can still finish then.
+    EdgeLocks,
     /// A robot sets off when it is expected to meet nobody; orders keep to that when somebody is late.
     StartDelays,
 }
 
 impl Method {
-    /// All of them. Locks on single edges are not among them: with random goals and no safe ends of their own, fleets come to a
-    /// standstill with them, with which nothing can be compared.
-    pub const ALL: [Self; 3] = [Self::Orders, Self::RouteLocks, Self::StartDelays];
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Orders, Self::RouteLocks, Self::EdgeLocks, Self::StartDelays];
 
     /// What it is called in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Orders => "orders",
             Self::RouteLocks => "route locks",
+            Self::EdgeLocks => "edge locks",
             Self::StartDelays => "start delays",
         }
     }

@@ -7,20 +7,27 @@
 //! overlap are joined, so that the locks of two edges are apart. A vehicle that stops or turns at a node is at the end of an edge, so
 //! that nodes are part of their edges; on their own they can be asked for.
 
+mod change;
+mod delays;
 mod index;
+mod pass;
 mod rides;
+mod straight;
 mod sweep;
 mod table;
 
 use crate::memory;
+pub use delays::{Delays, Driving, Unsafe, Way};
 pub use index::{Index, IndexError, Partner, write_index};
+pub use pass::Told;
 use pcr_formats::footprint::Disc;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, Scenario};
 use rides::Ride;
 pub use rides::{Rides, corridor};
 use serde::Serialize;
-pub use sweep::{Found, Sweep, Told};
+pub use straight::Straight;
+pub use sweep::{Found, Sweep};
 pub use table::{Change, Table};
 
 /// The locks of a layout for a vehicle.

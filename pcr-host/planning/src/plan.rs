@@ -14,20 +14,22 @@ mod reason;
 mod speeds;
 mod starts;
 mod task;
+#[cfg(test)]
+mod tests;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;
 use crate::regions::Failure;
 pub(crate) use circle::sides;
 pub use delays::{Effort, Objective};
-pub(crate) use forbidden::Forbidden;
-pub use forbidden::{Out, Schedule};
+pub use forbidden::{Forbidden, Out, Schedule};
 use pcr_core::{Encounter, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
 
 pub use reason::Spot;
 use serde::Serialize;
 use starts::Starts;
+pub(crate) use starts::some as start_delays;
 use task::Planner;
 
 /// How conflicts are avoided.

@@ -3,6 +3,7 @@
 mod certified;
 pub mod columns;
 mod conflicts;
+mod delays;
 pub mod figures;
 mod lifelong;
 mod locks;
@@ -17,6 +18,7 @@ mod traffic;
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use columns::ROW_BYTES;
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
+pub use delays::{DELAYS_HEADER, Delay, DelayTable, NodeTimes, delays_csv, delays_lines, delays_table};
 pub use lifelong::{LIFELONG_CSV_HEADER, lifelong_csv, lifelong_table};
 pub use locks::{
     EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, locks_csv, locks_lines, locks_table,

@@ -44,7 +44,7 @@ mod world;
 
 pub use body::{Disturbance, HELD_EVERY};
 pub use course::{Course, Drive};
-pub use outcome::{Arrival, Collision, Journey, Outcome, Planning, Run, Simulation, Trace};
+pub use outcome::{Arrival, Collision, Journey, Outcome, Planning, Run, Simulation, Trace, Waiting};
 pub use task::{Mission, Obstacle, Robot, Task};
 pub use vector::Vector;
 
@@ -53,6 +53,7 @@ use body::Command;
 use orca::Orca;
 use pcr_core::{Limits, Profile};
 use potential::Potential;
+use replan::InTheWay;
 use serde::Serialize;
 use supervisor::{Errors, Statistics, Supervisor};
 use world::World;
@@ -105,6 +106,8 @@ struct Frame<'a> {
     seen: &'a [Vector],
     /// Of the wheels in the last frame \[m/s\].
     speeds: &'a [f64],
+    /// Which robots stand at the ends of their paths, which they know.
+    arrived: &'a [bool],
 }
 
 /// A plan of the supervisor, for the replay.
@@ -129,6 +132,14 @@ trait Control {
     /// How near its goal a robot has arrived \[m\]; 0 for robots on paths, which know their end.
     fn reach(&self) -> f64 {
         0.0
+    }
+    /// Whether nobody will ever move again but for new missions.
+    fn is_stuck(&self) -> bool {
+        false
+    }
+    /// Robots whose missions were not begun, and who stands in the way of each.
+    fn waiting(&self) -> Vec<(usize, Option<InTheWay>)> {
+        Vec::new()
     }
     /// The plans that were made.
     fn take_snapshots(&mut self) -> Vec<Snapshot> {
@@ -155,13 +166,18 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     let frames = (time_limit(task) / FRAME).ceil() as usize;
     for frame in 0..frames {
         world.missions(frame, control.as_mut());
-        if world.is_done() {
+        if world.is_done() || (control.is_stuck() && world.all_given()) {
             break;
         }
         world.step(frame, control.as_mut());
     }
     let snapshots = control.take_snapshots();
-    Ok(Outcome { run: Run::of(task, controller, &world.trace, control.planning()), trace: world.trace, snapshots })
+    let waiting = control.waiting();
+    Ok(Outcome {
+        run: Run::of(task, controller, &world.trace, control.planning(), &waiting),
+        trace: world.trace,
+        snapshots,
+    })
 }
 
 /// When a run is given up \[s\]: eight times as long as the longest missions of a robot take without anybody else, and a

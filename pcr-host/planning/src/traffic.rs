@@ -12,7 +12,6 @@ use crate::check::Verdict;
 use crate::plan::{Forbidden, Schedule, Unsolved};
 use crate::regions::{self, Answer, Failure};
 use missions::{Drawn, Mission};
-use pcr_core::Motion;
 use pcr_formats::import::{Id, Imported};
 use pcr_formats::scenario::{Agent, Scenario};
 use serde::Serialize;
@@ -153,14 +152,6 @@ pub fn schedule(scenario: &Scenario, seed: u64) -> Result<Schedule, Failure> {
     let duration = |agent: usize| scenario.agents[agent].duration();
     longest_first.sort_by(|&a, &b| duration(b).total_cmp(&duration(a)));
     Ok(schedule::best(&Forbidden::of(scenario)?, longest_first, seed))
-}
-
-/// Start delays of motions, if all of them can have one.
-pub(crate) fn delays(motions: &[Motion<'_, f64>]) -> Option<Schedule> {
-    let mut longest_first: Vec<usize> = (0..motions.len()).collect();
-    longest_first.sort_by(|&a, &b| motions[b].time().length().total_cmp(&motions[a].time().length()));
-    let found = schedule::best(&Forbidden::of_motions(motions).ok()?, longest_first, 0);
-    found.out.is_empty().then_some(found)
 }
 
 impl Travel {

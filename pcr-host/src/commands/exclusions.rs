@@ -1,5 +1,6 @@
 //! What `pcr locks` writes into the files of fleets, and finds in them.
 
+use super::help::STANDING;
 use super::sources::layout;
 use super::{CONFLICTS, Form, Printed, Stop, is_standard, write_to};
 use clap::Args;
@@ -7,7 +8,6 @@ use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Settings, Target, report};
 use pcr_formats::import::{Format, Imported, Options};
 use pcr_formats::input;
-use pcr_planning::locks::Locks;
 use pcr_planning::report::json;
 use std::fs;
 use std::io::{Read, Write};
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 #[derive(Args)]
 pub(super) struct Asked {
     /// Write the layout to the file of --output, with what keeps its vehicles apart
-    #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes"])]
+    #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
     write: Option<Target>,
     /// Cut edges (lanes, zones) into equal parts no longer than this before
     #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
@@ -27,7 +27,7 @@ pub(super) struct Asked {
     #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
     envelopes: Option<String>,
     /// Tell what can touch though vehicles keep to what the layout, or FILE, says; exit status 1 if anything can
-    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes"])]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes", "delays"])]
     audit: Option<Option<PathBuf>>,
 }
 
@@ -99,7 +99,7 @@ fn read(file: &Path, import: &Options) -> Result<(Format, String), Stop> {
         return Err(Stop::wrong(file, "not a layout in a format that is read"));
     };
     if file != Path::new("-") {
-        layout(file, import, "locks", false)?;
+        layout(file, import, STANDING, false)?;
     }
     Ok((format, content))
 }
@@ -114,7 +114,7 @@ fn audit(
     if file == Path::new("-") {
         return Err(Stop::arguments("--audit reads a file twice; name it"));
     }
-    let imported: Imported = layout(file, import, "locks", false)?;
+    let imported: Imported = layout(file, import, STANDING, false)?;
     let (source, content) = match beside {
         Some(beside) => (beside, text(beside)?),
         None => (file, text(file)?),
@@ -130,7 +130,7 @@ fn audit(
     })?;
     let wrong = |error| Stop::wrong(source, error);
     let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
-    let locks = Locks::of(&imported, true).map_err(wrong)?;
+    let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
     let audit = Audit::of(&imported, &locks, &rules, target);
     if let Some(directory) = output {
         picture::write_audit(&imported, &locks, &rules, &audit, directory)

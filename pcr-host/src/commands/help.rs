@@ -69,11 +69,19 @@ fn tailored(command: Command, long: bool) -> Command {
     }
 }
 
+/// Locks of vehicles at any speed.
+pub(super) const STANDING: &str = "locks without --delays";
+/// Delays, which are of a speed.
+pub(super) const DRIVING: &str = "locks --delays";
+
 /// Options for layouts and other formats that do nothing in a command, by the names of their fields.
 pub(super) fn useless(command: &str) -> &'static [&'static str] {
     match command {
         "import" => &["from"],
-        "locks" => {
+        // Rotation is of use for arcs with --acceleration only.
+        "locks" => &["routes", "rotation", "rotation_acceleration", "corner_radius", "horizon"],
+        DRIVING => &["routes", "corner_radius", "horizon"],
+        STANDING => {
             &["routes", "speed", "acceleration", "rotation", "rotation_acceleration", "corner_radius", "horizon"]
         }
         "traffic" => &["routes", "horizon"],

@@ -1,6 +1,7 @@
 //! `pcr locks`.
 
 use super::exclusions::Asked;
+use super::help::{DRIVING, STANDING};
 use super::printed::notes;
 use super::sources::{layout, source};
 use super::{Form, Printed, Stop};
@@ -9,9 +10,9 @@ use clap::Args;
 use pcr_drawing as picture;
 use pcr_formats::import::{ImportError, Options};
 use pcr_formats::output;
-use pcr_planning::locks::{Index, IndexError, Locks, Sweep, Told, write_index};
-use pcr_planning::memory::{self, TooLarge};
-use pcr_planning::report::{self, EdgeLocks, LocksUnprinted};
+use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, write_index};
+use pcr_planning::memory;
+use pcr_planning::report::{self, DelayTable, EdgeLocks, LocksUnprinted};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -44,6 +45,9 @@ pub(super) struct Arguments {
     /// Add what a vehicle blocks that stands at a node
     #[arg(long)]
     nodes: bool,
+    /// Print for how long one may not set off after another instead, at --speed (and from rest to rest with --acceleration)
+    #[arg(long, conflicts_with_all = ["edge", "index", "output"])]
+    delays: bool,
     /// Print JSON Lines, a lock a line, for tables of any size
     #[arg(long, hide_short_help = true, conflicts_with_all = ["format", "json", "output"])]
     lines: bool,
@@ -74,7 +78,10 @@ impl Arguments {
         if Index::is_one(file) {
             return Err(Stop::wrong(file, "this is a table of locks already; say which --edge it is asked for"));
         }
-        let imported = layout(file, &self.import, "locks", false)?;
+        if self.delays {
+            return self.unsafe_delays(file);
+        }
+        let imported = layout(file, &self.import, STANDING, false)?;
         let progress = Progress::new(format!("{}: pairs of edges", file.display()));
         let told: Told<'_> = &|done, total| progress.set(done, total);
         let wrong = |error: ImportError| Stop::wrong(file, error);
@@ -91,9 +98,7 @@ impl Arguments {
             writeln!(notes(), "{}: {names} edges and nodes, {records} records of locks", index.display())?;
             return Ok(ExitCode::SUCCESS);
         }
-        // Lines are for programs: they are not what --quiet leaves out.
-        let mut out: Box<dyn Write> =
-            if self.lines { Box::new(BufWriter::new(io::stdout().lock())) } else { self.printed.out(false) };
+        let mut out = self.out();
         let form = self.printed.form();
         if self.lines || (form == Form::Csv && self.output.is_none()) {
             let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
@@ -101,10 +106,7 @@ impl Arguments {
                 true => report::locks_lines(&Locks::head(&imported, self.nodes), &sweep, told, &mut out),
                 false => report::locks_csv(&sweep, told, &mut out),
             };
-            printed.map_err(|unprinted| match unprinted {
-                LocksUnprinted::Import(error) => wrong(error),
-                LocksUnprinted::Output(error) => error.into(),
-            })?;
+            printed.map_err(|unprinted| unprinted_of(file, unprinted))?;
             out.flush()?;
             return Ok(ExitCode::SUCCESS);
         }
@@ -115,9 +117,7 @@ impl Arguments {
         }
         match form {
             Form::Table => {
-                let count = locks.locks.len();
-                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} locks"))
-                    .map_err(too_large)?;
+                ask_for_rows(locks.locks.len(), "locks")?;
                 report::locks_table(&locks, &mut out)?;
             }
             Form::Json => report::json(&locks, &mut out)?,
@@ -132,13 +132,51 @@ impl Arguments {
         Ok(ExitCode::SUCCESS)
     }
 
+    /// Delays of starts instead of lengths.
+    fn unsafe_delays(&self, file: &Path) -> Result<ExitCode, Stop> {
+        let Some(speed) = self.import.speed else {
+            return Err(Stop::arguments("--delays are of one speed: say which, --speed"));
+        };
+        let driving = Driving { speed, acceleration: self.import.acceleration };
+        let imported = layout(file, &self.import, DRIVING, driving.acceleration.is_some())?;
+        let wrong = |error: ImportError| Stop::wrong(file, error);
+        let progress = Progress::new(format!("{}: pairs of edges", file.display()));
+        let told: Told<'_> = &|done, total| progress.set(done, total);
+        let delays = Delays::new(&imported, driving, self.nodes).map_err(wrong)?;
+        let head = Locks::head(&imported, self.nodes);
+        let mut out = self.out();
+        let printed = match self.printed.form() {
+            _ if self.lines => report::delays_lines(&head, driving, &delays, told, &mut out),
+            Form::Csv => report::delays_csv(&delays, told, &mut out),
+            form => {
+                let table = DelayTable::of(head, driving, &delays, told).map_err(wrong)?;
+                drop(progress);
+                if form == Form::Json {
+                    report::json(&table, &mut out)?;
+                } else {
+                    ask_for_rows(table.delays.len(), "delays")?;
+                    report::delays_table(&table, &mut out)?;
+                }
+                Ok(())
+            }
+        };
+        printed.map_err(|unprinted| unprinted_of(file, unprinted))?;
+        out.flush()?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Where the answer goes. Lines are for programs: they are not what --quiet leaves out.
+    fn out(&self) -> Box<dyn Write> {
+        if self.lines { Box::new(BufWriter::new(io::stdout().lock())) } else { self.printed.out(false) }
+    }
+
     /// The locks of one edge, of a layout or from a file that has them.
     fn of_edge(&self, file: &Path, edge: &str) -> Result<ExitCode, Stop> {
         let partners = if Index::is_one(file) {
             let wrong = |error: IndexError| Stop::wrong(file, error);
             Index::open(file).map_err(wrong)?.of(edge).map_err(wrong)?
         } else {
-            let imported = layout(file, &self.import, "locks", false)?;
+            let imported = layout(file, &self.import, STANDING, false)?;
             let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
             sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?
         };
@@ -157,6 +195,16 @@ impl Arguments {
     }
 }
 
-fn too_large(large: TooLarge) -> Stop {
-    Stop::arguments(format!("{large}; --lines, --format csv and --index print tables of any size"))
+/// Asks for what a table for reading takes.
+fn ask_for_rows(count: usize, what: &str) -> Result<(), Stop> {
+    memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} {what}")).map_err(|large| {
+        Stop::arguments(format!("{large}; --lines, --format csv and (of locks) --index print tables of any size"))
+    })
+}
+
+fn unprinted_of(file: &Path, unprinted: LocksUnprinted) -> Stop {
+    match unprinted {
+        LocksUnprinted::Import(error) => Stop::wrong(file, error),
+        LocksUnprinted::Output(error) => error.into(),
+    }
 }

@@ -1,6 +1,6 @@
 //! Where scenarios come from: the files that are named, else standard input, never anything else.
 
-use super::help::useless;
+use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, warn};
 use pcr_formats::import::{Imported, Options};
 use pcr_formats::input;
@@ -91,7 +91,8 @@ pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, 
 pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) -> Result<Imported, Stop> {
     let why = match command {
         "traffic" => "traffic has random routes; pcr plan takes given ones",
-        "locks" => "locks are of all ways of a vehicle, at any speed",
+        DRIVING => "delays are of all edges as they are",
+        STANDING => "locks are of all ways of a vehicle, at any speed",
         _ => "this command lists what is in the file",
     };
     if let Some(option) = import.one_of(useless(command)) {

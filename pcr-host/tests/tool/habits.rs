@@ -44,7 +44,7 @@ fn options_are_listed_where_they_do_something() {
     assert!(help("regions").contains("Layouts and other formats:\n") && help("plan").contains("--route <"));
     assert!(!run(&["regions", "-h"]).ok().contains("--route"));
     assert!(
-        !help("locks").contains("--route") && !help("locks").contains("--speed") && help("locks").contains("--radius")
+        !help("locks").contains("--route") && help("locks").contains("--speed") && help("locks").contains("--radius")
     );
     assert!(!help("traffic").contains("--horizon") && !help("import").contains("--from"));
     assert!(!help("demo").contains("--radius") && !help("evaluate").contains("--radius"));

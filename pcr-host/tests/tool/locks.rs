@@ -215,3 +215,59 @@ fn both_directions_of_a_way_have_the_same_locks() {
         }
     }
 }
+
+/// Unsafe delays of a cross, whose closed form is R √2 at the same distance from the crossing.
+#[test]
+fn delays_are_those_of_the_closed_form_in_every_form() {
+    let name = file("locks", "delays.geojson", cross());
+    let arguments = ["locks", &name, "--radius", "0.25", "--delays", "--speed", "1", "--nodes", "-q"];
+    let table = run(&[&arguments[..], &["--json"]].concat()).json();
+    assert_eq!((&table["format"], &table["speed"]), (&json!("pcr-delays"), &json!(1.0)));
+    let delays = table["delays"].as_array().unwrap();
+    let pairs: Vec<_> = delays.iter().map(|delay| (delay["a"].clone(), delay["b"].clone())).collect();
+    assert_eq!(pairs, [(json!(7), json!(7)), (json!(7), json!(20)), (json!(20), json!(20))]);
+    for (delay, half) in delays.iter().zip([0.5, 0.5 * 2.0_f64.sqrt(), 0.5]) {
+        let [lo, hi] = [0, 1].map(|end| delay["delay"][end].as_f64().unwrap());
+        assert!(lo <= -half && -half - lo < 1e-12 && half <= hi && hi - half < 1e-12, "{delay}");
+    }
+    assert_eq!(table["nodes"].as_array().unwrap().len(), 4);
+    let lines = run(&[&arguments[..], &["--lines"]].concat()).ok();
+    let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let [head, found @ .., end] = &lines[..] else { panic!("{lines:?}") };
+    assert_eq!((&head["format"], end), (&json!("pcr-delay-lines"), &json!({ "delays": found.len() })));
+    for list in ["delays", "nodes"] {
+        assert!(table[list].as_array().unwrap().iter().all(|entry| found.contains(entry)), "{found:?}");
+    }
+    let csv = run(&[&arguments[..], &["--format", "csv"]].concat()).ok();
+    assert!(csv.starts_with("a,a_direction,b,b_direction,from,to\n7,forward,7,forward,-0.5"), "{csv}");
+    assert_eq!(csv.lines().count(), 1 + found.len());
+    let text = run(&arguments[..8]).ok();
+    let expected = "\
+delays: 3 intervals of unsafe delays, radius 0.25 m, at 1 m/s
+  a   b   b later by [s]     to
+  7   7           -0.500  0.500
+  7   20          -0.708  0.708
+  20  20          -0.500  0.500
+4 intervals of times at nodes
+  node  edge  from [s]     to
+  3     7        0.000  0.500
+";
+    assert!(text.replacen("cross", "delays", 1).starts_with(expected), "{text}");
+}
+
+#[test]
+fn delays_need_a_speed_and_locks_none() {
+    let name = file("locks", "speedless.geojson", cross());
+    let none = run(&["locks", &name, "--radius", "0.25", "--delays"]).failed(2);
+    assert!(none.contains("--delays are of one speed: say which, --speed"), "{none}");
+    let vain = run(&["locks", &name, "--radius", "0.25", "--speed", "1"]).failed(2);
+    assert!(vain.contains("--speed is of no use: locks are of all ways of a vehicle, at any speed"), "{vain}");
+    let outline = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/small/factsheet.json");
+    let refused = run(&["locks", &name, "--fleet", outline, "--delays", "--speed", "1"]).failed(2);
+    assert!(refused.contains("delays are of discs"), "{refused}");
+    // From rest to rest it takes longer over the crossing's ends, and no less far.
+    let arguments = ["locks", &name, "--radius", "0.25", "--delays", "--speed", "1", "--json", "-q"];
+    let slow = run(&[&arguments[..], &["--acceleration", "0.5"]].concat()).json();
+    let width = |table: &Value| table["delays"][0]["delay"][1].as_f64().unwrap();
+    assert!(width(&slow) > width(&run(&arguments).json()), "{slow}");
+}

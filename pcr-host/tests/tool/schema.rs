@@ -75,6 +75,7 @@ fn every_output_fits_its_schema() {
         &["locks", &layout, "--radius", "0.3", "--nodes"],
         &["locks", &lif, "--radius", "0.3"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--edge", "26"],
+        &["locks", &layout, "--radius", "0.3", "--nodes", "--delays", "--speed", "1"],
         &["locks", &plant, "--radius", "0.9", "--write", "opentcs", "-o", &blocks],
         &["locks", &plant, "--radius", "0.9", "--audit"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
@@ -98,6 +99,8 @@ fn every_output_fits_its_schema() {
     formats.push(fits(&run(&["import", "nav2", &layout, "--route", "0:1", "--fleet", &factsheet, "-q"]).out));
     let routes = ["import", "nav2", &layout, "--route", "0:1", "--radius", "0.3", "-q"];
     formats.push(fits(&run(&routes).out));
+    let delays = ["locks", &layout, "--radius", "0.3", "--lines", "-q", "--delays", "--speed", "1"];
+    formats.push(fits(run(&delays).out.lines().next().unwrap()));
     let lines = run(&["locks", &layout, "--radius", "0.3", "--lines", "-q"]).out;
     formats.push(fits(lines.lines().next().unwrap()));
     // There is no schema of which nothing was seen.

@@ -9,6 +9,7 @@ use crate::regions;
 use crate::travel;
 use crate::twofold::Twofold;
 use std::collections::{HashMap, HashSet};
+use std::f64::consts::TAU;
 
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,8 @@ pub enum Margin {
 pub struct Placed<'a> {
     agent: &'a Agent,
     stretches: Vec<Stretch>,
+    /// By how much an arc is longer than one turn at most \[m\].
+    over: f64,
 }
 
 /// A table whose numbers have been looked through.
@@ -48,7 +51,9 @@ impl<'a> Checker<'a> {
             }
             agent.travel.as_ref().map_or(Ok(()), travel::checked).map_err(wrong)?;
             let wrong = |problem: String| format!("agent {} (place {place}): {problem}", agent.id);
-            Ok(Placed { agent, stretches: stretches(&agent.path).map_err(wrong)? })
+            let arcs = agent.path.segments.iter().filter_map(|segment| Some((segment.length, segment.radius?.abs())));
+            let over = arcs.map(|(length, radius)| length - TAU * radius).fold(0.0, f64::max);
+            Ok(Placed { agent, stretches: stretches(&agent.path).map_err(wrong)?, over })
         });
         let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs };
         checker.all_pairs_are_there()?;
@@ -66,6 +71,10 @@ impl<'a> Checker<'a> {
             }
             if !(pair.excess > 0.0 && pair.excess < 1e15) {
                 return Err(format!("the excess of places {a} and {b} is out of range"));
+            }
+            // The rounding of a full turn, to a whole digit of sixteen; of what is more there would be a third lap.
+            if let Some(place) = [a, b].into_iter().find(|&place| self.agents[place].over > 0.125 * pair.excess) {
+                return Err(format!("an arc of place {place} is longer than a turn"));
             }
         }
         let mut bodies: HashMap<u64, usize> = HashMap::new();

@@ -42,7 +42,7 @@ pub struct Twofold {
 
 impl From<f64> for Twofold {
     fn from(hi: f64) -> Self {
-        Self { hi, lo: 0.0 }
+        Self::new(hi)
     }
 }
 
@@ -131,6 +131,11 @@ impl Twofold {
     /// 2π, right within 2^-106.
     pub const TURN: Self = Self { hi: 4.0 * Self::HALF_PI[0], lo: 4.0 * Self::HALF_PI[1] };
     const HALF_PI: [f64; 3] = [FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
+
+    /// An `f64` as it is.
+    pub const fn new(hi: f64) -> Self {
+        Self { hi, lo: 0.0 }
+    }
 
     /// The two numbers whose sum it is, the larger one first.
     pub fn parts(self) -> [f64; 2] {

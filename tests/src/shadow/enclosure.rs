@@ -1,81 +1,79 @@
-//! Intervals of `f64`, rounded outward.
+//! Numbers of 106 bits with a bound on how far they are off: what a number of any format would be without rounding.
 
+use pcr_certify::ball::Ball;
+use pcr_certify::twofold::Twofold;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What the functions of the standard library may be off, and the rounding of a sum with that: a part of 1.
-const LIBRARY: f64 = 8.0 * f64::EPSILON;
-
 /// Holds a number that is not known exactly.
 #[derive(Clone, Copy, Debug)]
-pub struct Enclosure {
-    lo: f64,
-    hi: f64,
-}
+pub struct Enclosure(Ball<Twofold>);
 
 impl Enclosure {
     /// Any number.
-    pub const ALL: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
-    /// 2π.
-    pub const TURN: Self = Self { lo: TAU, hi: TAU.next_up() };
+    pub const ALL: Self = Self(Ball { mid: Twofold::ZERO, err: f64::INFINITY });
+    /// 2π, which `Twofold` has within 2^-106.
+    pub const TURN: Self = Self(Ball { mid: Twofold::TURN, err: 1e-30 });
 
     /// A number as it is.
     pub const fn at(value: f64) -> Self {
-        Self { lo: value, hi: value }
+        Self(Ball { mid: Twofold::new(value), err: 0.0 })
     }
 
-    fn around(middle: f64, by: f64) -> Self {
-        if by.is_finite() { Self { lo: (middle - by).next_down(), hi: (middle + by).next_up() } } else { Self::ALL }
+    /// What is no number, as a product of nothing and anything, may be any.
+    fn of(ball: Ball<Twofold>) -> Self {
+        if ball.err.is_finite() && ball.mid.to_f64().is_finite() { Self(ball) } else { Self::ALL }
+    }
+
+    /// The `f64` nearest to its middle.
+    pub fn to_f64(self) -> f64 {
+        self.0.to_f64()
     }
 
     /// Distance of a number from the farthest one in it.
     pub fn farthest(self, from: f64) -> f64 {
-        (from - self.lo).abs().max((self.hi - from).abs()).next_up()
+        let Ball { mid, err } = (self - Self::at(from)).0;
+        (mid.abs().to_f64() + err) * (1.0 + 4.0 * f64::EPSILON)
     }
 
-    fn middle(self) -> [f64; 2] {
-        let middle = 0.5 * (self.lo + self.hi);
-        [middle, self.farthest(middle)]
+    /// Magnitude.
+    pub fn abs(self) -> Self {
+        Self::of(self.0.abs())
     }
 
     /// Square root, 0 for what is negative.
     pub fn sqrt(self) -> Self {
-        let root = |x: f64| x.max(0.0).sqrt();
-        Self { lo: root(self.lo).next_down().max(0.0), hi: root(self.hi).next_up() }
+        Self::of(self.0.sqrt())
     }
 
-    /// Sine and cosine: they change no faster than the angle.
+    /// Sine and cosine of an angle up to 16 rad; of others any.
     pub fn sin_cos(self) -> (Self, Self) {
-        let [middle, by] = self.middle();
-        let (sin, cos) = middle.sin_cos();
-        (Self::around(sin, by + LIBRARY), Self::around(cos, by + LIBRARY))
+        let [sin, cos] = self.0.sin_cos();
+        (Self::of(sin), Self::of(cos))
     }
 
     /// Angle of the vector `(x, self)` on the turn that is nearest to `near` \[rad\].
     pub fn atan2(self, x: Self, near: f64) -> Self {
-        let ([y, dy], [x, dx]) = (self.middle(), x.middle());
-        // The angle changes by asin(moved / distance), π/2 times that at most.
-        let part = (dy.hypot(dx) / y.hypot(x)).next_up();
-        if part.is_nan() || part >= 1.0 {
-            return Self::around(near, PI);
+        let upper = Ball::angle(x.0, self.0);
+        if upper.err >= 1.0 || upper.err.is_nan() {
+            return Self(Ball { mid: Twofold::new(near), err: 1.001 * PI });
         }
-        let angle = y.atan2(x);
-        let angle = angle + TAU * ((near - angle) / TAU).round();
-        Self::around(angle, 0.5 * PI * part + LIBRARY * (1.0 + angle.abs()))
+        let angle = Self(if self.to_f64() < 0.0 { -upper } else { upper });
+        angle + Self::TURN * Self::at(((near - angle.to_f64()) / TAU).round())
     }
 }
 
 impl Add for Enclosure {
     type Output = Self;
     fn add(self, rhs: Self) -> Self {
-        Self { lo: (self.lo + rhs.lo).next_down(), hi: (self.hi + rhs.hi).next_up() }
+        Self::of(self.0 + rhs.0)
     }
 }
 
 impl Neg for Enclosure {
     type Output = Self;
     fn neg(self) -> Self {
-        Self { lo: -self.hi, hi: -self.lo }
+        Self(-self.0)
     }
 }
 
@@ -86,62 +84,59 @@ impl Sub for Enclosure {
     }
 }
 
-fn hull(corners: [f64; 4]) -> Enclosure {
-    if corners.iter().any(|corner| corner.is_nan()) {
-        return Enclosure::ALL;
-    }
-    let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
-    let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
-    Enclosure { lo: lo.next_down(), hi: hi.next_up() }
-}
-
 impl Mul for Enclosure {
     type Output = Self;
     fn mul(self, rhs: Self) -> Self {
-        hull([self.lo * rhs.lo, self.lo * rhs.hi, self.hi * rhs.lo, self.hi * rhs.hi])
+        Self::of(self.0 * rhs.0)
     }
 }
 
 impl Div for Enclosure {
     type Output = Self;
     fn div(self, rhs: Self) -> Self {
-        if rhs.lo <= 0.0 && 0.0 <= rhs.hi {
-            return Self::ALL;
-        }
-        hull([self.lo / rhs.lo, self.lo / rhs.hi, self.hi / rhs.lo, self.hi / rhs.hi])
+        Self::of(self.0 / rhs.0)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::Twofold;
     use crate::generators::Dice;
 
+    fn holds(held: Enclosure, exact: Twofold, by: f64) -> bool {
+        let off = (held.0.mid - exact).abs().to_f64();
+        off <= held.0.err + by && held.0.err < 1e-24
+    }
+
     #[test]
-    fn what_106_bits_say_lies_within() {
-        for seed in 0..2_000 {
+    fn angles_are_those_of_their_sines_and_cosines_on_any_turn() {
+        for seed in 0..5_000 {
             let mut dice = Dice::seeded(seed);
-            let [a, b] = [0, 1].map(|_| dice.sign() * dice.magnitude(1e-6, 1e3));
-            let ([x, y], [p, q]) = ([a, b].map(Enclosure::at), [a, b].map(Twofold::from));
-            let (sin, cos) = p.sin_cos();
-            let roots = (Enclosure::at(a.abs()).sqrt(), Twofold::from(a.abs()).sqrt());
-            let angles = x.sin_cos();
-            for (held, exact) in [
-                (x + y, p + q),
-                (x - y, p - q),
-                (x * y, p * q),
-                (x / y, p / q),
-                roots,
-                (angles.0, sin),
-                (angles.1, cos),
-            ] {
-                assert!(
-                    Twofold::from(held.lo) <= exact && exact <= Twofold::from(held.hi),
-                    "{seed}: {held:?} {exact:?}"
-                );
-                assert!(held.hi - held.lo <= 20.0 * f64::EPSILON * exact.to_f64().abs().max(1.0), "{seed}: {held:?}");
-            }
+            let angle = Enclosure::at(dice.range(-9.0, 9.0));
+            let size = Enclosure::at(dice.magnitude(1e-6, 1e6));
+            let (sin, cos) = angle.sin_cos();
+            let found = (size * sin).atan2(size * cos, angle.to_f64() + dice.range(-3.0, 3.0));
+            assert!(holds(found, angle.0.mid, 1e-28), "{seed}: {found:?} for {angle:?}");
         }
+    }
+
+    #[test]
+    fn what_is_not_known_stays_unknown() {
+        let (zero, one) = (Enclosure::at(0.0), Enclosure::at(1.0));
+        let unknown = Enclosure::ALL;
+        for number in [one + unknown, zero * unknown, one / zero, one / unknown, unknown.sqrt(), unknown.sin_cos().0] {
+            assert_eq!(number.farthest(1.0), f64::INFINITY, "{number:?}");
+        }
+        // A vector that may be nothing has any angle.
+        assert!(zero.atan2(zero, 1.0).farthest(1.0) >= PI && unknown.atan2(one, -1.0).farthest(-1.0) >= PI);
+        assert_eq!((one - Enclosure::at(2.0)).sqrt().farthest(0.0), 0.0);
+    }
+
+    #[test]
+    fn errors_are_carried_along() {
+        // A third is off by 2^-102 of itself at most, and three of them by thrice that.
+        let third = Enclosure::at(1.0) / Enclosure::at(3.0);
+        assert!(third.0.err > 0.0 && holds(third * Enclosure::at(3.0), Twofold::new(1.0), 0.0));
+        assert!(third.farthest(1.0 / 3.0) > 1e-17, "{third:?}");
     }
 }

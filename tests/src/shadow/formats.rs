@@ -1,7 +1,9 @@
-//! The formats that have a shadow.
+//! The formats that have a shadow: all.
 
-use super::Shadowed;
+use super::{Enclosure, Shadowed};
+use pcr_certify::data::Angle;
 use pcr_core::Scalar;
+use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::Format;
 
@@ -12,14 +14,19 @@ macro_rules! impl_shadowed {
             fn number(value: $t) -> f64 {
                 Format::to_f64(value)
             }
-            fn angle(value: <$t as Scalar>::Angle) -> f64 {
-                <$t as Format>::radians(value)
+            fn angle(value: <$t as Scalar>::Angle) -> Enclosure {
+                match <$t as Format>::held_angle(value) {
+                    Angle::Radians(angle) => Enclosure::at(angle),
+                    Angle::Turns(turns) => Enclosure::TURN * Enclosure::at(turns),
+                }
             }
         }
     };
 }
 
+impl_shadowed!(f64);
 impl_shadowed!(f32);
+impl_shadowed!(Micro);
 impl_shadowed!(Q20);
 impl_shadowed!(Q16);
 impl_shadowed!(Q12);

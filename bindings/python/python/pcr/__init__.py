@@ -69,12 +69,7 @@ def _read(make: Any, *arguments: Any) -> Any:
         raise
 
 
-class Region(NamedTuple):
-    """Where and when agent ``i`` would touch agent ``j``: times [s], lengths of ``i`` and of ``j`` along their paths [m].
-
-    It lies within these intervals; :meth:`Fleet.map` and :meth:`Fleet.outline` have its shape.
-    """
-
+class _Ranges(NamedTuple):
     i: int
     j: int
     t: Span
@@ -83,6 +78,39 @@ class Region(NamedTuple):
     #: Whether it reaches the start of the path, where ``i`` stands before it sets off, or the end.
     open_start: bool
     open_end: bool
+
+
+class Region(_Ranges):
+    """Where and when agent ``i`` would touch agent ``j``: times [s], lengths of ``i`` and of ``j`` along their paths [m].
+
+    It lies within these intervals; :meth:`outline` has its shape.
+    """
+
+    _fleet: _pcr.Fleet
+
+    def outline(self, n: int) -> list[tuple[float, float, float]]:
+        """What it covers at ``n`` evenly spaced times inside: time, from, to. A time comes more than once where it covers more than one
+        stretch then.
+
+        >>> path = [{"kind": "line", "length": 4}]
+        >>> east, north = {"x": -2, "y": 0, "heading": 0}, {"x": 0, "y": -2, "heading": math.pi / 2}
+        >>> fleet = Fleet([{"id": k, "radius": 0.25, "v_max": 1, "a_max": 1, "start": start, "path": path} for k, start in ((1, east), (2, north))])
+        >>> [[round(number, 3) for number in row] for row in fleet.regions()[0].outline(3)]
+        [[2.25, 1.567, 2.433], [2.5, 1.5, 2.5], [2.75, 1.567, 2.433]]
+        """
+        if n < 0:
+            raise Error(f"{n} times")
+        answer = json.loads(self._fleet.regions_json(n, self.i))
+        rows = [*answer["regions"], *answer.get("margin_regions", [])]
+        own = next(row for row in rows if (row["j"], row["t"], row["l"]) == (self.j, list(self.t), list(self.l)))
+        return [(slice["t"], lo, hi) for slice in own["slices"] for lo, hi in slice["l"]]
+
+    def plot(self, ax: Any, *, columns: int = 60, **style: Any) -> Any:
+        """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.bar``."""
+        rows = self.outline(columns)
+        width = (self.t[1] - self.t[0]) / (columns + 1)
+        ax.bar([t for t, _, _ in rows], [hi - lo for _, lo, hi in rows], bottom=[lo for _, lo, _ in rows], width=width, **style)
+        return ax
 
 
 class Conflict(NamedTuple):
@@ -115,10 +143,10 @@ _REGION = struct.Struct("=10d")
 class Regions(Sequence[Region]):
     """Regions in the order of the tool: by both agents, then by time. Made into objects one by one, as they are asked for."""
 
-    __slots__ = ("_rows",)
+    __slots__ = ("_fleet", "_rows")
 
-    def __init__(self, rows: bytes) -> None:
-        self._rows = rows
+    def __init__(self, rows: bytes, fleet: _pcr.Fleet) -> None:
+        self._rows, self._fleet = rows, fleet
 
     def __len__(self) -> int:
         return len(self._rows) // _REGION.size
@@ -134,7 +162,9 @@ class Regions(Sequence[Region]):
             raise IndexError(f"region {place} of {len(self)}")
         row = _REGION.unpack_from(self._rows, place % len(self) * _REGION.size)
         i, j, *spans, start, end = row
-        return Region(int(i), int(j), (spans[0], spans[1]), (spans[2], spans[3]), (spans[4], spans[5]), start != 0, end != 0)
+        region = Region(int(i), int(j), (spans[0], spans[1]), (spans[2], spans[3]), (spans[4], spans[5]), start != 0, end != 0)
+        region._fleet = self._fleet
+        return region
 
     def __iter__(self) -> Iterator[Region]:
         return (self[k] for k in range(len(self)))
@@ -218,7 +248,7 @@ class Fleet:
 
     def regions(self, *, margins: bool = False) -> Regions:
         """All collision regions; with ``margins`` those in which margins overlap."""
-        return Regions(self._fleet.regions(margins))
+        return Regions(self._fleet.regions(margins), self._fleet)
 
     def report(self, *, slices: Optional[int] = None, agent: Optional[int] = None) -> dict[str, Any]:
         """What ``pcr regions --json`` prints: regions with their pieces and slices; of fleets with footprints, too."""
@@ -309,19 +339,26 @@ def _options(radius: Optional[float], speed: Optional[float], acceleration: Opti
 class Layout:
     """A road map of nav2, LIF, Open-RMF, OpenDRIVE, openTCS or Continuous-CBS, for one vehicle."""
 
-    __slots__ = ("_layout",)
+    __slots__ = ("_layout", "_options", "_path")
 
-    def __init__(self, layout: _pcr.Layout) -> None:
-        self._layout = layout
+    def __init__(self, path: Path, options: Options) -> None:
+        self._path, self._options, self._layout = path, options, _pcr.Layout.read(path, options)
 
     @classmethod
     def read(cls, path: Path, *, radius: Optional[float] = None, vehicle: Optional[str] = None, partial: bool = False) -> Layout:
         """A layout file, for vehicles of this radius, or of this type."""
-        return cls(_pcr.Layout.read(path, _options(radius, None, None, None, vehicle, (), partial)))
+        return cls(path, _options(radius, None, None, None, vehicle, (), partial))
 
-    def locks(self) -> list[Lock]:
-        """Which edges exclude one another, and on which lengths: two vehicles on other lengths cannot touch."""
-        found = json.loads(self._layout.locks_json(False))["locks"]
+    def locks(self, radius: Optional[float] = None) -> list[Lock]:
+        """Which edges exclude one another, and on which lengths: two vehicles on other lengths cannot touch.
+
+        With a ``radius`` for vehicles of that radius, whatever the layout was read for.
+        """
+        layout = self._layout
+        if radius is not None:
+            options = _options(radius, None, None, None, self._options["vehicle"], (), self._options["partial"])
+            layout = _pcr.Layout.read(self._path, options)
+        found = json.loads(layout.locks_json(False))["locks"]
         return [Lock(lock["a"], lock["b"], tuple(lock["a_length"]), tuple(lock["b_length"])) for lock in found]
 
     def __repr__(self) -> str:

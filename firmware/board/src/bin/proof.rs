@@ -290,7 +290,7 @@ fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
     any((RegionRef::time(region), RegionRef::is_open_at_start(region), RegionRef::is_open_at_end(region)));
     any(RegionRef::excess(region));
     any((RegionRef::contains(region, number(), number()), RegionRef::other_motion(region)));
-    any((RegionRef::ego_motion(region), RegionRef::forbidden_delays(region)));
+    any((RegionRef::ego_motion(region), RegionRef::forbidden_delays(region), RegionRef::passing_delays(region)));
     any(RegionRef::blocked(region, interval(), interval()).last());
     any(RegionRef::forbidden_durations::<4>(region).is_ok());
     any((RegionRef::swapped(region.clone()), RegionRef::hold(region, number(), number())));

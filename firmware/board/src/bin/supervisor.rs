@@ -35,7 +35,7 @@ fn main() -> ! {
     if let Some(session) = SESSION.try_take() {
         loop {
             let byte = uart.read();
-            session.take(byte, |bytes| uart.write(bytes));
+            session.take(byte, &mut |bytes: &[u8]| uart.write(bytes));
         }
     }
     // The cell is taken once, above.

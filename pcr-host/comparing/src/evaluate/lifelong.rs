@@ -19,7 +19,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let mut text = format!(
         "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; every robot gets a random mission whenever one is done, for {hours} h \
         (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up to {} % slower than asked. Missions are \
-        drawn once and never exchanged; all methods have the same ones and the same delays. *An hour*: missions after the first tenth of the time; *travel*: mean time \
+        drawn once and never exchanged; all methods have the same ones and the same delays; orders look for the way to the next goal up to 10 s \
+        before a goal is reached. Locks on edges are given one by one, if all could still finish then (the banker's check). *An hour*: missions after the first tenth of the time; *travel*: mean time \
         of a mission over that of a robot alone; *starved*: missions that have waited for more than ten minutes in the end; *decision*: a way and orders, 99 of 100 within; \
         *contact*: what the independent checker says of the recorded motions.\n\n\
         | robots | method | missions | an hour | travel | starved | stuck | decision | contact |\n|---:|---|---:|---:|---:|---:|---:|---:|---|\n",

@@ -176,7 +176,7 @@ fn exchange(agents: usize) -> Result<String, Problem> {
 }
 
 /// Slope of the best line through the logarithms.
-fn exponent(points: &[[f64; 2]]) -> f64 {
+pub(super) fn exponent(points: &[[f64; 2]]) -> f64 {
     let logs: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::ln)).collect();
     let count = logs.len() as f64;
     let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;

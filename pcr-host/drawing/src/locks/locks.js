@@ -19,11 +19,20 @@ function text(parent, name, content) {
   return element;
 }
 
-// What every edge blocks: the other edge, the own lengths, the other's lengths.
-const blocks = data.edges.map(() => []);
-for (const [a, b, own, other] of data.locks) {
-  blocks[a].push([b, own, other]);
-  blocks[b].push([a, other, own]);
+// Where the locks of every edge are among all of them, twice their places, and 1 more where it is the second one: an edge is made
+// out when it is shown, as a roadmap has a million locks.
+const packed = data.locks, begins = new Uint32Array(data.edges.length + 1), members = new Uint32Array(packed.length / 3);
+for (let k = 0; k < packed.length; k += 6) for (const side of [0, 1]) begins[packed[k + side] + 1]++;
+for (let k = 1; k < begins.length; k++) begins[k] += begins[k - 1];
+const next = begins.slice();
+for (let k = 0; k < packed.length; k += 6) for (const side of [0, 1]) members[next[packed[k + side]]++] = k / 3 + side;
+
+/** What an edge blocks: the other edge, the own lengths, the other's lengths [m]. */
+function blocks_of(k) {
+  return [...members.subarray(begins[k], begins[k + 1])].map((member) => {
+    const side = member % 2, lock = 3 * (member - side), lengths = [2, 4].map((at) => [packed[lock + at] / STEPS, packed[lock + at + 1] / STEPS]);
+    return [packed[lock + 1 - side], lengths[side], lengths[1 - side]];
+  });
 }
 
 // Edges that lie on the same line, in either direction: the pointer reaches the last of them only.
@@ -70,10 +79,10 @@ function show(k) {
     text(about, "p", "Point at an edge to see its corridor (blue) and what it blocks (red); click to keep it, again for the next edge on the same line.");
     return;
   }
-  const edge = data.edges[k];
+  const edge = data.edges[k], blocks = blocks_of(k);
   const corridor = make(overlay, "g", { class: "corridor" });
   for (const [d, width] of edge.corridor) make(corridor, "path", { d, "stroke-width": width });
-  for (const [other, , lengths] of blocks[k]) {
+  for (const [other, , lengths] of blocks) {
     const blocked = data.edges[other];
     if (blocked.path === "") continue;
     // The part between two lengths, as a dash of the whole path.
@@ -109,12 +118,12 @@ function show(k) {
     same.forEach((other) => link(list, other));
   }
   text(about, "p", "From node " + edge.ends[0] + " to node " + edge.ends[1] + ", " + edge.length.toFixed(3) + " m. Blocks " +
-    new Set(blocks[k].map(([other]) => other)).size + " edges:");
+    new Set(blocks.map(([other]) => other)).size + " edges:");
   const table = text(about, "table", "");
   const head = text(text(table, "thead", ""), "tr", "");
   for (const title of ["edge", "on it [m]", "on this one [m]"]) text(head, "th", title);
   const body = text(table, "tbody", "");
-  for (const [other, own, lengths] of blocks[k]) {
+  for (const [other, own, lengths] of blocks) {
     const row = text(body, "tr", "");
     link(text(row, "td", ""), other);
     text(row, "td", range(lengths));
@@ -131,14 +140,21 @@ function draw() {
   nodes.clear();
   choice.replaceChildren();
   text(choice, "option", "none").value = "";
+  // What is only seen is one path for all edges, and one for corridors of a width.
+  const of_width = new Map(), drawn = new Set();
   data.edges.forEach((edge, k) => {
     if (edge.level !== at) return;
     text(choice, "option", edge.id).value = String(k);
-    if (edge.path === "") return;
-    for (const [d, width] of edge.corridor) make(corridors, "path", { d, "stroke-width": width });
-    make(lines, "path", { d: edge.path, class: "edge" });
-    targets_of.set(make(targets, "path", { d: edge.path, class: "target" }), k);
+    if (edge.path === "" || line_of[k].some((other) => drawn.has(other))) return;
+    drawn.add(k);
+    for (const [d, width] of edge.corridor) {
+      if (!of_width.has(width)) of_width.set(width, []);
+      of_width.get(width).push(d);
+    }
+    targets_of.set(make(targets, "path", { d: edge.path, class: "target" }), line_of[k].at(-1));
   });
+  for (const [width, paths] of of_width) make(corridors, "path", { d: paths.join(""), "stroke-width": width });
+  make(lines, "path", { d: [...drawn].map((k) => data.edges[k].path).join(""), class: "edge" });
   for (const node of data.nodes) {
     if (node.level !== at) continue;
     nodes.set(node.id, make(lines, "circle", { cx: node.x, cy: node.y, r: 0.2 * STEPS * data.radius, class: "node" }));
@@ -261,7 +277,7 @@ document.getElementById("search").addEventListener("submit", (event) => {
 data.levels.forEach((name, k) => { text(level, "option", name === "" ? "1" : name).value = String(k); });
 document.getElementById("level-label").hidden = data.levels.length < 2;
 document.getElementById("summary").textContent =
-  data.edges.length + " edges, " + data.nodes.length + " nodes, " + data.locks.length + " locks for " +
+  data.edges.length + " edges, " + data.nodes.length + " nodes, " + packed.length / 6 + " locks for " +
   (data.footprint.length > 0 ? "a footprint of " + data.footprint.length + " corners" : "a disc of " + data.radius + " m");
 level.addEventListener("change", draw);
 choice.addEventListener("change", () => pin(choice.value === "" ? null : Number(choice.value)));

@@ -42,14 +42,14 @@ pub(super) fn agent(id: u64, radius: f64, stops: &[Stop]) -> Result<Agent, Impor
         }
     }
     let trace = tracer.finish(first);
-    let pieces = pieces(&sections);
     let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
-    let motion = MotionSpec::Profile { v0: 0.0, pieces };
+    let motion = sectioned(&sections);
     Ok(Agent { t_start, ..Agent::disc(id, radius + trace.deviation, trace.start, path, motion) })
 }
 
-/// The profile over sections of given lengths and durations.
-fn pieces(sections: &[(f64, f64)]) -> Vec<(f64, f64)> {
+/// The motion over sections of given lengths \[m\] and durations \[s\] above 0, each at a constant speed: it changes within a nanosecond, so
+/// that it is off by nanometres there.
+pub fn sectioned(sections: &[(f64, f64)]) -> MotionSpec {
     let speed = |k: Option<usize>| k.and_then(|k| sections.get(k)).map_or(0.0, |(length, duration)| length / duration);
     let mut pieces = Vec::new();
     for (k, &(length, duration)) in sections.iter().enumerate() {
@@ -60,7 +60,7 @@ fn pieces(sections: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let peak = (length - (before + after) * ramp / 2.0) / (duration - ramp);
         pieces.extend([(ramp, (peak - before) / ramp), (duration - 2.0 * ramp, 0.0), (ramp, (after - peak) / ramp)]);
     }
-    pieces
+    MotionSpec::Profile { v0: 0.0, pieces }
 }
 
 /// Seconds since 1970 of a time stamp of ISO 8601: `2017-04-15T11:40:03.123Z`, also with an offset instead of `Z`.

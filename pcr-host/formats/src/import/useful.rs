@@ -13,7 +13,7 @@ pub enum Kind {
     Orders,
     /// Points of paths.
     Paths,
-    /// Points with times, of Continuous-CBS.
+    /// Points with times, of Continuous-CBS or on a grid.
     Plan,
 }
 
@@ -24,6 +24,7 @@ impl Kind {
             None => Self::Scenario,
             Some(Format::Vda5050) => Self::Orders,
             Some(Format::Path) => Self::Paths,
+            Some(Format::Grid) => Self::Plan,
             Some(Format::Ccbs) if xml::root_of(text) != Some("graphml") => Self::Plan,
             Some(format) => Self::Layout(format),
         }

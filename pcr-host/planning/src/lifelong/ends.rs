@@ -36,13 +36,17 @@ pub(super) struct Ends {
     /// Nodes that can all be reached from one another.
     pub(super) nodes: Vec<usize>,
     pub(super) safe: Vec<usize>,
+    /// Of each node whether it is one.
+    pub(super) is_safe: Vec<bool>,
 }
 
 impl Ends {
     pub(super) fn of(site: &Site, seed: u64) -> Self {
         let nodes = strongest(site);
         let safe = if nodes.len() <= SMALL { drawn(site, &nodes, seed) } else { dead_ends(site, &nodes) };
-        Self { nodes, safe }
+        let mut is_safe = vec![false; site.points.len()];
+        safe.iter().for_each(|&end| is_safe[end] = true);
+        Self { nodes, safe, is_safe }
     }
 
     /// What is told of them.
@@ -137,6 +141,20 @@ fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
                 |atom: &usize| site.atoms[*atom].ends[1] == end && open(*atom) && both[0][site.atoms[*atom].ends[0]];
             leaves && covers.iter().any(comes)
         })
+}
+
+/// How many nodes robots on these nodes cut off from most others, with those who stand for good on so many atoms.
+pub(super) fn cut_off(site: &Site, nodes: &[usize], parked: &[u16], more: &[u16]) -> usize {
+    /// The largest part is found from one of so many nodes, but for odd layouts.
+    const HUBS: usize = 4;
+    let open = |atom: usize| parked[atom] + more[atom] == 0;
+    let free: Vec<usize> = nodes.iter().copied().filter(|&node| open(site.standing(node))).collect();
+    let sizes = (0..HUBS.min(free.len())).map(|k| {
+        let hub = free[k * free.len() / HUBS.min(free.len())];
+        let both = [false, true].map(|back| reached(site, hub, back, open));
+        free.iter().filter(|&&node| both[0][node] && both[1][node]).count()
+    });
+    nodes.len() - sizes.max().unwrap_or(0)
 }
 
 /// Two-way edges without which not all nodes can be reached from one another.

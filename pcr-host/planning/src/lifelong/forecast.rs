@@ -73,7 +73,8 @@ fn add(region: &Region, place: Option<usize>, at: [f64; 2], into: &mut Vec<Wait>
 }
 
 fn sort(waits: &mut [Wait]) {
-    waits.sort_unstable_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
+    // Made of runs that are in order: stable sorting makes use of that.
+    waits.sort_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
 }
 
 /// When robots would be where.
@@ -87,9 +88,7 @@ pub(super) struct Forecast {
 /// A robot that waits for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stuck {
-    pub(super) robot: usize,
-    pub(super) by: usize,
-    /// Place of the region among those of the robot that has another way.
+    /// Place of the region at which it does, among those of the robot that has another way.
     pub(super) region: Option<usize>,
 }
 
@@ -125,14 +124,11 @@ impl<'t> Trial<'t> {
         let mut waits: Vec<Wait> = Vec::new();
         let mut ranges = Vec::with_capacity(count);
         for robot in 0..count {
-            let (way, at) = self.way(robot);
             let it = &self.robots[robot];
-            let departs = match self.changed {
-                Some((changed, _, _, departs, _)) if changed == robot => departs,
-                _ => it.departs,
-            };
-            let late = (departs - self.time).max(it.stopped_until - self.time).max(0.0);
-            lines.push(Timeline { start: way.time(at) - late, delays: Vec::new() });
+            let changed =
+                self.changed.filter(|changed| changed.0 == robot).map(|(_, way, at, departs, _)| (way, at, departs));
+            let start = it.progress(changed, self.time, self.abilities);
+            lines.push(Timeline { start, delays: Vec::new() });
             let from = waits.len();
             self.gates(robot, &mut waits);
             ranges.push((from, waits.len()));
@@ -176,8 +172,8 @@ impl<'t> Trial<'t> {
         let stuck: Vec<Stuck> = (0..count)
             .filter(|&robot| next[robot] < ranges[robot].1)
             .map(|robot| {
-                let Wait { first, region, .. } = waits[next[robot]];
-                Stuck { robot, by: first, region }
+                let Wait { region, .. } = waits[next[robot]];
+                Stuck { region }
             })
             .collect();
         if !stuck.is_empty() {
@@ -185,8 +181,8 @@ impl<'t> Trial<'t> {
         }
         let cost = (0..count).map(|robot| {
             let way = self.way(robot).0;
-            let goal = way.goal.map_or(0.0, |goal| lines[robot].time(way, goal));
-            goal + TAIL * lines[robot].time(way, way.length())
+            let goals: f64 = way.goals.iter().map(|&goal| lines[robot].time(way, goal)).sum();
+            goals + TAIL * lines[robot].time(way, way.length())
         });
         let cost = cost.sum();
         Ok(Forecast { lines, cost })

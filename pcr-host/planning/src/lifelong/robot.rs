@@ -28,7 +28,7 @@ pub(super) struct Robot {
     /// Corners that it has turned at.
     pub(super) turned: usize,
     /// Until when it turns \[s\].
-    turning: f64,
+    pub(super) turning: f64,
     /// Until when it stands for no reason \[s\].
     pub(super) stopped_until: f64,
     /// Share of its speed that it loses for now.
@@ -70,7 +70,7 @@ impl Robot {
     /// Where it stops next by itself: a corner, the goal, or the end \[m\].
     fn next_stop(&self) -> f64 {
         let corner = self.way.corners.get(self.turned).map_or(f64::INFINITY, |corner| corner.at);
-        corner.min(self.way.goal.unwrap_or(f64::INFINITY)).min(self.way.length())
+        corner.min(self.way.goals.first().copied().unwrap_or(f64::INFINITY)).min(self.way.length())
     }
 
     /// Beyond what a hold does not matter for the next step \[m\].
@@ -117,17 +117,31 @@ impl Robot {
         if !comes {
             return false;
         }
+        // At its goal it may get another way before it turns for this one.
+        if self.way.goals.first().is_some_and(|&goal| goal <= next) {
+            self.way.goals.remove(0);
+            return true;
+        }
         if let Some(corner) = self.way.corners.get(self.turned)
             && corner.at <= next
         {
             self.turned += 1;
             self.turning = time + step + corner.turn;
         }
-        let arrived = self.way.goal.is_some_and(|goal| goal <= next);
-        if arrived {
-            self.way.goal = None;
-        }
-        arrived
+        false
+    }
+
+    /// Time of its way at which it is, if it goes on as soon as it can; or of another way, where it is on that, and when it sets off
+    /// \[s\].
+    pub(super) fn progress(&self, other: Option<(&Way, f64, f64)>, time: f64, abilities: &Abilities) -> f64 {
+        let corner = self.turned.checked_sub(1).and_then(|last| self.way.corners.get(last));
+        let (there, departs) = match other {
+            Some((way, at, departs)) => (way.time(at), departs),
+            None if corner.is_some_and(|corner| corner.at == self.at) => (self.way.left_for(self.at), self.departs),
+            None => (self.way.time(self.at), self.departs),
+        };
+        let slow = 0.5 * abilities.stop() * (1.0 - self.speed / abilities.speed);
+        there - (departs.max(self.stopped_until).max(self.turning) - time).max(0.0) - slow
     }
 
     /// Notes the atoms that it has come to.

@@ -1,7 +1,7 @@
 //! Quickest routes over a layout, with the turns at its nodes, and what else an atom is made to cost.
 
 use super::abilities::Abilities;
-use super::site::{Site, wrapped};
+use super::site::{From, Site, wrapped};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet};
 
@@ -25,14 +25,6 @@ impl PartialOrd for Reached {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
-}
-
-/// Where a route begins.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct From {
-    pub(super) node: usize,
-    /// The direction in which a robot comes there, if it comes from anywhere \[rad\].
-    pub(super) heading: Option<f64>,
 }
 
 /// The quickest routes from a node to different nodes that are asked for, the quickest first, at most `count`. `toll` is what an atom

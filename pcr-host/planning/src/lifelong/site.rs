@@ -58,6 +58,14 @@ pub(super) struct Site {
     covers: RefCell<HashMap<usize, Rc<[usize]>>>,
 }
 
+/// A node, and how a robot stands there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct From {
+    pub(super) node: usize,
+    /// Its direction, if that is known \[rad\].
+    pub(super) heading: Option<f64>,
+}
+
 impl Site {
     /// The level of a layout that has most nodes.
     ///

@@ -1,7 +1,7 @@
 //! The path of a robot from node to node, where it stops on it, and when it would be where with nobody in its way.
 
 use super::abilities::Abilities;
-use super::site::{Site, wrapped};
+use super::site::{From, Site, wrapped};
 
 /// Angles below are no corner \[rad\].
 const STRAIGHT: f64 = 1e-6;
@@ -26,34 +26,36 @@ pub(super) struct Way {
     /// When each atom is left for, and the end reached \[s\].
     times: Vec<f64>,
     pub(super) corners: Vec<Corner>,
-    /// Length at which the goal is, if it is still ahead \[m\].
-    pub(super) goal: Option<f64>,
+    /// Lengths of the goals that are still ahead \[m\].
+    pub(super) goals: Vec<f64>,
     end: usize,
+    /// The direction in which a robot stands at its start, if that is known \[rad\].
+    heading: Option<f64>,
 }
 
 impl Way {
     /// A robot that stands at a node.
     pub(super) fn standing(site: &Site, node: usize) -> Self {
-        Self::new(site, node, &[], None, &Abilities::NONE)
+        Self::new(site, From { node, heading: None }, &[], &[], &Abilities::NONE)
     }
 
-    /// Along these atoms; the goal is after so many of them.
-    pub(super) fn new(site: &Site, from: usize, atoms: &[usize], goal: Option<usize>, abilities: &Abilities) -> Self {
-        let atoms = if atoms.is_empty() { vec![site.standing(from)] } else { atoms.to_vec() };
-        let goal = goal.map(|goal| if site.atoms[atoms[0]].edge.is_some() { goal } else { 0 });
+    /// Along these atoms; the goals are after so many of them.
+    pub(super) fn new(site: &Site, from: From, atoms: &[usize], goals: &[usize], abilities: &Abilities) -> Self {
+        let atoms = if atoms.is_empty() { vec![site.standing(from.node)] } else { atoms.to_vec() };
+        let goals: Vec<usize> = if site.atoms[atoms[0]].edge.is_some() { goals.to_vec() } else { vec![0; goals.len()] };
         let mut offsets = vec![0.0];
         let (mut corners, mut times, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
         let (mut length, mut time) = (0.0, 0.0);
-        let mut heading = None;
+        let mut heading = from.heading;
         for (k, &place) in atoms.iter().enumerate() {
             let atom = &site.atoms[place];
             let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
-            let stops = goal == Some(k);
+            let stops = goals.contains(&k);
             if f64::abs(turn) > STRAIGHT {
                 corners.push(Corner { at: length, turn: abilities.turn(turn) });
                 time += abilities.turn(turn);
             }
-            if f64::abs(turn) > STRAIGHT || stops {
+            if k > 0 && (f64::abs(turn) > STRAIGHT || stops) {
                 time += abilities.stop();
             }
             for pair in atom.shapes.windows(2) {
@@ -78,9 +80,9 @@ impl Way {
             offsets.push(length);
         }
         times.push(time);
-        let goal = goal.map(|goal| offsets[goal]);
+        let goals = goals.into_iter().map(|goal| offsets[goal]).collect();
         let end = site.atoms[atoms[atoms.len() - 1]].ends[1];
-        Self { atoms, offsets, speeds, times, corners, goal, end }
+        Self { atoms, offsets, speeds, times, corners, goals, end, heading: from.heading }
     }
 
     pub(super) fn length(&self) -> f64 {
@@ -89,9 +91,19 @@ impl Way {
 
     /// When it would be at a length, from its start \[s\].
     pub(super) fn time(&self, length: f64) -> f64 {
+        // At its start a robot has still to turn.
+        if length <= 0.0 {
+            return 0.0;
+        }
         let k = self.atom(length);
         let beyond = length - self.offsets[k];
         if beyond > 0.0 { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
+    }
+
+    /// When it goes on from a node at a length, from its start \[s\].
+    pub(super) fn left_for(&self, length: f64) -> f64 {
+        let k = self.offsets.partition_point(|&offset| offset <= length).saturating_sub(1);
+        self.times[k]
     }
 
     /// The atom in which a length is, the earlier one at a node.
@@ -110,31 +122,44 @@ impl Way {
         self.end
     }
 
-    /// What is kept if another way is to begin at the first node from `stop` on, for a robot that is at `at` \[m\].
-    pub(super) fn kept(&self, site: &Site, at: f64, stop: f64) -> Kept {
+    /// The direction in which a robot comes to the node before an atom \[rad\].
+    fn heading(&self, site: &Site, atom: usize) -> Option<f64> {
+        let before = self.atoms[..atom].iter().rev().find_map(|&before| site.atoms[before].headings);
+        before.map(|headings| headings[1]).or(self.heading)
+    }
+
+    /// What is kept if another way is to begin at the first node from `stop` on, for a robot that is at `at` \[m\] and has turned at
+    /// so many corners.
+    pub(super) fn kept(&self, site: &Site, at: f64, stop: f64, turned: usize) -> Kept {
         let count = self.atoms.len();
         // At a node, and at rest there, it begins afresh.
         if let Some(k) = self.offsets.iter().position(|&offset| offset == at && offset == stop) {
             let k = k.min(count);
             let node = if k == count { self.end } else { site.atoms[self.atoms[k]].ends[0] };
-            return Kept { from: node, atoms: Vec::new(), before: at, node };
+            let corner = turned.checked_sub(1).and_then(|last| self.corners.get(last));
+            let has_turned = corner.is_some_and(|corner| corner.at == at);
+            let next = self.atoms.get(k).and_then(|&next| site.atoms[next].headings).map(|headings| headings[0]);
+            let heading = if has_turned { next } else { self.heading(site, k) };
+            let from = From { node, heading };
+            return Kept { from, atoms: Vec::new(), before: at, on: from };
         }
         let first = self.atom(at);
         let last = self.offsets.iter().position(|&offset| offset >= stop).unwrap_or(count).clamp(first + 1, count);
         let atoms = self.atoms[first..last].to_vec();
-        let node = site.atoms[self.atoms[last - 1]].ends[1];
-        Kept { from: site.atoms[self.atoms[first]].ends[0], atoms, before: self.offsets[first], node }
+        let on = From { node: site.atoms[self.atoms[last - 1]].ends[1], heading: self.heading(site, last) };
+        let from = From { node: site.atoms[self.atoms[first]].ends[0], heading: None };
+        Kept { from, atoms, before: self.offsets[first], on }
     }
 }
 
 /// The part of a way that cannot be changed any more.
 #[derive(Clone, Debug)]
 pub(super) struct Kept {
-    /// Node where it begins.
-    pub(super) from: usize,
+    /// Where it begins.
+    pub(super) from: From,
     pub(super) atoms: Vec<usize>,
     /// Length of the old way before it \[m\].
     pub(super) before: f64,
-    /// Node where it ends.
-    pub(super) node: usize,
+    /// Where it ends.
+    pub(super) on: From,
 }

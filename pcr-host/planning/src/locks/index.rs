@@ -1,7 +1,8 @@
 //! Tables of locks of any size in a file: an edge is looked up without reading the others (docs/formats.md, "Lock tables").
 
+use super::pass::{Pass, Told};
 use super::rides::reversed;
-use super::sweep::{Pass, Sweep, Told};
+use super::sweep::Sweep;
 use crate::checksum::crc32;
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;

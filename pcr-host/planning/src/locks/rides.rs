@@ -108,12 +108,17 @@ impl<'a> Rides<'a> {
     }
 
     fn along(&self, step: Step<'_>) -> Ride {
-        let agent = match ends(step) {
-            Some(_) => ride(&self.vehicle, step),
-            None => turn(&self.vehicle, self.place(step.origin()), 0.0, 0.0),
-        };
+        let agent = self.along_with(&self.vehicle, step);
         let lengths = if step.backward { Lengths::Reversed(agent.length()) } else { Lengths::Same };
         Ride { agent, lengths }
+    }
+
+    /// A disc with other limits of its motion, along an edge.
+    pub(super) fn along_with(&self, vehicle: &Vehicle, step: Step<'_>) -> Agent {
+        match ends(step) {
+            Some(_) => ride(vehicle, step),
+            None => turn(vehicle, self.place(step.origin()), 0.0, 0.0),
+        }
     }
 
     /// The vehicle that stands at a node, in any heading.

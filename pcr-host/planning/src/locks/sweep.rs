@@ -1,16 +1,15 @@
-//! All that vehicles sweep on the edges and nodes of a layout, and which of them can touch, in one pass over those that come
-//! near one another: a grid finds them, and rows are computed on all cores.
+//! All that vehicles sweep on the edges and nodes of a layout.
 //!
 //! Two edges that are one line in both directions are a *track*: what is blocked on one is blocked on the other, and it is
 //! computed once.
 
+use super::Extents;
+use super::pass::{Pass, STRETCH, Told};
 use super::rides::{Lengths, Ride, Rides, reversed};
-use super::{Extents, joined};
 use crate::bodies::{Bodies, Disced};
 use crate::fleet::Fleet;
-use crate::memory::{self, Held};
-use crate::rows::{Grid, area};
-use pcr_core::{Full, Interval, Motion, Piece, overlaps};
+use crate::memory::Held;
+use crate::rows::area;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, PathSegment, Scenario, label};
 use rayon::prelude::*;
@@ -19,15 +18,6 @@ use std::ops::Range;
 
 /// Locks that are held to be put in order: more are told in the order of the tracks.
 const HELD: usize = 10_000_000;
-
-/// Pairs of discs that are looked at before what was found is handed on.
-const STRETCH: usize = 1 << 16;
-
-/// Pieces of two discs, which have one a pair of segments.
-const PIECES: usize = 16;
-
-/// How far a pass is: pairs of discs that were looked at, of so many.
-pub type Told<'t> = &'t (dyn Fn(usize, usize) + Sync);
 
 /// Two edges or nodes, by their places in [`Sweep::ids`], the lower first, and lengths of both at which vehicles may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,16 +31,16 @@ pub struct Found {
 /// What vehicles sweep on a layout.
 pub struct Sweep {
     /// Names of the edges in their order, then of the nodes.
-    ids: Vec<Id>,
+    pub(super) ids: Vec<Id>,
     /// How many of them are edges.
-    edges: usize,
+    pub(super) edges: usize,
     pub(super) tracks: Vec<Track>,
     /// What lengths on the path of a ride are, and its track.
-    rides: Vec<(Lengths, u32)>,
-    fleet: Fleet<f64>,
-    discs: Vec<Disced>,
+    pub(super) rides: Vec<(Lengths, u32)>,
+    pub(super) fleet: Fleet<f64>,
+    pub(super) discs: Vec<Disced>,
     /// Of each disc.
-    areas: Vec<[f64; 4]>,
+    pub(super) areas: Vec<[f64; 4]>,
 }
 
 /// An edge or a node, or edges that are one.
@@ -60,12 +50,12 @@ pub(super) struct Track {
     /// \[m\]
     pub(super) length: f64,
     levels: [usize; 2],
-    discs: Range<usize>,
+    pub(super) discs: Range<usize>,
 }
 
 impl Track {
     /// An edge that leads from level to level is on both.
-    fn shares_a_level(&self, other: &Self) -> bool {
+    pub(super) fn shares_a_level(&self, other: &Self) -> bool {
         self.levels.iter().any(|level| other.levels.contains(level))
     }
 
@@ -76,11 +66,11 @@ impl Track {
 }
 
 /// A track before its discs are made.
-struct Plan {
-    members: Vec<(usize, bool)>,
-    length: f64,
-    levels: [usize; 2],
-    rides: Vec<Ride>,
+pub(super) struct Plan {
+    pub(super) members: Vec<(usize, bool)>,
+    pub(super) length: f64,
+    pub(super) levels: [usize; 2],
+    pub(super) rides: Vec<Ride>,
 }
 
 impl Sweep {
@@ -142,7 +132,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    fn add(&mut self, plan: Plan, bodies: Bodies<f64>) {
+    pub(super) fn add(&mut self, plan: Plan, bodies: Bodies<f64>) {
         let (first, before, track) = (self.rides.len(), self.discs.len(), self.tracks.len() as u32);
         self.rides.extend(plan.rides.into_iter().map(|ride| (ride.lengths, track)));
         self.areas.extend(bodies.fleet.motions().iter().map(area));
@@ -220,7 +210,7 @@ impl Sweep {
 }
 
 /// The discs of a track.
-fn bodies(plan: &Plan, ids: &[Id]) -> Result<Bodies<f64>, ImportError> {
+pub(super) fn bodies(plan: &Plan, ids: &[Id]) -> Result<Bodies<f64>, ImportError> {
     let name = plan.members.first().and_then(|&(place, _)| ids.get(place)).map(|id| label(&id.to_string()));
     let agents = plan.rides.iter().enumerate().map(|(k, ride)| Agent {
         id: k as u64,
@@ -231,23 +221,26 @@ fn bodies(plan: &Plan, ids: &[Id]) -> Result<Bodies<f64>, ImportError> {
     Bodies::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
 }
 
+/// Where an edge begins and ends that is the line between its nodes, and no other.
+pub(super) fn straight_ends(layout: &Layout, edge: &Edge) -> Option<[[f64; 2]; 2]> {
+    let [from, to] = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.at));
+    let ([x, y], [to_x, to_y]) = (from?, to?);
+    let [line] = &edge.curve[..] else { return None };
+    let length = (to_x - x).hypot(to_y - y);
+    let same = line.at == [x, y] && line.shape == PathSegment::Line { length } && edge.deviation == 0.0;
+    (same && line.heading == (to_y - y).atan2(to_x - x)).then_some([[x, y], [to_x, to_y]])
+}
+
 /// The edges in their order, those together that are one line between the same nodes if turned over, as a disc is.
 fn tracks(layout: &Layout, order: &[&Edge], disc: bool) -> Vec<Vec<(usize, bool)>> {
-    let straight = |edge: &Edge| {
-        let [from, to] = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.at));
-        let ([x, y], [to_x, to_y]) = (from?, to?);
-        let [line] = &edge.curve[..] else { return None };
-        let length = (to_x - x).hypot(to_y - y);
-        let same = line.at == [x, y] && line.shape == PathSegment::Line { length } && edge.deviation == 0.0;
-        (same && line.heading == (to_y - y).atan2(to_x - x)).then_some(edge.ends)
-    };
     let mut tracks: Vec<Vec<(usize, bool)>> = Vec::new();
     let mut known: HashMap<[usize; 2], (usize, [usize; 2])> = HashMap::new();
     for (place, edge) in order.iter().enumerate() {
-        let Some(ends) = straight(edge).filter(|_| disc) else {
+        if !disc || straight_ends(layout, edge).is_none() {
             tracks.push(vec![(place, false)]);
             continue;
-        };
+        }
+        let ends = edge.ends;
         let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
         let &mut (track, first) = known.entry(key).or_insert((tracks.len(), ends));
         match tracks.get_mut(track) {
@@ -256,185 +249,4 @@ fn tracks(layout: &Layout, order: &[&Edge], disc: bool) -> Vec<Vec<(usize, bool)
         }
     }
     tracks
-}
-
-/// A pass over all pairs.
-pub(super) struct Pass<'a> {
-    sweep: &'a Sweep,
-    motions: Vec<Motion<'a, f64>>,
-    grid: Grid,
-    /// How many discs come near each.
-    pub(super) counts: Vec<u32>,
-}
-
-impl<'a> Pass<'a> {
-    pub(super) fn new(sweep: &'a Sweep) -> Self {
-        let grid = Grid::new(sweep.areas.clone());
-        Self { sweep, motions: sweep.fleet.motions(), counts: grid.counts(), grid }
-    }
-
-    /// Rows one after the other, computed on all cores.
-    pub(super) fn each<T: Send, E: From<ImportError>>(
-        &self,
-        told: Told<'_>,
-        row: impl Fn(usize) -> Result<T, ImportError> + Sync,
-        mut take: impl FnMut(T) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let work = |track: usize| {
-            let discs = self.sweep.tracks[track].discs.clone();
-            1 + self.counts[discs].iter().map(|&count| count as usize).sum::<usize>()
-        };
-        let (all, mut next, mut done) = (self.sweep.tracks.len(), 0, 0);
-        let total = (0..all).map(work).sum();
-        while next < all {
-            let (first, mut held) = (next, 0);
-            while next < all && held < STRETCH {
-                held += work(next);
-                next += 1;
-            }
-            let rows = (first..next).into_par_iter().map(&row);
-            rows.collect::<Result<Vec<T>, ImportError>>()?.into_iter().try_for_each(&mut take)?;
-            done += held;
-            told(done, total);
-        }
-        Ok(())
-    }
-
-    /// The tracks after one, or with `both` all, that can be touched from it, itself where it has several members, with the
-    /// lengths of both: by the other track, then in the order of the lengths.
-    pub(super) fn row(&self, track: usize, both: bool) -> Result<Vec<(usize, Extents)>, ImportError> {
-        let sweep = self.sweep;
-        let own = &sweep.tracks[track];
-        let (mut near, mut pairs) = (Vec::new(), Vec::new());
-        for disc in own.discs.clone() {
-            if both {
-                self.grid.around(disc, &mut near)
-            } else {
-                self.grid.after(disc, &mut near)
-            }
-            let others = near.iter().map(|&other| (sweep.track_of(other as usize), [disc, other as usize]));
-            pairs.extend(others.filter(|&(other, _)| other != track && own.shares_a_level(&sweep.tracks[other])));
-        }
-        if own.members.len() > 1 {
-            pairs.extend(own.discs.clone().map(|disc| (track, [disc, disc])));
-        }
-        pairs.sort_unstable();
-        sweep.grouped(&pairs, |disc| self.motions.get(disc).copied())
-    }
-}
-
-/// Changes, one edge at a time: the names are then in no order.
-impl Sweep {
-    /// Adds an edge; returns its track.
-    pub(super) fn insert(&mut self, layout: &Layout, rides: &Rides<'_>, edge: &Edge) -> Result<usize, ImportError> {
-        let (place, track) = (self.ids.len(), self.tracks.len());
-        let plan = Plan {
-            members: vec![(place, false)],
-            length: edge.length(),
-            levels: edge.ends.map(|node| layout.nodes.get(node).map_or(0, |node| node.level)),
-            rides: rides.on(edge),
-        };
-        self.ids.push(edge.id.clone());
-        match bodies(&plan, &self.ids) {
-            Ok(bodies) => {
-                self.edges = self.ids.len();
-                self.add(plan, bodies);
-                Ok(track)
-            }
-            Err(refused) => {
-                self.ids.pop();
-                Err(refused)
-            }
-        }
-    }
-
-    /// Takes an edge out of its track, which is nowhere when it was the last one.
-    pub(super) fn take_out(&mut self, track: usize, id: &Id) {
-        let Some(own) = self.tracks.get_mut(track) else { return };
-        own.members.retain(|&(place, _)| self.ids.get(place).is_some_and(|there| there != id));
-        if own.members.is_empty() {
-            let [nowhere, never] = [f64::INFINITY, f64::NEG_INFINITY];
-            self.areas[own.discs.clone()].fill([nowhere, nowhere, never, never]);
-        }
-    }
-
-    /// The members of a track by their names, and whether they lead the other way.
-    pub(super) fn members(&self, track: usize) -> impl Iterator<Item = (&Id, bool)> {
-        let members = self.tracks.get(track).into_iter().flat_map(|track| &track.members);
-        members.filter_map(|&(place, turned)| Some((self.ids.get(place)?, turned)))
-    }
-
-    /// The tracks that can be touched from one, with the lengths of both, and how many pairs of discs that took.
-    pub(super) fn row_of(&self, track: usize) -> Result<(Vec<(usize, Extents)>, usize), ImportError> {
-        let own = &self.tracks[track];
-        let meet = |a: &[f64; 4], b: &[f64; 4]| a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
-        let mut pairs = Vec::new();
-        for disc in own.discs.clone() {
-            let near = self.areas.iter().enumerate().filter(|(_, other)| meet(&self.areas[disc], other));
-            let near = near.map(|(other, _)| (self.track_of(other), [disc, other]));
-            pairs.extend(near.filter(|&(other, _)| other != track && own.shares_a_level(&self.tracks[other])));
-        }
-        if own.members.len() > 1 {
-            pairs.extend(own.discs.clone().map(|disc| (track, [disc, disc])));
-        }
-        pairs.sort_unstable();
-        Ok((self.grouped(&pairs, |disc| self.fleet.motion(disc))?, pairs.len()))
-    }
-
-    /// The extents of pairs of discs, by the other track.
-    fn grouped<'m>(
-        &self,
-        pairs: &[(usize, [usize; 2])],
-        motion: impl Fn(usize) -> Option<Motion<'m, f64>> + Copy,
-    ) -> Result<Vec<(usize, Extents)>, ImportError> {
-        let mut row = Vec::new();
-        for group in pairs.chunk_by(|a, b| a.0 == b.0) {
-            let Some(&(other, _)) = group.first() else { continue };
-            let extents = self.extents(group.iter().map(|&(_, discs)| discs), motion)?;
-            row.extend(extents.into_iter().map(|extents| (other, extents)));
-        }
-        Ok(row)
-    }
-
-    fn track_of(&self, disc: usize) -> usize {
-        self.discs.get(disc).and_then(|disc| self.rides.get(disc.agent)).map_or(usize::MAX, |ride| ride.1 as usize)
-    }
-
-    /// The extents of the regions of some pairs of discs of two tracks, of which those that overlap are one.
-    fn extents<'m>(
-        &self,
-        pairs: impl Iterator<Item = [usize; 2]>,
-        motion: impl Fn(usize) -> Option<Motion<'m, f64>>,
-    ) -> Result<Vec<Extents>, ImportError> {
-        let (mut extents, mut pieces) = (Vec::new(), vec![Piece::EMPTY; PIECES]);
-        for [own, other] in pairs {
-            let swap = other < own;
-            let [first, second] = if swap { [other, own] } else { [own, other] };
-            let (Some(a), Some(b)) = (motion(first), motion(second)) else { continue };
-            let on = |disc: usize, range: Interval<f64>| {
-                let disc = &self.discs[disc];
-                self.rides[disc.agent].0.on_edge(disc.on_agent([range.lo, range.hi]))
-            };
-            while let Err(full) = overlaps(&a, &b, &mut pieces, |region| {
-                let lengths = [on(first, region.length()), on(second, region.other_length())];
-                extents.push(if swap { [lengths[1], lengths[0]] } else { lengths });
-            }) {
-                let bytes = 2 * (pieces.len() * size_of::<Piece<f64>>()) as u64;
-                memory::ask(bytes, || "a pair of edges".into()).map_err(|large| ImportError::new(large.to_string()))?;
-                if full != Full::Pieces {
-                    let names = [own, other].map(|disc| self.name(disc));
-                    let problem = "more than 32767 pairs of segments within reach of one another";
-                    return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
-                }
-                pieces.resize(2 * pieces.len(), Piece::EMPTY);
-            }
-        }
-        Ok(if extents.len() > 1 { joined(extents) } else { extents })
-    }
-
-    /// What a disc belongs to, for messages.
-    fn name(&self, disc: usize) -> String {
-        let member = self.tracks.get(self.track_of(disc)).and_then(|track| track.members.first());
-        member.and_then(|&(place, _)| self.ids.get(place)).map_or_else(String::new, Id::to_string)
-    }
 }

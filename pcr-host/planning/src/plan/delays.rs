@@ -7,11 +7,13 @@
 //! search    branch and bound over sides                  (internal)
 //! improve   large neighbourhood search                   (internal)
 //! groups    a bound from groups of agents                (internal)
+//! insert    one agent after the other                    (internal)
 //! leave     the fewest agents to leave out               (internal)
 //! ```
 
 mod groups;
 mod improve;
+mod insert;
 mod leave;
 mod net;
 mod problem;
@@ -20,7 +22,7 @@ mod search;
 mod tests;
 
 pub use problem::Objective;
-pub(crate) use problem::{NEVER, Pair, Problem, Ticks, slack};
+pub(crate) use problem::{NEVER, Pair, Problem, Ticks, earliest, slack};
 use search::{Search, Stop};
 use std::time::{Duration, Instant};
 
@@ -39,11 +41,15 @@ const ROUNDS: usize = 200;
 const FACTOR: u32 = 8;
 /// Attempts if nothing has to be proved.
 const ATTEMPTS: u32 = 2;
-/// Nodes of a search in which it matters whether there are delays at all.
+/// Rounds where some delays are enough.
+const SOME: usize = 20;
+/// Nodes of a search in which it matters whether there are delays at all, for few agents and for many: less for more of them, as each
+/// node takes longer.
 const DECIDING: u64 = 200_000;
 /// Pairs of agents that forbid one another something up to which a part is searched, unless a search is asked for: of a larger one
 /// the best of the orders of priority that were tried stands, with a bound.
 const SEARCHED: usize = 20_000;
+const FEW: u64 = 20;
 
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,8 +60,10 @@ pub(crate) struct Outcome {
     pub(crate) bound: i128,
     /// Whether the delays are the best but for rounding.
     pub(crate) proved: bool,
-    /// Sets of agents that have no delays together, and do if any of them is left out. It is proved.
+    /// Sets of agents that have no delays together. It is proved.
     pub(crate) conflicts: Vec<Vec<usize>>,
+    /// Whether nobody more can have delays; else some are left out because none were found for them before a search was stopped.
+    pub(crate) fewest: bool,
 }
 
 /// The best delays, or who cannot have any together and the best delays of all others. `known` delays are the worst that
@@ -64,24 +72,32 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
     let begin = Instant::now();
     let clock = || effort.time.is_some_and(|time| begin.elapsed() >= time);
     let of_all = solved(problem, known, effort, &clock);
-    if of_all.possible {
-        let delays = of_all.delays.map(|delays| delays.into_iter().map(Some).collect());
-        return Outcome { delays, bound: of_all.bound, proved: of_all.proved, conflicts: Vec::new() };
+    if let Some(delays) = of_all.delays {
+        let delays = Some(delays.into_iter().map(Some).collect());
+        return Outcome { delays, bound: of_all.bound, proved: of_all.proved, conflicts: Vec::new(), fewest: true };
     }
-    let is_searched = problem.pairs.len() <= SEARCHED || effort != Effort::default();
-    let left = is_searched.then(|| leave::left(problem, Stop { nodes: DECIDING, clock: &clock }));
-    let Some(left) = left.flatten() else {
-        return Outcome { delays: None, bound: 0, proved: false, conflicts: leave::impossible(problem) };
-    };
-    let staying: Vec<usize> = (0..problem.len()).filter(|agent| !left.out.contains(agent)).collect();
+    let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
+    let left = leave::left(problem, Stop { nodes, clock: &clock });
+    let staying: Vec<usize> = (0..problem.len()).filter(|&agent| left.delays[agent].is_some()).collect();
     let part = problem.of(&staying);
-    let rest = solved(&part, &[], effort, &clock);
+    let known: Vec<Option<i64>> = left.delays.iter().filter(|delay| delay.is_some()).copied().collect();
+    let rest = solved(&part, &[known], effort, &clock);
     let delays = rest.delays.map(|found| {
         let mut delays = vec![None; problem.len()];
         staying.iter().zip(found).for_each(|(&agent, delay)| delays[agent] = Some(delay));
         delays
     });
-    Outcome { delays, bound: rest.bound, proved: rest.proved, conflicts: left.conflicts }
+    Outcome { delays, bound: rest.bound, proved: rest.proved, conflicts: left.conflicts, fewest: left.fewest }
+}
+
+/// Delays of all agents, or of most of them, in milliseconds where a fleet has dozens of agents: not the best ones.
+pub(crate) fn some(problem: &Problem) -> Vec<Option<i64>> {
+    let clock = || false;
+    let found = insert::inserted(problem);
+    match found.iter().copied().collect::<Option<Vec<i64>>>() {
+        Some(all) => improve::improved(problem, all, SOME, &clock).into_iter().map(Some).collect(),
+        None => leave::left(problem, Stop { nodes: NODES, clock: &clock }).delays,
+    }
 }
 
 struct Solved {
@@ -130,7 +146,9 @@ fn connected(
     effort: Effort,
     clock: &dyn Fn() -> bool,
 ) -> Solved {
-    let mut delays = known.filter(|delays| problem.allows(delays)).min_by_key(|delays| problem.cost(delays));
+    let inserted = insert::inserted(problem).into_iter().collect::<Option<Vec<i64>>>();
+    let known = known.filter(|delays| problem.allows(delays)).chain(inserted);
+    let mut delays = known.min_by_key(|delays| problem.cost(delays));
     let limit = |delays: &Option<Vec<i64>>| delays.as_ref().map_or(i128::MAX, |delays| problem.cost(delays));
     let mut bound = problem.cost(&vec![0; problem.len()]);
     if problem.pairs.len() > SEARCHED && effort == Effort::default() {

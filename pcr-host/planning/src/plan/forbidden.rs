@@ -13,7 +13,7 @@
 //! neither discs that are delayed together nor searches over thousands of orders. What a region forbids is the core's in both
 //! (`RegionRef::forbidden_delays`).
 
-use super::delays::{NEVER, Objective, Pair, Problem, Ticks};
+use super::delays::{NEVER, Objective, Pair, Problem, Ticks, earliest};
 use super::grown;
 use crate::bodies::Bodies;
 use crate::memory;
@@ -35,7 +35,8 @@ struct Met {
 const BYTES: u64 = 256;
 
 /// For each agent and each other one that it meets the differences of their delays at which they do.
-pub(crate) struct Forbidden {
+#[derive(Clone, Debug)]
+pub struct Forbidden {
     /// Sorted by the other agent.
     met: Vec<Vec<Met>>,
     ticks: Ticks,
@@ -78,7 +79,7 @@ impl Forbidden {
     ///
     /// # Errors
     /// [`Failure`] where a value does not fit, or the table cannot hold the fleet.
-    pub(crate) fn of(scenario: &Scenario) -> Result<Self, Failure> {
+    pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let bodies = Bodies::<f64>::new(&without_loads(scenario))?;
         let motions = grown(&bodies.fleet);
         let owners: Vec<usize> = bodies.discs.iter().map(|disc| disc.agent).collect();
@@ -89,7 +90,7 @@ impl Forbidden {
     ///
     /// # Errors
     /// [`Failure`] where the table cannot hold them.
-    pub(crate) fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
+    pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
         let owners: Vec<usize> = (0..motions.len()).collect();
         Self::between(motions, &owners, motions.len())
     }
@@ -138,6 +139,20 @@ impl Forbidden {
         Ok(Self { met, ticks, ends, first })
     }
 
+    /// What the delay of an agent less that of another one must not be, by their places: open intervals in no order, which may overlap
+    /// \[s\]; without an end on a side where it is infinite. None for agents that are not there.
+    pub fn intervals(&self, agent: usize, other: usize) -> impl Iterator<Item = [f64; 2]> {
+        let own = self.met.get(agent).map_or(&[][..], Vec::as_slice);
+        let begin = own.partition_point(|met| met.other < other);
+        let those = own.iter().skip(begin).take_while(move |met| met.other == other);
+        let seconds = |end: i64| match end {
+            end if end <= -NEVER => f64::NEG_INFINITY,
+            end if end >= NEVER => f64::INFINITY,
+            end => self.ticks.seconds(end.into()),
+        };
+        those.map(move |met| met.ends.map(seconds))
+    }
+
     /// The delays to be found for all agents.
     pub(crate) fn problem(&self, objective: Objective) -> Problem {
         // Of each pair once, seen from the second agent.
@@ -160,12 +175,17 @@ impl Forbidden {
     }
 
     /// Number of agents.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.met.len()
     }
 
+    /// Whether there are no agents.
+    pub fn is_empty(&self) -> bool {
+        self.met.is_empty()
+    }
+
     /// The order, but for agents that have to start before others.
-    pub(crate) fn respecting(&self, order: Vec<usize>) -> Vec<usize> {
+    pub fn respecting(&self, order: Vec<usize>) -> Vec<usize> {
         let mut ranks = vec![0; self.len()];
         order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);
         let mut after = vec![Vec::new(); self.len()];
@@ -203,7 +223,7 @@ impl Forbidden {
     }
 
     /// One agent after the other, each as early as those before it allow; one that cannot start is left out.
-    pub(crate) fn in_order(&self, order: Vec<usize>) -> Schedule {
+    pub fn in_order(&self, order: Vec<usize>) -> Schedule {
         let mut delays = vec![None; self.len()];
         let mut out = Vec::new();
         let mut ranks = vec![0; self.len()];
@@ -221,17 +241,10 @@ impl Forbidden {
     /// The least delay of an agent that those allow that have one.
     fn earliest(&self, delays: &[Option<i64>], ranks: &[usize], agent: usize) -> Result<i64, Blocked> {
         let before = || self.met[agent].iter().filter_map(|met| Some((met, delays[met.other]?)));
-        let mut intervals: Vec<[i64; 2]> = before()
+        let intervals: Vec<[i64; 2]> = before()
             .map(|(met, delay)| met.ends.map(|end| if end.abs() < NEVER { end + delay } else { end }))
             .collect();
-        intervals.sort_unstable();
-        let mut delay = 0;
-        for [lo, hi] in intervals {
-            if lo < delay && delay < hi {
-                delay = hi;
-            }
-        }
-        if delay < NEVER {
+        if let Some(delay) = earliest(intervals) {
             return Ok(delay);
         }
         // The first in the order of priority of whom it holds.

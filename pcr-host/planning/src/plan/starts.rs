@@ -1,10 +1,11 @@
 //! Start delays of a scenario, for all of its agents or for as many as can have one, and how good they are.
 
-use super::delays::{self, Outcome};
+use super::delays::{self, Objective, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
 use super::{Priority, Unsolved};
 use crate::regions::Failure;
+use pcr_core::Motion;
 
 /// Delays of some agents of a fleet, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,14 @@ pub(super) struct Known {
     pub(super) proved: bool,
 }
 
+/// Start delays of motions \[s\], none for those that are left out because of others; all of them where they can be found in no time.
+pub(crate) fn some(motions: &[Motion<'_, f64>]) -> Option<Vec<Option<f64>>> {
+    let forbidden = Forbidden::of_motions(motions).ok()?;
+    let ticks = forbidden.ticks();
+    let found = delays::some(&forbidden.problem(Objective::Sum));
+    Some(found.into_iter().map(|delay| delay.map(|delay| ticks.seconds(delay.into()))).collect())
+}
+
 pub(super) struct Starts {
     /// By the place of the agent \[s\]; none where the search was stopped before it found any.
     delays: Option<Vec<Option<f64>>>,
@@ -27,6 +36,8 @@ pub(super) struct Starts {
     proved: bool,
     /// Agents that have no delays together.
     conflicts: Vec<Vec<usize>>,
+    /// Whether nobody more can have delays.
+    fewest: bool,
     /// Who cannot start in the order that was asked for.
     out: Vec<Out>,
     /// Whether discs of footprints were planned with.
@@ -46,7 +57,7 @@ impl Starts {
             schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Vec<Option<i64>>>()
         };
         let known: Vec<Vec<Option<i64>>> = schedules.iter().map(in_ticks).collect();
-        let Outcome { delays, bound, proved, conflicts } = delays::best(&problem, &known, request.effort);
+        let Outcome { delays, bound, proved, conflicts, fewest } = delays::best(&problem, &known, request.effort);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
         let found = Self {
@@ -55,6 +66,7 @@ impl Starts {
             bound: ticks.seconds(bound),
             proved,
             conflicts,
+            fewest,
             out: Vec::new(),
             outlined,
         };
@@ -116,6 +128,17 @@ impl Starts {
                     let why = "two of them meet whenever they start";
                     unsolved.push(Unsolved::nowhere(ids(agents), why));
                 }
+            }
+        }
+        if !self.fewest && planner.request.leave_out {
+            let delays = self.delays.as_deref().unwrap_or_default();
+            let explained = |agent: &usize| self.conflicts.iter().any(|conflict| conflict.contains(agent));
+            let out: Vec<usize> =
+                (0..delays.len()).filter(|agent| delays[*agent].is_none() && !explained(agent)).collect();
+            if !out.is_empty() {
+                let why = "no start delays were found for them beside all others before the search was stopped; nor was it \
+                           proved that there are none";
+                unsolved.push(Unsolved::nowhere(ids(&out), why));
             }
         }
         let mut blocked = self.out.iter().filter(|out| !out.always);

@@ -2,13 +2,13 @@
 
 use super::columns::Columns;
 use super::{heading, printable};
-use crate::lifelong::{Driven, Lifelong, WellFormedness};
+use crate::lifelong::{Driven, Lifelong, Shares, WellFormedness};
 use pcr_formats::import::Id;
 use std::io::{self, Write};
 
 /// The header line of [`lifelong_csv`].
 pub const LIFELONG_CSV_HEADER: &str = "method,robots,missions,missions_per_hour,travel_over_unimpeded,certificate,breaches,\
-stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,decisions,decision_median,decision_p99\n";
+stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99\n";
 
 /// A line a method; no ratio where nobody has arrived.
 ///
@@ -21,7 +21,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
         let ratio = it.travel_over_unimpeded.map_or_else(String::new, |ratio| ratio.to_string());
         writeln!(
             out,
-            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99}",
+            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99}",
             it.method.name(),
             it.robots,
             it.missions,
@@ -35,7 +35,13 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
             it.revised,
             it.longest_wait,
             it.waiting,
-            it.starved
+            it.starved,
+            it.time.driving,
+            it.time.turning,
+            it.time.stopped,
+            it.time.held,
+            it.time.aside,
+            it.time.idle
         )?;
     }
     Ok(())
@@ -100,7 +106,19 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
             },
         ]);
     }
-    columns.write(out)
+    columns.write(out)?;
+    for run in runs {
+        let Shares { driving, turning, stopped, held, aside, idle } = run.outcome.time;
+        let [driving, turning, stopped, held, aside, idle] =
+            [driving, turning, stopped, held, aside, idle].map(|part| format!("{:.0} %", 100.0 * part));
+        writeln!(
+            out,
+            "where the time goes, {}: driving {driving}, turning {turning}, stopped {stopped}, waiting for others {held}, \
+            to an end {aside}, without a way {idle}",
+            run.outcome.method.name()
+        )?;
+    }
+    Ok(())
 }
 
 fn well_formed(it: &WellFormedness, out: &mut impl Write) -> io::Result<()> {

@@ -2,8 +2,9 @@
 
 use super::columns::Columns;
 use super::figures::small;
-use super::{heading, quoted};
+use super::{called, heading, quoted};
 use crate::simulate::{Run, Simulation};
+use pcr_formats::scenario::Labels;
 use std::io::{self, Write};
 
 /// A line a mission: numbers that read back exactly; no end where it was not done.
@@ -68,20 +69,26 @@ pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Re
         ]);
     }
     columns.write(out)?;
-    simulation.runs.iter().try_for_each(|run| planning(run, out))
+    simulation.runs.iter().try_for_each(|run| planning(run, &simulation.labels, out))
 }
 
-fn planning(run: &Run, out: &mut impl Write) -> io::Result<()> {
+fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
     let Some(planning) = run.planning else { return Ok(()) };
     let (count, kept) = (planning.count, planning.kept);
     let (mean, longest) = (planning.mean_ms, planning.longest_ms);
     let name = run.controller.name();
     if count > 0 && kept == count {
-        return writeln!(
-            out,
-            "{name}: no plan was found in {count} tries, and nobody moved: robots or goals are too near one another for their margins, \
-             or no order of passing works"
-        );
+        writeln!(out, "{name}: no plan was found in {count} tries, and nobody moved")?;
+    }
+    for waiting in &run.waiting_for {
+        let why = match waiting.by {
+            Some(by) => format!("{} stands in its way or too near it for their margins", called(labels, by)),
+            None => "no order of passing lets it through with its margin".to_owned(),
+        };
+        writeln!(out, "{name}: {} never set off, as {why}", called(labels, waiting.id))?;
+    }
+    if count > 0 && kept == count {
+        return Ok(());
     }
     writeln!(
         out,

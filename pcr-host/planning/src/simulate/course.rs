@@ -120,6 +120,43 @@ pub struct Drive {
 }
 
 impl Drive {
+    /// A motion that owns what it is made of, without its radius.
+    pub fn of(motion: &Motion<'_, f64>) -> Self {
+        let phases = motion.profile().phases().to_vec();
+        Self { course: Course::of(motion), phases, start: motion.time().lo }
+    }
+
+    /// What is left from a time on \[s\]: the rest of the path, at the speed that the agent has then. It is nowhere where it has been, so
+    /// that this is in nobody's way any more; before that time it is taken to stand there. `None` where rounding leaves no motion.
+    ///
+    /// ```
+    /// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};
+    /// use pcr_planning::simulate::Drive;
+    /// let pose = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+    /// let path = Path::<f64, 1>::starting_at(pose)?.line(4.0)?;
+    /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+    /// let whole = Drive::of(&Motion::new(path.as_path(), profile.as_profile(), 0.25, 10.0)?);
+    /// let rest = whole.rest(11.5).unwrap();
+    /// let motion = rest.motion(0.25).unwrap();
+    /// assert!((motion.position_at(12.0).x - 0.0).abs() < 1e-12 && (motion.position_at(0.0).x + 0.5).abs() < 1e-12);
+    /// # Ok::<(), pcr_core::Invalid>(())
+    /// ```
+    pub fn rest(&self, time: f64) -> Option<Self> {
+        let motion = self.motion(1.0)?;
+        let passed = time - self.start;
+        let course = self.course.from(motion.length_at(time)).ok()?;
+        if passed <= 0.0 {
+            return Some(self.clone());
+        }
+        let left = self.phases.iter().filter(|phase| phase.time().hi > passed);
+        let pieces = left.map(|phase| (phase.time().hi - phase.time().lo.max(passed), phase.acceleration()));
+        let pieces: Vec<(f64, f64)> = pieces.collect();
+        match course.length() > 0.0 {
+            true => Self::new(course, motion.speed_at(time), &pieces, time),
+            false => Self::standing(course, time),
+        }
+    }
+
     /// From a speed \[m/s\] with these pieces (duration \[s\], acceleration \[m/s²\]); `None` where they do not travel the
     /// length of the course.
     pub(super) fn new(course: Course, speed: f64, pieces: &[(f64, f64)], start: f64) -> Option<Self> {
@@ -150,6 +187,29 @@ impl Drive {
 mod tests {
     use super::*;
     use pcr_core::{Point, Radians};
+
+    #[test]
+    fn the_rest_of_a_drive_goes_on_as_it_does() {
+        let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
+        let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
+        let course = Course::new(pose, &[PathSegment::Line { length: 1.0 }, arc]).expect("a course");
+        // To 0.5 m/s, on, to rest, a wait, and again.
+        let pieces = [(1.0, 0.5), (0.5, 0.0), (1.0, -0.5), (2.0, 0.0), (1.0, 0.5), (0.5, 0.0), (1.0, -0.5)];
+        let drive = Drive::new(course, 0.0, &pieces, 3.0).expect("a drive");
+        let whole = drive.motion(0.2).expect("a motion");
+        for time in [0.0, 3.0, 3.4, 4.2, 5.0, 6.0, 7.7, 8.6, 9.9, 10.0, 12.0] {
+            let rest = drive.rest(time).expect("its rest");
+            let rest = rest.motion(0.2).expect("a motion");
+            for later in [0.0, 0.1, 0.9, 2.5, 4.0, 20.0] {
+                let (a, b) = (whole.position_at(time + later), rest.position_at(time + later));
+                assert!((a.x - b.x).hypot(a.y - b.y) < 1e-9, "{time} + {later}: {a:?} {b:?}");
+                assert!((whole.speed_at(time + later) - rest.speed_at(time + later)).abs() < 1e-9, "{time} + {later}");
+            }
+            let stood = rest.position_at(-5.0);
+            let now = whole.position_at(time);
+            assert!((stood.x - now.x).hypot(stood.y - now.y) < 1e-9);
+        }
+    }
 
     #[test]
     fn the_rest_of_a_course_is_where_the_course_is() {

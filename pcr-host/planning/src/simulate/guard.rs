@@ -61,6 +61,10 @@ impl Guard {
         let mut orders = Vec::new();
         for (other, at) in now.iter().enumerate() {
             for ego in 0..other {
+                // Two that stand where they are go nowhere.
+                if [ego, other].iter().all(|&place| motions.get(place).is_some_and(|it| it.path().length() <= 0.0)) {
+                    continue;
+                }
                 for region in self.ecm.pair(&motions, ego, other).expect("the table of the fleet") {
                     let (own, their) = (region.length(), region.other_length());
                     if now.get(ego).is_some_and(|ego| ego.lo > own.hi) || at.lo > their.hi {

@@ -1,6 +1,7 @@
 //! What comes out of a run: a record of the true positions, and the figures that follow from it.
 
 use super::contact::{contacts, separation};
+use super::replan::InTheWay;
 use super::supervisor::Statistics;
 use super::task::Task;
 use super::vector::{Vector, norm, sub};
@@ -113,6 +114,9 @@ pub struct Run {
     pub collisions: Vec<Collision>,
     /// Least distance between two discs \[m\]; negative where they overlap.
     pub clearance: Option<f64>,
+    /// Missions that no plan took up.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub waiting_for: Vec<Waiting>,
     /// What planning took; none without a supervisor.
     pub planning: Option<Planning>,
 }
@@ -130,6 +134,16 @@ pub struct Arrival {
     pub unimpeded: f64,
     /// Time in which the robot moved at less than a tenth of its top speed \[s\].
     pub waiting: f64,
+}
+
+/// A mission that was never begun.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Waiting {
+    /// Number of the robot.
+    pub id: u64,
+    /// Number of a robot or obstacle that stands in its way, within their margins; none for an obstacle without a number, and where
+    /// no order of passing lets it through.
+    pub by: Option<u64>,
 }
 
 /// Two discs in contact.
@@ -161,7 +175,13 @@ pub struct Planning {
 }
 
 impl Run {
-    pub(super) fn of(task: &Task, controller: Controller, trace: &Trace, planning: Option<&Statistics>) -> Self {
+    pub(super) fn of(
+        task: &Task,
+        controller: Controller,
+        trace: &Trace,
+        planning: Option<&Statistics>,
+        waiting: &[(usize, Option<InTheWay>)],
+    ) -> Self {
         let missions: Vec<Arrival> =
             trace.journeys.iter().filter_map(|journey| arrival(task, trace, journey)).collect();
         let all: usize = task.robots.iter().map(|robot| robot.missions.len()).sum();
@@ -183,8 +203,20 @@ impl Run {
             collisions,
             clearance,
             planning: planning.map(Planning::of),
+            waiting_for: waiting.iter().map(|(robot, by)| Waiting::of(task, *robot, *by)).collect(),
             missions,
         }
+    }
+}
+
+impl Waiting {
+    fn of(task: &Task, robot: usize, by: Option<InTheWay>) -> Self {
+        let by = match by {
+            Some(InTheWay::Robot(other)) => task.robots.get(other).map(|robot| robot.id),
+            Some(InTheWay::Obstacle(other)) => task.obstacles.get(other).and_then(|obstacle| obstacle.id),
+            None => None,
+        };
+        Self { id: task.robots.get(robot).map_or(0, |robot| robot.id), by }
     }
 }
 

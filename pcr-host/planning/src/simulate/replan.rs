@@ -8,8 +8,7 @@
 use super::braking::to_rest;
 use super::course::{Course, Drive};
 use crate::fleet::{HostEcm, build_ecm_of};
-use crate::plan::Schedule;
-use crate::traffic;
+use crate::plan::start_delays;
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
 
 /// What a robot keeps from a region before which it waits, along its path \[m\].
@@ -18,9 +17,12 @@ const BEFORE: f64 = 1e-4;
 /// Orders of priority in which everybody comes first once are tried for so many robots.
 const FIRST: usize = 8;
 
-/// For more robots than this only start delays are looked for, which takes a second or two; to plan all of them anew by priority on the
-/// way would take longer than a period, and orders are kept without.
+/// For more robots than this only start delays are looked for; to plan all of them anew by priority on the way would take too long, and
+/// orders are kept without.
 pub(super) const SEARCHED: usize = 15;
+
+/// Robots that are made to stay, each once, where not all can go.
+const STAYING: usize = 20;
 
 /// A robot as it is now.
 #[derive(Clone, Debug)]
@@ -44,6 +46,15 @@ pub(super) struct Plan {
     pub(super) cost: f64,
 }
 
+/// Who stands in somebody's way: a place in the list of robots or of obstacles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InTheWay {
+    /// Of a robot.
+    Robot(usize),
+    /// Of an obstacle.
+    Obstacle(usize),
+}
+
 /// What a plan is for.
 #[derive(Debug)]
 pub(super) struct Problem<'a> {
@@ -55,33 +66,113 @@ pub(super) struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Plans for several orders of priority, the best first, or where there is none start delays; none where none was found.
-    pub(super) fn plans(&self, last_order: &[usize]) -> Vec<Plan> {
+    /// Plans for several orders of priority, the best first, or where there is none start delays; none where none was found. Where
+    /// nothing is new (`again`), the last order is enough.
+    pub(super) fn plans(&self, last_order: &[usize], again: bool) -> Vec<Plan> {
+        if again {
+            return self.plan(last_order.to_vec()).into_iter().collect();
+        }
         let searched = if self.robots.len() > SEARCHED { Vec::new() } else { self.by_priority(last_order) };
         if searched.is_empty() { self.delayed().into_iter().collect() } else { searched }
     }
 
     /// Robots that all stand set off one after the other, and wait nowhere else.
-    fn delayed(&self) -> Option<Plan> {
-        if self.robots.iter().any(|robot| robot.speed > 0.0) {
+    pub(super) fn delayed(&self) -> Option<Plan> {
+        let through = self.all_through()?;
+        let motions = self.motions(&through)?;
+        let mut standing = self.standing()?;
+        let goes = |motion: &&Motion<'_, f64>| motion.path().length() > 0.0;
+        standing.extend(motions.iter().filter(|motion| !goes(motion)));
+        let going: Vec<Motion<'_, f64>> = motions.iter().filter(goes).copied().collect();
+        if self.robots.iter().any(|robot| robot.speed > 0.0) || !going.iter().all(|motion| is_clear(motion, &standing))
+        {
             return None;
         }
-        let through: Vec<Drive> = self.robots.iter().map(|robot| self.through(robot)).collect::<Option<_>>()?;
-        let motions = through.iter().zip(self.robots).map(|(drive, robot)| drive.motion(robot.radius));
-        let motions: Vec<Motion<'_, f64>> = motions.collect::<Option<_>>()?;
-        let standing: Vec<Motion<'_, f64>> =
-            self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect::<Option<_>>()?;
-        if !motions.iter().all(|motion| is_clear(motion, &standing)) {
-            return None;
-        }
-        let Schedule { delays, order, .. } = traffic::delays(&motions)?;
-        let later = |(robot, delay): (&State, &Option<f64>)| {
-            let start = self.now + delay.as_ref()?;
-            Problem { now: start, ..*self }.through(robot)
-        };
+        let mut found = start_delays(&going)?.into_iter();
+        let delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
+        let delays = motions.iter().map(delay).collect::<Option<Vec<f64>>>()?;
+        let later = |(robot, delay): (&State, &f64)| Problem { now: self.now + delay, ..*self }.through(robot);
         let drives: Vec<Drive> = self.robots.iter().zip(&delays).map(later).collect::<Option<_>>()?;
-        let cost = delays.iter().flatten().zip(&motions).map(|(delay, motion)| delay + motion.time().length()).sum();
+        let cost = delays.iter().zip(&motions).map(|(delay, motion)| delay + motion.time().length()).sum();
+        let mut order: Vec<usize> = (0..delays.len()).collect();
+        order.sort_by(|&a, &b| delays[a].total_cmp(&delays[b]));
         Some(Plan { drives, order, cost })
+    }
+
+    /// Of robots that all stand, as many as have start delays together while all others stay where they are; of those that shall go. Who stays
+    /// matters: all whose paths lead past there stay, too. So each is made to stay once.
+    pub(super) fn most(&self, wanted: &[bool]) -> Option<Vec<bool>> {
+        let count = |going: &Vec<bool>| going.iter().filter(|goes| **goes).count();
+        let without = |robot: Option<usize>| {
+            let going = wanted.iter().enumerate().map(|(place, &wanted)| wanted && robot != Some(place));
+            self.with_delays(going.collect())
+        };
+        let robots = (0..wanted.len()).filter(|&robot| wanted[robot]).take(STAYING);
+        std::iter::once(None).chain(robots.map(Some)).filter_map(without).max_by_key(count)
+    }
+
+    /// Of robots that all stand, those that have start delays together while all others stay where they are. `wanted` are those that
+    /// shall go.
+    fn with_delays(&self, mut wanted: Vec<bool>) -> Option<Vec<bool>> {
+        let through = self.all_through()?;
+        let motions = self.motions(&through)?;
+        let stays: Vec<Drive> = self.robots.iter().map(|robot| self.staying(robot)).collect::<Option<_>>()?;
+        let stays = self.motions(&stays)?;
+        loop {
+            let mut standing = self.standing()?;
+            standing.extend(stays.iter().zip(&wanted).filter(|(_, wanted)| !**wanted).map(|(motion, _)| *motion));
+            let going: Vec<usize> =
+                (0..wanted.len()).filter(|&robot| wanted[robot] && is_clear(&motions[robot], &standing)).collect();
+            let delays = start_delays(&going.iter().map(|&robot| motions[robot]).collect::<Vec<_>>())?;
+            let mut rest = vec![false; wanted.len()];
+            going.iter().zip(&delays).for_each(|(&robot, delay)| rest[robot] = delay.is_some());
+            if rest == wanted {
+                return wanted.contains(&true).then_some(wanted);
+            }
+            wanted = rest;
+        }
+    }
+
+    /// The motion of one robot among others that go on as they are planned.
+    pub(super) fn beside(&self, robot: usize, drives: &[Drive]) -> Option<Drive> {
+        let mut others: Vec<Motion<'_, f64>> = self.standing()?;
+        let planned = self.motions(drives)?.into_iter().enumerate();
+        others.extend(planned.filter(|(other, _)| *other != robot).map(|(_, motion)| motion));
+        self.best(self.robots.get(robot)?, &others)
+    }
+
+    fn all_through(&self) -> Option<Vec<Drive>> {
+        self.robots.iter().map(|robot| self.through(robot)).collect()
+    }
+
+    /// A robot that stays where it is.
+    fn staying(&self, robot: &State) -> Option<Drive> {
+        Drive::standing(robot.rest.beginning(), self.now)
+    }
+
+    fn motions<'d>(&self, drives: &'d [Drive]) -> Option<Vec<Motion<'d, f64>>> {
+        drives.iter().zip(self.robots).map(|(drive, robot)| drive.motion(robot.radius)).collect()
+    }
+
+    fn standing(&self) -> Option<Vec<Motion<'_, f64>>> {
+        self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect()
+    }
+
+    /// Who stands in the way of a robot, a robot or else an obstacle, whatever anybody does: all others stay where they are.
+    pub(super) fn in_the_way(&self, robot: usize) -> Option<InTheWay> {
+        let through = self.through(self.robots.get(robot)?)?;
+        let motion = through.motion(self.robots.get(robot)?.radius)?;
+        let meets = |other: &Motion<'_, f64>| !is_clear(&motion, std::slice::from_ref(other));
+        let others = (0..self.robots.len()).filter(|&other| other != robot);
+        let stands = |other: &usize| {
+            let stays = self.robots.get(*other).and_then(|it| Some((self.staying(it)?, it.radius)));
+            stays.is_some_and(|(drive, radius)| drive.motion(radius).is_some_and(|motion| meets(&motion)))
+        };
+        others
+            .into_iter()
+            .find(stands)
+            .map(InTheWay::Robot)
+            .or_else(|| self.standing()?.iter().position(meets).map(InTheWay::Obstacle))
     }
 
     fn by_priority(&self, last_order: &[usize]) -> Vec<Plan> {

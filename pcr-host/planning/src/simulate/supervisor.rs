@@ -12,7 +12,7 @@ use super::braking::{speed_within, stopping_length};
 use super::course::{Course, Drive};
 use super::guard::Guard;
 use super::observer::narrowed;
-use super::replan::{Plan, Problem, SEARCHED, State};
+use super::replan::{InTheWay, Plan, Problem, SEARCHED, State};
 use super::task::{Obstacle, Robot, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
 use crate::regions::Failure;
@@ -27,6 +27,9 @@ pub(super) struct Errors {
     /// Of a robot from its path \[m\].
     pub(super) drift: f64,
 }
+
+/// Nobody stands for so long without a reason that stays, beside two periods of planning \[s\].
+const RESTING: f64 = 1.0;
 
 /// How fast a robot that is ahead of its plan falls back to it \[1/s\].
 const FALLING_BACK: f64 = 2.0;
@@ -81,11 +84,11 @@ impl Agent {
         }
     }
 
-    /// The path that a plan is for, and where the robot is on it.
-    fn to_plan(&self) -> (&Course, Interval<f64>, f64) {
+    /// The path that a plan is for, which takes up a new mission or does not, and where the robot is on it.
+    fn to_plan(&self, takes_up: bool) -> (&Course, Interval<f64>, f64) {
         match &self.next {
-            Some(next) => (next, Interval::new(0.0, 0.0), 0.0),
-            None => (&self.course, self.at, self.speed),
+            Some(next) if takes_up => (next, Interval::new(0.0, 0.0), 0.0),
+            _ => (&self.course, self.at, self.speed),
         }
     }
 }
@@ -100,6 +103,8 @@ pub(super) struct Supervisor {
     plan: Option<Current>,
     period: f64,
     next_plan: f64,
+    /// For how long nobody has moved \[s\].
+    still: f64,
     statistics: Statistics,
     snapshots: Vec<Snapshot>,
 }
@@ -109,6 +114,14 @@ pub(super) struct Supervisor {
 struct Current {
     plan: Plan,
     offsets: Vec<f64>,
+}
+
+/// A plan that can be taken up, who then has a new mission, and the radii that it is for \[m\].
+struct Found {
+    current: Current,
+    guard: Guard,
+    taken: Vec<bool>,
+    radii: Vec<f64>,
 }
 
 /// What planning took.
@@ -155,7 +168,18 @@ impl Supervisor {
         let obstacles = task.obstacles.iter().map(obstacle).collect::<Result<_, _>>()?;
         let guard = guard(&agents)?;
         let (statistics, snapshots) = (Statistics::default(), Vec::new());
-        Ok(Self { agents, obstacles, errors, guard, plan: None, period, next_plan: 0.0, statistics, snapshots })
+        Ok(Self {
+            agents,
+            obstacles,
+            errors,
+            guard,
+            plan: None,
+            period,
+            next_plan: 0.0,
+            still: 0.0,
+            statistics,
+            snapshots,
+        })
     }
 
     pub(super) fn statistics(&self) -> &Statistics {
@@ -165,61 +189,100 @@ impl Supervisor {
     /// Narrows down where the robots are.
     fn observe(&mut self, frame: &Frame<'_>) {
         let error = self.errors.noise + self.errors.drift;
-        for ((agent, &seen), &speed) in self.agents.iter_mut().zip(frame.seen).zip(frame.speeds) {
-            // A robot tells what its wheels do: at its end less than it was told.
+        let told = frame.seen.iter().zip(frame.speeds).zip(frame.arrived);
+        for (agent, ((&seen, &speed), &arrived)) in self.agents.iter_mut().zip(told) {
+            // A robot tells what its wheels do: at its end less than it was told. And it knows its end: else others would wait for ever for
+            // it to leave regions that end just before.
             agent.speed = speed;
-            agent.at = narrowed(agent.at, speed * FRAME, seen, error, &agent.course);
+            let end = agent.course.length();
+            agent.at = match arrived {
+                true => Interval::new(end, end),
+                false => narrowed(agent.at, speed * FRAME, seen, error, &agent.course),
+            };
         }
+        let moves = self.agents.iter().any(|agent| agent.speed > 0.0);
+        self.still = if moves { 0.0 } else { self.still + FRAME };
     }
 
-    /// Looks for a better plan, and keeps the old one where there is none.
+    /// Looks for a better plan, and keeps the old one where there is none. Where not all new missions can be taken up those are that can.
     fn replan(&mut self, now: f64) {
-        let taken_up = self.plan.is_some() && self.agents.iter().all(|agent| agent.next.is_none());
-        if taken_up && self.agents.len() > SEARCHED {
+        let pending: Vec<bool> = self.agents.iter().map(|agent| agent.next.is_some()).collect();
+        let again = self.plan.is_some() && !pending.contains(&true);
+        if again && self.agents.len() > SEARCHED {
             return;
         }
         let begin = Instant::now();
+        let found =
+            self.for_all(now, &pending, again).or_else(|| if again { None } else { self.for_some(now, &pending) });
+        self.statistics.times.push(begin.elapsed().as_secs_f64());
+        match found {
+            Some(found) => self.take_up(now, found),
+            None => self.statistics.kept += 1,
+        }
+    }
+
+    /// A plan for all robots, of which these take up their new missions: with the margins of a plan, or if robots are too near each other
+    /// for that, with those of passing orders.
+    fn for_all(&self, now: f64, taken: &[bool], again: bool) -> Option<Found> {
         let last: Vec<usize> = match &self.plan {
             Some(current) => current.plan.order.clone(),
             None => (0..self.agents.len()).collect(),
         };
-        // With the margins of a plan, or if robots are too near each other for that, with those of passing orders.
-        let found = [1, 0].into_iter().find_map(|margin| {
-            let robots = self.agents.iter().map(|agent| agent.state(margin)).collect::<Option<Vec<State>>>()?;
-            let problem = Problem { now, robots: &robots, obstacles: &self.obstacles };
-            problem
-                .plans(&last)
-                .into_iter()
-                .find_map(|plan| self.accepted(plan).map(|accepted| (accepted, robots.clone())))
-        });
-        self.statistics.times.push(begin.elapsed().as_secs_f64());
-        let Some(((current, guard), robots)) = found else {
-            self.statistics.kept += 1;
-            return;
+        [1, 0].into_iter().find_map(|margin| {
+            let robots = self.states(margin, taken)?;
+            let plans = Problem { now, robots: &robots, obstacles: &self.obstacles }.plans(&last, again);
+            plans.into_iter().find_map(|plan| self.found(plan, self.offsets(taken), taken, margin))
+        })
+    }
+
+    /// A plan in which as many as possible take up their new missions, while the others stay where they are; if everybody stands. On the
+    /// way, those that can beside the plan that all others have.
+    fn for_some(&self, now: f64, pending: &[bool]) -> Option<Found> {
+        let stands = self.agents.iter().all(|agent| agent.speed <= 0.0 && agent.at.lo >= agent.course.length());
+        let together = |margin: usize| {
+            let robots = self.states(margin, pending)?;
+            let taken = Problem { now, robots: &robots, obstacles: &self.obstacles }.most(pending)?;
+            let robots = self.states(margin, &taken)?;
+            let plan = Problem { now, robots: &robots, obstacles: &self.obstacles }.delayed()?;
+            self.found(plan, self.offsets(&taken), &taken, margin)
         };
-        for agent in &mut self.agents {
-            if let Some(next) = agent.next.take() {
-                agent.course = next;
-                agent.at = Interval::new(0.0, 0.0);
-                agent.speed = 0.0;
-            }
+        let count = |found: &Found| found.taken.iter().filter(|taken| **taken).count();
+        match stands {
+            true => [0, 1].into_iter().filter_map(together).max_by_key(count),
+            false => [1, 0].into_iter().find_map(|margin| self.one_beside(now, pending, margin)),
         }
-        self.guard = guard;
-        self.snapshots.push(Snapshot {
-            time: now,
-            drives: current.plan.drives.clone(),
-            offsets: current.offsets.clone(),
-            radii: robots.iter().map(|robot| robot.radius).collect(),
-        });
-        self.plan = Some(current);
+    }
+
+    /// The plan that all have, and a motion of one robot more beside it.
+    fn one_beside(&self, now: f64, pending: &[bool], margin: usize) -> Option<Found> {
+        let current = self.plan.as_ref()?;
+        (0..pending.len()).filter(|&robot| pending[robot]).find_map(|robot| {
+            let taken: Vec<bool> = (0..pending.len()).map(|other| other == robot).collect();
+            let robots = self.states(margin, &taken)?;
+            let problem = Problem { now, robots: &robots, obstacles: &self.obstacles };
+            let mut plan = current.plan.clone();
+            *plan.drives.get_mut(robot)? = problem.beside(robot, &current.plan.drives)?;
+            let mut offsets = current.offsets.clone();
+            *offsets.get_mut(robot)? = 0.0;
+            self.found(plan, offsets, &taken, margin)
+        })
+    }
+
+    fn states(&self, margin: usize, taken: &[bool]) -> Option<Vec<State>> {
+        self.agents.iter().zip(taken).map(|(agent, &taken)| agent.state(margin, taken)).collect()
+    }
+
+    /// Lengths travelled before a plan that is made now \[m\].
+    fn offsets(&self, taken: &[bool]) -> Vec<f64> {
+        self.agents.iter().zip(taken).map(|(agent, &taken)| agent.to_plan(taken).1.middle()).collect()
     }
 
     /// The plan with its passing orders, if every robot can still keep them.
-    fn accepted(&self, plan: Plan) -> Option<(Current, Guard)> {
-        let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.to_plan().1).collect();
-        let offsets = places.iter().map(|at| at.middle()).collect();
+    fn found(&self, plan: Plan, offsets: Vec<f64>, taken: &[bool], margin: usize) -> Option<Found> {
+        let robots = || self.agents.iter().zip(taken).map(|(agent, &taken)| (agent, agent.to_plan(taken)));
         let current = Current { plan, offsets };
-        let courses: Vec<Course> = self.agents.iter().map(|agent| agent.to_plan().0.clone()).collect();
+        let places: Vec<Interval<f64>> = robots().map(|(_, (_, at, _))| at).collect();
+        let courses: Vec<Course> = robots().map(|(_, (course, ..))| course.clone()).collect();
         let radii: Vec<f64> = self.agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
         let mut guard = Guard::new(&courses, &radii).ok()?;
         guard.take_orders(
@@ -228,12 +291,28 @@ impl Supervisor {
             |agent, time| current.length_at(agent, time),
         )?;
         let holds = guard.holds(&places, |_| f64::INFINITY);
-        let can_stop = self.agents.iter().zip(holds).all(|(agent, hold)| {
-            let (_, at, speed) = agent.to_plan();
+        let can_stop = robots().zip(holds).all(|((agent, (_, at, speed)), hold)| {
             let slower = (speed - agent.limits.acceleration * FRAME).max(0.0);
             at.hi + stopping_length(slower, agent.limits.acceleration, FRAME) <= hold
         });
-        can_stop.then_some((current, guard))
+        let radii = self.agents.iter().map(|agent| agent.radius + agent.margins[margin]).collect();
+        can_stop.then(|| Found { current, guard, taken: taken.to_vec(), radii })
+    }
+
+    fn take_up(&mut self, now: f64, found: Found) {
+        let Found { current, guard, taken, radii } = found;
+        for (agent, _) in self.agents.iter_mut().zip(&taken).filter(|(_, taken)| **taken) {
+            if let Some(next) = agent.next.take() {
+                agent.course = next;
+                agent.at = Interval::new(0.0, 0.0);
+                agent.speed = 0.0;
+            }
+        }
+        self.guard = guard;
+        self.still = 0.0;
+        let (drives, offsets) = (current.plan.drives.clone(), current.offsets.clone());
+        self.snapshots.push(Snapshot { time: now, drives, offsets, radii });
+        self.plan = Some(current);
     }
 
     /// The speed of a robot for the next frame.
@@ -265,8 +344,8 @@ impl Agent {
     }
 
     /// As a plan takes it, with one of its margins.
-    fn state(&self, margin: usize) -> Option<State> {
-        let (course, at, speed) = self.to_plan();
+    fn state(&self, margin: usize, taken: bool) -> Option<State> {
+        let (course, at, speed) = self.to_plan(taken);
         let radius = self.radius + self.margins.get(margin)?;
         Some(State { rest: course.from(at.middle()).ok()?, speed, limits: self.limits, radius })
     }
@@ -300,6 +379,18 @@ impl Control for Supervisor {
         let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.at).collect();
         let holds = self.guard.holds(&places, |place| self.agents.get(place).map_or(f64::INFINITY, Agent::horizon));
         holds.iter().enumerate().map(|(place, &hold)| Command::Along(self.speed(place, frame.time, hold))).collect()
+    }
+
+    fn is_stuck(&self) -> bool {
+        self.still > 2.0 * self.period + RESTING
+    }
+
+    fn waiting(&self) -> Vec<(usize, Option<InTheWay>)> {
+        let pending: Vec<bool> = self.agents.iter().map(|agent| agent.next.is_some()).collect();
+        let robots = self.states(0, &pending).unwrap_or_default();
+        let problem = Problem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
+        let waits = (0..pending.len()).filter(|&robot| pending[robot]);
+        waits.map(|robot| (robot, problem.in_the_way(robot))).collect()
     }
 
     fn take_snapshots(&mut self) -> Vec<Snapshot> {

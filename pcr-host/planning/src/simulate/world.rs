@@ -71,12 +71,18 @@ impl<'a> World<'a> {
         self.agents.iter().all(|agent| !agent.travels && agent.begun == agent.robot.missions.len())
     }
 
+    /// Whether everybody has been given all of its missions.
+    pub(super) fn all_given(&self) -> bool {
+        self.agents.iter().all(|agent| agent.begun == agent.robot.missions.len())
+    }
+
     /// From a frame to the next one.
     pub(super) fn step(&mut self, frame: usize, control: &mut dyn Control) {
         let time = frame as f64 * FRAME;
         let seen: Vec<Vector> = self.agents.iter_mut().map(|agent| agent.body.observed()).collect();
         let speeds: Vec<f64> = self.agents.iter().map(|agent| agent.body.speed()).collect();
-        let commands = control.commands(&Frame { time, seen: &seen, speeds: &speeds });
+        let arrived: Vec<bool> = self.agents.iter().map(|agent| agent.course.is_some() && !agent.travels).collect();
+        let commands = control.commands(&Frame { time, seen: &seen, speeds: &speeds, arrived: &arrived });
         let tracks = self.trace.positions.iter_mut().zip(&mut self.trace.travelled);
         for ((agent, command), (track, travelled)) in self.agents.iter_mut().zip(commands).zip(tracks) {
             agent.body.step(time, command, agent.course);

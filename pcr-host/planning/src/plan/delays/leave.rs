@@ -3,18 +3,27 @@
 //! A conflict is a set of agents that have no delays together. Whoever has to be left out, at least one of each conflict is. A
 //! least set that hits all known conflicts is tried; where the others have no delays yet, they hold a conflict that is not
 //! known. So the first set that suffices is one of the fewest.
+//!
+//! Where that takes too long, agents are inserted one after the other, and whoever does not fit is left out.
 
+use super::insert;
 use super::problem::Problem;
 use super::search::{Search, Stop};
 
 /// Conflicts, and whom to leave out because of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Left {
-    /// Sets of agents of which none has delays for all of its agents, and each has if any of them is left out: all pairs, and what else was found.
+    /// Sets of agents of which none has delays for all of its agents: all pairs, and what else was found. If `fewest`, each has if any of
+    /// them is left out.
     pub(super) conflicts: Vec<Vec<usize>>,
-    /// Places of the agents that are left out.
-    pub(super) out: Vec<usize>,
+    /// Delays of those that stay \[ticks\].
+    pub(super) delays: Vec<Option<i64>>,
+    /// Whether it is proved that nobody more can stay; else a search was stopped before that was known.
+    pub(super) fewest: bool,
 }
+
+/// Once a search was stopped, further ones have their nodes divided by this.
+const HASTE: u64 = 50;
 
 /// The pairs that meet whatever their delays are.
 pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
@@ -22,52 +31,111 @@ pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
     pairs.map(|pair| pair.agents.to_vec()).collect()
 }
 
-/// Whom to leave out; `None` if the search was stopped before that was known.
-pub(super) fn left(problem: &Problem, stop: Stop<'_>) -> Option<Left> {
-    let mut left = Left { conflicts: impossible(problem), out: Vec::new() };
+/// Whom to leave out. Where a search is stopped the answer is one that is found without: all that stay have delays.
+pub(super) fn left(problem: &Problem, mut stop: Stop<'_>) -> Left {
+    let mut left = Left { conflicts: impossible(problem), delays: Vec::new(), fewest: true };
     loop {
-        left.out = hitting(&left.conflicts, problem.len(), stop)?;
-        let staying: Vec<usize> = (0..problem.len()).filter(|agent| !left.out.contains(agent)).collect();
+        let out = hitting(&left.conflicts, problem.len(), stop, &mut left.fewest);
+        left.delays = vec![None; problem.len()];
+        let staying: Vec<usize> = (0..problem.len()).filter(|agent| !out.contains(agent)).collect();
         // Parts that forbid one another nothing have conflicts of their own.
         let parts = problem.of(&staying).parts().into_iter();
         let parts = parts.map(|part| part.into_iter().map(|place| staying[place]).collect::<Vec<_>>());
         let before = left.conflicts.len();
         for part in parts {
-            if !has_delays(problem, &part, stop)? {
-                left.conflicts.push(least_conflict(problem, part, stop)?);
+            match delays(problem, &part, stop) {
+                Delays::All(found) => {
+                    part.iter().zip(found).for_each(|(&agent, delay)| left.delays[agent] = Some(delay));
+                }
+                Delays::Never => left.conflicts.push(least_conflict(problem, part, stop)),
+                Delays::Some(found) => {
+                    part.iter().zip(found).for_each(|(&agent, delay)| left.delays[agent] = delay);
+                    left.fewest = false;
+                }
             }
         }
         if left.conflicts.len() == before {
-            return Some(left);
+            if !left.fewest {
+                take_in(problem, &mut left.delays, stop);
+            }
+            return left;
+        }
+        if !left.fewest {
+            stop.nodes = stop.nodes.min(super::DECIDING / HASTE);
         }
     }
 }
 
-/// Whether there are delays for these agents; `None` if that is not known.
-fn has_delays(problem: &Problem, agents: &[usize], stop: Stop<'_>) -> Option<bool> {
-    let part = problem.of(agents);
-    // Any will do: the first one that is found ends the search.
-    let found = Search::new(&part, stop).first();
-    if found.delays.is_some() { Some(true) } else { found.complete.then_some(false) }
+/// Delays of some agents.
+enum Delays {
+    /// Of all of them.
+    All(Vec<i64>),
+    /// There are none for all of them: it is proved.
+    Never,
+    /// A search was stopped before either was known. Of as many as could be inserted.
+    Some(Vec<Option<i64>>),
 }
 
-/// Those of a conflict that are left if everybody is taken out without whom it is one.
-fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, stop: Stop<'_>) -> Option<Vec<usize>> {
+fn delays(problem: &Problem, agents: &[usize], stop: Stop<'_>) -> Delays {
+    let part = problem.of(agents);
+    let inserted = insert::inserted(&part);
+    if let Some(all) = inserted.iter().copied().collect::<Option<Vec<i64>>>() {
+        return Delays::All(all);
+    }
+    // Any will do: the first ones that are found end the search.
+    let found = Search::new(&part, stop).first();
+    match found.delays {
+        Some(all) => Delays::All(all),
+        None if found.complete => Delays::Never,
+        None => Delays::Some(inserted),
+    }
+}
+
+/// Those of a conflict that are left if everybody is taken out without whom it is one, as far as searches tell.
+fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, stop: Stop<'_>) -> Vec<usize> {
     for agent in conflict.clone() {
         let others: Vec<usize> = conflict.iter().copied().filter(|&other| other != agent).collect();
-        if !has_delays(problem, &others, stop)? {
+        if matches!(delays(problem, &others, stop), Delays::Never) {
             conflict = others;
         }
     }
-    Some(conflict)
+    conflict
 }
 
-/// The fewest agents of which each conflict has one; `None` if the search for them was stopped.
-fn hitting(conflicts: &[Vec<usize>], agents: usize, stop: Stop<'_>) -> Option<Vec<usize>> {
-    let mut search =
-        Hitting { conflicts, out: vec![false; agents], kept: vec![false; agents], best: None, nodes: 0, stop };
+/// Gives delays to those that have none where a short search finds some for them and all that have.
+fn take_in(problem: &Problem, delays: &mut [Option<i64>], stop: Stop<'_>) {
+    let stop = Stop { nodes: stop.nodes.min(super::DECIDING / HASTE / HASTE), ..stop };
+    for agent in 0..delays.len() {
+        let impossible = |pair: &super::Pair| {
+            let other = pair.agents[usize::from(pair.agents[0] == agent)];
+            pair.agents.contains(&agent) && pair.is_impossible() && delays[other].is_some()
+        };
+        if delays[agent].is_some() || problem.pairs.iter().any(impossible) || (stop.clock)() {
+            continue;
+        }
+        let together: Vec<usize> = (0..delays.len()).filter(|&it| it == agent || delays[it].is_some()).collect();
+        let part = problem.of(&together);
+        if let Some(found) = Search::new(&part, stop).first().delays {
+            together.iter().zip(found).for_each(|(&agent, delay)| delays[agent] = Some(delay));
+        }
+    }
+}
+
+/// The fewest agents of which each conflict has one. If the search for them is stopped `fewest` becomes false, and they are few.
+fn hitting(conflicts: &[Vec<usize>], agents: usize, stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
+    let mut search = Hitting {
+        conflicts,
+        out: vec![false; agents],
+        kept: vec![false; agents],
+        best: None,
+        nodes: 0,
+        cut: false,
+        stop,
+    };
     search.node(0);
-    search.best.filter(|_| search.nodes <= stop.nodes)
+    *fewest &= !search.cut;
+    // The first dive ends with some, however many nodes it takes.
+    search.best.unwrap_or_else(|| (0..agents).collect())
 }
 
 /// Branch and bound over which agent of a conflict is left out.
@@ -77,6 +145,8 @@ struct Hitting<'a> {
     kept: Vec<bool>,
     best: Option<Vec<usize>>,
     nodes: u64,
+    /// Whether it was stopped with some that are few.
+    cut: bool,
     stop: Stop<'a>,
 }
 
@@ -95,7 +165,9 @@ impl Hitting<'_> {
             }
         }
         let most = self.best.as_ref().map_or(usize::MAX, Vec::len);
-        if count + needed >= most || self.nodes > self.stop.nodes {
+        let stopped = self.nodes > self.stop.nodes || (self.stop.clock)();
+        self.cut |= stopped && self.best.is_some();
+        if count + needed >= most || self.cut {
             return;
         }
         let frequency = |agent: usize| open.iter().filter(|conflict| conflict.contains(&agent)).count();

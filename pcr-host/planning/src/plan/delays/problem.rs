@@ -94,6 +94,13 @@ impl Pair {
         delays[second] - delays[first]
     }
 
+    /// What the delays of one of the two must not be while the other one has this delay \[ticks\].
+    pub(super) fn forbidden_to(&self, agent: usize, other: i64) -> impl Iterator<Item = [i64; 2]> {
+        let shifted = move |end: i64| if end.abs() < NEVER { end + other } else { end };
+        let second = self.agents[1] == agent;
+        self.forbidden.iter().map(move |&[lo, hi]| if second { [lo, hi] } else { [-hi, -lo] }.map(shifted))
+    }
+
     /// Whether no difference is allowed.
     pub(crate) fn is_impossible(&self) -> bool {
         self.forbidden.iter().any(|&[lo, hi]| lo <= -NEVER && hi >= NEVER)
@@ -124,6 +131,18 @@ impl Pair {
         let next = self.forbidden.iter().find(|ends| difference <= ends[0]).map(|&ends| self.beside(ends)[0]);
         last.into_iter().chain(next)
     }
+}
+
+/// The least delay from 0 on that is inside none of some open intervals; none if there is no end to them \[ticks\].
+pub(crate) fn earliest(mut forbidden: Vec<[i64; 2]>) -> Option<i64> {
+    forbidden.sort_unstable();
+    let mut delay = 0;
+    for [lo, hi] in forbidden {
+        if lo < delay && delay < hi {
+            delay = hi;
+        }
+    }
+    (delay < NEVER).then_some(delay)
 }
 
 /// The delay of one agent is at least that of another and so much more \[ticks\].

@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# What a release consists of, built twice from clean clones in two folders and compared bit for bit:
+#   .ci/release.sh OUT            everything
+#   .ci/release.sh OUT PART...    some: tool wheel library playground
+# OUT gets the tool as a static binary with completions and its manual page, the Python wheel, the library for C, the playground, the
+# bill of materials (CycloneDX) and SHA256SUMS. What is not committed is not in it.
+set -euo pipefail
+[ $# -ge 1 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+shift
+parts=" ${*:-tool wheel library playground} "
+cd "$(dirname "$0")/.."
+root=$PWD
+if [ -n "$(git status --porcelain)" ]; then echo "release: what is not committed is not in it" >&2; fi
+version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+export SOURCE_DATE_EPOCH CARGO_INCREMENTAL=0 RUSTUP_AUTO_INSTALL=0 LC_ALL=C TZ=UTC
+host=$(rustc -vV | sed -n 's/^host: //p')
+unset CARGO_TARGET_DIR
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Static binaries: with musl where the toolchain has it, otherwise with the C library of this machine, which this tool asks for
+# nothing that it would load at run time.
+targets=()
+has() { ls "$(rustc --print target-libdir --target "$1" 2>/dev/null)"/libstd-*.rlib >/dev/null 2>&1; }
+for machine in x86_64 aarch64; do
+  if has $machine-unknown-linux-musl; then
+    targets+=($machine-unknown-linux-musl)
+  elif [ "$host" = $machine-unknown-linux-gnu ]; then
+    targets+=("$host")
+  else
+    echo "release: no binary for $machine: rustup target add $machine-unknown-linux-musl" >&2
+  fi
+done
+
+# pack ARCHIVE FOLDER: the same bytes for the same files.
+pack() { tar --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner -C "$(dirname "$2")" -cf - "$(basename "$2")" | gzip -9n >"$1"; }
+
+# Where files were built does not show in what they contain.
+flags() { echo "--remap-path-prefix=$1=/pcr --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=/cargo"; }
+
+tool() {
+  local target=$1 here=$2 made=$3 folder=$3/.pcr name pcr
+  name=CARGO_TARGET_$(tr 'a-z.-' 'A-Z__' <<<"$target")_RUSTFLAGS
+  env "$name=$(flags "$here") -Ctarget-feature=+crt-static" cargo build --release --locked --quiet --target "$target" -p pcr-host
+  mkdir -p "$folder/pcr-$version-$target"
+  cp "target/$target/release/pcr" README.md LICENSE-MIT LICENSE-APACHE "$folder/pcr-$version-$target"
+  strip "$folder/pcr-$version-$target/pcr"
+  if [ "${target%%-*}" = "${host%%-*}" ]; then
+    if ldd "$folder/pcr-$version-$target/pcr" 2>&1 | grep -q '=>'; then echo "release: $target is not static" >&2; return 1; fi
+    pcr=$folder/pcr-$version-$target/pcr
+    if "$pcr" check -q docs/crossing.json >/dev/null; then return 1; fi # they collide
+    for shell in bash zsh fish; do "$pcr" completions $shell >"$folder/pcr-$version-$target/pcr.$shell"; done
+    "$pcr" man >"$folder/pcr-$version-$target/pcr.1"
+  fi
+  pack "$made/pcr-$version-$target.tar.gz" "$folder/pcr-$version-$target"
+  rm -r "$folder"
+}
+
+wheel() {
+  local here=$1 made=$2 python=$scratch/python name
+  name=CARGO_TARGET_$(tr 'a-z.-' 'A-Z__' <<<"$host")_RUSTFLAGS
+  if [ ! -x "$python/bin/maturin" ]; then
+    python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
+    "$python/bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2"
+  fi
+  .ci/dependencies.py sbom pcr-py >"$here/pcr-py.cdx.json"
+  env "$name=$(flags "$here")" "$python/bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$made" \
+    --sbom-include "$here/pcr-py.cdx.json"
+}
+
+library() {
+  local here=$1 made=$2 folder=$2/.c name
+  name=CARGO_TARGET_$(tr 'a-z.-' 'A-Z__' <<<"$host")_RUSTFLAGS
+  env "$name=$(flags "$here")" bindings/c/install.sh "$folder/pcr-c-$version-$host" >/dev/null
+  cp LICENSE-MIT LICENSE-APACHE "$folder/pcr-c-$version-$host"
+  pack "$made/pcr-c-$version-$host.tar.gz" "$folder/pcr-c-$version-$host"
+  rm -r "$folder"
+}
+
+playground() {
+  local here=$1 made=$2 target=wasm32-unknown-unknown
+  env CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="$(flags "$here")" firmware/cross.sh $target build --profile web --locked --quiet -p pcr-web
+  bindings/web/build.py target/$target/web/pcr_web.wasm "$made/pcr-playground-$version.html" >/dev/null
+}
+
+# once FOLDER: a release, from a clone there.
+once() {
+  local here=$scratch/$1/source made=$scratch/$1/made target part
+  git clone -q "$root" "$here"
+  mkdir -p "$made"
+  cd "$here"
+  if [[ $parts == *" tool "* ]]; then for target in "${targets[@]}"; do tool "$target" "$here" "$made"; done; fi
+  for part in wheel library playground; do if [[ $parts == *" $part "* ]]; then $part "$here" "$made"; fi; done
+  .ci/dependencies.py sbom pcr-host >"$made/pcr-$version.cdx.json"
+  (cd "$made" && find . -maxdepth 1 -type f ! -name SHA256SUMS -printf '%f\n' | sort | xargs sha256sum >SHA256SUMS)
+  cd "$root"
+}
+
+once one
+rm -rf "$scratch/one/source"
+once another
+diff -r "$scratch/one/made" "$scratch/another/made"
+cp "$scratch/another/made"/* "$out"
+cat "$out/SHA256SUMS"
+echo "release: the same bit for bit, built twice in two folders"

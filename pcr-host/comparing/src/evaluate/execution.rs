@@ -1,0 +1,100 @@
+//! Plans of others on grids, carried out while robots are late: by passing orders on the geometry of discs, and by cells.
+
+use super::{Extent, Fleets, Problem, Section};
+use pcr_formats::import::GridPlan;
+use pcr_planning::execution::{By, Outcome, Stops, carried_out, random_stops, situation};
+use pcr_planning::report::figures::digits;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Radii of the discs, in cells.
+const RADII: [f64; 2] = [0.35, 0.45];
+/// Probability of a stop, each second that a robot is not stopped.
+const RATE: f64 = 0.01;
+/// No plan takes longer than this, with what is late \[s\].
+const LONGEST: u32 = 2000;
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let mut text = format!(
+        "## Plans on grids, carried out\n\nPlans that others publish for discs of up to half a cell (PBS, `tests/data/real/stpg`), carried out by robots of one cell a \
+        second that change their speed at once, as in these plans, and are stopped: as published with the plan, one situation of few late robots, or each with a probability of {} % a second, for 10 to 20 s. *Orders*: who \
+        passes each collision region first is as planned, holds are those of discs of that radius, in cells. *Cells*: an action dependency graph (Hönig et al. 2019), in which a cell is entered when who was \
+        there before has come to its next one. *Alone*: what the stops cost if nobody waited for anybody, below which no execution is. Means of the times until robots arrive, the same stops for all; \
+        *faster*: than real time, with the time to find the regions and orders; *contact*: what the independent checker says of the recorded motions, of orders and cells. The other plans of that source: \
+        `cargo run --release -p pcr-tests --example execution -- DIRECTORY`.\n\n\
+        | plan | robots | stops | radius | alone | cells | orders | orders / cells | stuck | faster | contact |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|\n",
+        100.0 * RATE
+    );
+    let files = plans(&fleets.data.join("real/stpg"))?;
+    let count = if extent == Extent::Quick { 1 } else { files.len() };
+    for file in &files[..count] {
+        let problem = |problem: String| Problem::File(file.clone(), problem);
+        let plan = GridPlan::read(&read(file)?).map_err(|error| problem(error.to_string()))?;
+        for (kind, stops) in all_stops(file, &plan)? {
+            let cells = carried_out(&plan, RADII[0], By::Cells, &stops).map_err(problem)?;
+            for radius in RADII {
+                let orders = carried_out(&plan, radius, By::Orders, &stops).map_err(problem)?;
+                let name = file.file_stem().unwrap_or_default().to_string_lossy();
+                text.push_str(&row(name.trim_start_matches("map_"), plan.cells().len(), kind, radius, &orders, &cells));
+            }
+        }
+    }
+    Ok(Section { text, pictures: Vec::new() })
+}
+
+fn row(name: &str, robots: usize, kind: &str, radius: f64, orders: &Outcome, cells: &Outcome) -> String {
+    let taken = orders.times.iter().map(std::time::Duration::as_secs_f64).sum::<f64>();
+    let verdict = |outcome: &Outcome| if outcome.proof.verdict == "proved" { "none" } else { outcome.proof.verdict };
+    let mut row = String::new();
+    // Writing to memory does not fail.
+    let _ = writeln!(
+        row,
+        "| {name} | {robots} | {kind} | {radius} | {} s | {} s | {} s | {:.3} | {}, {} | {} × | {}, {} |",
+        digits(orders.alone),
+        digits(cells.travel),
+        digits(orders.travel),
+        orders.travel / cells.travel,
+        orders.stuck,
+        cells.stuck,
+        digits(orders.makespan / taken),
+        verdict(orders),
+        verdict(cells)
+    );
+    row
+}
+
+fn read(path: &Path) -> Result<String, Problem> {
+    fs::read_to_string(path).map_err(|error| Problem::File(path.to_owned(), format!("cannot be read: {error}")))
+}
+
+/// The plans in a directory, the smallest first.
+fn plans(directory: &Path) -> Result<Vec<PathBuf>, Problem> {
+    let failed = |error: std::io::Error| Problem::File(directory.to_owned(), format!("cannot be read: {error}"));
+    let mut plans = Vec::new();
+    for entry in fs::read_dir(directory).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        if entry.path().extension().is_some_and(|it| it == "path") {
+            plans.push((entry.metadata().map_err(failed)?.len(), entry.path()));
+        }
+    }
+    plans.sort();
+    if plans.is_empty() {
+        return Err(Problem::File(directory.to_owned(), "there is no plan in it".into()));
+    }
+    Ok(plans.into_iter().map(|(_, path)| path).collect())
+}
+
+/// The stops that are published with a plan, if there are any, and random ones.
+fn all_stops(file: &Path, plan: &GridPlan) -> Result<Vec<(&'static str, Stops)>, Problem> {
+    let robots = plan.cells().len();
+    let published =
+        file.with_file_name(format!("{}_sit_0.json", file.file_stem().unwrap_or_default().to_string_lossy()));
+    let mut all = Vec::new();
+    if published.exists() {
+        let stops = situation(&read(&published)?, robots);
+        all.push(("published", stops.map_err(|problem| Problem::File(published, problem))?));
+    }
+    all.push(("random", random_stops(robots, LONGEST, RATE, 1)));
+    Ok(all)
+}

@@ -1,0 +1,84 @@
+//! Execution by cells: whoever enters a cell after somebody else sets off towards it when that one has come to its next cell.
+
+use super::{Holds, NEAR};
+use std::collections::HashMap;
+
+/// Before this length a robot waits until another one has come to a length \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wait {
+    at: f64,
+    first: usize,
+    needs: f64,
+}
+
+/// The dependencies of a plan, in the order of the cells of each robot.
+#[derive(Debug)]
+pub(super) struct Cells {
+    waits: Vec<Vec<Wait>>,
+    /// Those that are fulfilled.
+    passed: Vec<usize>,
+}
+
+/// When a robot enters a cell, and as the how manieth of its way.
+#[derive(Clone, Copy, Debug)]
+struct Visit {
+    time: usize,
+    robot: usize,
+    place: usize,
+}
+
+impl Cells {
+    /// Of the cells of each robot, one a step.
+    pub(super) fn new(plan: &[Vec<[i32; 2]>]) -> Self {
+        let mut visits: HashMap<[i32; 2], Vec<Visit>> = HashMap::new();
+        for (robot, cells) in plan.iter().enumerate() {
+            let mut place = 0;
+            for (time, cell) in cells.iter().enumerate() {
+                if time > 0 && cells[time - 1] == *cell {
+                    continue;
+                }
+                place += usize::from(time > 0);
+                visits.entry(*cell).or_default().push(Visit { time, robot, place });
+            }
+        }
+        let mut waits: Vec<Vec<Wait>> = vec![Vec::new(); plan.len()];
+        for visits in visits.values_mut() {
+            visits.sort_by_key(|visit| visit.time);
+            for pair in visits.windows(2).filter(|pair| pair[0].robot != pair[1].robot) {
+                let [before, after] = [pair[0], pair[1]];
+                let wait = Wait { at: after.place as f64 - 1.0, first: before.robot, needs: before.place as f64 + 1.0 };
+                waits[after.robot].push(wait);
+            }
+        }
+        waits.iter_mut().for_each(|waits| waits.sort_by(|a, b| a.at.total_cmp(&b.at)));
+        Self { passed: vec![0; waits.len()], waits }
+    }
+}
+
+impl Holds for Cells {
+    fn hold(&mut self, robot: usize, at: &[f64], _wanted: f64) -> f64 {
+        let passed = &mut self.passed[robot];
+        while let Some(wait) = self.waits[robot].get(*passed) {
+            if at[wait.first] < wait.needs - NEAR {
+                return wait.at;
+            }
+            *passed += 1;
+        }
+        f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_entered_when_the_one_before_has_come_to_its_next() {
+        let plan = [vec![[0, 0], [1, 0], [1, 0], [2, 0]], vec![[1, -2], [1, -2], [1, -1], [1, -1], [1, 0]]];
+        let mut cells = Cells::new(&plan);
+        assert_eq!(cells.waits, [vec![], vec![Wait { at: 1.0, first: 0, needs: 2.0 }]]);
+        assert_eq!(cells.hold(0, &[0.0, 0.0], 1.0), f64::INFINITY);
+        assert_eq!(cells.hold(1, &[1.5, 0.0], 2.0), 1.0);
+        assert_eq!(cells.hold(1, &[2.0, 0.0], 2.0), f64::INFINITY);
+    }
+}

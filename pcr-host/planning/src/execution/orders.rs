@@ -1,0 +1,84 @@
+//! The passing orders of a plan, kept: each robot looks at the regions ahead that it passes second.
+
+use super::{Holds, ROOM};
+use crate::fleet::{HostOrders, build_orders};
+use pcr_core::{Hold, Motion, Pass, Progress, Reach, RegionRef, Tolerances};
+
+/// So far ahead a robot looks at once: holds do not decrease \[m\].
+const AHEAD: f64 = 2.0;
+
+/// The orders in which motions pass their regions, with which everybody can finish.
+pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostOrders<f64>, String> {
+    let mut table = build_orders(motions).map_err(|full| full.to_string())?;
+    table.as_planned(motions).map_err(|refused| refused.to_string())?;
+    let progress = vec![Progress::at_rest(0.0); motions.len()];
+    let tolerances = Tolerances { width: 0.0, gain: 1e-3 };
+    let mut reaches = vec![Reach::EMPTY; motions.len()];
+    table.check(motions, &progress, tolerances, &mut reaches).map_err(|refused| refused.to_string())?;
+    Ok(table)
+}
+
+/// A region that a robot passes second.
+struct Order<'a> {
+    region: RegionRef<'a, f64>,
+    first: usize,
+    /// Least length of the robot in it, and its largest \[m\].
+    entry: f64,
+    over: f64,
+    /// Where the first has left it \[m\].
+    exit: f64,
+}
+
+/// The orders of each robot, by their entries.
+pub(super) struct Kept<'a> {
+    rows: Vec<Vec<Order<'a>>>,
+    /// Holds that were found.
+    known: Vec<f64>,
+}
+
+impl<'a> Kept<'a> {
+    pub(super) fn new(table: &'a HostOrders<f64>, motions: &'a [Motion<'a, f64>]) -> Result<Self, String> {
+        let row = |robot: usize| {
+            let row = table.row(motions, robot).map_err(|mismatch| mismatch.to_string())?;
+            let second = row.filter(|(_, _, pass)| *pass == Pass::Second);
+            let mut orders: Vec<Order<'a>> = second.map(|(_, region, _)| Order::of(region)).collect();
+            orders.sort_by(|a, b| a.entry.total_cmp(&b.entry));
+            Ok(orders)
+        };
+        let rows = (0..motions.len()).map(row).collect::<Result<Vec<_>, String>>()?;
+        Ok(Self { known: vec![f64::NEG_INFINITY; rows.len()], rows })
+    }
+}
+
+impl<'a> Order<'a> {
+    fn of(region: RegionRef<'a, f64>) -> Self {
+        let (own, their) = (region.length(), region.other_length());
+        let leaves = their.hi < region.other_motion().path().length();
+        let exit = if leaves { their.hi } else { f64::INFINITY };
+        Self { first: region.other(), entry: own.lo, over: own.hi, exit, region }
+    }
+}
+
+impl Holds for Kept<'_> {
+    fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64 {
+        if self.known[robot] >= wanted {
+            return self.known[robot];
+        }
+        let own = at[robot];
+        let row = &mut self.rows[robot];
+        row.retain(|order| at[order.first] <= order.exit && own <= order.over);
+        let mut least = own + AHEAD;
+        for order in row.iter() {
+            if order.entry >= least {
+                break;
+            }
+            least = match order.region.hold(0.0, at[order.first]) {
+                Hold::Free => least,
+                Hold::At(hold) => least.min(hold - ROOM),
+                Hold::Inside => own,
+            };
+        }
+        self.known[robot] = least;
+        least
+    }
+}

@@ -1,0 +1,172 @@
+//! Who looks for a way when: the missions that have waited longest, the next missions of those who soon are at their goals, and better
+//! ways for those who wait.
+
+use super::Method;
+use super::draws;
+use super::state::{Mission, Run};
+use std::time::Instant;
+
+/// Between two tries for the same mission \[s\].
+const AGAIN: f64 = 1.0;
+
+/// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
+const PATIENCE: f64 = 2.0;
+
+/// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\], and whoever does not wait so often.
+const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
+
+/// The way for the next mission is looked for so long before the goal \[s\].
+const AHEAD: f64 = 10.0;
+
+/// Robots that are asked to go elsewhere for one mission at a time.
+const MOVES: usize = 4;
+
+/// Decisions between two controls.
+const TRIES: usize = 4;
+
+impl Run {
+    /// Looks for ways for the missions that have waited longest, then for better ways for whoever waits on the way.
+    pub(super) fn decide(&mut self, now: f64) {
+        let due = |mission: &Option<Mission>| mission.is_some_and(|it| !it.admitted && it.next_try <= now);
+        let mut waiting: Vec<usize> = (0..self.robots.len()).filter(|&robot| due(&self.missions[robot])).collect();
+        let since = |robot: usize| self.missions[robot].map_or(0.0, |mission| mission.since);
+        waiting.sort_by(|&a, &b| since(a).total_cmp(&since(b)));
+        let mut tries = 0;
+        for robot in waiting.into_iter().take(TRIES) {
+            tries += 1;
+            self.try_mission(robot, now);
+        }
+        if self.request.method != Method::Orders {
+            return;
+        }
+        // Who does the next task is settled when somebody is idle.
+        if self.tasks.is_none() {
+            self.look_ahead(now, &mut tries);
+        }
+        self.look_again(now, tries);
+    }
+
+    /// Looks for ways on to the next goals of those who soon are at their goals.
+    fn look_ahead(&mut self, now: f64, tries: &mut usize) {
+        for robot in 0..self.robots.len() {
+            let Some(mission) = self.missions[robot].filter(|mission| mission.admitted && mission.next_try <= now)
+            else {
+                continue;
+            };
+            let it = &self.robots[robot];
+            let [goal] = it.way.goals[..] else { continue };
+            if *tries >= TRIES || it.way.time(goal) - it.progress(None, now, &self.abilities) > AHEAD {
+                continue;
+            }
+            *tries += 1;
+            let next = draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], mission.goal);
+            let begin = Instant::now();
+            let found = self.scene(now).dispatch(robot, &[mission.goal, next]);
+            self.decisions.push(begin.elapsed());
+            match found {
+                Some(admitted) => self.take(robot, admitted),
+                None => self.missions[robot] = Some(Mission { next_try: now + 2.0 * AGAIN, ..mission }),
+            }
+        }
+    }
+
+    /// Looks for better ways for those who wait, and now and then for the others.
+    fn look_again(&mut self, now: f64, mut tries: usize) {
+        let held = |robot: usize| {
+            let it = &self.robots[robot];
+            let waits = it.speed == 0.0 && !it.has_arrived() && now - it.still_since > REVIEW[0];
+            waits && self.missions[robot].is_some_and(|it| it.admitted) && it.stopped_until <= now
+        };
+        let mut held: Vec<usize> =
+            (0..self.robots.len()).filter(|&robot| held(robot) && now - self.reviewed[robot] > REVIEW[1]).collect();
+        held.sort_by(|&a, &b| self.reviewed[a].total_cmp(&self.reviewed[b]));
+        for robot in held.into_iter().take(TRIES.saturating_sub(tries)) {
+            tries += 1;
+            self.reviewed[robot] = now;
+            self.review(robot, now);
+        }
+        if tries < TRIES {
+            let due = |robot: &usize| {
+                !self.robots[*robot].has_arrived()
+                    && self.missions[*robot].is_some_and(|it| it.admitted)
+                    && now - self.reviewed[*robot] > REVIEW[2]
+            };
+            let next =
+                (0..self.robots.len()).filter(due).min_by(|&a, &b| self.reviewed[a].total_cmp(&self.reviewed[b]));
+            if let Some(robot) = next {
+                self.reviewed[robot] = now;
+                self.review(robot, now);
+            }
+        }
+    }
+
+    fn try_mission(&mut self, robot: usize, now: f64) {
+        let Some(mission) = self.missions[robot] else { return };
+        let begin = Instant::now();
+        let found = self.scene(now).dispatch(robot, &[mission.goal]);
+        self.decisions.push(begin.elapsed());
+        match found {
+            Some(admitted) => {
+                self.take(robot, admitted);
+                self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.since);
+                self.missions[robot] = Some(Mission { admitted: true, ..mission });
+            }
+            None => {
+                self.outcome.refused += 1;
+                self.missions[robot] = Some(Mission { next_try: now + AGAIN, ..mission });
+                if now - mission.since > PATIENCE
+                    && let Some(route) = self.scene(now).wanted(robot, mission.goal)
+                {
+                    let mut left = MOVES;
+                    self.clear(robot, &[route], now, &mut left);
+                }
+            }
+        }
+    }
+
+    /// Asks those who stand on the last of some routes to go where they are on none of them, and those who stand in their way likewise.
+    fn clear(&mut self, robot: usize, routes: &[Vec<usize>], now: f64, tries: &mut usize) {
+        let standing = self.scene(now).standing_on(robot, routes.last().map_or(&[], Vec::as_slice));
+        for by in standing {
+            if *tries == 0 || self.missions[by].is_some_and(|mission| mission.admitted) {
+                continue;
+            }
+            *tries -= 1;
+            let begin = Instant::now();
+            let found = self.scene(now).make_way(by, routes);
+            self.decisions.push(begin.elapsed());
+            match found {
+                Ok(admitted) => {
+                    self.take(by, admitted);
+                    self.outcome.moved += 1;
+                }
+                Err(Some(route)) if routes.len() < 6 => {
+                    let mut routes = routes.to_vec();
+                    routes.push(route);
+                    self.clear(by, &routes, now, tries);
+                }
+                Err(_) => {}
+            }
+            // In the way of the others behind it.
+            return;
+        }
+    }
+
+    /// Another way and other orders for a robot that waits on its way, if all are expected to arrive sooner.
+    fn review(&mut self, robot: usize, now: f64) {
+        /// So much sooner in all \[s\].
+        const GAIN: f64 = 1.0;
+        let Some(goal) = self.missions[robot].map(|mission| mission.goal) else { return };
+        let mut goals = vec![goal];
+        if self.robots[robot].way.goals.len() > 1 {
+            goals.push(draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], goal));
+        }
+        let begin = Instant::now();
+        let found = self.scene(now).better(robot, &goals, GAIN);
+        self.decisions.push(begin.elapsed());
+        if let Some(admitted) = found {
+            self.take(robot, admitted);
+            self.outcome.revised += 1;
+        }
+    }
+}

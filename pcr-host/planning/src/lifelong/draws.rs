@@ -1,0 +1,57 @@
+//! What is drawn at random: goals, delays and starts; the same for all methods.
+
+use super::Request;
+use super::ends::Ends;
+use super::robot::Robot;
+use super::site::Site;
+use crate::random::Random;
+
+/// Time between two controls \[s\].
+pub(super) const STEP: f64 = 0.1;
+
+/// Steps between two values of the slip.
+const SLIPS: usize = 50;
+
+/// A robot is stopped, or slips, as it would be under any method.
+pub(super) fn disturb(robot: &mut Robot, number: usize, tick: usize, now: f64, open: bool, request: &Request) {
+    let delays = request.delays;
+    let mut random = Random(request.seed ^ (number as u64).wrapping_mul(0x9e37_79b9) ^ ((tick as u64) << 24));
+    let rate = delays.stopped * STEP / delays.stop / (1.0 - delays.stopped);
+    if open && robot.stopped_until <= now && random.unit() < rate {
+        robot.stopped_until = now + 2.0 * delays.stop * random.unit();
+    }
+    if tick % SLIPS == number % SLIPS {
+        robot.slip = delays.slip * random.unit();
+    }
+}
+
+/// The goal of the mission of this number of a robot: another node than where it is, whatever anybody does.
+pub(super) fn goal(site: &Site, ends: &Ends, seed: u64, robot: usize, number: u64, place: usize) -> usize {
+    let mut random = Random(seed.wrapping_mul(0x2545_f491).wrapping_add((robot as u64) << 32).wrapping_add(number));
+    random.bits();
+    loop {
+        let goal = ends.nodes[random.below(ends.nodes.len())];
+        if !site.collide(goal, place) {
+            return goal;
+        }
+    }
+}
+
+/// Nodes apart from one another, safe ends first.
+pub(super) fn starts(site: &Site, ends: &Ends, count: usize, seed: u64) -> Vec<usize> {
+    let mut random = Random(seed ^ 0x5741_5254);
+    let mut starts: Vec<usize> = Vec::new();
+    let mut taken = vec![false; site.atoms.len()];
+    let mut nodes = random.shuffled(&ends.safe);
+    nodes.extend(random.shuffled(&ends.nodes));
+    if ends.nodes.len() < 2 {
+        return starts;
+    }
+    for node in nodes {
+        if starts.len() < count && !taken[site.standing(node)] {
+            site.covers(node).iter().for_each(|&atom| taken[atom] = true);
+            starts.push(node);
+        }
+    }
+    starts
+}

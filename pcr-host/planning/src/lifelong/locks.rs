@@ -1,0 +1,121 @@
+//! Locks on edges: a robot has the edges that it is on, and gets the next one if nobody else has an edge on which they would touch,
+//! and if all could still finish one after the other from there (the banker's check, Dijkstra 1965). That is what locks of edges
+//! with avoidance of deadlocks amount to; a robot's end is on nobody else's way, so that who finishes first makes no difference.
+
+use super::robot::{Robot, SHORT};
+use super::site::Site;
+use super::way::Way;
+
+/// How many atoms of its way each robot has been given.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Locks(Vec<usize>);
+
+/// What a robot has, and has still to get.
+struct Claim<'w> {
+    held: Vec<usize>,
+    left: &'w [usize],
+    end: usize,
+}
+
+/// How many of the atoms that robots have each atom touches.
+struct Held<'s> {
+    site: &'s Site,
+    counts: Vec<usize>,
+}
+
+impl Held<'_> {
+    fn change(&mut self, held: &[usize], by: impl Fn(usize) -> usize) {
+        for &atom in held {
+            self.site.contacts(atom).for_each(|(near, _)| self.counts[near] = by(self.counts[near]));
+        }
+    }
+
+    /// Whether nobody but the one that has these touches an atom.
+    fn is_free(&self, atom: usize, own: &[usize]) -> bool {
+        self.counts[atom] == own.iter().filter(|&&held| self.site.touch(held, atom)).count()
+    }
+}
+
+impl Locks {
+    /// Of robots that stand.
+    pub(super) fn new(robots: usize) -> Self {
+        Self(vec![0; robots])
+    }
+
+    /// A robot has got another way, of which it had so many atoms before.
+    pub(super) fn exchange(&mut self, robot: usize, atoms: usize) {
+        self.0[robot] = atoms;
+    }
+
+    /// Gives robots what they reach before they could stop, whoever has stood longest first.
+    pub(super) fn give(&mut self, site: &Site, robots: &[Robot], far: impl Fn(usize) -> f64) {
+        let mut order: Vec<usize> = (0..robots.len()).collect();
+        order.sort_by(|&a, &b| robots[a].still_since.total_cmp(&robots[b].still_since));
+        for robot in order {
+            let way = &robots[robot].way;
+            let needs = |given: usize| given < way.atoms.len() && way.offsets[given] <= far(robot);
+            while !robots[robot].has_arrived() && needs(self.0[robot]) {
+                self.0[robot] += 1;
+                if !self.is_safe(site, robots, None) {
+                    self.0[robot] -= 1;
+                    break;
+                }
+            }
+        }
+    }
+
+    /// How far a robot may go: to the end of what it has.
+    pub(super) fn hold(&self, robot: usize, way: &Way) -> f64 {
+        match self.0[robot] {
+            given if given < way.atoms.len() => way.offsets[given] + SHORT,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Whether nobody has what another one touches, and all can finish one after the other; with another way of a robot from a
+    /// length on, of which it has so many atoms.
+    pub(super) fn is_safe(&self, site: &Site, robots: &[Robot], other: Option<(usize, &Way, f64, usize)>) -> bool {
+        let claim = |robot: usize| {
+            let it = &robots[robot];
+            match other {
+                Some((changed, way, at, given)) if changed == robot => Claim::of(site, way, at, given, false),
+                _ => Claim::of(site, &it.way, it.at, self.0[robot], it.has_arrived()),
+            }
+        };
+        let claims: Vec<Claim> = (0..robots.len()).map(claim).collect();
+        let mut all = Held { site, counts: vec![0; site.atoms.len()] };
+        claims.iter().for_each(|claim| all.change(&claim.held, |count| count + 1));
+        if claims.iter().any(|claim| claim.held.iter().any(|&atom| !all.is_free(atom, &claim.held))) {
+            return false;
+        }
+        let mut left: Vec<&Claim> = claims.iter().collect();
+        loop {
+            let before = left.len();
+            left.retain(|claim| {
+                let finishes = claim.left.iter().all(|&atom| all.is_free(atom, &claim.held));
+                if finishes {
+                    all.change(&claim.held, |count| count - 1);
+                    all.change(&[claim.end], |count| count + 1);
+                }
+                !finishes
+            });
+            if left.is_empty() || left.len() == before {
+                return left.is_empty();
+            }
+        }
+    }
+}
+
+impl<'w> Claim<'w> {
+    fn of(site: &Site, way: &'w Way, at: f64, given: usize, arrived: bool) -> Self {
+        let end = site.standing(way.end());
+        // At the end of what it has, rounding may have put it beyond.
+        let first = way.atom(at - SHORT);
+        let held = match (arrived, given) {
+            (true, _) => vec![end],
+            (false, 0) => vec![site.standing(site.atoms[way.atoms[0]].ends[0])],
+            (false, _) => way.atoms[first..given.max(first + 1)].to_vec(),
+        };
+        Self { held, left: if arrived { &[] } else { &way.atoms[given..] }, end }
+    }
+}

@@ -1,0 +1,159 @@
+//! Orders on a way of one robot: by what is forecast, mended where somebody would wait for ever, and turned round where all arrive
+//! sooner by that.
+
+use super::book::Region;
+use super::forecast::{Forecast, Stuck, Trial, Waits};
+use super::scene::Scene;
+use super::way::Way;
+use std::cell::Cell;
+
+/// Orders that are turned round in search of better ones, at most, and even if a decision has taken long already.
+const TURNS: usize = 16;
+const LEAST_TURNS: usize = 4;
+
+/// Orders that are turned round where somebody would wait for ever.
+const REPAIRS: usize = 12;
+
+/// A robot with a start delay sets off in steps of \[s\], not later than \[s\].
+const DELAYS: (f64, u32) = (2.0, 60);
+
+/// One way of one robot.
+pub(super) struct Case<'c> {
+    pub(super) scene: &'c Scene<'c>,
+    pub(super) base: &'c Forecast,
+    pub(super) waits: &'c Waits,
+    pub(super) robot: usize,
+    pub(super) way: &'c Way,
+    pub(super) at: f64,
+    pub(super) stop: f64,
+    /// Forecasts that are left.
+    pub(super) budget: &'c Cell<usize>,
+}
+
+impl Case<'_> {
+    fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
+        let Scene { robots, abilities, time, .. } = *self.scene;
+        let changed = Some((self.robot, self.way, self.at, departs, regions));
+        Trial { robots, waits: self.waits, abilities, time, changed }.forecast()
+    }
+
+    /// Which of the two can go first at a region: the robot, the other one.
+    fn sides(&self, region: &Region) -> [bool; 2] {
+        let other = &self.scene.robots[region.robots[1]];
+        let at = [self.at, other.at];
+        let stop = [self.stop, other.stop(self.scene.abilities)];
+        let lengths = [self.way.length(), other.way.length()];
+        [0, 1].map(|first| region.can_be_first(first, at, stop, lengths))
+    }
+
+    /// Orders by what is forecast, mended, and turned round where that is better.
+    pub(super) fn ordered(&self, mut regions: Vec<Region>, shift: f64) -> Option<(Vec<Region>, f64)> {
+        regions.sort_by(|a, b| a.hull[0].lo.total_cmp(&b.hull[0].lo));
+        let mut open = Vec::with_capacity(regions.len());
+        let mut late = shift;
+        for region in &mut regions {
+            let sides = self.sides(region);
+            let (ahead, behind) = self.waits(region, late);
+            region.first = match sides {
+                [true, true] => usize::from(ahead >= behind),
+                [true, false] => 0,
+                [false, true] => 1,
+                [false, false] => return None,
+            };
+            if region.first == 1 {
+                late += behind;
+            }
+            open.push(sides == [true, true]);
+        }
+        let forecast = self.repaired(&mut regions, &open)?;
+        Some((regions, forecast.cost))
+    }
+
+    /// Turns orders round where all are expected to arrive sooner by that.
+    pub(super) fn improved(&self, mut regions: Vec<Region>, mut cost: f64) -> (Vec<Region>, f64) {
+        let mut turns = 0;
+        for k in 0..regions.len() {
+            let (ahead, behind) = self.waits(&regions[k], 0.0);
+            if turns >= LEAST_TURNS && self.budget.get() == 0 {
+                break;
+            }
+            let free = if regions[k].first == 0 { ahead == 0.0 } else { behind == 0.0 };
+            if turns >= TURNS || free || self.sides(&regions[k]) != [true; 2] {
+                continue;
+            }
+            turns += 1;
+            self.budget.set(self.budget.get().saturating_sub(1));
+            regions[k].first = 1 - regions[k].first;
+            match self.forecast(&regions, self.scene.time) {
+                Ok(other) if other.cost < cost => cost = other.cost,
+                _ => regions[k].first = 1 - regions[k].first,
+            }
+        }
+        (regions, cost)
+    }
+
+    /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
+    fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
+        let now = self.way.time(self.at) - late;
+        let other = region.robots[1];
+        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        for timed in region.gates_of(1) {
+            let comes = self.base.from(other, timed.comes, timed.gate.at);
+            first = first.max(timed.opens - now - comes);
+        }
+        for timed in region.gates_of(0) {
+            let opens = self.base.from(other, timed.opens, timed.gate.needs);
+            second = second.max(opens - (timed.comes - now).max(late));
+        }
+        (first, second)
+    }
+
+    /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
+    fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
+        let mut tried = vec![false; regions.len()];
+        for _ in 0..REPAIRS {
+            if self.budget.get() == 0 {
+                return None;
+            }
+            self.budget.set(self.budget.get() - 1);
+            let stuck = match self.forecast(regions, self.scene.time) {
+                Ok(forecast) => return Some(forecast),
+                Err(stuck) => stuck,
+            };
+            let mendable = |first: usize| {
+                let places = stuck.iter().filter_map(|stuck| stuck.region);
+                places.into_iter().find(|&place| open[place] && !tried[place] && regions[place].first == first)
+            };
+            let Some(place) = mendable(0).or_else(|| mendable(1)) else { break };
+            tried[place] = true;
+            regions[place].first = 1 - regions[place].first;
+        }
+        for (region, open) in regions.iter_mut().zip(open) {
+            if *open {
+                region.first = 1;
+            }
+        }
+        self.forecast(regions, self.scene.time).ok()
+    }
+
+    /// The least start delay with which the robot waits for nobody and nobody for it, as all are expected to be.
+    pub(super) fn delayed(&self, mut regions: Vec<Region>) -> Option<(Vec<Region>, f64, f64)> {
+        'delays: for k in 0..DELAYS.1 {
+            let late = DELAYS.0 * f64::from(k);
+            for region in &mut regions {
+                let (ahead, behind) = self.waits(region, late);
+                let sides = self.sides(region);
+                region.first = match (sides[0] && ahead <= 0.0, sides[1] && behind <= 0.0) {
+                    (true, _) => 0,
+                    (false, true) => 1,
+                    (false, false) => continue 'delays,
+                };
+            }
+            let departs = self.scene.time + late;
+            if let Ok(forecast) = self.forecast(&regions, departs) {
+                return Some((regions, departs, forecast.cost));
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,192 @@
+//! The state of a run: the fleet, its missions, and what has come of it so far.
+
+use super::Request;
+use super::abilities::Abilities;
+use super::book::Book;
+use super::dispatch::Admitted;
+use super::draws::{self, starts};
+use super::ends::Ends;
+use super::locks::Locks;
+use super::outcome::{Outcome, Shares};
+use super::record::Certificate;
+use super::robot::Robot;
+use super::routes::routes;
+use super::scene::Scene;
+use super::site::Site;
+use super::tasks::{Queue, Tasks};
+use super::way::Way;
+use pcr_formats::import::Imported;
+use std::time::Duration;
+
+/// A mission that a robot has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mission {
+    pub(super) goal: usize,
+    pub(super) since: f64,
+    /// Time that a robot alone would take \[s\].
+    pub(super) alone: f64,
+    /// Whether it has a way.
+    pub(super) admitted: bool,
+    pub(super) next_try: f64,
+}
+
+pub(super) struct Run {
+    pub(super) site: Site,
+    pub(super) ends: Ends,
+    pub(super) abilities: Abilities,
+    pub(super) request: Request,
+    pub(super) robots: Vec<Robot>,
+    pub(super) book: Book,
+    pub(super) locks: Locks,
+    /// How many robots stand for good in the way of an atom.
+    pub(super) parked: Vec<u16>,
+    pub(super) missions: Vec<Option<Mission>>,
+    /// Missions given to each robot.
+    pub(super) given: Vec<u64>,
+    pub(super) reviewed: Vec<f64>,
+    pub(super) outcome: Outcome,
+    pub(super) decisions: Vec<Duration>,
+    pub(super) travel: (f64, f64),
+    pub(super) steady: usize,
+    pub(super) last_arrival: f64,
+    /// Tasks that are not given yet, where not everybody has a mission of its own.
+    pub(super) tasks: Option<Queue>,
+}
+
+impl Run {
+    pub(super) fn new(imported: &Imported, request: Request, tasks: Option<&Tasks>) -> Result<Self, String> {
+        let site = Site::new(imported)?;
+        // Tests do without, as it takes a while where nothing is optimized.
+        if !cfg!(debug_assertions) {
+            site.warm();
+        }
+        let ends = Ends::of(&site, request.seed);
+        let abilities = Abilities::of(&imported.vehicle);
+        let starts = match tasks {
+            Some(tasks) => tasks.starts(&site)?,
+            None => starts(&site, &ends, request.agents, request.seed),
+        };
+        if starts.is_empty() {
+            return Err("the layout has no two nodes that can be reached from one another".into());
+        }
+        let robots: Vec<Robot> = starts.iter().map(|&node| Robot::new(Way::standing(&site, node))).collect();
+        let mut parked = vec![0; site.atoms.len()];
+        starts.iter().for_each(|&node| site.covers(node).iter().for_each(|&atom| parked[atom] += 1));
+        let count = robots.len();
+        let outcome = Outcome {
+            method: request.method,
+            robots: count,
+            missions: 0,
+            missions_per_hour: 0.0,
+            travel_over_unimpeded: None,
+            certificate: Certificate::new(),
+            breaches: 0,
+            stuck: 0,
+            standstill: 0.0,
+            refused: 0,
+            moved: 0,
+            revised: 0,
+            longest_wait: 0.0,
+            waiting: 0.0,
+            starved: 0,
+            time: Shares::default(),
+        };
+        Ok(Self {
+            book: Book::new(&site, &robots),
+            locks: Locks::new(count),
+            site,
+            ends,
+            abilities,
+            request,
+            robots,
+            parked,
+            missions: vec![None; count],
+            given: vec![0; count],
+            reviewed: vec![0.0; count],
+            outcome,
+            decisions: Vec::new(),
+            travel: (0.0, 0.0),
+            steady: 0,
+            last_arrival: 0.0,
+            tasks: tasks.map(Queue::of),
+        })
+    }
+
+    /// Whether there are missions yet.
+    pub(super) fn has_work(&self) -> bool {
+        self.tasks.as_ref().is_none_or(|tasks| !tasks.is_empty() || self.missions.iter().any(Option::is_some))
+    }
+
+    /// Gives tasks to those who have none, the nearest ones.
+    fn assign(&mut self, mut tasks: Queue, now: f64) -> Queue {
+        while let Some(goal) = tasks.due(now) {
+            let at = self.site.points[goal];
+            let away = |robot: usize| {
+                let here = self.robots[robot].way.point(&self.site, self.robots[robot].at);
+                (here[0] - at[0]).hypot(here[1] - at[1])
+            };
+            let idle = (0..self.robots.len()).filter(|&robot| self.missions[robot].is_none());
+            let Some(robot) = idle.min_by(|&a, &b| away(a).total_cmp(&away(b))) else { break };
+            let since = tasks.take();
+            let it = &self.robots[robot];
+            if it.has_arrived() && it.way.end() == goal {
+                self.outcome.missions += 1;
+                self.last_arrival = now;
+                continue;
+            }
+            self.missions[robot] = Some(Mission { goal, since, alone: 0.0, admitted: false, next_try: now });
+        }
+        tasks
+    }
+
+    /// Gives a mission to everybody who has none.
+    pub(super) fn give(&mut self, now: f64) {
+        if let Some(tasks) = self.tasks.take() {
+            self.tasks = Some(self.assign(tasks, now));
+            return;
+        }
+        for robot in 0..self.robots.len() {
+            if self.missions[robot].is_some() {
+                continue;
+            }
+            let it = &self.robots[robot];
+            let from = it.way.kept(&self.site, it.at, it.at, it.turned).on;
+            let place = from.node;
+            let goal = draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], place);
+            self.given[robot] += 1;
+            let way = routes((&self.site, &self.abilities), from, |_| 0.0, |node| node == goal, Some(goal), 1);
+            let alone = way.first().map_or(0.0, |atoms| {
+                let way = Way::new(&self.site, from, atoms, &[], &self.abilities);
+                way.time(way.length()) + self.abilities.stop()
+            });
+            let admitted = !it.way.goals.is_empty();
+            self.missions[robot] = Some(Mission { goal, since: now, alone, admitted, next_try: now });
+        }
+    }
+
+    pub(super) fn scene(&self, now: f64) -> Scene<'_> {
+        Scene {
+            site: &self.site,
+            robots: &self.robots,
+            book: &self.book,
+            locks: &self.locks,
+            abilities: &self.abilities,
+            ends: &self.ends.is_safe,
+            nodes: &self.ends.nodes,
+            parked: &self.parked,
+            time: now,
+            method: self.request.method,
+        }
+    }
+
+    pub(super) fn take(&mut self, robot: usize, admitted: Admitted) {
+        let Admitted { way, kept, before, regions, departs, .. } = admitted;
+        let it = &mut self.robots[robot];
+        self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
+        self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);
+        self.book.exchange(robot, &it.way, &way, regions);
+        self.locks.exchange(robot, kept);
+        it.take(way, before);
+        it.departs = departs;
+    }
+}

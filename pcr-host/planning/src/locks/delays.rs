@@ -1,0 +1,269 @@
+//! Unsafe delays: how much later than on one edge a vehicle may not set off on another, and at what times it may not be at a node,
+//! because the two would touch. Planners of the families of CCBS and SIPP compute them for each pair that they look at.
+//!
+//! Both vehicles are on their edges from when they set off until they arrive; what stands before or after that stands at a node. An
+//! edge that may be travelled in both directions is two *ways*. A way has delays with itself as well: one vehicle behind another.
+//!
+//! Straight ways at constant speed have a closed form (`straight`); of all others the library brackets the ends.
+
+use super::pass::{PIECES, Told, in_stretches};
+use super::rides::Rides;
+use super::straight::Straight;
+use super::sweep::straight_ends;
+use crate::fleet::Fleet;
+use crate::memory;
+use crate::rows::{Grid, area};
+use pcr_core::{Full, Interval, Motion, Piece, RegionRef, overlaps, union};
+use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Step, Vehicle};
+use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Agents that are made at once.
+const STRETCH: usize = 1 << 12;
+
+/// How edges are driven.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Driving {
+    /// Largest speed \[m/s\]; the limit of an edge, where it has one, is a lower one.
+    pub speed: f64,
+    /// Largest acceleration \[m/s²\]: edges are driven from rest to rest. Without it they are driven at constant speed from end to end.
+    pub acceleration: Option<f64>,
+}
+
+/// An edge in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// As in the layout.
+    pub edge: Id,
+    /// Whether it leads from the end of the edge to its start.
+    pub backward: bool,
+}
+
+/// What was found, by places in [`Delays::ways`] and [`Delays::nodes`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unsafe {
+    /// Two ways, the first one not after the second, and how much later than on the first a vehicle may not set off on the second \[s\].
+    Delays([usize; 2], [f64; 2]),
+    /// A node and a way, and when, from setting off on the way, no other vehicle may stand at the node \[s\].
+    Times(usize, usize, [f64; 2]),
+    /// Two nodes at which vehicles touch.
+    Nodes([usize; 2]),
+}
+
+/// The ways of a layout, its nodes if asked for, and which of them can touch.
+pub struct Delays {
+    ways: Vec<Way>,
+    nodes: Vec<Id>,
+    /// Of ways, then of nodes.
+    levels: Vec<[usize; 2]>,
+    straight: Vec<Option<Straight>>,
+    points: Vec<[f64; 2]>,
+    /// Sum of the radii of two vehicles on straight ways \[m\].
+    reach: f64,
+    /// Of ways, then of nodes; empty where all ways are straight and driven at constant speed.
+    fleet: Fleet<f64>,
+    areas: Vec<[f64; 4]>,
+}
+
+impl Delays {
+    /// Those of the vehicle with its margin.
+    ///
+    /// # Errors
+    /// [`ImportError`] for a vehicle that is no disc, whose turns at the nodes take a time that no file tells, and for coordinates,
+    /// speeds and durations beyond what can be computed with.
+    pub fn new(imported: &Imported, driving: Driving, nodes: bool) -> Result<Self, ImportError> {
+        let (layout, rides) = (&imported.layout, Rides::new(imported));
+        if rides.vehicle().footprint.is_some() {
+            let problem =
+                "delays are of discs: when an outline turns at a node is not known; --radius takes it as a disc";
+            return Err(ImportError::new(problem));
+        }
+        let mut order: Vec<&Edge> = layout.edges.iter().collect();
+        order.sort_by(|a, b| a.id.cmp(&b.id));
+        let directions = |edge| [false, true].map(|backward| Step { edge, backward });
+        let steps = order.into_iter().flat_map(directions).filter(|step| step.edge.two_way || !step.backward);
+        let steps: Vec<Step<'_>> = steps.collect();
+        let mut places: Vec<usize> = (0..if nodes { layout.nodes.len() } else { 0 }).collect();
+        places.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
+        let level = |node: usize| layout.nodes.get(node).map_or(0, |node| node.level);
+        let on_edges = steps.iter().map(|step| step.edge.ends.map(level));
+        let mut all = Self {
+            ways: steps.iter().map(|step| Way { edge: step.edge.id.clone(), backward: step.backward }).collect(),
+            nodes: places.iter().map(|&node| layout.nodes[node].id.clone()).collect(),
+            levels: on_edges.chain(places.iter().map(|&node| [level(node); 2])).collect(),
+            straight: Vec::new(),
+            points: places.iter().map(|&node| layout.nodes[node].at).collect(),
+            reach: 2.0 * rides.vehicle().radius,
+            fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
+            areas: Vec::new(),
+        };
+        let speed = |edge: &Edge| edge.speed.map_or(driving.speed, |limit| limit.min(driving.speed));
+        all.straight = steps
+            .iter()
+            .map(|step| {
+                let [from, to] = straight_ends(layout, step.edge).filter(|_| driving.acceleration.is_none())?;
+                let [from, to] = if step.backward { [to, from] } else { [from, to] };
+                Straight::new(from, to, speed(step.edge))
+            })
+            .collect();
+        if all.straight.iter().all(Option::is_some) {
+            let half = 0.5 * all.reach;
+            let ends = all.straight.iter().flatten().map(Straight::ends);
+            let ends = ends.chain(all.points.iter().map(|&at| [at; 2]));
+            all.areas = ends.map(|ends| around(ends, half)).collect();
+            return Ok(all);
+        }
+        let vehicle = Vehicle {
+            speed: driving.speed,
+            acceleration: driving.acceleration.unwrap_or(rides.vehicle().acceleration),
+            ..rides.vehicle().clone()
+        };
+        let agent = |place: usize| match steps.get(place) {
+            Some(&step) => driven(rides.along_with(&vehicle, step), step.edge, driving, speed(step.edge)),
+            None => rides.at(places[place - steps.len()]).agent,
+        };
+        let units: Vec<usize> = (0..all.levels.len()).collect();
+        for stretch in units.chunks(STRETCH) {
+            let fleets = stretch.par_chunks(64).map(|units| {
+                let agents = units.iter().map(|&unit| Agent { id: unit as u64, ..agent(unit) });
+                let scenario = import::checked(&Scenario::new("", agents.collect()))?;
+                Fleet::<f64>::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
+            });
+            for fleet in fleets.collect::<Result<Vec<_>, ImportError>>()? {
+                all.areas.extend(fleet.motions().iter().map(area));
+                all.fleet.append(fleet);
+            }
+        }
+        Ok(all)
+    }
+
+    /// By their edges, forward before backward.
+    pub fn ways(&self) -> &[Way] {
+        &self.ways
+    }
+
+    /// By their names; none if they were not asked for.
+    pub fn nodes(&self) -> &[Id] {
+        &self.nodes
+    }
+
+    /// What `make` makes of all that was found, on all cores, to `take`: of each way those with itself and the ways after it, then
+    /// with nodes; at last pairs of nodes. Intervals of one pair are apart, in increasing order.
+    ///
+    /// # Errors
+    /// What `take` refuses, and [`ImportError`] for a pair that no memory holds.
+    pub fn each<T: Send, E: From<ImportError>>(
+        &self,
+        told: Told<'_>,
+        make: impl Fn(&[Unsafe]) -> T + Sync,
+        take: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let grid = Grid::new(self.areas.clone());
+        let (counts, motions) = (grid.counts(), self.fleet.motions());
+        let row = |unit: usize| {
+            let (mut near, mut found) = (Vec::new(), Vec::new());
+            grid.after(unit, &mut near);
+            let own = (unit < self.ways.len()).then_some(unit);
+            let shares = |other: &usize| self.levels[*other].iter().any(|level| self.levels[unit].contains(level));
+            for other in own.into_iter().chain(near.iter().map(|&other| other as usize)).filter(shares) {
+                self.pair([unit, other], &motions, &mut found)?;
+            }
+            Ok(make(&found))
+        };
+        in_stretches(self.levels.len(), |unit| 1 + counts[unit] as usize, told, row, take)
+    }
+
+    /// Two units, the first one not after the second.
+    fn pair(
+        &self,
+        [a, b]: [usize; 2],
+        motions: &[Motion<'_, f64>],
+        found: &mut Vec<Unsafe>,
+    ) -> Result<(), ImportError> {
+        let ways = self.ways.len();
+        let point = |unit: usize| self.points[unit - ways];
+        if a >= ways {
+            let [[x, y], [u, v]] = [point(a), point(b)];
+            let slack = 8.0 * f64::EPSILON * (x.abs() + y.abs() + self.reach);
+            if (x - u).hypot(y - v) <= self.reach + slack {
+                found.push(Unsafe::Nodes([a - ways, b - ways]));
+            }
+            return Ok(());
+        }
+        let other = self.straight.get(b).copied().flatten();
+        match (self.straight[a], other) {
+            (Some(own), Some(other)) => {
+                found.extend(own.delays(&other, self.reach).map(|delays| Unsafe::Delays([a, b], delays)));
+                return Ok(());
+            }
+            (Some(own), None) if b >= ways => {
+                found.extend(own.times_at(point(b), self.reach).map(|times| Unsafe::Times(b - ways, a, times)));
+                return Ok(());
+            }
+            _ => {}
+        }
+        let (Some(own), Some(their)) = (motions.get(a), motions.get(b)) else {
+            return Err(ImportError::new(format!("{} and {}: no motions", self.name(a), self.name(b))));
+        };
+        let mut all = Vec::new();
+        self.regions(own, their, [a, b], |region| {
+            all.push(if b < ways {
+                // Of the one on the first way, which is later by less than nothing.
+                let Interval { lo, hi } = region.passing_delays();
+                Interval::new(-hi, -lo)
+            } else {
+                own.time_in(region.length())
+            });
+        })?;
+        found.extend(union(all.into_iter()).map(|Interval { lo, hi }| match b < ways {
+            true => Unsafe::Delays([a, b], [lo, hi]),
+            false => Unsafe::Times(b - ways, a, [lo, hi]),
+        }));
+        Ok(())
+    }
+
+    /// The regions of two motions.
+    fn regions(
+        &self,
+        own: &Motion<'_, f64>,
+        their: &Motion<'_, f64>,
+        units: [usize; 2],
+        mut found: impl FnMut(&RegionRef<'_, f64>),
+    ) -> Result<(), ImportError> {
+        let mut pieces = vec![Piece::EMPTY; PIECES];
+        while let Err(full) = overlaps(own, their, &mut pieces, &mut found) {
+            let names = units.map(|unit| self.name(unit));
+            if full != Full::Pieces {
+                let problem = "more than 32767 pairs of segments within reach of one another";
+                return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
+            }
+            let bytes = 2 * (pieces.len() * size_of::<Piece<f64>>()) as u64;
+            memory::ask(bytes, || "a pair of edges".into()).map_err(|large| ImportError::new(large.to_string()))?;
+            pieces.resize(2 * pieces.len(), Piece::EMPTY);
+        }
+        Ok(())
+    }
+
+    fn name(&self, unit: usize) -> String {
+        let node = || self.nodes.get(unit - self.ways.len()).map(Id::to_string);
+        self.ways.get(unit).map(|way| way.edge.to_string()).or_else(node).unwrap_or_default()
+    }
+}
+
+/// The agent of a way as it is driven.
+fn driven(agent: Agent, edge: &Edge, driving: Driving, speed: f64) -> Agent {
+    let length = agent.length();
+    let motion = if driving.acceleration.is_none() && length > 0.0 {
+        MotionSpec::Profile { v0: speed, pieces: vec![(length / speed, 0.0)] }
+    } else {
+        agent.motion
+    };
+    Agent { label: label(&edge.id.to_string()), motion, ..agent }
+}
+
+/// The box of a segment, grown by a reach \[m\] and by what rounding does to that.
+fn around([[x, y], [u, v]]: [[f64; 2]; 2], reach: f64) -> [f64; 4] {
+    let reach = reach + 64.0 * f64::EPSILON * (x.abs().max(u.abs()) + y.abs().max(v.abs()) + reach);
+    [x.min(u) - reach, y.min(v) - reach, x.max(u) + reach, y.max(v) + reach]
+}

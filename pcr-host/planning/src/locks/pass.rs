@@ -1,0 +1,154 @@
+//! Which of all that vehicles sweep on a layout can touch, in one pass over those that come near one another: a grid finds them, and rows
+//! are computed on all cores.
+
+use super::sweep::Sweep;
+use super::{Extents, joined};
+use crate::memory;
+use crate::rows::Grid;
+use pcr_core::{Full, Interval, Motion, Piece, overlaps};
+use pcr_formats::import::{Id, ImportError};
+use rayon::prelude::*;
+
+/// Pairs of discs that are looked at before what was found is handed on.
+pub(super) const STRETCH: usize = 1 << 16;
+
+/// Pieces of two discs, which have one a pair of segments.
+pub(super) const PIECES: usize = 16;
+
+/// How far a pass is: pairs of discs that were looked at, of so many.
+pub type Told<'t> = &'t (dyn Fn(usize, usize) + Sync);
+
+/// A pass over all pairs.
+pub(super) struct Pass<'a> {
+    sweep: &'a Sweep,
+    motions: Vec<Motion<'a, f64>>,
+    grid: Grid,
+    /// How many discs come near each.
+    pub(super) counts: Vec<u32>,
+}
+
+impl<'a> Pass<'a> {
+    pub(super) fn new(sweep: &'a Sweep) -> Self {
+        let grid = Grid::new(sweep.areas.clone());
+        Self { sweep, motions: sweep.fleet.motions(), counts: grid.counts(), grid }
+    }
+
+    /// Rows one after the other, computed on all cores.
+    pub(super) fn each<T: Send, E: From<ImportError>>(
+        &self,
+        told: Told<'_>,
+        row: impl Fn(usize) -> Result<T, ImportError> + Sync,
+        take: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let work = |track: usize| {
+            let discs = self.sweep.tracks[track].discs.clone();
+            1 + self.counts[discs].iter().map(|&count| count as usize).sum::<usize>()
+        };
+        in_stretches(self.sweep.tracks.len(), work, told, row, take)
+    }
+
+    /// The tracks after one, or with `both` all, that can be touched from it, itself where it has several members, with the
+    /// lengths of both: by the other track, then in the order of the lengths.
+    pub(super) fn row(&self, track: usize, both: bool) -> Result<Vec<(usize, Extents)>, ImportError> {
+        let sweep = self.sweep;
+        let own = &sweep.tracks[track];
+        let (mut near, mut pairs) = (Vec::new(), Vec::new());
+        for disc in own.discs.clone() {
+            if both {
+                self.grid.around(disc, &mut near)
+            } else {
+                self.grid.after(disc, &mut near)
+            }
+            let others = near.iter().map(|&other| (sweep.track_of(other as usize), [disc, other as usize]));
+            pairs.extend(others.filter(|&(other, _)| other != track && own.shares_a_level(&sweep.tracks[other])));
+        }
+        if own.members.len() > 1 {
+            pairs.extend(own.discs.clone().map(|disc| (track, [disc, disc])));
+        }
+        pairs.sort_unstable();
+        sweep.grouped(&pairs, |disc| self.motions.get(disc).copied())
+    }
+}
+
+/// Rows one after the other, each of so much work, computed on all cores.
+pub(super) fn in_stretches<T: Send, E: From<ImportError>>(
+    rows: usize,
+    work: impl Fn(usize) -> usize,
+    told: Told<'_>,
+    row: impl Fn(usize) -> Result<T, ImportError> + Sync,
+    mut take: impl FnMut(T) -> Result<(), E>,
+) -> Result<(), E> {
+    let (mut next, mut done) = (0, 0);
+    let total = (0..rows).map(&work).sum();
+    while next < rows {
+        let (first, mut held) = (next, 0);
+        while next < rows && held < STRETCH {
+            held += work(next);
+            next += 1;
+        }
+        let made = (first..next).into_par_iter().map(&row);
+        made.collect::<Result<Vec<T>, ImportError>>()?.into_iter().try_for_each(&mut take)?;
+        done += held;
+        told(done, total);
+    }
+    Ok(())
+}
+
+impl Sweep {
+    /// The extents of pairs of discs, by the other track.
+    pub(super) fn grouped<'m>(
+        &self,
+        pairs: &[(usize, [usize; 2])],
+        motion: impl Fn(usize) -> Option<Motion<'m, f64>> + Copy,
+    ) -> Result<Vec<(usize, Extents)>, ImportError> {
+        let mut row = Vec::new();
+        for group in pairs.chunk_by(|a, b| a.0 == b.0) {
+            let Some(&(other, _)) = group.first() else { continue };
+            let extents = self.extents(group.iter().map(|&(_, discs)| discs), motion)?;
+            row.extend(extents.into_iter().map(|extents| (other, extents)));
+        }
+        Ok(row)
+    }
+
+    pub(super) fn track_of(&self, disc: usize) -> usize {
+        self.discs.get(disc).and_then(|disc| self.rides.get(disc.agent)).map_or(usize::MAX, |ride| ride.1 as usize)
+    }
+
+    /// The extents of the regions of some pairs of discs of two tracks, of which those that overlap are one.
+    fn extents<'m>(
+        &self,
+        pairs: impl Iterator<Item = [usize; 2]>,
+        motion: impl Fn(usize) -> Option<Motion<'m, f64>>,
+    ) -> Result<Vec<Extents>, ImportError> {
+        let (mut extents, mut pieces) = (Vec::new(), vec![Piece::EMPTY; PIECES]);
+        for [own, other] in pairs {
+            let swap = other < own;
+            let [first, second] = if swap { [other, own] } else { [own, other] };
+            let (Some(a), Some(b)) = (motion(first), motion(second)) else { continue };
+            let on = |disc: usize, range: Interval<f64>| {
+                let disc = &self.discs[disc];
+                self.rides[disc.agent].0.on_edge(disc.on_agent([range.lo, range.hi]))
+            };
+            while let Err(full) = overlaps(&a, &b, &mut pieces, |region| {
+                let lengths = [on(first, region.length()), on(second, region.other_length())];
+                extents.push(if swap { [lengths[1], lengths[0]] } else { lengths });
+            }) {
+                let bytes = 2 * (pieces.len() * size_of::<Piece<f64>>()) as u64;
+                memory::ask(bytes, || "a pair of edges".into()).map_err(|large| ImportError::new(large.to_string()))?;
+                if full != Full::Pieces {
+                    let names = [own, other].map(|disc| self.name(disc));
+                    let problem = "more than 32767 pairs of segments within reach of one another";
+                    return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
+                }
+                pieces.resize(2 * pieces.len(), Piece::EMPTY);
+            }
+        }
+        Ok(if extents.len() > 1 { joined(extents) } else { extents })
+    }
+
+    /// What a disc belongs to, for messages.
+    fn name(&self, disc: usize) -> String {
+        let member = self.tracks.get(self.track_of(disc)).and_then(|track| track.members.first());
+        member.and_then(|&(place, _)| self.ids.get(place)).map_or_else(String::new, Id::to_string)
+    }
+}

@@ -1,0 +1,88 @@
+//! Delays one agent after the other, each as early as those before it allow: found in no time, for all agents or for most of them.
+//!
+//! Whoever cannot start goes first the next time, again and again (squeaky wheels, Joslin and Clements 1999), behind those that have to
+//! go before it.
+
+use super::problem::{Constraint, Problem, earliest};
+use std::cmp::Reverse;
+
+/// Orders that are tried, each with what did not fit into the one before ahead of the others.
+const ROUNDS: usize = 12;
+
+/// The delays of the first order in which all agents have one, else of that in which the fewest have none.
+pub(super) fn inserted(problem: &Problem) -> Vec<Option<i64>> {
+    let table = Table::of(problem);
+    let natural: Vec<usize> = (0..problem.len()).collect();
+    let mut crowded = natural.clone();
+    crowded.sort_by_key(|&agent| Reverse(table.near[agent].len()));
+    let mut soonest = natural.clone();
+    soonest.sort_by_key(|&agent| problem.ends[agent]);
+    let mut best: Option<(usize, Vec<Option<i64>>)> = None;
+    for start in [natural, soonest, crowded] {
+        let mut order = start;
+        for _ in 0..ROUNDS {
+            let delays = table.in_order(table.respecting(&order));
+            let out = delays.iter().filter(|delay| delay.is_none()).count();
+            // Whoever is out first, all in the order that they had.
+            order.sort_by_key(|&agent| delays[agent].is_some());
+            if best.as_ref().is_none_or(|(fewest, _)| out < *fewest) {
+                best = Some((out, delays));
+            }
+            if out == 0 {
+                break;
+            }
+        }
+        if best.as_ref().is_some_and(|(out, _)| *out == 0) {
+            break;
+        }
+    }
+    best.map_or_else(Vec::new, |(_, delays)| delays)
+}
+
+/// A problem by agents.
+struct Table<'a> {
+    problem: &'a Problem,
+    /// The other agent and the place of each pair of an agent.
+    near: Vec<Vec<(usize, usize)>>,
+    /// Those that have to start before an agent.
+    first: Vec<Vec<usize>>,
+}
+
+impl<'a> Table<'a> {
+    fn of(problem: &'a Problem) -> Self {
+        let (mut near, mut first) = (vec![Vec::new(); problem.len()], vec![Vec::new(); problem.len()]);
+        for (place, pair) in problem.pairs.iter().enumerate() {
+            let [i, j] = pair.agents;
+            near[i].push((j, place));
+            near[j].push((i, place));
+            if !pair.is_impossible() {
+                pair.forced().for_each(|Constraint { from, to, .. }| first[to].push(from));
+            }
+        }
+        Self { problem, near, first }
+    }
+
+    /// The order, but for agents that have to start before others; in a circle any of them is as good.
+    fn respecting(&self, order: &[usize]) -> Vec<usize> {
+        let mut left = order.to_vec();
+        let mut placed = vec![false; order.len()];
+        let mut respecting = Vec::with_capacity(order.len());
+        while !left.is_empty() {
+            let is_next = |agent: &usize| self.first[*agent].iter().all(|&other| placed[other]);
+            let agent = left.remove(left.iter().position(is_next).unwrap_or(0));
+            placed[agent] = true;
+            respecting.push(agent);
+        }
+        respecting
+    }
+
+    fn in_order(&self, order: Vec<usize>) -> Vec<Option<i64>> {
+        let mut delays: Vec<Option<i64>> = vec![None; self.problem.len()];
+        for agent in order {
+            let placed = self.near[agent].iter().filter_map(|&(other, place)| Some((delays[other]?, place)));
+            let forbidden = placed.flat_map(|(delay, place)| self.problem.pairs[place].forbidden_to(agent, delay));
+            delays[agent] = earliest(forbidden.collect());
+        }
+        delays
+    }
+}

@@ -1,0 +1,246 @@
+//! Tables of unsafe delays, for programs and for reading.
+
+use super::columns::Columns;
+use super::locks::LocksUnprinted;
+use super::{Document, json, printable, quoted};
+use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
+use crate::memory;
+use pcr_formats::import::{Id, ImportError};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+/// The header line of [`delays_csv`].
+pub const DELAYS_HEADER: &str = "a,a_direction,b,b_direction,from,to\n";
+
+/// The unsafe delays of a layout.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DelayTable {
+    /// Name of the layout.
+    pub layout: String,
+    /// The vehicle.
+    pub vehicle: LockVehicle,
+    /// How edges are driven.
+    #[serde(flatten)]
+    pub driving: Driving,
+    /// By `a`, then `b`; those of a pair are apart.
+    pub delays: Vec<Delay>,
+    /// When nobody may stand at a node, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<Vec<NodeTimes>>,
+    /// Nodes at which vehicles cannot stand at the same time, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub node_pairs: Option<Vec<[Id; 2]>>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
+}
+
+/// How much later than on `a` a vehicle may not set off on `b`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Delay {
+    /// Edge, as in the layout.
+    pub a: Id,
+    /// Whether it is driven from its end.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub a_backward: bool,
+    /// Edge, `a` or after it.
+    pub b: Id,
+    /// Whether it is driven from its end.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub b_backward: bool,
+    /// From and to; less than 0 is earlier \[s\].
+    pub delay: [f64; 2],
+}
+
+/// When nobody may stand at a node, from when a vehicle sets off on an edge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NodeTimes {
+    /// Node, as in the layout.
+    pub node: Id,
+    /// Edge.
+    pub edge: Id,
+    /// Whether it is driven from its end.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub backward: bool,
+    /// From and to \[s\].
+    pub time: [f64; 2],
+}
+
+impl Document for DelayTable {
+    const FORMAT: &'static str = "pcr-delays";
+}
+
+impl DelayTable {
+    /// The whole table; `head` is the one of locks without its locks.
+    ///
+    /// # Errors
+    /// Those of [`Delays::each`], and a table that memory does not hold.
+    pub fn of(head: Locks, driving: Driving, delays: &Delays, told: Told<'_>) -> Result<Self, ImportError> {
+        let Locks { layout, vehicle, nodes, node_pairs, warnings, .. } = head;
+        let (nodes, node_pairs) = (nodes.map(|_| Vec::new()), node_pairs.map(|_| Vec::new()));
+        let mut table = Self { layout, vehicle, driving, delays: Vec::new(), nodes, node_pairs, warnings };
+        let mut held = 0;
+        delays.each(told, <[Unsafe]>::to_vec, |found| {
+            held += found.len() as u64 * (size_of::<Delay>() + 64) as u64;
+            if held > memory::STEP {
+                let count = table.delays.len();
+                memory::ask(held + 2 * (count * size_of::<Delay>()) as u64, || {
+                    format!("a table of over {count} delays")
+                })
+                .map_err(|large| ImportError::new(large.to_string()))?;
+                held = 0;
+            }
+            found.into_iter().for_each(|found| table.add(delays, found));
+            Ok::<(), ImportError>(())
+        })?;
+        Ok(table)
+    }
+
+    fn add(&mut self, of: &Delays, found: Unsafe) {
+        let node = |place: usize| of.nodes()[place].clone();
+        match found {
+            Unsafe::Delays(ways, delay) => {
+                let [a, b] = ways.map(|place| of.ways()[place].clone());
+                let (a_backward, b_backward) = (a.backward, b.backward);
+                self.delays.push(Delay { a: a.edge, a_backward, b: b.edge, b_backward, delay });
+            }
+            Unsafe::Times(at, way, time) => {
+                let way = of.ways()[way].clone();
+                let times = NodeTimes { node: node(at), edge: way.edge, backward: way.backward, time };
+                self.nodes.get_or_insert_default().push(times);
+            }
+            Unsafe::Nodes(pair) => self.node_pairs.get_or_insert_default().push(pair.map(node)),
+        }
+    }
+}
+
+/// A line a delay. A node is `node` and its name, as `a`; two nodes have no times.
+///
+/// # Errors
+/// Those of the writer, and of [`Delays::each`].
+pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
+    out.write_all(DELAYS_HEADER.as_bytes())?;
+    let direction = |backward| if backward { "backward" } else { "forward" };
+    let way = |way: &crate::locks::Way| format!("{},{}", quoted(&way.edge.to_string()), direction(way.backward));
+    let ways: Vec<String> = delays.ways().iter().map(way).collect();
+    let node = |node: &Id| format!("{},", quoted(&format!("node {node}")));
+    let nodes: Vec<String> = delays.nodes().iter().map(node).collect();
+    let lines = |found: &[Unsafe]| {
+        let mut text = String::with_capacity(80 * found.len());
+        for found in found {
+            // Writing to a `String` does not fail.
+            let _ = match *found {
+                Unsafe::Delays([a, b], [from, to]) => writeln!(text, "{},{},{from},{to}", ways[a], ways[b]),
+                Unsafe::Times(at, way, [from, to]) => writeln!(text, "{},{},{from},{to}", nodes[at], ways[way]),
+                Unsafe::Nodes([a, b]) => writeln!(text, "{},{},,", nodes[a], nodes[b]),
+            };
+        }
+        text
+    };
+    delays.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+}
+
+/// What [`delays_lines`] begins with.
+#[derive(Serialize)]
+struct Head<'a> {
+    layout: &'a str,
+    vehicle: &'a LockVehicle,
+    #[serde(flatten)]
+    driving: Driving,
+    warnings: &'a [String],
+}
+
+impl Document for Head<'_> {
+    const FORMAT: &'static str = "pcr-delay-lines";
+}
+
+/// JSON Lines: what the table is, then a line a delay as in the document `pcr-delays`, then how many there were: what has no such
+/// line was cut off.
+///
+/// # Errors
+/// As [`delays_csv`].
+pub fn delays_lines(
+    head: &Locks,
+    driving: Driving,
+    delays: &Delays,
+    told: Told<'_>,
+    out: &mut impl Write,
+) -> Result<(), LocksUnprinted> {
+    json(&Head { layout: &head.layout, vehicle: &head.vehicle, driving, warnings: &head.warnings }, out)?;
+    let names = |ids: &mut dyn Iterator<Item = &Id>| {
+        ids.map(serde_json::to_string).collect::<Result<Vec<String>, _>>().map_err(io::Error::from)
+    };
+    let nodes = names(&mut delays.nodes().iter())?;
+    let ways = names(&mut delays.ways().iter().map(|way| &way.edge))?;
+    let turned = |way: usize, field: &str| {
+        if delays.ways()[way].backward { format!(r#","{field}":true"#) } else { String::new() }
+    };
+    let lines = |found: &[Unsafe]| {
+        let mut text = String::with_capacity(100 * found.len());
+        for found in found {
+            let _ = match *found {
+                Unsafe::Delays([a, b], [from, to]) => {
+                    let (a_turned, b_turned) = (turned(a, "a_backward"), turned(b, "b_backward"));
+                    let (a, b) = (&ways[a], &ways[b]);
+                    writeln!(text, r#"{{"a":{a}{a_turned},"b":{b}{b_turned},"delay":[{from:?},{to:?}]}}"#)
+                }
+                Unsafe::Times(at, way, [from, to]) => {
+                    let (node, edge, turned) = (&nodes[at], &ways[way], turned(way, "backward"));
+                    writeln!(text, r#"{{"node":{node},"edge":{edge}{turned},"time":[{from:?},{to:?}]}}"#)
+                }
+                Unsafe::Nodes([a, b]) => writeln!(text, r#"{{"nodes":[{},{}]}}"#, nodes[a], nodes[b]),
+            };
+        }
+        (found.len(), text)
+    };
+    let mut count = 0;
+    delays.each(told, lines, |(lines, text)| {
+        count += lines;
+        Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?)
+    })?;
+    Ok(writeln!(out, r#"{{"delays":{count}}}"#)?)
+}
+
+/// Times outward to the millisecond.
+fn range([from, to]: [f64; 2]) -> [String; 2] {
+    // What rounding adds is no millisecond.
+    let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
+    // No minus before 0.
+    [format!("{:.3}", from + 0.0), format!("{:.3}", to + 0.0)]
+}
+
+/// The delays in columns.
+///
+/// # Errors
+/// Those of the writer.
+pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> {
+    let name = if table.layout.is_empty() { "layout" } else { &table.layout };
+    let (count, Driving { speed, acceleration }) = (table.delays.len(), table.driving);
+    let plural = if count == 1 { "" } else { "s" };
+    let how = match acceleration {
+        Some(acceleration) => format!("from rest to rest with {speed} m/s and {acceleration} m/s²"),
+        None => format!("at {speed} m/s"),
+    };
+    let (name, radius) = (printable(name), table.vehicle.radius);
+    writeln!(out, "{name}: {count} interval{plural} of unsafe delays, radius {radius} m, {how}")?;
+    let text = |id: &Id, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
+    if count > 0 {
+        let mut columns = Columns::new(&["<a", "<b", "b later by [s]", "to"]);
+        for Delay { a, a_backward, b, b_backward, delay } in &table.delays {
+            columns.row([[text(a, *a_backward), text(b, *b_backward)], range(*delay)].concat());
+        }
+        columns.write(out)?;
+    }
+    if let Some(nodes) = &table.nodes {
+        writeln!(out, "{} intervals of times at nodes", nodes.len())?;
+        let mut columns = Columns::new(&["<node", "<edge", "from [s]", "to"]);
+        for NodeTimes { node, edge, backward, time } in nodes {
+            columns.row([[text(node, false), text(edge, *backward)], range(*time)].concat());
+        }
+        columns.write(out)?;
+    }
+    for [a, b] in table.node_pairs.iter().flatten() {
+        writeln!(out, "  nodes {} and {}", text(a, false), text(b, false))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,145 @@
+//! Unsafe delays of straight edges by their definition, with 106 bits: no closed form of an end is used here.
+//!
+//! With a delay δ both vehicles are on their edges from max(0, δ) to min(T₁, T₂ + δ), their distance is that of a point moving
+//! evenly, and its minimum f(δ) over that time is had by a projection. f is convex (a minimum over one variable of a convex function of
+//! two), so that the unsafe delays are one interval, and three values of f tell that nothing is outside of one that was found.
+
+pub mod cplp;
+pub mod published;
+
+use pcr_certify::twofold::Twofold;
+
+/// A straight edge with 106 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact {
+    start: [Twofold; 2],
+    end: [Twofold; 2],
+    /// \[m/s\]
+    velocity: [Twofold; 2],
+    /// \[s\]
+    duration: Twofold,
+}
+
+fn less([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> [Twofold; 2] {
+    [a - c, b - d]
+}
+
+fn dot([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> Twofold {
+    a * c + b * d
+}
+
+fn by([a, b]: [Twofold; 2], factor: Twofold) -> [Twofold; 2] {
+    [a * factor, b * factor]
+}
+
+fn cross([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> Twofold {
+    a * d - b * c
+}
+
+fn larger(a: Twofold, b: Twofold) -> Twofold {
+    if a < b { b } else { a }
+}
+
+fn smaller(a: Twofold, b: Twofold) -> Twofold {
+    if b < a { b } else { a }
+}
+
+impl Exact {
+    /// From one point to another at a speed.
+    pub fn new(from: [f64; 2], to: [f64; 2], speed: f64) -> Self {
+        let (start, end) = (from.map(Twofold::from), to.map(Twofold::from));
+        let way = less(end, start);
+        let length = dot(way, way).sqrt();
+        let speed = Twofold::from(speed);
+        let still = length == Twofold::ZERO;
+        let velocity = if still { [Twofold::ZERO; 2] } else { by(way, speed / length) };
+        Self { start, end, velocity, duration: if still { Twofold::ZERO } else { length / speed } }
+    }
+
+    /// How long it takes \[s\].
+    pub fn duration(&self) -> f64 {
+        self.duration.to_f64()
+    }
+
+    /// The square of the least distance if the other one sets off later by `delay`, while both are under way; `None` where they never are.
+    pub fn nearest(&self, other: &Self, delay: Twofold) -> Option<Twofold> {
+        let (from, to) = (larger(Twofold::ZERO, delay), smaller(self.duration, other.duration + delay));
+        if to < from {
+            return None;
+        }
+        let passing = less(self.velocity, other.velocity);
+        let at_zero = less(self.start, less(other.start, by(other.velocity, delay)));
+        let square = dot(passing, passing);
+        let time = if square == Twofold::ZERO { from } else { (-dot(at_zero, passing) / square).clamp(from, to) };
+        let apart = less(at_zero, by(passing, -time));
+        Some(dot(apart, apart))
+    }
+
+    /// The square of the distance of the two edges: that of the vehicles at the best of all delays.
+    pub fn apart(&self, other: &Self) -> Twofold {
+        let side = |of: &Self, point: [Twofold; 2]| cross(less(of.end, of.start), less(point, of.start));
+        let split = |of: &Self, by: &Self| {
+            let [a, b] = [side(by, of.start), side(by, of.end)];
+            (a < Twofold::ZERO && Twofold::ZERO < b) || (b < Twofold::ZERO && Twofold::ZERO < a)
+        };
+        if split(self, other) && split(other, self) {
+            return Twofold::ZERO;
+        }
+        let ends = [(self, other.start), (self, other.end), (other, self.start), (other, self.end)];
+        let all = ends.map(|(edge, point)| edge.from_point(point));
+        all.into_iter().reduce(smaller).unwrap_or(Twofold::ZERO)
+    }
+
+    /// The square of the distance of a point.
+    fn from_point(&self, point: [Twofold; 2]) -> Twofold {
+        let (way, to) = (less(self.end, self.start), less(point, self.start));
+        let square = dot(way, way);
+        let one = Twofold::from(1.0);
+        let share = if square == Twofold::ZERO { one } else { (dot(to, way) / square).clamp(Twofold::ZERO, one) };
+        let apart = less(to, by(way, share));
+        dot(apart, apart)
+    }
+
+    /// The square of the distance of a point from where the vehicle is at a time.
+    pub fn from_point_at(&self, point: [f64; 2], time: f64) -> Twofold {
+        let time = Twofold::from(time).clamp(Twofold::ZERO, self.duration);
+        let apart = less(less(point.map(Twofold::from), self.start), by(self.velocity, time));
+        dot(apart, apart)
+    }
+
+    /// What is wrong with an interval of delays that was found for this edge and another one: a contact outside of it, or an end
+    /// that is further out than the excess allows (of lengths, and of times).
+    pub fn judge(&self, other: &Self, reach: f64, found: Option<[f64; 2]>, excess: [f64; 2]) -> Result<(), String> {
+        let square = |reach: Twofold| reach * reach;
+        let (reach, wide) = (Twofold::from(reach), Twofold::from(reach) + Twofold::from(excess[0]));
+        let Some([lo, hi]) = found else {
+            return match self.apart(other) {
+                apart if apart > square(reach) => Ok(()),
+                apart => Err(format!("a contact is missing: {} m apart", apart.sqrt().to_f64())),
+            };
+        };
+        if !(lo <= hi) {
+            return Err(format!("no interval: {lo} {hi}"));
+        }
+        // Rounding may lead to where nobody is.
+        let there = |delay: f64| Twofold::from(delay).clamp(-other.duration, self.duration);
+        let middle = there(0.5 * (lo + hi));
+        let inside = self.nearest(other, middle).ok_or("both are never under way in the middle")?;
+        for (end, beyond, inward) in [(lo, lo.next_down(), excess[1]), (hi, hi.next_up(), -excess[1])] {
+            // Beyond the end nobody is there any more, or they are apart and the farther the more: f is convex.
+            if let Some(apart) = self.nearest(other, Twofold::from(beyond))
+                && (apart <= square(reach) || apart <= inside)
+            {
+                return Err(format!("contacts beyond {end} s are missing: {} m", apart.sqrt().to_f64()));
+            }
+            let half = 0.5 * (hi - lo);
+            let inner = there(end + inward.clamp(-half, half));
+            let within = self.nearest(other, inner).ok_or("nobody is there just inside")?;
+            if within > square(wide) {
+                let apart = within.sqrt().to_f64();
+                return Err(format!("too wide: just inside {end} s they are {apart} m apart"));
+            }
+        }
+        Ok(())
+    }
+}

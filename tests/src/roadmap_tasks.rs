@@ -1,0 +1,65 @@
+//! Roadmaps with tasks that come over time, as Adcombrink/CPLP-LifelongMAPFR writes them (JSON of networkx).
+
+use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
+use pcr_formats::scenario::Placed;
+use pcr_planning::lifelong::Tasks;
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// Large enough for robots that start, stop and turn at once \[m/s², rad/s, rad/s²\].
+const AT_ONCE: f64 = 1e4;
+
+/// The roadmap for robots of radius 1 and speed 1, and what they have to do.
+///
+/// # Errors
+/// Where the text is none.
+pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
+    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let list = |value: &Value, name: &str| value[name].as_array().cloned().ok_or(format!("{name}: a list is expected"));
+    let graph = &value["graph"];
+    let (mut nodes, mut places) = (Vec::new(), HashMap::new());
+    for (place, node) in list(graph, "nodes")?.iter().enumerate() {
+        let id = text_of(&node["id"])?;
+        let at = [0, 1].map(|axis| node["pos"][axis].as_f64().unwrap_or(f64::NAN));
+        places.insert(id.clone(), place);
+        nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+    }
+    let place = |value: &Value| {
+        let id = text_of(value)?;
+        places.get(&id).copied().ok_or(format!("{id}: no such node"))
+    };
+    let mut edges = Vec::new();
+    for (number, link) in list(graph, "links")?.iter().enumerate() {
+        let ends = [place(&link["source"])?, place(&link["target"])?];
+        let [from, to] = ends.map(|node: usize| nodes[node].at);
+        edges.push(Edge {
+            id: Id::Number(number as u64),
+            ends,
+            curve: vec![Placed::line(from, to)],
+            two_way: false,
+            speed: None,
+            rotation: None,
+            deviation: 0.0,
+        });
+    }
+    let layout = Layout { levels: vec![String::new()], nodes, edges, ..Layout::default() };
+    let vehicle = Vehicle {
+        name: None,
+        radius: 1.0,
+        footprint: None,
+        margin: 0.0,
+        speed: 1.0,
+        acceleration: AT_ONCE,
+        rotation: AT_ONCE,
+        rotation_acceleration: AT_ONCE,
+    };
+    let starts = value["agent_start"].as_object().ok_or("agent_start: missing")?;
+    let starts = starts.values().map(place).collect::<Result<_, String>>()?;
+    let task = |task: &Value| Ok((place(&task[0])?, task[1].as_f64().ok_or("tasks: a time is missing")?));
+    let tasks = list(&value, "tasks")?.iter().map(task).collect::<Result<_, String>>()?;
+    Ok((Imported { layout, vehicle }, Tasks { starts, tasks }))
+}
+
+fn text_of(value: &Value) -> Result<String, String> {
+    value.as_str().map(str::to_owned).ok_or_else(|| "the name of a node is expected".to_owned())
+}

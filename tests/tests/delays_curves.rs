@@ -1,0 +1,150 @@
+//! Unsafe delays of arcs and of accelerations against sampled motions.
+
+use pcr_core::{Interval, Motion};
+use pcr_formats::import::{Format, ImportError, Imported, Options, Step, Warnings, layout, ride};
+use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
+use pcr_planning::fleet::Fleet;
+use pcr_planning::locks::{Delays, Driving, Unsafe};
+use std::collections::HashMap;
+
+const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
+const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+const SAMPLES: u32 = 400;
+
+fn read(format: Format, text: &str, radius: f64) -> Imported {
+    let options = Options { radius: Some(radius), ..Options::default() };
+    layout(format, text, &options, &mut Warnings::default()).unwrap()
+}
+
+type Intervals = HashMap<[usize; 2], Vec<[f64; 2]>>;
+
+fn found(delays: &Delays) -> Intervals {
+    let mut all = Intervals::new();
+    let take = |row: Vec<Unsafe>| {
+        for found in row {
+            if let Unsafe::Delays(ways, interval) = found {
+                all.entry(ways).or_default().push(interval);
+            }
+        }
+        Ok::<(), ImportError>(())
+    };
+    delays.each(&|_, _| {}, <[Unsafe]>::to_vec, take).unwrap();
+    all
+}
+
+/// The least sampled distance if the second sets off later, while both are under way; and how far they go between two samples.
+fn sampled(a: &Motion<'_, f64>, b: &Motion<'_, f64>, delay: f64) -> Option<[f64; 2]> {
+    let b = b.delayed(delay).unwrap();
+    let (lo, hi) = (a.time().lo.max(b.time().lo), a.time().hi.min(b.time().hi));
+    (lo <= hi).then(|| {
+        let apart = (0..=SAMPLES).map(|k| {
+            let time = lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES);
+            let (p, q) = (a.position_at(time), b.position_at(time));
+            (p.x - q.x).hypot(p.y - q.y)
+        });
+        let speed = a.profile().top_speed() + b.profile().top_speed();
+        [apart.fold(f64::INFINITY, f64::min), speed * (hi - lo) / f64::from(SAMPLES)]
+    })
+}
+
+/// Every way of a layout as it is driven, in the order of the table.
+fn fleet(imported: &Imported, driving: Driving) -> Fleet<f64> {
+    let mut vehicle = imported.vehicle.clone();
+    vehicle.radius += vehicle.margin;
+    vehicle.margin = 0.0;
+    vehicle.speed = driving.speed;
+    vehicle.acceleration = driving.acceleration.unwrap_or(vehicle.acceleration);
+    let mut order: Vec<_> = imported.layout.edges.iter().collect();
+    order.sort_by(|a, b| a.id.cmp(&b.id));
+    let mut agents: Vec<Agent> = Vec::new();
+    for edge in order {
+        for backward in [false, true] {
+            if backward && !edge.two_way {
+                continue;
+            }
+            let agent = ride(&vehicle, Step { edge, backward });
+            let speed = edge.speed.map_or(driving.speed, |limit| limit.min(driving.speed));
+            let even = MotionSpec::Profile { v0: speed, pieces: vec![(agent.length() / speed, 0.0)] };
+            let motion = if driving.acceleration.is_some() { agent.motion.clone() } else { even };
+            agents.push(Agent { id: agents.len() as u64, motion, ..agent });
+        }
+    }
+    Fleet::new(&Scenario::new("", agents)).unwrap()
+}
+
+fn audited(imported: &Imported, driving: Driving) {
+    let delays = Delays::new(imported, driving, false).unwrap();
+    let (found, fleet) = (found(&delays), fleet(imported, driving));
+    let motions = fleet.motions();
+    assert_eq!(motions.len(), delays.ways().len());
+    let empty = Vec::new();
+    let (mut met, mut free) = (0, 0);
+    for a in 0..motions.len() {
+        // Of large layouts some pairs.
+        for b in (a..motions.len()).filter(|b| motions.len() < 60 || (a + b) % 7 < 2) {
+            let (own, their) = (&motions[a], &motions[b]);
+            let reach = own.radius() + their.radius();
+            let intervals = found.get(&[a, b]).unwrap_or(&empty);
+            let (lo, hi) = (-their.profile().duration(), own.profile().duration());
+            let ends = intervals.iter().flatten().flat_map(|end| [end - 1e-3, end - 1e-7, end + 1e-7, end + 1e-3]);
+            for delay in (0..=24).map(|k| lo + (hi - lo) * f64::from(k) / 24.0).chain(ends) {
+                let Some([apart, step]) = sampled(own, their, delay) else { continue };
+                let inside = intervals.iter().any(|[from, to]| (from..=to).contains(&&delay));
+                if inside {
+                    // At the very end they touch between two samples.
+                    assert!(apart <= reach + step, "{a} {b} at {delay}: {apart} {intervals:?}");
+                    met += 1;
+                } else {
+                    assert!(apart > reach - 1e-9, "{a} {b} at {delay}: {apart} {intervals:?}");
+                    free += 1;
+                }
+            }
+            for &[from, to] in intervals {
+                // Not too wide: a little inside there is a contact, or they are under way for no more than a moment.
+                for (end, inward) in [(from, 1e-4), (to, -1e-4)] {
+                    if let Some([apart, step]) = sampled(own, their, end + inward).filter(|_| to - from > 2e-4) {
+                        assert!(apart <= reach + 1e-6 + 0.01 * step, "{a} {b} at {end}: {apart} {intervals:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(met > 20 && free > 40, "{met} {free}");
+}
+
+#[test]
+fn arcs_at_constant_speed() {
+    audited(&read(Format::Lif, CURVES, 0.3), Driving { speed: 0.8, acceleration: None });
+}
+
+#[test]
+fn arcs_from_rest_to_rest() {
+    audited(&read(Format::Lif, CURVES, 0.3), Driving { speed: 1.5, acceleration: Some(0.4) });
+}
+
+#[test]
+fn lines_from_rest_to_rest() {
+    audited(&read(Format::Nav2, WAREHOUSE, 0.4), Driving { speed: 1.0, acceleration: Some(0.5) });
+}
+
+/// Straight edges by the closed form and, with no more than the rounding of a deviation, by the library.
+#[test]
+fn both_ways_agree() {
+    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let driving = Driving { speed: 1.3, acceleration: None };
+    let mut bent = imported.clone();
+    bent.layout.edges.iter_mut().for_each(|edge| edge.deviation = 1e-12);
+    let [closed, general] = [&imported, &bent].map(|imported| found(&Delays::new(imported, driving, false).unwrap()));
+    assert!(closed.len() > 500);
+    for (ways, intervals) in &closed {
+        let [interval] = intervals[..] else { panic!("{ways:?} {intervals:?}") };
+        let [other] = general[ways][..] else { panic!("{ways:?} {:?}", general[ways]) };
+        let off = (0..2).map(|end| (interval[end] - other[end]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-6, "{ways:?} {interval:?} {other:?}");
+    }
+    // What only the library finds is a touch.
+    for (ways, intervals) in general.iter().filter(|(ways, _)| !closed.contains_key(*ways)) {
+        let all: Vec<Interval<f64>> = intervals.iter().map(|[lo, hi]| Interval::new(*lo, *hi)).collect();
+        assert!(all.iter().all(|interval| interval.hi - interval.lo < 1e-4), "{ways:?} {all:?}");
+    }
+}
