@@ -25,7 +25,7 @@ style() {
     return 1
   fi
   .ci/dependencies.py
-  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing}/src
+  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing,serve}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
 }
@@ -33,7 +33,7 @@ style() {
 quick() {
   style
   step "unit tests"
-  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-exclusions -p pcr-drawing -p pcr-comparing --lib --features pcr-drawing/png --locked
+  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-exclusions -p pcr-drawing -p pcr-comparing -p pcr-serve --lib --features pcr-drawing/png --locked
 }
 
 docs() {

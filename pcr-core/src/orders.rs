@@ -8,15 +8,20 @@
 //! refused     why orders are refused                                Refused
 //! check       whether everybody can finish                          Orders::check
 //! admit       orders for a new path                                 Orders::admit
+//! told        who waits for whom, and orders as decided             Orders::wait, Decision
+//! grow        storage that grows                                    Orders::grow
 //! ```
 
 mod admit;
 mod brakes;
 mod check;
+#[cfg(feature = "std")]
+mod grow;
 mod hold;
 mod order;
 mod refused;
 mod table;
+mod told;
 
 pub use admit::Mission;
 pub use brakes::Brakes;
@@ -25,3 +30,4 @@ pub use hold::Hold;
 pub use order::{Order, Pass, Progress};
 pub use refused::Refused;
 pub use table::Orders;
+pub use told::Decision;

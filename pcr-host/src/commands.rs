@@ -16,6 +16,7 @@ mod number;
 mod plan;
 mod printed;
 mod regions;
+mod serve;
 mod simulate;
 mod sources;
 mod traffic;
@@ -84,6 +85,7 @@ enum Command {
     Traffic(traffic::Arguments),
     Nodes(nodes::Arguments),
     Import(import::Arguments),
+    Serve(serve::Arguments),
     Compare(compare::Arguments),
     Evaluate(evaluate::Arguments),
     Demo(demo::Arguments),
@@ -112,6 +114,7 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
         Some(Command::Traffic(arguments)) => arguments.run(),
         Some(Command::Nodes(arguments)) => arguments.run(),
         Some(Command::Import(arguments)) => arguments.run(),
+        Some(Command::Serve(arguments)) => arguments.run(),
         Some(Command::Compare(arguments)) => arguments.run(),
         Some(Command::Evaluate(arguments)) => arguments.run(),
         Some(Command::Demo(arguments)) => arguments.run(),

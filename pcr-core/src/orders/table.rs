@@ -130,8 +130,19 @@ where
         progress: &[Progress<S>],
         other: Hold<S>,
     ) -> Result<Hold<S>, Mismatch> {
+        self.nearest(fleet, agent, progress, other).map(|(hold, _)| hold)
+    }
+
+    /// The hold and the place of the region that it is before; none where it is `other`.
+    pub(super) fn nearest(
+        &self,
+        fleet: &[Motion<'_, S>],
+        agent: usize,
+        progress: &[Progress<S>],
+        other: Hold<S>,
+    ) -> Result<(Hold<S>, Option<usize>), Mismatch> {
         self.ecm.holds(fleet, [agent, agent])?;
-        let mut hold = other;
+        let (mut hold, mut nearest) = (other, None);
         for (place, agents, order) in self.places(agent) {
             let other = if agents[0] == agent { agents[1] } else { agents[0] };
             let first = progress.get(other).copied().unwrap_or_default().at.lo;
@@ -143,9 +154,12 @@ where
                 Pass::Second => self.ecm.at(fleet, place, agent).map(|region| region.hold(order.since, first)),
                 Pass::Undecided => self.ecm.at(fleet, place, agent).map(|region| region.hold(S::ZERO, S::ZERO)),
             };
-            hold = hold.min(held.unwrap_or(Hold::Inside));
+            let least = hold.min(held.unwrap_or(Hold::Inside));
+            if least != hold {
+                (hold, nearest) = (least, Some(place));
+            }
         }
-        Ok(hold)
+        Ok((hold, nearest))
     }
 }
 

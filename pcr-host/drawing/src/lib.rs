@@ -14,6 +14,7 @@
 //! layout      the corridors on the edges of a layout
 //! locks       a page in which the edges of a layout show what they block
 //! replay      a page on which to watch a simulation
+//! live        a page on which to watch a fleet that runs
 //! template    pages with everything in them
 //! svg         the writer of SVG files
 //! raster      SVG to PNG (feature `png`)
@@ -24,6 +25,7 @@ mod axis;
 mod contour;
 mod labels;
 mod layout;
+pub mod live;
 mod locks;
 mod map;
 mod overlay;

@@ -11,6 +11,7 @@ use std::collections::HashMap;
 
 const PAGE: Page = Page {
     kind: "locks",
+    connect: "",
     body: include_str!("locks/locks.html"),
     style: concat!(include_str!("locks/locks.css"), include_str!("locks/layers.css")),
     script: concat!(include_str!("locks/locks.js"), include_str!("locks/layers.js"), include_str!("locks/print.js")),

@@ -15,6 +15,7 @@ use std::fmt::Write as _;
 
 const PAGE: Page = Page {
     kind: "collision regions",
+    connect: "",
     body: include_str!("page/page.html"),
     style: include_str!("page/page.css"),
     script: include_str!("page/page.js"),

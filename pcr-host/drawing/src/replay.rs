@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 const PAGE: Page = Page {
     kind: "replay",
+    connect: "",
     body: include_str!("replay/replay.html"),
     style: include_str!("replay/replay.css"),
     script: include_str!("replay/replay.js"),

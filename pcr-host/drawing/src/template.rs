@@ -11,6 +11,8 @@ const STYLE: &str = include_str!("template.css");
 pub(crate) struct Page {
     /// What the page shows, after the title of the window.
     pub(crate) kind: &'static str,
+    /// What it may ask its server for, as a continuation of its Content-Security-Policy; nothing for a page that is a file.
+    pub(crate) connect: &'static str,
     /// Its elements below the heading and `#summary`, which the script fills.
     pub(crate) body: &'static str,
     /// CSS that other kinds do not need.
@@ -28,6 +30,7 @@ impl Page {
         replaced(FRAME, &|key| match key {
             "title" => Some(title.as_str()),
             "kind" => Some(self.kind),
+            "connect" => Some(self.connect),
             "common" => Some(STYLE),
             "style" => Some(self.style),
             "body" => Some(self.body),

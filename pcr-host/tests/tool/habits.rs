@@ -3,7 +3,7 @@
 use crate::fixture::{PAPER, crossing, directory, file, run};
 use serde_json::Value;
 
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     "regions",
     "certify",
     "check",
@@ -14,6 +14,7 @@ const COMMANDS: [&str; 15] = [
     "traffic",
     "nodes",
     "import",
+    "serve",
     "compare",
     "evaluate",
     "demo",
@@ -70,6 +71,13 @@ fn options_that_do_nothing_are_refused() {
     }
     let run = run(&["check", PAPER, "--json", "--format", "csv"]);
     assert!(run.status == 2 && run.err.starts_with("error: "), "{}", run.err);
+}
+
+#[cfg(not(feature = "serve"))]
+#[test]
+fn what_is_not_built_in_says_how_to_get_it() {
+    let message = run(&["serve", "--journal", "nowhere"]).failed(2);
+    assert!(message.contains("cargo install --path pcr-host --features serve"), "{message}");
 }
 
 #[test]

@@ -108,6 +108,8 @@ fn every_output_fits_its_schema() {
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
+    // Lines of `pcr serve`: pcr-host/serve/tests/lines.rs.
+    there.retain(|name| name != "pcr-serve.schema.json");
     there.sort();
     formats.sort();
     formats.dedup();

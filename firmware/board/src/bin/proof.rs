@@ -12,7 +12,7 @@ use core::ops::{Add, Neg, Sub};
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Contacts, Crossing, Curve, Direction, Drive, Ecm, Encounter, Full,
+    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Contacts, Crossing, Curve, Decision, Direction, Drive, Ecm, Encounter, Full,
     Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders, Pass, Path, PathRef,
     Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef,
     Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector, crossings,
@@ -327,6 +327,8 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
         any((place, pass));
         regions(&region);
     });
+    any(Orders::wait(&orders, fleet, agent, progress).is_ok());
+    any(Orders::decisions(&orders).map(|decision: Decision<S>| decision.since).reduce(S::max));
     any(Orders::ecm(&orders).len());
     any(Orders::passed(&mut orders, progress));
     any(Orders::remove(&mut orders, fleet, agent).is_ok());

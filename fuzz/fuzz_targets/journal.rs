@@ -1,0 +1,36 @@
+//! Any bytes as a journal: refused with a message, or entries that are a supervisor or no.
+#![no_main]
+
+use pcr_serve::entry::{Entry, Nowhere};
+use pcr_serve::journal::{frame, read};
+use pcr_serve::supervisor::{Settings, Supervisor};
+
+fn restored(entries: Vec<Entry>) {
+    match Supervisor::restored(Settings::default(), entries, Box::new(Nowhere)) {
+        Ok(mut supervisor) => {
+            supervisor.settle(0.0).expect("a journal that is nowhere");
+        }
+        Err(damaged) => assert!(!damaged.to_string().is_empty()),
+    }
+}
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let journal = [b"pcr-journal\0\x01\0\0\0", bytes].concat();
+    for bytes in [bytes, &journal] {
+        match read(bytes) {
+            Ok((entries, end)) => {
+                assert!(end <= bytes.len());
+                restored(entries);
+            }
+            Err(why) => assert!(!why.is_empty()),
+        }
+    }
+    // Past the checksums.
+    if let Ok(entries) = serde_json::from_slice::<Vec<Entry>>(bytes) {
+        if let Ok(frame) = frame(&entries) {
+            let whole = [&journal[..16], &frame].concat();
+            assert_eq!(read(&whole).map(|(_, end)| end), Ok(whole.len()));
+        }
+        restored(entries);
+    }
+});

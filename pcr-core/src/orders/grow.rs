@@ -1,0 +1,45 @@
+//! Orders of a host, whose storage grows with what is found.
+
+extern crate std;
+
+use crate::ecm::Region;
+use crate::error::Full;
+use crate::orders::order::Order;
+use crate::orders::table::Orders;
+use crate::pieces::Piece;
+use crate::scalar::Scalar;
+use std::vec::Vec;
+
+impl<S: Scalar> Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>> {
+    /// Twice the room for what was full, as [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. After it, try again what
+    /// failed (feature `std`).
+    ///
+    /// # Errors
+    /// What no storage helps, as it came, and what there is no more memory for.
+    ///
+    /// ```
+    /// use pcr_core::{Motion, Orders, Path, Point, Pose, Profile, Radians, Unchanged};
+    /// let stands = Path::<f64, 1>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
+    /// let profile = Profile::<f64, 1>::standing();
+    /// let fleet = [Motion::new(stands.as_path(), profile.as_profile(), 0.25, 0.0)?; 2];
+    /// let mut orders = Orders::new(vec![], vec![], vec![]);
+    /// orders.insert(&fleet[..1], 0)?;
+    /// while let Err(unchanged) = orders.insert(&fleet, 1) {
+    ///     match unchanged {
+    ///         Unchanged::Full(full) => orders.grow(full)?,
+    ///         Unchanged::Mismatch(mismatch) => return Err(mismatch.into()),
+    ///     }
+    /// }
+    /// assert_eq!(orders.decisions().count(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn grow(&mut self, full: Full) -> Result<(), Full> {
+        if full != Full::Orders {
+            return self.ecm.grow(full);
+        }
+        let room = self.orders.len().saturating_add(1);
+        self.orders.try_reserve_exact(room).map_err(|_| full)?;
+        self.orders.resize(self.orders.len().saturating_add(room), Order::EMPTY);
+        Ok(())
+    }
+}

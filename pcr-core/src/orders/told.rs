@@ -1,0 +1,66 @@
+//! What others have to know of orders: for whom an agent waits, and what a program keeps to make the same orders again.
+
+use crate::ecm::Region;
+use crate::error::Mismatch;
+use crate::motion::Motion;
+use crate::orders::hold::Hold;
+use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::table::Orders;
+use crate::pieces::Piece;
+use crate::scalar::Scalar;
+
+/// An order as it was decided: [`Orders::decide_at`] makes it again in a table of the same fleet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Decision<S> {
+    /// The place of the region in the table.
+    pub place: usize,
+    /// Its agents, lower index first.
+    pub agents: [usize; 2],
+    /// How the agent of the lower index passes it.
+    pub pass: Pass,
+    /// From which length of the second on it counts \[m\].
+    pub since: S,
+}
+
+impl<S, R, P, O> Orders<S, R, P, O>
+where
+    S: Scalar,
+    R: AsRef<[Region]>,
+    P: AsRef<[Piece<S>]>,
+    O: AsRef<[Order<S>]>,
+{
+    /// The hold of an agent as [`Orders::hold`] tells it, and for whom it waits there; nobody where it is free.
+    ///
+    /// # Errors
+    /// As [`Orders::row`].
+    ///
+    /// ```
+    /// use pcr_core::{Hold, Motion, Order, Orders, Path, Piece, Point, Pose, Profile, Progress, Radians, Region};
+    /// let pose = |x, y, heading| Pose { position: Point::new(x, y), heading: Radians(heading) };
+    /// let paths = [Path::<f64, 1>::starting_at(pose(-2.0, 0.0, 0.0))?.line(4.0)?, Path::starting_at(pose(0.0, 0.0, 0.0))?];
+    /// let profiles = [Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?, Profile::standing()];
+    /// let motion = |k: usize| Motion::new(paths[k].as_path(), profiles[k].as_profile(), 0.25, 0.0);
+    /// let fleet = [motion(0)?, motion(1)?];
+    /// // Nothing is decided: it stays before the one that stands.
+    /// let orders = Orders::build([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 4], &fleet)?;
+    /// let (hold, by) = orders.wait(&fleet, 0, &[Progress::at_rest(0.0); 2])?;
+    /// assert!(matches!(hold, Hold::At(hold) if (hold - 1.5).abs() < 1e-9) && by == Some(1));
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn wait(
+        &self,
+        fleet: &[Motion<'_, S>],
+        agent: usize,
+        progress: &[Progress<S>],
+    ) -> Result<(Hold<S>, Option<usize>), Mismatch> {
+        let (hold, place) = self.nearest(fleet, agent, progress, Hold::Free)?;
+        let agents = place.and_then(|place| self.ecm.agents_at(place));
+        Ok((hold, agents.map(|agents| if agents[0] == agent { agents[1] } else { agents[0] })))
+    }
+
+    /// All orders, by pair, those of one pair in the order of the table. O(regions).
+    pub fn decisions(&self) -> impl Iterator<Item = Decision<S>> {
+        self.all().map(|(place, agents, order)| Decision { place, agents, pass: order.pass, since: order.since })
+    }
+}

@@ -1,0 +1,170 @@
+"use strict";
+const $ = (id) => document.getElementById(id);
+let layout = { name: "", lanes: [] }, state = null, paused = false, since = null;
+
+// The colours of the page, light or dark.
+const theme = {}, dark = matchMedia("(prefers-color-scheme: dark)");
+function readTheme() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of ["paper", "ink", "grid", "hit", "accent", "dim", "edge"]) theme[name] = style.getPropertyValue("--" + name).trim();
+}
+const hue = (k) => `hsl(${(k * 137.5) % 360} 70% ${dark.matches ? 65 : 38}%)`;
+
+/** Points [x, y, length] along shapes. */
+function points({ start, shapes }) {
+  let { x, y, heading } = start, length = 0;
+  const all = [[x, y, 0]];
+  for (const shape of shapes) {
+    if (shape.kind === "turn") { heading += shape.sweep; continue; }
+    const long = shape.kind === "line" ? shape.length : shape.radius * Math.abs(shape.sweep);
+    const steps = shape.kind === "line" ? 1 : Math.max(2, Math.ceil(Math.abs(shape.sweep) / 0.1));
+    const bend = shape.kind === "line" ? 0 : shape.sweep / steps;
+    for (let k = 0; k < steps; k++) {
+      const part = long / steps, chord = bend ? 2 * shape.radius * Math.sin(Math.abs(bend) / 2) : part;
+      x += chord * Math.cos(heading + bend / 2); y += chord * Math.sin(heading + bend / 2);
+      heading += bend; length += part;
+      all.push([x, y, length]);
+    }
+  }
+  return all;
+}
+/** The part of points between two lengths. */
+function part(all, from, to) {
+  const at = (length) => {
+    const k = all.findIndex((point) => point[2] >= length);
+    if (k <= 0) return k === 0 ? all[0] : all[all.length - 1];
+    const [a, b] = [all[k - 1], all[k]], t = (length - a[2]) / (b[2] - a[2] || 1);
+    return [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), length];
+  };
+  return [at(from), ...all.filter((point) => point[2] > from && point[2] < to), at(to)];
+}
+
+function surface() {
+  const canvas = $("world"), ratio = window.devicePixelRatio || 1;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  return [context, width, height];
+}
+
+function draw() {
+  const [c, width, height] = surface(), robots = state ? state.robots : [];
+  const lanes = layout.lanes.map(({ start, path }) => points({ start, shapes: path })), paths = robots.map(points);
+  const box = [Infinity, -Infinity, Infinity, -Infinity];
+  for (const [x, y] of [...lanes, ...paths].flat()) {
+    box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x); box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
+  }
+  if (!(box[0] <= box[1])) return;
+  const pad = 0.05 * Math.max(box[1] - box[0], box[3] - box[2]) + 1;
+  const scale = Math.min(width / (box[1] - box[0] + 2 * pad), height / (box[3] - box[2] + 2 * pad));
+  const x = (value) => width / 2 + (value - (box[0] + box[1]) / 2) * scale, y = (value) => height / 2 - (value - (box[2] + box[3]) / 2) * scale;
+  const line = (all) => { c.beginPath(); all.forEach((point, k) => (k ? c.lineTo(x(point[0]), y(point[1])) : c.moveTo(x(point[0]), y(point[1])))); c.stroke(); };
+  c.lineCap = "round";
+  c.strokeStyle = theme.grid;
+  c.lineWidth = 3;
+  lanes.forEach(line);
+  const ego = $("ego").value, place = new Map();
+  robots.forEach((robot, k) => {
+    const colour = robot.alarm ? theme.hit : hue(k), all = paths[k];
+    c.strokeStyle = c.fillStyle = colour;
+    c.globalAlpha = ego && ego !== robot.robot ? 0.35 : 1;
+    c.lineWidth = 1;
+    line(part(all, robot.at[0], robot.length));
+    c.setLineDash([4, 4]);
+    c.lineWidth = 2;
+    line(part(all, robot.hold, Math.max(robot.hold, robot.wanted)));
+    c.setLineDash([]);
+    c.lineWidth = 4;
+    line(part(all, robot.at[0], robot.hold));
+    const [px, py] = robot.alarm && "x" in robot.alarm ? [robot.alarm.x, robot.alarm.y] : part(all, robot.at[0], robot.at[1]).at(-1);
+    place.set(robot.robot, [px, py]);
+    c.beginPath(); c.arc(x(px), y(py), Math.max(3, robot.radius * scale), 0, 7); c.globalAlpha *= 0.8; c.fill();
+    c.globalAlpha = 1;
+    c.fillStyle = theme.ink;
+    c.font = "12px system-ui";
+    c.fillText(robot.robot, x(px) + Math.max(3, robot.radius * scale) + 2, y(py) - 2);
+  });
+  c.strokeStyle = theme.dim;
+  c.lineWidth = 1;
+  for (const robot of robots) {
+    const [from, to] = [place.get(robot.robot), place.get(robot.stopped_for ?? robot.waits_for)];
+    if (!from || !to) continue;
+    const [ax, ay, bx, by] = [x(from[0]), y(from[1]), x(to[0]), y(to[1])], angle = Math.atan2(by - ay, bx - ax);
+    c.beginPath(); c.moveTo(ax, ay); c.lineTo(bx, by);
+    for (const side of [2.7, -2.7]) { c.moveTo(bx, by); c.lineTo(bx + 9 * Math.cos(angle + side), by + 9 * Math.sin(angle + side)); }
+    c.stroke();
+  }
+}
+
+function says(robot) {
+  const all = [];
+  if (robot.alarm) all.push(robot.alarm.why === "off" ? "off its path" : "beyond its hold");
+  if (robot.stopped_for) all.push(`stopped for ${robot.stopped_for}`);
+  if (robot.silent) all.push("silent");
+  if (robot.waits_for) all.push(`waits for ${robot.waits_for}`);
+  if (robot.waiting) all.push(`${robot.waiting} waits`);
+  return all.join(", ") || (robot.at[0] >= robot.length - 0.2 ? "there" : "goes");
+}
+
+function cells(row, texts) {
+  while (row.cells.length < texts.length) row.insertCell();
+  texts.forEach((text, k) => { if (row.cells[k].textContent !== text) row.cells[k].textContent = text; });
+}
+
+function show() {
+  const body = $("robots").tBodies[0], ego = $("ego").value;
+  state.robots.forEach((robot, k) => {
+    const row = body.rows[k] ?? body.insertRow(), at = robot.at;
+    cells(row, [robot.robot, robot.mission ?? "", `${at[0].toFixed(1)} – ${at[1].toFixed(1)}`, robot.hold.toFixed(1), robot.length.toFixed(1), says(robot)]);
+    row.className = (robot.alarm || robot.stopped_for || robot.silent ? "bad " : "") + (robot.robot === ego ? "chosen" : "");
+  });
+  while (body.rows.length > state.robots.length) body.deleteRow(-1);
+  const names = state.robots.map((robot) => robot.robot), options = [...$("ego").options].slice(1).map((option) => option.value);
+  if (names.join("\n") !== options.join("\n")) {
+    $("ego").replaceChildren($("ego").options[0], ...names.map((name) => new Option(name, name)));
+    $("ego").value = names.includes(ego) ? ego : "";
+  }
+  const events = $("events"), texts = state.events.slice(-30).reverse().map(({ time, text }) => `${time.toFixed(1)} s: ${text}`);
+  if (events.firstChild?.textContent !== texts[0]) events.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+  since ??= { now: state.now, admitted: state.counts.admitted };
+  const hours = (state.now - since.now) / 3600, rate = hours > 0.002 ? `, ${((state.counts.admitted - since.admitted) / hours).toFixed(0)} missions an hour` : "";
+  $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${names.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} alarms`;
+  $("clock").textContent = `${state.now.toFixed(1)} s`;
+  draw();
+}
+
+async function get(path) {
+  const answer = await fetch(path, { cache: "no-store" });
+  if (!answer.ok) throw new Error(await answer.text());
+  return answer.json();
+}
+async function poll() {
+  try {
+    if (!paused) { state = await get("/state"); show(); }
+  } catch (error) {
+    $("summary").textContent = "The supervisor does not answer.";
+  }
+  setTimeout(poll, 500);
+}
+async function ground() {
+  try { layout = await get("/layout"); } catch { /* poll says so */ }
+  setTimeout(ground, 10000);
+}
+function picture() {
+  const ego = $("ego").value;
+  $("picture").hidden = !ego;
+  if (ego && !paused) {
+    $("map").src = `/map?robot=${encodeURIComponent(ego)}&${Date.now()}`;
+    $("map").alt = `Collision map of ${ego}`;
+  }
+}
+$("pause").onclick = () => { paused = !paused; $("pause").textContent = paused ? "Go on" : "Pause"; };
+$("ego").onchange = () => { picture(); if (state) show(); };
+dark.onchange = () => { readTheme(); draw(); };
+window.onresize = draw;
+setInterval(picture, 2000);
+readTheme();
+ground();
+poll();

@@ -1,0 +1,45 @@
+//! What the thread that owns the supervisor shows to others: how fast it is, and what has happened lately.
+
+use crate::event::Event;
+use crate::metrics::Latency;
+use serde_json::{Value, json};
+use std::collections::VecDeque;
+
+/// Events that are remembered.
+const EVENTS: usize = 100;
+
+/// What is shown.
+#[derive(Clone, Debug, Default)]
+pub struct Board {
+    /// How long requests take.
+    pub latency: Latency,
+    events: VecDeque<(f64, String)>,
+}
+
+impl Board {
+    /// Remembers what was told, but holds.
+    pub fn note(&mut self, now: f64, event: &Event) {
+        let robot = event.robot();
+        let text = match event {
+            Event::Hold { .. } => return,
+            Event::Admitted { mission, length, .. } => format!("{robot} has {mission}, {length:.1} m"),
+            Event::Waiting { mission, why, .. } => format!("{mission} of {robot} waits: {why}"),
+            Event::Dropped { mission, why, .. } => format!("{mission} of {robot} is given up: {why}"),
+            Event::Silent { since, .. } => format!("{robot} is not heard for {since:.0} s"),
+            Event::Heard { .. } => format!("{robot} is heard again"),
+            Event::Alarm { .. } => format!("{robot} is not where it may be"),
+            Event::Clear { .. } => format!("{robot} is where it may be again"),
+            Event::Stop { by, .. } => format!("{robot} has to stop for {by}"),
+            Event::Go { .. } => format!("{robot} may go on"),
+        };
+        if self.events.len() == EVENTS {
+            self.events.pop_front();
+        }
+        self.events.push_back((now, text));
+    }
+
+    /// What was told lately, oldest first.
+    pub fn events(&self) -> Vec<Value> {
+        self.events.iter().map(|(time, text)| json!({ "time": time, "text": text })).collect()
+    }
+}

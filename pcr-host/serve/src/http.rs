@@ -1,0 +1,168 @@
+//! A small server of HTTP/1.1 for the live page and the metrics: it answers GET, nothing can be changed through it.
+
+use crate::metrics;
+use crate::query::View;
+use crate::server::Handle;
+use serde_json::json;
+use std::io::{self, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+/// A request is not longer \[bytes\].
+const LONGEST: usize = 8192;
+
+/// Connections at a time.
+const MOST: usize = 32;
+
+/// A picture of the regions of a robot, from its fleet: drawn by whoever can.
+pub type Draw = fn(&[Drawn], usize) -> Result<String, String>;
+
+/// A robot as it is drawn.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// What it is called.
+    pub name: String,
+    /// What it can do.
+    pub abilities: crate::robot::Abilities,
+    /// What is left of its path.
+    pub course: crate::course::Course,
+}
+
+/// What is served.
+#[derive(Clone, Debug)]
+pub struct Site {
+    /// The page.
+    pub page: String,
+    /// The pictures.
+    pub draw: Option<Draw>,
+    /// Names under which it may be asked for: a page of somebody else whose name leads here gets nothing.
+    pub hosts: Vec<String>,
+}
+
+/// Serves for ever.
+pub fn listen(handle: &Handle, listener: &TcpListener, site: Site) {
+    let (site, open) = (Arc::new(site), Arc::new(AtomicUsize::new(0)));
+    for stream in listener.incoming().flatten() {
+        if open.load(Ordering::Relaxed) >= MOST {
+            continue;
+        }
+        let (handle, site, open) = (handle.clone(), site.clone(), open.clone());
+        open.fetch_add(1, Ordering::Relaxed);
+        thread::spawn(move || {
+            // Whoever has gone is not told.
+            let _ = converse(&handle, &site, stream);
+            open.fetch_sub(1, Ordering::Relaxed);
+        });
+    }
+}
+
+fn converse(handle: &Handle, site: &Site, mut stream: TcpStream) -> io::Result<()> {
+    let patience = Some(Duration::from_secs(5));
+    stream.set_read_timeout(patience)?;
+    stream.set_write_timeout(patience)?;
+    let mut bytes = Vec::new();
+    let mut part = [0; 1024];
+    while !bytes.windows(4).any(|end| end == b"\r\n\r\n") {
+        let count = stream.read(&mut part)?;
+        bytes.extend(&part[..count]);
+        if count == 0 || bytes.len() > LONGEST {
+            return respond(&mut stream, "400 Bad Request", "text/plain", "a request ends with an empty line\n");
+        }
+    }
+    let (status, kind, body) = answer(handle, site, &bytes);
+    respond(&mut stream, status, kind, &body)
+}
+
+fn respond(stream: &mut TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+        body.len()
+    );
+    stream.write_all(head.as_bytes())?;
+    stream.write_all(body.as_bytes())
+}
+
+/// Status, kind and body of the answer to a request.
+pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'static str, String) {
+    let text = String::from_utf8_lossy(request);
+    let mut lines = text.split("\r\n");
+    let mut words = lines.next().unwrap_or_default().split(' ');
+    let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
+    let host = lines.find_map(|line| line.split_once(':').filter(|(key, _)| key.eq_ignore_ascii_case("host")));
+    if !host.is_some_and(|(_, host)| site.hosts.iter().any(|known| known == host.trim())) {
+        return plain("403 Forbidden", "not under this name");
+    }
+    if method != "GET" {
+        return plain("405 Method Not Allowed", "only GET");
+    }
+    let (path, query) = target.split_once('?').unwrap_or((target, ""));
+    let ended = || plain("503 Service Unavailable", "the supervisor has ended");
+    match path {
+        "/" => ("200 OK", "text/html", site.page.clone()),
+        "/metrics" => match handle.ask(|supervisor, board, _| metrics::text(supervisor, &board.latency)) {
+            Some(text) => ("200 OK", "text/plain; version=0.0.4", text),
+            None => ended(),
+        },
+        "/state" => match handle.ask(|supervisor, board, now| {
+            let robots = supervisor.robots().iter();
+            let views: Vec<View<'_>> = robots.map(|robot| View::of(supervisor, robot, now)).collect();
+            json!({ "now": now, "counts": supervisor.counts(), "robots": views, "events": board.events() }).to_string()
+        }) {
+            Some(text) => ("200 OK", "application/json", text),
+            None => ended(),
+        },
+        "/layout" => match handle.ask(|supervisor, _, _| json!(supervisor.layout()).to_string()) {
+            Some(text) => ("200 OK", "application/json", text),
+            None => ended(),
+        },
+        "/map" => map(handle, site, query),
+        _ => plain("404 Not Found", "there is /, /state, /layout, /map?robot=NAME and /metrics"),
+    }
+}
+
+fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str, String) {
+    let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
+    let Some(draw) = site.draw else { return plain("404 Not Found", "there are no pictures") };
+    let Some(name) = query.strip_prefix("robot=").map(decoded) else { return plain("400 Bad Request", "robot=NAME") };
+    let fleet = handle.ask(move |supervisor, _, _| {
+        let place = supervisor.robots().iter().position(|robot| robot.name == name)?;
+        let drawn = supervisor.robots().iter().map(|robot| {
+            let course = robot.course.part(robot.at, robot.course.length()).ok()?;
+            Some(Drawn { name: robot.name.clone(), abilities: robot.abilities, course })
+        });
+        Some((drawn.collect::<Option<Vec<_>>>()?, place))
+    });
+    let Some(Some((fleet, place))) = fleet else { return plain("404 Not Found", "there is no such robot") };
+    match draw(&fleet, place) {
+        Ok(picture) => ("200 OK", "image/svg+xml", picture),
+        Err(why) => plain("500 Internal Server Error", &why),
+    }
+}
+
+/// What `%41` and `+` stand for.
+fn decoded(text: &str) -> String {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after
+            .get(..2)
+            .and_then(|code| std::str::from_utf8(code).ok())
+            .and_then(|code| u8::from_str_radix(code, 16).ok());
+        match (first, code) {
+            (b'%', Some(byte)) => {
+                bytes.push(byte);
+                rest = &after[2..];
+            }
+            _ => {
+                bytes.push(if *first == b'+' { b' ' } else { *first });
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

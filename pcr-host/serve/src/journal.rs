@@ -1,0 +1,209 @@
+//! A file of entries that is only ever appended to: frames of a length, a checksum and JSON, each on the disc before anything in it is
+//! told to anybody.
+//!
+//! A frame that was cut off by the end of the process, or of the power, is the last one, and nobody has been told what is in it: it
+//! is left out. Anything else that is wrong is damage, and no journal to go on with.
+
+use crate::entry::{Entry, Keep};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// What a journal begins with: what it is, and the version of its entries.
+const HEADER: &[u8; 16] = b"pcr-journal\0\x01\0\0\0";
+
+/// Length, checksum of it and of the entries.
+const FRAME: usize = 12;
+
+/// Frames are no longer than this \[bytes\].
+const LONGEST: usize = 1 << 28;
+
+/// A journal that is longer than this, and than so many times what it was at the start, is begun anew \[bytes\].
+const LONG: (u64, u64) = (16 << 20, 8);
+
+/// Where frames are written to: a file, or what a test makes of one.
+pub trait Medium: Send {
+    /// Adds bytes at the end, and returns when they are there for good.
+    ///
+    /// # Errors
+    /// Any part of them may be there then.
+    fn add(&mut self, bytes: &[u8]) -> io::Result<()>;
+}
+
+impl Medium for File {
+    fn add(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write_all(bytes)?;
+        self.sync_data()
+    }
+}
+
+/// What was found in a journal.
+#[derive(Debug)]
+pub struct Found {
+    /// The entries, oldest first.
+    pub entries: Vec<Entry>,
+    /// Bytes of a last frame that was cut off, and is left out.
+    pub torn: u64,
+}
+
+/// An open journal: nobody else can open it.
+#[derive(Debug)]
+pub struct Journal {
+    folder: PathBuf,
+    file: File,
+    /// Locked as long as it is open.
+    _lock: File,
+    /// Bytes that are in it, and that were after the last start.
+    len: u64,
+    first: u64,
+    /// A write failed: what is on the disc is not known.
+    failed: bool,
+}
+
+impl Journal {
+    /// Opens the journal in a folder, or begins one there.
+    ///
+    /// # Errors
+    /// [`ErrorKind::WouldBlock`] where another process has it open, [`ErrorKind::InvalidData`] where it is damaged or that of another
+    /// version, and what else is wrong with files.
+    pub fn open(folder: &Path) -> io::Result<(Self, Found)> {
+        fs::create_dir_all(folder)?;
+        let lock = OpenOptions::new().write(true).create(true).truncate(false).open(folder.join("lock"))?;
+        lock.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another supervisor has it open"),
+            TryLockError::Error(error) => error,
+        })?;
+        let path = folder.join("journal");
+        if !path.try_exists()? {
+            written(folder, &[])?;
+        }
+        let mut file = OpenOptions::new().read(true).write(true).open(&path)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        let (entries, end) = read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
+        let torn = (bytes.len() - end) as u64;
+        if torn > 0 {
+            file.set_len(end as u64)?;
+            file.sync_all()?;
+        }
+        file.seek(SeekFrom::Start(end as u64))?;
+        let len = end as u64;
+        let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, failed: false };
+        Ok((own, Found { entries, torn }))
+    }
+}
+
+impl Keep for Journal {
+    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+        if self.failed {
+            return Err(io::Error::other("an earlier write has failed"));
+        }
+        let frame = frame(entries)?;
+        self.failed = true;
+        self.file.add(&frame)?;
+        self.failed = false;
+        self.len += frame.len() as u64;
+        Ok(())
+    }
+
+    fn is_long(&self) -> bool {
+        self.len > LONG.0.max(LONG.1 * self.first)
+    }
+
+    fn restart(&mut self, entries: &[Entry]) -> io::Result<()> {
+        if self.failed {
+            return Err(io::Error::other("an earlier write has failed"));
+        }
+        self.failed = true;
+        self.len = written(&self.folder, entries)?;
+        self.first = self.len;
+        self.file = OpenOptions::new().append(true).open(self.folder.join("journal"))?;
+        self.failed = false;
+        Ok(())
+    }
+}
+
+/// Puts a journal with these entries in the place of the one that is there, all or nothing; returns how long it is.
+fn written(folder: &Path, entries: &[Entry]) -> io::Result<u64> {
+    let (new, path) = (folder.join("journal.new"), folder.join("journal"));
+    let mut bytes = HEADER.to_vec();
+    if !entries.is_empty() {
+        bytes.extend(frame(entries)?);
+    }
+    let mut file = File::create(&new)?;
+    file.write_all(&bytes)?;
+    file.sync_all()?;
+    fs::rename(&new, &path)?;
+    // The name is on the disc when the folder is.
+    File::open(folder)?.sync_all()?;
+    Ok(bytes.len() as u64)
+}
+
+/// The bytes of a batch of entries.
+///
+/// # Errors
+/// [`ErrorKind::InvalidInput`] for a batch that is too long.
+pub fn frame(entries: &[Entry]) -> io::Result<Vec<u8>> {
+    let text = serde_json::to_vec(entries)?;
+    let length = u32::try_from(text.len()).ok().filter(|length| *length as usize <= LONGEST);
+    let length =
+        length.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "too many entries at once"))?.to_le_bytes();
+    let mut frame = Vec::with_capacity(FRAME + text.len());
+    frame.extend(length);
+    frame.extend(crc32fast::hash(&length).to_le_bytes());
+    frame.extend(crc32fast::hash(&text).to_le_bytes());
+    frame.extend(text);
+    Ok(frame)
+}
+
+/// The entries in the bytes of a journal, and where the last whole frame ends.
+///
+/// # Errors
+/// What is wrong, in words.
+pub fn read(bytes: &[u8]) -> Result<(Vec<Entry>, usize), String> {
+    let (header, version) = (&HEADER[..12], &HEADER[12..]);
+    match bytes.get(..HEADER.len()) {
+        Some(begin) if begin.starts_with(header) && begin.ends_with(version) => {}
+        Some(begin) if begin.starts_with(header) => return Err("it is that of another version".into()),
+        _ => return Err("it is no journal".into()),
+    }
+    let (mut entries, mut at) = (Vec::new(), HEADER.len());
+    while let Some(rest) = bytes.get(at..).filter(|rest| !rest.is_empty()) {
+        match next(rest) {
+            Frame::Whole(batch, length) => {
+                entries.extend(batch);
+                at += length;
+            }
+            Frame::Torn => break,
+            Frame::Damaged(why) => return Err(format!("at byte {at}: {why}")),
+        }
+    }
+    Ok((entries, at))
+}
+
+enum Frame {
+    Whole(Vec<Entry>, usize),
+    /// The last one, cut off.
+    Torn,
+    Damaged(String),
+}
+
+fn next(bytes: &[u8]) -> Frame {
+    let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
+    let (Some(length), Some(check), Some(sum)) = (word(0), word(4), word(8)) else { return Frame::Torn };
+    if crc32fast::hash(&length.to_le_bytes()) != check {
+        // A file may have become longer before anything was written.
+        let empty = bytes.iter().all(|byte| *byte == 0);
+        return if empty { Frame::Torn } else { Frame::Damaged("a length that is none".into()) };
+    }
+    let end = FRAME + length as usize;
+    let Some(text) = bytes.get(FRAME..end) else { return Frame::Torn };
+    if crc32fast::hash(text) != sum {
+        let last = bytes.len() == end;
+        return if last { Frame::Torn } else { Frame::Damaged("entries that are not as they were written".into()) };
+    }
+    match serde_json::from_slice(text) {
+        Ok(batch) => Frame::Whole(batch, end),
+        Err(error) => Frame::Damaged(error.to_string()),
+    }
+}

@@ -1,0 +1,166 @@
+//! The line protocol: a JSON object a line, one answer a request with its `id`, and events for whoever watches. The schema is
+//! `docs/schema/pcr-serve.schema.json`.
+
+use crate::course::Start;
+use crate::entry::Layout;
+use crate::event::Event;
+use crate::fault::Fault;
+use crate::query::{self, Question};
+use crate::robot::Abilities;
+use crate::supervisor::{Proposal, Report, Supervisor};
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+/// The version of the protocol: requests may name it, answers and events do.
+pub const VERSION: u64 = 1;
+
+/// Longer lines are refused \[bytes\].
+pub const LONGEST: usize = 1 << 20;
+
+/// What is asked for. To ask twice for the same changes nothing.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "verb", rename_all = "snake_case")]
+enum Verb {
+    /// What is drawn.
+    Layout(Layout),
+    /// A robot that stands.
+    Add(Added),
+    /// Another path from a length of the present one on.
+    Replace(Proposal),
+    /// A path from the end of the present one on.
+    Mission(Proposal),
+    /// A robot is not there any more.
+    Remove(Named),
+    /// Where a robot is.
+    Position(Report),
+    /// A robot is not on its path.
+    Off(Off),
+    /// What is so.
+    Query(Question),
+    /// Events are sent from now on, or no longer.
+    Watch(Watch),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Added {
+    robot: String,
+    start: Start,
+    abilities: Abilities,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Named {
+    robot: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Off {
+    robot: String,
+    x: f64,
+    y: f64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Watch {
+    #[serde(default = "yes")]
+    events: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// What became of a line.
+#[derive(Clone, Debug)]
+pub struct Reply {
+    /// The answer; it may be sent when the supervisor has settled.
+    pub answer: Value,
+    /// Whether whoever sent the line wants events from now on; none: as before.
+    pub watches: Option<bool>,
+}
+
+/// Does what a line asks for.
+pub fn handle(supervisor: &mut Supervisor, line: &[u8], now: f64) -> Reply {
+    let (id, verb) = read(line);
+    let mut watches = None;
+    let done = verb.and_then(|verb| match verb {
+        Verb::Layout(layout) => supervisor.draw(layout).map(|()| json!({})),
+        Verb::Add(Added { robot, start, abilities }) => {
+            supervisor.add(&robot, abilities, start)?;
+            let robot = supervisor.robot(&robot)?;
+            Ok(json!({ "path": robot.path }))
+        }
+        Verb::Replace(proposal) if proposal.after.is_none() => Err(Fault::Malformed {
+            why: "replace needs `after`: the length of the path from which on it is another one".into(),
+        }),
+        Verb::Replace(proposal) | Verb::Mission(proposal) => {
+            supervisor.mission(&proposal, now).map(|verdict| json!(verdict))
+        }
+        Verb::Remove(Named { robot }) => supervisor.remove(&robot).map(|there| json!({ "removed": there })),
+        Verb::Position(report) => supervisor.position(&report, now).map(|()| json!({})),
+        Verb::Off(Off { robot, x, y }) => supervisor.off(&robot, [x, y], now).map(|()| json!({})),
+        Verb::Query(question) => query::answer(supervisor, &question, now),
+        Verb::Watch(Watch { events }) => {
+            watches = Some(events);
+            Ok(json!({}))
+        }
+    });
+    Reply { answer: answer(id, done), watches }
+}
+
+/// The answer to a line that is longer than [`LONGEST`].
+pub fn too_long() -> Value {
+    answer(Value::Null, Err(Fault::Malformed { why: format!("a line is {LONGEST} bytes long at most") }))
+}
+
+/// An answer that the journal could not keep: nothing of it is so.
+pub fn withdrawn(answer: &Value, fault: &Fault) -> Value {
+    self::answer(answer.get("id").cloned().unwrap_or(Value::Null), Err(fault.clone()))
+}
+
+/// An event as a line.
+pub fn news(event: &Event) -> Value {
+    let mut news = json!(event);
+    if let Some(object) = news.as_object_mut() {
+        object.insert("pcr".into(), VERSION.into());
+    }
+    news
+}
+
+fn answer(id: Value, done: Result<Value, Fault>) -> Value {
+    match done {
+        Ok(value) => json!({ "pcr": VERSION, "id": id, "ok": value }),
+        Err(fault) => {
+            let mut error = json!(fault);
+            if let Some(object) = error.as_object_mut() {
+                object.remove("why");
+                object.insert("message".into(), fault.to_string().into());
+            }
+            json!({ "pcr": VERSION, "id": id, "error": error })
+        }
+    }
+}
+
+/// The `id` of a line, if it can be told, and what it asks for.
+fn read(line: &[u8]) -> (Value, Result<Verb, Fault>) {
+    let malformed = |why: String| Fault::Malformed { why };
+    let object: Result<Map<String, Value>, _> = serde_json::from_slice(line);
+    let mut object = match object {
+        Ok(object) => object,
+        Err(error) => return (Value::Null, Err(malformed(format!("it is no JSON object: {error}")))),
+    };
+    let id = object.remove("id").unwrap_or(Value::Null);
+    if !(id.is_null() || id.is_string() || id.is_number()) {
+        return (Value::Null, Err(malformed("id: it has to be a text or a number".into())));
+    }
+    match object.remove("pcr") {
+        None => {}
+        Some(version) if version == VERSION => {}
+        Some(version) => return (id, Err(malformed(format!("pcr: the version is {VERSION}, not {version}")))),
+    }
+    (id, serde_json::from_value(Value::Object(object)).map_err(|error| malformed(error.to_string())))
+}

@@ -1,0 +1,82 @@
+//! What is measured, in the text format of Prometheus.
+
+use crate::supervisor::Supervisor;
+use std::fmt::Write;
+use std::time::Duration;
+
+/// Upper ends of the classes of a latency \[s\].
+const CLASSES: [f64; 10] = [0.000_1, 0.000_25, 0.000_5, 0.001, 0.002_5, 0.005, 0.01, 0.025, 0.1, 1.0];
+
+/// Times from when a request came until its answer and all that follows from it was sent.
+#[derive(Clone, Debug, Default)]
+pub struct Latency {
+    classes: [u64; CLASSES.len()],
+    count: u64,
+    sum: f64,
+}
+
+impl Latency {
+    /// One more.
+    pub fn add(&mut self, time: Duration) {
+        let seconds = time.as_secs_f64();
+        if let Some(class) = CLASSES.iter().position(|end| seconds <= *end) {
+            self.classes[class] += 1;
+        }
+        (self.count, self.sum) = (self.count + 1, self.sum + seconds);
+    }
+}
+
+/// The page `/metrics`.
+pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
+    let mut text = String::new();
+    let counts = supervisor.counts();
+    let robots = supervisor.robots();
+    let count = |which: fn(&crate::robot::Robot) -> bool| robots.iter().filter(|robot| which(robot)).count() as u64;
+    for (name, kind, help, value) in [
+        ("positions_total", "counter", "Messages with a position.", counts.positions),
+        (
+            "positions_outdated_total",
+            "counter",
+            "Messages about a path that the robot does not have any more.",
+            counts.outdated,
+        ),
+        ("missions_total", "counter", "Missions asked for.", counts.missions),
+        ("missions_admitted_total", "counter", "Missions admitted.", counts.admitted),
+        ("missions_refused_total", "counter", "Attempts to admit a mission that were refused.", counts.refused),
+        ("missions_dropped_total", "counter", "Missions given up.", counts.dropped),
+        ("holds_total", "counter", "Holds told.", counts.holds),
+        ("evaluations_total", "counter", "Holds computed.", counts.evaluations),
+        ("alarms_total", "counter", "Robots that were not where they may be.", counts.alarms),
+        ("journal_writes_total", "counter", "Writes of the journal.", counts.writes),
+        ("robots", "gauge", "Robots.", robots.len() as u64),
+        (
+            "robots_waiting",
+            "gauge",
+            "Robots whose mission is not admitted yet.",
+            count(|robot| robot.waiting.is_some()),
+        ),
+        ("robots_alarmed", "gauge", "Robots that are not where they may be.", count(|robot| robot.alarm.is_some())),
+        (
+            "robots_stopped",
+            "gauge",
+            "Robots that had to stop for one of these.",
+            count(|robot| robot.stopped.is_some()),
+        ),
+        ("robots_silent", "gauge", "Robots that are not heard.", count(|robot| robot.silent)),
+        ("regions", "gauge", "Collision regions of all paths.", supervisor.orders().ecm().len() as u64),
+    ] {
+        // Writing to a text does not fail.
+        let _ = writeln!(text, "# HELP pcr_{name} {help}\n# TYPE pcr_{name} {kind}\npcr_{name} {value}");
+    }
+    let name = "pcr_latency_seconds";
+    let help = "Time from a request to its answer and all that follows from it.";
+    let _ = writeln!(text, "# HELP {name} {help}\n# TYPE {name} histogram");
+    let mut sum = 0;
+    for (end, class) in CLASSES.iter().zip(latency.classes) {
+        sum += class;
+        let _ = writeln!(text, "{name}_bucket{{le=\"{end}\"}} {sum}");
+    }
+    let Latency { count, sum, .. } = latency;
+    let _ = writeln!(text, "{name}_bucket{{le=\"+Inf\"}} {count}\n{name}_sum {sum}\n{name}_count {count}");
+    text
+}

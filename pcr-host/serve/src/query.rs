@@ -1,0 +1,186 @@
+//! What can be asked about a fleet.
+
+use crate::course::{Course, Shape, Start};
+use crate::entry::Side;
+use crate::fault::Fault;
+use crate::robot::{Alarm, ROOM, Robot};
+use crate::supervisor::Supervisor;
+use pcr_core::{Encounter, Interval, Limits, Motion, Profile, safe_intervals};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// A question.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Question {
+    /// Everything that is known of all robots, or of one.
+    Robots {
+        /// Which.
+        #[serde(default)]
+        robot: Option<String>,
+    },
+    /// How far everybody may go.
+    Holds,
+    /// The regions of a robot with others, and who goes first.
+    Regions {
+        /// Which.
+        robot: String,
+    },
+    /// Whom a robot would touch if everybody set off now and waited for nobody: what the orders prevent.
+    Conflicts {
+        /// Which.
+        robot: String,
+    },
+    /// When a part of a robot's path is free, if the others set off now and waited for nobody.
+    Safe {
+        /// Which.
+        robot: String,
+        /// The part \[m\].
+        length: [f64; 2],
+        /// Until when \[s\] from now.
+        until: f64,
+    },
+    /// What has happened since the start.
+    Counts,
+}
+
+/// A robot as it is told.
+#[derive(Clone, Debug, Serialize)]
+pub struct View<'a> {
+    robot: &'a str,
+    path: u64,
+    origin: f64,
+    length: f64,
+    radius: f64,
+    at: [f64; 2],
+    hold: f64,
+    /// Where it would like to be allowed to.
+    wanted: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    waits_for: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mission: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    waiting: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alarm: Option<&'a Alarm>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stopped_for: Option<&'a str>,
+    silent: bool,
+    start: Start,
+    shapes: &'a [Shape],
+}
+
+impl<'a> View<'a> {
+    /// One robot of a fleet at a time \[s\].
+    pub fn of(supervisor: &'a Supervisor, robot: &'a Robot, now: f64) -> Self {
+        let extent = robot.extent(now);
+        Self {
+            robot: &robot.name,
+            path: robot.path,
+            origin: robot.origin,
+            length: robot.course.length(),
+            radius: robot.abilities.radius,
+            at: [extent.lo, extent.hi],
+            hold: robot.granted,
+            wanted: robot.wanted(supervisor.settings().lookahead),
+            waits_for: supervisor.waits_for(robot),
+            mission: robot.mission.as_deref(),
+            waiting: robot.waiting.as_ref().map(|waiting| waiting.mission.as_str()),
+            alarm: robot.alarm.as_ref(),
+            stopped_for: robot.stopped.as_deref(),
+            silent: robot.silent,
+            start: robot.course.start(),
+            shapes: robot.course.shapes(),
+        }
+    }
+}
+
+/// The answer to a question.
+///
+/// # Errors
+/// [`Fault::NoSuchRobot`], [`Fault::Invalid`].
+pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<Value, Fault> {
+    let robots = supervisor.robots();
+    let place = |name: &str| robots.iter().position(|robot| robot.name == *name).ok_or(Fault::NoSuchRobot);
+    match question {
+        Question::Robots { robot: Some(name) } => {
+            Ok(json!({ "robots": [View::of(supervisor, supervisor.robot(name)?, now)] }))
+        }
+        Question::Robots { robot: None } => {
+            let views: Vec<View<'_>> = robots.iter().map(|robot| View::of(supervisor, robot, now)).collect();
+            Ok(json!({ "robots": views }))
+        }
+        Question::Holds => {
+            let hold = |robot: &Robot| {
+                let waits_for = supervisor.waits_for(robot);
+                json!({ "robot": robot.name, "path": robot.path, "hold": robot.granted, "waits_for": waits_for })
+            };
+            Ok(json!({ "holds": robots.iter().map(hold).collect::<Vec<_>>() }))
+        }
+        Question::Regions { robot } => {
+            let fleet = supervisor.fleet();
+            let row = supervisor.orders().row(&fleet, place(robot)?).map_err(Fault::invalid)?;
+            let regions = row.map(|(_, region, pass)| {
+                let [length, other_length] =
+                    [region.length(), region.other_length()].map(|length| [length.lo, length.hi]);
+                let with = &robots[region.other()].name;
+                json!({ "with": with, "length": length, "other_length": other_length, "pass": Side::from(pass) })
+            });
+            Ok(json!({ "regions": regions.collect::<Vec<_>>() }))
+        }
+        Question::Conflicts { robot } => {
+            let (ego, ways) = (place(robot)?, ways(robots)?);
+            let fleet = motions(&ways)?;
+            let mut conflicts = Vec::new();
+            for other in (0..fleet.len()).filter(|&other| other != ego) {
+                let pair = Encounter::new(&fleet[ego], &fleet[other]);
+                for conflict in pair.conflicts(pair.time()) {
+                    let at = robots[ego].at;
+                    conflicts.push(json!({
+                        "with": robots[other].name,
+                        "time": [conflict.time.lo, conflict.time.hi],
+                        "length": [conflict.length.lo + at, conflict.length.hi + at],
+                    }));
+                }
+            }
+            Ok(json!({ "conflicts": conflicts }))
+        }
+        &Question::Safe { ref robot, length: [lo, hi], until } => {
+            let (ego, ways) = (place(robot)?, ways(robots)?);
+            let (at, end) = (robots[ego].at, robots[ego].course.length());
+            if !(at..=end).contains(&lo) || !(lo..=end).contains(&hi) || !(0.0..=1e6).contains(&until) {
+                return Err(Fault::invalid(format!(
+                    "length: what is ahead are {at} to {end} m; until: 0 to 1000000 s"
+                )));
+            }
+            let fleet = motions(&ways)?;
+            let safe = safe_intervals(&fleet, ego, Interval::new(lo - at, hi - at), Interval::new(0.0, until));
+            let safe: Vec<[f64; 2]> = safe.map_err(Fault::invalid)?.map(|safe| [safe.lo, safe.hi]).collect();
+            Ok(json!({ "safe": safe }))
+        }
+        Question::Counts => Ok(json!(supervisor.counts())),
+    }
+}
+
+/// What is left of a path, at full speed from rest.
+struct Way {
+    course: Course,
+    profile: Profile<f64, 3>,
+    radius: f64,
+}
+
+fn ways(robots: &[Robot]) -> Result<Vec<Way>, Fault> {
+    let way = |robot: &Robot| {
+        let course = robot.course.part(robot.at, robot.course.length())?;
+        let limits = Limits { speed: robot.abilities.speed, acceleration: robot.abilities.acceleration };
+        let length = course.length();
+        let profile = if length > 0.0 { Profile::rest_to_rest(length, limits)? } else { Profile::standing() };
+        Ok(Way { course, profile, radius: robot.abilities.reach() - ROOM })
+    };
+    robots.iter().map(way).collect::<Result<_, pcr_core::Invalid>>().map_err(Fault::invalid)
+}
+
+fn motions(ways: &[Way]) -> Result<Vec<Motion<'_, f64>>, Fault> {
+    ways.iter().map(|way| way.course.motion_by(way.profile.as_profile(), way.radius).map_err(Fault::invalid)).collect()
+}

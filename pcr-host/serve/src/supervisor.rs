@@ -1,0 +1,324 @@
+//! The supervisor: who may go how far.
+//!
+//! What is asked of it changes what it knows; [`Supervisor::settle`] then lets robots go on, keeps in the journal what must not be
+//! forgotten, and only then hands out what may be told. Times are seconds of any clock that does not go back.
+
+mod admission;
+mod alarms;
+mod places;
+mod release;
+mod restore;
+
+pub use admission::{Proposal, Verdict};
+pub use places::Report;
+pub use restore::Damaged;
+
+use crate::course::{Course, Start};
+use crate::entry::{Entry, Keep, Layout};
+use crate::event::Event;
+use crate::fault::Fault;
+use crate::robot::{Abilities, Robot};
+use pcr_core::{Full, Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// Orders on the heap.
+pub type Table = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
+
+/// What can be set.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// How far the lower end of a place may be behind where a robot has to stop, when it stands \[m\]. Missions are admitted if
+    /// everybody can finish in spite of that.
+    pub width: f64,
+    /// Robots are told how far they may go so long before they would have to brake \[s\]. What they have been told cannot be taken
+    /// back: the longer, the less can be decided otherwise.
+    pub lookahead: f64,
+    /// So much more than what a robot is told is written into the journal, so that not every step is \[m\]. After a restart it counts
+    /// as told.
+    pub spare: f64,
+    /// A robot is silent when nothing was heard of it for so long \[s\].
+    pub silence: f64,
+    /// Less than this is not worth a message, but up to where it has to wait \[m\].
+    pub step: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { width: 0.1, lookahead: 2.0, spare: 2.0, silence: 5.0, step: 0.05 }
+    }
+}
+
+/// What has happened since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Counts {
+    /// Messages with a position.
+    pub positions: u64,
+    /// Of these, about a path that the robot does not have any more.
+    pub outdated: u64,
+    /// Missions asked for.
+    pub missions: u64,
+    /// Missions admitted.
+    pub admitted: u64,
+    /// Attempts to admit one that were refused.
+    pub refused: u64,
+    /// Missions that were given up.
+    pub dropped: u64,
+    /// Holds that were told.
+    pub holds: u64,
+    /// Holds that were computed.
+    pub evaluations: u64,
+    /// Alarms.
+    pub alarms: u64,
+    /// Writes of the journal.
+    pub writes: u64,
+}
+
+/// The supervisor of a fleet.
+pub struct Supervisor {
+    settings: Settings,
+    layout: Layout,
+    robots: Vec<Robot>,
+    names: HashMap<String, usize>,
+    orders: Table,
+    reaches: Vec<Reach<f64>>,
+    keeper: Box<dyn Keep>,
+    /// What has changed, not yet in the journal.
+    entries: Vec<Entry>,
+    /// What is to be told once it is.
+    events: Vec<Event>,
+    /// Whose places have changed since they were in the journal.
+    unsaved: Vec<bool>,
+    /// The number of the next mission that has to wait.
+    turn: u64,
+    /// When waiting missions are tried again \[s\], how often they were, and what kept them.
+    tries: HashMap<String, admission::Try>,
+    /// Whether somebody may be in the way of somebody who has been allowed to go there.
+    hazards: bool,
+    counts: Counts,
+    broken: Option<String>,
+}
+
+impl std::fmt::Debug for Supervisor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Supervisor").field("robots", &self.robots).finish_non_exhaustive()
+    }
+}
+
+impl Supervisor {
+    /// Of nobody.
+    pub fn new(settings: Settings, keeper: Box<dyn Keep>) -> Self {
+        Self {
+            settings,
+            layout: Layout::default(),
+            robots: Vec::new(),
+            names: HashMap::new(),
+            orders: Table::new(Vec::new(), Vec::new(), Vec::new()),
+            reaches: Vec::new(),
+            keeper,
+            entries: Vec::new(),
+            events: Vec::new(),
+            unsaved: Vec::new(),
+            turn: 0,
+            tries: HashMap::new(),
+            hazards: false,
+            counts: Counts::default(),
+            broken: None,
+        }
+    }
+
+    /// What was set.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What is drawn.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// All robots, in the order in which they are numbered by the orders.
+    pub fn robots(&self) -> &[Robot] {
+        &self.robots
+    }
+
+    /// One robot.
+    ///
+    /// # Errors
+    /// [`Fault::NoSuchRobot`].
+    pub fn robot(&self, name: &str) -> Result<&Robot, Fault> {
+        self.place(name).map(|place| &self.robots[place])
+    }
+
+    /// For whom a robot has to wait where it may go to, if it is not the end of its path.
+    pub fn waits_for(&self, robot: &Robot) -> Option<&str> {
+        let wait = robot.hold?;
+        let end = robot.course.length();
+        let bound = wait.hold.length(end).unwrap_or(robot.granted);
+        let (by, _) = wait.by.filter(|_| bound < end && robot.granted >= bound)?;
+        self.robots.get(by).map(|by| by.name.as_str())
+    }
+
+    /// The orders, of [`Supervisor::fleet`].
+    pub fn orders(&self) -> &Table {
+        &self.orders
+    }
+
+    /// The robots as the orders take them.
+    pub fn fleet(&self) -> Vec<Motion<'_, f64>> {
+        fleet(&self.robots)
+    }
+
+    /// What has happened.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Takes another layout, for the page.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`].
+    pub fn draw(&mut self, layout: Layout) -> Result<(), Fault> {
+        self.works()?;
+        self.entries.push(Entry::Layout(layout.clone()));
+        self.layout = layout;
+        Ok(())
+    }
+
+    /// Adds a robot that stands. Whoever has not yet been allowed to pass there waits for it until it has a mission.
+    ///
+    /// # Errors
+    /// [`Fault::RobotExists`], [`Fault::Invalid`]. To add the same one twice is no error.
+    pub fn add(&mut self, name: &str, abilities: Abilities, start: Start) -> Result<(), Fault> {
+        self.works()?;
+        if let Ok(robot) = self.robot(name) {
+            let same = robot.abilities == abilities && robot.path == 1 && robot.course.start() == start;
+            return if same { Ok(()) } else { Err(Fault::RobotExists) };
+        }
+        if name.is_empty() || name.len() > 200 || name.chars().any(char::is_control) {
+            return Err(Fault::invalid("the name of a robot is 1 to 200 printable characters"));
+        }
+        let abilities = abilities.checked().map_err(Fault::invalid)?;
+        let course = Course::new(start, Vec::new()).map_err(Fault::invalid)?;
+        let robot = Robot::new(name.into(), abilities, course);
+        robot.motion().map_err(Fault::invalid)?;
+        self.robots.push(robot);
+        let place = self.robots.len() - 1;
+        if let Err(full) = self.inserted(place) {
+            self.robots.pop();
+            return Err(Fault::invalid(full));
+        }
+        self.names.insert(name.into(), place);
+        self.unsaved.push(false);
+        self.reaches.push(Reach::EMPTY);
+        let known = self.known(place);
+        self.entries.push(Entry::Robot(Box::new(known)));
+        self.forget_holds();
+        self.hazards = true;
+        Ok(())
+    }
+
+    fn inserted(&mut self, place: usize) -> Result<(), Full> {
+        let fleet = fleet(&self.robots);
+        loop {
+            match self.orders.insert(&fleet, place) {
+                Ok(()) => return Ok(()),
+                Err(Unchanged::Full(full)) => self.orders.grow(full)?,
+                // The table is that of the robots.
+                Err(Unchanged::Mismatch(_)) => return Err(Full::Agents),
+            }
+        }
+    }
+
+    /// Removes a robot: somebody has seen that it is not there any more. To remove it twice is no error.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`].
+    pub fn remove(&mut self, name: &str) -> Result<bool, Fault> {
+        self.works()?;
+        let Ok(place) = self.place(name) else { return Ok(false) };
+        self.orders.erase(&fleet(&self.robots), place).map_err(Fault::invalid)?;
+        self.robots.remove(place);
+        self.unsaved.remove(place);
+        self.reaches.pop();
+        self.tries.remove(name);
+        self.names = self.robots.iter().enumerate().map(|(place, robot)| (robot.name.clone(), place)).collect();
+        self.entries.push(Entry::Removed { robot: name.into() });
+        self.forget_holds();
+        self.hazards = true;
+        Ok(true)
+    }
+
+    fn place(&self, name: &str) -> Result<usize, Fault> {
+        self.names.get(name).copied().ok_or(Fault::NoSuchRobot)
+    }
+
+    fn works(&self) -> Result<(), Fault> {
+        self.broken.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
+    }
+
+    fn forget_holds(&mut self) {
+        self.robots.iter_mut().for_each(|robot| robot.hold = None);
+    }
+
+    fn progress(&self) -> Vec<Progress<f64>> {
+        self.robots.iter().map(Robot::progress).collect()
+    }
+
+    fn tolerances(&self) -> Tolerances<f64> {
+        /// Less way than this is no progress \[m\].
+        const GAIN: f64 = 1e-3;
+        Tolerances { width: self.settings.width, gain: GAIN }
+    }
+
+    /// Decides what follows from what was asked and heard: robots are allowed to go on, missions that waited are tried again.
+    /// What is returned may be told: it is in the journal.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`]: the journal could not be written. Nothing is told then, now or later.
+    pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
+        self.works()?;
+        self.retry(now);
+        self.note_silence(now);
+        let limits = self.limits(now);
+        self.release(&limits);
+        self.save()?;
+        Ok(std::mem::take(&mut self.events))
+    }
+
+    /// Everything that has changed goes into the journal.
+    fn save(&mut self) -> Result<(), Fault> {
+        if self.entries.is_empty() {
+            return Ok(());
+        }
+        self.raise_ceilings();
+        // With what is allowed go the places that it follows from: later ones alone would seem to be too far.
+        let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
+        let places = unsaved.map(|(unsaved, robot)| {
+            *unsaved = false;
+            (robot.name.clone(), robot.path, robot.at)
+        });
+        let places: Vec<_> = places.collect();
+        if !places.is_empty() {
+            self.entries.push(Entry::Places { places });
+        }
+        self.counts.writes += 1;
+        let kept = match self.keeper.is_long() {
+            true => self.keeper.restart(&self.snapshot()),
+            false => self.keeper.keep(&self.entries),
+        };
+        self.entries.clear();
+        kept.map_err(|error| {
+            self.events.clear();
+            let why = error.to_string();
+            self.broken = Some(why.clone());
+            Fault::Broken { why }
+        })
+    }
+}
+
+/// The robots as the orders take them. Each was built when it was added or admitted; if one were missing, the table would refuse the rest.
+fn fleet(robots: &[Robot]) -> Vec<Motion<'_, f64>> {
+    robots.iter().filter_map(|robot| robot.motion().ok()).collect()
+}

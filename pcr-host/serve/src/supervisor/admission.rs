@@ -1,0 +1,327 @@
+//! Missions: another path for a robot, with orders so that everybody can finish, or the reason why not.
+
+use super::{Supervisor, fleet};
+use crate::course::{Course, Shape, Start};
+use crate::entry::{Entry, Kept, Known};
+use crate::event::Event;
+use crate::fault::Fault;
+use crate::robot::{Robot, Waiting};
+use pcr_core::{Interval, Mission, Pass, Progress, Refused, RegionRef};
+use serde::{Deserialize, Serialize};
+
+/// A path for a robot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Proposal {
+    /// Whose.
+    pub robot: String,
+    /// What it is called: who asks for it again is answered as before.
+    pub mission: String,
+    /// It begins at this length of the path that the robot has \[m\], if it is to leave it; else at its end.
+    #[serde(default)]
+    pub after: Option<f64>,
+    /// Where that is, to be compared; none: not compared.
+    #[serde(default)]
+    pub start: Option<Start>,
+    /// The path from there on.
+    pub path: Vec<Shape>,
+}
+
+/// What became of a mission.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "verdict", rename_all = "snake_case")]
+pub enum Verdict {
+    /// The robot has the path.
+    Admitted {
+        /// Its number.
+        path: u64,
+        /// Its length \[m\].
+        length: f64,
+        /// How far the robot had been allowed to go, on this path \[m\]. More is told by and by.
+        hold: f64,
+    },
+    /// The robot had it, or it waited, and another one has taken its place since: nothing is done.
+    Past,
+    /// It is tried again by and by.
+    Waiting {
+        /// Who is in the way, if one is.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        by: Option<String>,
+        /// Why.
+        why: String,
+    },
+}
+
+/// When a mission that waits is tried again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Try {
+    next: f64,
+    pause: f64,
+    last: Option<Verdict>,
+}
+
+/// Between two attempts \[s\], at first and at most.
+const PAUSE: [f64; 2] = [0.25, 2.0];
+
+/// A path begins where the one before it ends if it is not further off than \[m\] and \[rad\].
+const JOIN: f64 = 1e-3;
+
+impl Supervisor {
+    /// Gives a robot a path, now or as soon as that is possible. A robot has one mission that waits at most: a new one takes its place.
+    ///
+    /// # Errors
+    /// [`Fault`] for what will never be possible; nothing waits then.
+    pub fn mission(&mut self, proposal: &Proposal, now: f64) -> Result<Verdict, Fault> {
+        self.works()?;
+        let place = self.place(&proposal.robot)?;
+        let robot = &self.robots[place];
+        let waiting = robot.waiting.as_ref().filter(|waiting| waiting.mission == proposal.mission);
+        if waiting.is_some() {
+            let why = "it is tried again".into();
+            let last = self.tries.get(&proposal.robot).and_then(|attempt| attempt.last.clone());
+            return Ok(last.unwrap_or(Verdict::Waiting { by: None, why }));
+        }
+        if robot.mission.as_ref() == Some(&proposal.mission) {
+            return Ok(admitted(robot));
+        }
+        if robot.past.contains(&proposal.mission) {
+            return Ok(Verdict::Past);
+        }
+        let after = proposal.after.unwrap_or(robot.course.length());
+        let waiting = Waiting {
+            mission: proposal.mission.clone(),
+            after,
+            path: robot.path,
+            shapes: proposal.path.clone(),
+            turn: self.turn,
+        };
+        self.joins(robot, after, proposal.start)?;
+        self.counts.missions += 1;
+        // Taken out now: a path that is admitted leaves nothing waiting.
+        let robot = &mut self.robots[place];
+        let (before, past) = (robot.waiting.take(), robot.past.clone());
+        if let Some(before) = &before {
+            Robot::outlives(&mut robot.past, before.mission.clone());
+        }
+        let refused = match self.attempt(place, &waiting) {
+            Ok(refused) => refused,
+            Err(fault) => {
+                let robot = &mut self.robots[place];
+                (robot.waiting, robot.past) = (before, past);
+                return Err(fault);
+            }
+        };
+        if let Some(before) = before {
+            let why = "another mission takes its place".into();
+            self.counts.dropped += 1;
+            self.events.push(Event::Dropped { robot: proposal.robot.clone(), mission: before.mission, why });
+            self.entries.push(Entry::Waiting { robot: proposal.robot.clone(), waiting: None });
+        }
+        let Some(verdict) = refused else { return Ok(admitted(&self.robots[place])) };
+        self.turn += 1;
+        let next = Try { next: now + PAUSE[0], pause: PAUSE[0], last: Some(verdict.clone()) };
+        self.tries.insert(proposal.robot.clone(), next);
+        self.entries.push(Entry::Waiting { robot: proposal.robot.clone(), waiting: Some(waiting.clone()) });
+        self.robots[place].waiting = Some(waiting);
+        Ok(verdict)
+    }
+
+    /// Whether a path can begin at this length of that of a robot.
+    fn joins(&self, robot: &Robot, after: f64, start: Option<Start>) -> Result<(), Fault> {
+        if !(0.0..=robot.course.length()).contains(&after) {
+            let length = robot.course.length();
+            return Err(Fault::invalid(format!("after: {after} is out of range; the path is {length} m long")));
+        }
+        if after < robot.told {
+            return Err(Fault::Released { hold: robot.told });
+        }
+        let Some(start) = start else { return Ok(()) };
+        let end = robot.course.arrival(after).map_err(Fault::invalid)?;
+        let distance = (start.x - end.x).hypot(start.y - end.y);
+        let angle = (start.heading - end.heading).sin().atan2((start.heading - end.heading).cos()).abs();
+        // What is no number is not near.
+        if distance <= JOIN && angle <= JOIN { Ok(()) } else { Err(Fault::Apart { distance, angle }) }
+    }
+
+    /// Tries to admit a mission: none if it was, else why not.
+    ///
+    /// # Errors
+    /// [`Fault`] for what will never be possible.
+    fn attempt(&mut self, place: usize, mission: &Waiting) -> Result<Option<Verdict>, Fault> {
+        let robot = &self.robots[place];
+        if robot.alarm.is_some() {
+            let why = "it is not where it may be".into();
+            return Ok(Some(Verdict::Waiting { by: Some(robot.name.clone()), why }));
+        }
+        let rejoined = robot.course.rejoined(robot.at, mission.after, &mission.shapes);
+        let (course, dropped) = rejoined.map_err(Fault::invalid)?;
+        let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
+        let (at, told) = (shifted(robot.at), shifted(robot.told));
+        let own = Progress { at: Interval::new(at, told), stop: told };
+        let motion = course.motion(robot.abilities.reach()).map_err(Fault::invalid)?;
+        let (mut progress, tolerances) = (self.progress(), self.tolerances());
+        self.orders.passed(&progress);
+        let mut fleet = fleet(&self.robots);
+        let speeds: Vec<f64> = self.robots.iter().map(|robot| robot.abilities.speed).collect();
+        let known = progress.clone();
+        let prefer = |region: &RegionRef<'_, f64>| preferred(region, own.at.lo, &known, &speeds);
+        let admission = loop {
+            let mission = Mission { agent: place, motion, progress: own };
+            let found = self.orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut self.reaches, prefer);
+            match found {
+                Err(Refused::Full(full)) => self.orders.grow(full).map_err(Fault::invalid)?,
+                found => break found,
+            }
+        };
+        drop(fleet);
+        let Err(refused) = admission else {
+            self.commit(place, mission, course.clone(), dropped);
+            return Ok(None);
+        };
+        self.counts.refused += 1;
+        let name = |agent: usize| self.robots.get(agent).map_or_else(String::new, |robot| robot.name.clone());
+        let (by, why) = match refused {
+            Refused::Blocked { by, .. } => (name(by), format!("{} is in the way, whoever goes first", name(by))),
+            Refused::Stuck { agent, by, .. } => {
+                (name(by), format!("{} would wait for {} for ever", name(agent), name(by)))
+            }
+            Refused::Late { agent, by, .. } => {
+                (name(by), format!("{} is where {} was to go first", name(agent), name(by)))
+            }
+            refused => return Err(Fault::invalid(refused)),
+        };
+        Ok(Some(Verdict::Waiting { by: Some(by), why }))
+    }
+
+    /// The path is that of the robot.
+    fn commit(&mut self, place: usize, mission: &Waiting, course: Course, dropped: f64) {
+        let robot = &mut self.robots[place];
+        let length = course.length();
+        let shifted = |value: f64| (value - dropped).max(0.0).min(length);
+        robot.at = shifted(robot.at);
+        robot.up_to = shifted(robot.up_to).max(robot.at);
+        (robot.granted, robot.told) = (shifted(robot.granted), shifted(robot.told));
+        // No more than that has been told.
+        robot.ceiling = robot.told;
+        robot.path += 1;
+        robot.origin += dropped;
+        robot.course = course;
+        if let Some(before) = robot.mission.replace(mission.mission.clone()) {
+            Robot::outlives(&mut robot.past, before);
+        }
+        robot.waiting = None;
+        let event = Event::Admitted {
+            robot: robot.name.clone(),
+            mission: mission.mission.clone(),
+            path: robot.path,
+            origin: robot.origin,
+            length,
+            hold: robot.granted,
+        };
+        self.tries.remove(&self.robots[place].name);
+        self.counts.admitted += 1;
+        self.events.push(event);
+        self.forget_holds_with(place);
+        let known = self.known(place);
+        self.entries.push(Entry::Robot(Box::new(known)));
+        // Who was in the way of somebody may be so no longer.
+        self.hazards |= self.robots.iter().any(|robot| robot.stopped.is_some());
+    }
+
+    /// The holds of a robot, and of those that have a region with it or waited for it, are not known any more.
+    fn forget_holds_with(&mut self, place: usize) {
+        let pairs = self.orders.decisions().map(|decision| decision.agents).filter(|agents| agents.contains(&place));
+        for agents in pairs {
+            agents.into_iter().for_each(|agent| self.robots[agent].hold = None);
+        }
+        for (other, robot) in self.robots.iter_mut().enumerate() {
+            if other == place || robot.hold.is_some_and(|wait| wait.by.is_some_and(|(by, _)| by == place)) {
+                robot.hold = None;
+            }
+        }
+    }
+
+    /// A robot with its orders, as the journal has it.
+    pub(super) fn known(&self, place: usize) -> Known {
+        let fleet = fleet(&self.robots);
+        let robot = &self.robots[place];
+        let decisions = self.orders.decisions().filter(|decision| decision.agents.contains(&place));
+        // The table is that of the robots; orders that are missing would be noticed when they are read.
+        let row = self.orders.row(&fleet, place).into_iter().flatten();
+        let orders = row.zip(decisions).map(|((_, region, pass), decision)| Kept {
+            with: self.robots[region.other()].name.clone(),
+            pass: pass.into(),
+            since: decision.since,
+            lengths: [region.length(), region.other_length()].map(|length| [length.lo, length.hi]),
+        });
+        Known {
+            name: robot.name.clone(),
+            abilities: robot.abilities,
+            course: robot.course.clone(),
+            path: robot.path,
+            origin: robot.origin,
+            mission: robot.mission.clone(),
+            past: robot.past.clone(),
+            at: robot.at,
+            ceiling: robot.ceiling,
+            alarm: robot.alarm.clone(),
+            waiting: robot.waiting.clone(),
+            orders: orders.collect(),
+        }
+    }
+
+    /// Tries the oldest mission whose time has come.
+    pub(super) fn retry(&mut self, now: f64) {
+        let due =
+            |robot: &Robot| robot.waiting.is_some() && self.tries.get(&robot.name).is_none_or(|last| last.next <= now);
+        let waiting = self.robots.iter().enumerate().filter(|(_, robot)| due(robot));
+        let oldest = waiting.min_by_key(|(_, robot)| robot.waiting.as_ref().map(|waiting| waiting.turn));
+        let Some((place, waiting)) = oldest.and_then(|(place, robot)| Some((place, robot.waiting.clone()?))) else {
+            return;
+        };
+        let robot = &self.robots[place];
+        let name = robot.name.clone();
+        let possible = match waiting.path == robot.path {
+            true => self.joins(robot, waiting.after, None).and_then(|()| self.attempt(place, &waiting)),
+            false => Err(Fault::NoSuchPath { path: robot.path }),
+        };
+        match possible {
+            Ok(None) => {}
+            Ok(Some(verdict)) => {
+                let last = self.tries.entry(name.clone()).or_default();
+                last.pause = (2.0 * last.pause).clamp(PAUSE[0], PAUSE[1]);
+                last.next = now + last.pause;
+                if last.last.as_ref() != Some(&verdict)
+                    && let Verdict::Waiting { by, why } = verdict.clone()
+                {
+                    self.events.push(Event::Waiting { robot: name, mission: waiting.mission, by, why });
+                }
+                last.last = Some(verdict);
+            }
+            Err(fault) => {
+                self.robots[place].waiting = None;
+                Robot::outlives(&mut self.robots[place].past, waiting.mission.clone());
+                self.tries.remove(&name);
+                self.counts.dropped += 1;
+                self.entries.push(Entry::Waiting { robot: name.clone(), waiting: None });
+                self.events.push(Event::Dropped { robot: name, mission: waiting.mission, why: fault.to_string() });
+            }
+        }
+    }
+}
+
+fn admitted(robot: &Robot) -> Verdict {
+    Verdict::Admitted { path: robot.path, length: robot.course.length(), hold: robot.granted }
+}
+
+/// Who should go first: whoever makes the other one wait less, if nobody else were there.
+fn preferred(region: &RegionRef<'_, f64>, at: f64, known: &[Progress<f64>], speeds: &[f64]) -> Pass {
+    let speed = |agent: usize| speeds.get(agent).copied().unwrap_or(1.0);
+    let there = known.get(region.other()).map_or(0.0, |progress| progress.at.lo);
+    let times = |length: Interval<f64>, at: f64, speed: f64| {
+        [length.lo, length.hi].map(|length| (length - at).max(0.0) / speed)
+    };
+    let own = times(region.length(), at, speed(region.ego()));
+    let their = times(region.other_length(), there, speed(region.other()));
+    if own[1] - their[0] <= their[1] - own[0] { Pass::First } else { Pass::Second }
+}

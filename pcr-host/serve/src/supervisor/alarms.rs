@@ -1,0 +1,108 @@
+//! Robots that are not where they may be: everybody else keeps away from wherever they can have got to.
+
+use super::{Supervisor, fleet};
+use crate::course::{Course, Start};
+use crate::event::Event;
+use crate::robot::{Alarm, ROOM};
+use pcr_core::{Ecm, Hold, Pass};
+
+/// How far a robot may go at most, whatever its orders say, because of one that is not where it may be.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Limit {
+    /// \[m\]; none: as its orders say.
+    pub(super) at: Option<f64>,
+    /// Who that is.
+    by: usize,
+}
+
+impl Limit {
+    fn lower(&mut self, at: f64, by: usize) {
+        if self.at.is_none_or(|before| at < before) {
+            *self = Self { at: Some(at), by };
+        }
+    }
+}
+
+impl Supervisor {
+    /// What robots must not go beyond; those that have been allowed to already are stopped. Empty if nothing is wrong.
+    pub(super) fn limits(&mut self, now: f64) -> Vec<Limit> {
+        if !self.hazards {
+            return Vec::new();
+        }
+        let mut limits = vec![Limit::default(); self.robots.len()];
+        self.lost(now, &mut limits);
+        self.unordered(&mut limits);
+        self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
+        for (place, limit) in limits.iter().enumerate() {
+            let robot = &self.robots[place];
+            // Who stands has nothing to stop.
+            let by = limit.at.filter(|at| *at < robot.told && robot.told > robot.at);
+            let by = by.map(|_| self.robots[limit.by].name.clone());
+            self.hazards |= by.is_some();
+            let robot = &mut self.robots[place];
+            let name = robot.name.clone();
+            match (&robot.stopped, &by) {
+                (None, Some(by)) => self.events.push(Event::Stop { robot: name, by: by.clone() }),
+                (Some(_), None) => self.events.push(Event::Go { robot: name }),
+                _ => {}
+            }
+            robot.stopped = by;
+        }
+        limits
+    }
+
+    /// A robot with an alarm may be anywhere around where it was, as far as its speed takes it.
+    fn lost(&self, now: f64, limits: &mut [Limit]) {
+        for (place, robot) in self.robots.iter().enumerate() {
+            let (at, spread) = match &robot.alarm {
+                None => continue,
+                Some(Alarm::Off { x, y }) => ([*x, *y], 0.0),
+                Some(Alarm::Beyond { at, .. }) => {
+                    let pose = robot.course.pose(*at);
+                    ([pose.x, pose.y], (at - robot.at).max(0.0))
+                }
+            };
+            // After a restart it may be anywhere until it is heard: no disc is as large, and everybody stops.
+            let gone = robot.heard.map_or(f64::INFINITY, |heard| robot.abilities.speed * (now - heard).max(0.0));
+            let radius = robot.abilities.reach() + spread + gone;
+            for (other, limit) in limits.iter_mut().enumerate().filter(|(other, _)| *other != place) {
+                if let Some(at) = self.meets(other, at, radius) {
+                    limit.lower(at, place);
+                }
+            }
+        }
+    }
+
+    /// The first length from where a robot is at which it would touch a disc.
+    fn meets(&self, place: usize, [x, y]: [f64; 2], radius: f64) -> Option<f64> {
+        let robot = &self.robots[place];
+        let found = || -> Option<Option<f64>> {
+            let disc = Course::new(Start { x, y, heading: 0.0 }, Vec::new()).ok()?;
+            let fleet = [robot.motion().ok()?, disc.motion(radius).ok()?];
+            let ecm = Ecm::grown(&fleet).ok()?;
+            let regions = ecm.pair(&fleet, 0, 1).ok()?;
+            let ahead = regions.map(|region| region.length()).filter(|length| length.hi >= robot.at);
+            Some(ahead.map(|length| length.lo.max(robot.at) - ROOM).reduce(f64::min))
+        };
+        // What cannot be computed is near.
+        found().unwrap_or(Some(robot.at - ROOM))
+    }
+
+    /// A robot that was added where others may come: nothing is decided with it.
+    fn unordered(&self, limits: &mut [Limit]) {
+        let fleet = fleet(&self.robots);
+        if !self.orders.decisions().any(|decision| decision.pass == Pass::Undecided) {
+            return;
+        }
+        for (place, limit) in limits.iter_mut().enumerate() {
+            let Ok(row) = self.orders.row(&fleet, place) else { continue };
+            for (_, region, _) in row.filter(|(_, _, pass)| *pass == Pass::Undecided) {
+                match region.hold(0.0, 0.0) {
+                    Hold::Free => {}
+                    Hold::At(hold) => limit.lower(hold, region.other()),
+                    Hold::Inside => limit.lower(self.robots[place].at - ROOM, region.other()),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! A supervisor as its journal says it was.
+
+use super::{Settings, Supervisor, Table, fleet};
+use crate::entry::{Entry, Keep, Kept, Known, Layout};
+use crate::robot::{Alarm, Robot};
+use pcr_core::{Full, Mismatch, Pass, Reach};
+use std::collections::{HashMap, HashSet};
+use std::fmt;
+
+/// Why a journal cannot be gone on with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Damaged(String);
+
+impl fmt::Display for Damaged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Damaged {}
+
+impl From<Full> for Damaged {
+    fn from(full: Full) -> Self {
+        Self(full.to_string())
+    }
+}
+
+impl From<Mismatch> for Damaged {
+    fn from(mismatch: Mismatch) -> Self {
+        Self(mismatch.to_string())
+    }
+}
+
+/// What entries add up to.
+#[derive(Default)]
+struct State {
+    layout: Layout,
+    robots: Vec<Known>,
+}
+
+impl State {
+    fn robot(&mut self, name: &str) -> Result<&mut Known, Damaged> {
+        let found = self.robots.iter_mut().find(|robot| robot.name == name);
+        found.ok_or_else(|| Damaged(format!("an entry is about the robot {name}, which is not there")))
+    }
+
+    fn take(&mut self, entry: Entry) -> Result<(), Damaged> {
+        match entry {
+            Entry::Layout(layout) => self.layout = layout,
+            Entry::Robot(known) => {
+                // Its orders with all others are these: theirs with it are no more.
+                for other in &mut self.robots {
+                    other.orders.retain(|kept| kept.with != known.name);
+                }
+                match self.robots.iter_mut().find(|robot| robot.name == known.name) {
+                    Some(robot) => *robot = *known,
+                    None => self.robots.push(*known),
+                }
+            }
+            Entry::Removed { robot } => {
+                self.robot(&robot)?;
+                self.robots.retain(|other| other.name != robot);
+                for other in &mut self.robots {
+                    other.orders.retain(|kept| kept.with != robot);
+                }
+            }
+            Entry::Ceiling { robot, path, ceiling } => {
+                let known = self.robot(&robot)?;
+                if known.path == path {
+                    known.ceiling = known.ceiling.max(ceiling);
+                }
+            }
+            Entry::Places { places } => {
+                for (robot, path, at) in places {
+                    // A robot may have been removed in the same batch.
+                    if let Ok(known) = self.robot(&robot)
+                        && known.path == path
+                    {
+                        known.at = known.at.max(at);
+                    }
+                }
+            }
+            Entry::Waiting { robot, waiting } => {
+                let known = self.robot(&robot)?;
+                if let Some(before) = std::mem::replace(&mut known.waiting, waiting) {
+                    Robot::outlives(&mut known.past, before.mission);
+                }
+            }
+            Entry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
+        }
+        Ok(())
+    }
+}
+
+impl Supervisor {
+    /// The supervisor that these entries are of. What may have been told counts as told.
+    ///
+    /// # Errors
+    /// [`Damaged`] where the entries do not go together, or the regions of the paths are not those that the orders were made for.
+    pub fn restored(settings: Settings, entries: Vec<Entry>, keeper: Box<dyn Keep>) -> Result<Self, Damaged> {
+        let mut state = State::default();
+        entries.into_iter().try_for_each(|entry| state.take(entry))?;
+        let mut own = Self::new(settings, keeper);
+        own.layout = state.layout;
+        let mut kept: HashMap<[String; 2], Vec<Kept>> = HashMap::new();
+        for known in state.robots {
+            for order in &known.orders {
+                kept.entry([known.name.clone(), order.with.clone()]).or_default().push(order.clone());
+            }
+            own.names.insert(known.name.clone(), own.robots.len());
+            let turn = known.waiting.as_ref().map_or(0, |waiting| waiting.turn);
+            own.robots.push(robot(known)?);
+            own.turn = own.turn.max(turn + 1);
+        }
+        let count = own.robots.len();
+        (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![Reach::EMPTY; count], true);
+        own.order(kept)?;
+        Ok(own)
+    }
+
+    /// Makes the orders again.
+    fn order(&mut self, mut kept: HashMap<[String; 2], Vec<Kept>>) -> Result<(), Damaged> {
+        let fleet = fleet(&self.robots);
+        if fleet.len() != self.robots.len() {
+            return Err(Damaged("a robot has no path".into()));
+        }
+        let mut orders = Table::new(Vec::new(), Vec::new(), Vec::new());
+        while let Err(full) = orders.fill(&fleet) {
+            orders.grow(full)?;
+        }
+        let mut missing = HashSet::new();
+        for ego in 0..fleet.len() {
+            let name = &self.robots[ego].name;
+            let row: Vec<_> = orders
+                .row(&fleet, ego)?
+                .map(|(place, region, _)| (place, region.other(), [region.length(), region.other_length()]))
+                .collect();
+            for group in row.chunk_by(|a, b| a.1 == b.1) {
+                let other = &self.robots[group[0].1].name;
+                let Some(made) = kept.remove(&[name.clone(), other.clone()]) else {
+                    // The other one's row has them.
+                    missing.insert([ego, group[0].1]);
+                    continue;
+                };
+                let same = |(found, kept): (&(usize, usize, [pcr_core::Interval<f64>; 2]), &Kept)| {
+                    let ends = found.2.iter().flat_map(|length| [length.lo, length.hi]);
+                    ends.zip(kept.lengths.as_flattened()).all(|(a, b)| (a - b).abs() <= 1e-6)
+                };
+                if made.len() != group.len() || !group.iter().zip(&made).all(same) {
+                    return Err(Damaged(format!("the regions of {name} and {other} are not those of the journal")));
+                }
+                for (&(place, ..), order) in group.iter().zip(&made) {
+                    orders.decide_at(&fleet, place, ego, Pass::from(order.pass), order.since)?;
+                }
+            }
+        }
+        if let Some([robot, other]) = missing.iter().find(|[ego, other]| missing.contains(&[*other, *ego])) {
+            let [robot, other] = [robot, other].map(|place| &self.robots[*place].name);
+            return Err(Damaged(format!("the journal has no orders of {robot} and {other}, which meet")));
+        }
+        if let Some([robot, other]) = kept.into_keys().next() {
+            return Err(Damaged(format!("the journal has orders of {robot} and {other}, which do not meet")));
+        }
+        drop(fleet);
+        self.orders = orders;
+        Ok(())
+    }
+
+    /// Everything that is so now.
+    pub fn snapshot(&self) -> Vec<Entry> {
+        let layout = std::iter::once(Entry::Layout(self.layout.clone()));
+        let robots = (0..self.robots.len()).map(|place| {
+            let mut known = self.known(place);
+            // Each order once: with those before it.
+            let before = |kept: &Kept| self.names.get(&kept.with).is_some_and(|&other| other < place);
+            known.orders.retain(before);
+            Entry::Robot(Box::new(known))
+        });
+        layout.chain(robots).collect()
+    }
+}
+
+/// A number of a path or a turn is lower: it can be counted on.
+const MOST: u64 = 1 << 53;
+
+fn robot(known: Known) -> Result<Robot, Damaged> {
+    let abilities = known.abilities.checked().map_err(|why| Damaged(format!("{}: {why}", known.name)))?;
+    let mut robot = Robot::new(known.name, abilities, known.course);
+    let end = robot.course.length();
+    let counts = known.path < MOST && known.waiting.as_ref().is_none_or(|waiting| waiting.turn < MOST);
+    if !counts || ![known.at, known.ceiling, known.origin].iter().all(|value| *value >= 0.0) {
+        return Err(Damaged(format!("{}: a number that cannot be", robot.name)));
+    }
+    (robot.path, robot.origin) = (known.path, known.origin);
+    (robot.mission, robot.past) = (known.mission, known.past);
+    robot.at = known.at.min(end);
+    robot.up_to = robot.at;
+    robot.ceiling = known.ceiling.max(robot.at).min(end);
+    (robot.granted, robot.told) = (robot.at, robot.ceiling);
+    // It was told no more since then.
+    if let Some(Alarm::Beyond { told, .. }) = known.alarm {
+        robot.told = robot.told.min(told.max(robot.at));
+    }
+    robot.alarm = known.alarm;
+    robot.waiting = known.waiting;
+    Ok(robot)
+}

@@ -1,0 +1,169 @@
+//! Robots that are not where they may be, or not heard: everybody who could touch them stops, and nobody gets their right.
+
+use crate::world::Disc;
+use pcr_serve::course::{Shape, Start};
+use pcr_serve::event::Event;
+use pcr_serve::robot::{Abilities, Alarm};
+use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use std::f64::consts::FRAC_PI_2;
+
+const ABILITIES: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+
+fn place(x: f64, y: f64, heading: f64) -> Start {
+    Start { x, y, heading }
+}
+
+fn mission(robot: &str, name: &str, length: f64) -> Proposal {
+    let path = vec![Shape::Line { length }];
+    Proposal { robot: robot.into(), mission: name.into(), after: None, start: None, path }
+}
+
+fn report(robot: &str, path: u64, lo: f64, hi: f64) -> Report {
+    Report { robot: robot.into(), path, at: [lo, hi], age: 0.0 }
+}
+
+/// One that goes east through the origin, and one that goes north there second.
+fn crossing(disc: &Disc) -> Supervisor {
+    let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
+    own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
+    own.add("north", ABILITIES, place(0.0, -4.0, FRAC_PI_2)).unwrap();
+    for (robot, length) in [("east", 6.0), ("north", 8.0)] {
+        let verdict = own.mission(&mission(robot, "1", length), 0.0).unwrap();
+        assert!(matches!(verdict, Verdict::Admitted { path: 2, .. }), "{verdict:?}");
+    }
+    own.settle(0.0).unwrap();
+    own
+}
+
+fn names(events: &[Event]) -> Vec<String> {
+    let kind = |event| serde_json::to_value(event).unwrap()["event"].as_str().unwrap().to_owned();
+    events.iter().map(|event| format!("{} {}", kind(event), event.robot())).collect()
+}
+
+#[test]
+fn beyond_its_hold() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    own.position(&report("north", 2, 2.0, 2.1), 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    let hold = own.robot("north").unwrap().granted;
+    assert!((hold - 3.5).abs() < 1e-5, "{hold}");
+    // It does not stop before the crossing; the other one, which has the right to go there, is stopped at once.
+    own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap();
+    let events = own.settle(3.0).unwrap();
+    assert_eq!(names(&events), ["alarm north", "stop east"]);
+    assert!(matches!(own.robot("north").unwrap().alarm, Some(Alarm::Beyond { .. })));
+    // What it says does not let anybody go on, and it gets no mission.
+    own.position(&report("east", 2, 0.2, 0.3), 3.1).unwrap();
+    assert_eq!(own.settle(3.1).unwrap(), []);
+    let verdict = own.mission(&mission("north", "2", 1.0), 3.1).unwrap();
+    assert!(matches!(verdict, Verdict::Waiting { .. }), "{verdict:?}");
+    own.settle(3.1).unwrap();
+    // It is so after a restart, wherever it is now.
+    let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    let events = own.settle(0.0).unwrap();
+    assert!(names(&events).contains(&"stop east".into()), "{events:?}");
+    // Back where it may be: all go on.
+    own.position(&report("north", 2, 3.3, 3.4), 1.0).unwrap();
+    let events = names(&own.settle(1.0).unwrap());
+    assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
+    assert!(own.robot("east").unwrap().stopped.is_none());
+}
+
+#[test]
+fn off_its_path() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    // Far from where anybody has been allowed to go: nobody stops yet, but nobody may come near.
+    own.off("north", [3.5, -1.0], 1.0).unwrap();
+    let events = own.settle(1.0).unwrap();
+    assert_eq!(names(&events), ["alarm north"]);
+    own.position(&report("east", 2, 2.5, 2.6), 1.1).unwrap();
+    own.settle(1.1).unwrap();
+    let near = own.robot("east").unwrap().granted;
+    assert!(near < 5.7, "{near}");
+    // Not heard of since: it can have come nearer.
+    let mut stopped = None;
+    for tick in 12..40 {
+        let now = f64::from(tick) * 0.1;
+        if names(&own.settle(now).unwrap()).contains(&"stop east".into()) {
+            stopped = Some(now);
+            break;
+        }
+    }
+    assert!(stopped.is_some_and(|now| now < 2.5), "{stopped:?}");
+    own.off("north", [9.0, -9.0], 5.0).unwrap();
+    assert_eq!(names(&own.settle(5.0).unwrap())[0], "go east");
+}
+
+#[test]
+fn added_where_others_may_go() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    own.add("new", ABILITIES, place(-1.0, 0.3, 0.0)).unwrap();
+    let events = own.settle(1.0).unwrap();
+    assert_eq!(names(&events), ["stop east"]);
+    // It goes away, and so does what was wrong.
+    assert!(own.remove("new").unwrap());
+    assert_eq!(names(&own.settle(1.1).unwrap())[0], "go east");
+    // Where nobody may go yet, nobody is stopped: they wait.
+    own.add("new", ABILITIES, place(1.6, 0.0, 0.0)).unwrap();
+    assert_eq!(names(&own.settle(1.2).unwrap()), Vec::<String>::new());
+    own.position(&report("east", 2, 2.9, 3.0), 3.0).unwrap();
+    let events = own.settle(3.0).unwrap();
+    let told = |event: &Event| matches!(event, Event::Hold { robot, hold, waits_for, .. } if robot == "east" && (hold - 4.1).abs() < 1e-4 && waits_for.as_deref() == Some("new"));
+    assert!(events.iter().any(told), "{events:?}");
+}
+
+#[test]
+fn silent_robots_keep_their_right() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    own.position(&report("east", 2, 1.0, 1.1), 1.0).unwrap();
+    own.position(&report("north", 2, 2.9, 3.0), 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    let hold = own.robot("north").unwrap().granted;
+    let mut heard = Vec::new();
+    for tick in 11..200 {
+        let now = f64::from(tick) * 0.1;
+        own.position(&report("north", 2, 3.4, 3.49), now).unwrap();
+        heard.extend(names(&own.settle(now).unwrap()));
+    }
+    assert_eq!(heard, ["silent east"]);
+    assert_eq!(own.robot("north").unwrap().granted, hold);
+    // It may be anywhere up to where it was allowed to go.
+    let east = own.robot("east").unwrap();
+    let extent = east.extent(20.0);
+    assert_eq!([extent.lo, extent.hi], [1.0, east.told]);
+    // Old messages, and those of older paths, change nothing.
+    own.position(&report("east", 2, 0.1, 0.2), 20.0).unwrap();
+    own.position(&report("east", 1, 5.0, 5.9), 20.0).unwrap();
+    assert_eq!(names(&own.settle(20.0).unwrap()), ["heard east"]);
+    assert_eq!(own.robot("east").unwrap().at, 1.0);
+    assert_eq!(own.robot("north").unwrap().granted, hold);
+}
+
+#[test]
+fn missions_that_are_asked_for_again() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    // On the way of the other one, which stands there for good: it waits until another mission takes its place.
+    own.remove("north").unwrap();
+    own.add("stands", ABILITIES, place(5.0, 0.0, 0.0)).unwrap();
+    let verdict = own.mission(&mission("east", "2", 4.0), 1.0).unwrap();
+    assert!(matches!(&verdict, Verdict::Waiting { by: Some(by), .. } if by == "stands"), "{verdict:?}");
+    assert_eq!(own.mission(&mission("east", "2", 4.0), 1.1).unwrap(), verdict);
+    let admitted = own.mission(&mission("east", "3", 0.5), 1.2).unwrap();
+    assert!(matches!(admitted, Verdict::Admitted { path: 3, .. }));
+    let events = names(&own.settle(1.2).unwrap());
+    assert!(events.contains(&"dropped east".into()) && events.contains(&"admitted east".into()), "{events:?}");
+    for _ in 0..2 {
+        // Late and repeated: nothing twice, also after a restart.
+        assert_eq!(own.mission(&mission("east", "1", 6.0), 2.0).unwrap(), Verdict::Past);
+        assert_eq!(own.mission(&mission("east", "2", 4.0), 2.0).unwrap(), Verdict::Past);
+        assert!(matches!(own.mission(&mission("east", "3", 0.5), 2.0).unwrap(), Verdict::Admitted { path: 3, .. }));
+        assert!(own.robot("east").unwrap().waiting.is_none());
+        own.settle(2.0).unwrap();
+        own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    }
+}

@@ -1,0 +1,225 @@
+//! The process ends at any instant: after the restart no right is lost, and none is given to another robot.
+
+use crate::world::{STEP, Trouble, World};
+use pcr_serve::entry::{Kept, Nowhere};
+use pcr_serve::event::Event;
+use pcr_serve::journal::{self, Journal};
+use pcr_serve::supervisor::{Settings, Supervisor};
+use std::collections::HashMap;
+use std::io::{BufRead, BufReader, ErrorKind, Write};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::atomic::Ordering::Relaxed;
+
+const GOOD: Trouble = Trouble { lost: 0.0, late: 0.5, stops: 0.0 };
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("pcr-serve-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+/// All that others rely on: paths, how far who may go, and who goes first where.
+fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<Kept>)> {
+    let robots = supervisor.robots().iter();
+    let mut orders: HashMap<String, Vec<Kept>> = HashMap::new();
+    let fleet = supervisor.fleet();
+    for (place, robot) in robots.clone().enumerate() {
+        let row = supervisor.orders().row(&fleet, place).unwrap();
+        let row = row.map(|(_, region, pass)| Kept {
+            with: supervisor.robots()[region.other()].name.clone(),
+            pass: pass.into(),
+            since: 0.0,
+            lengths: [region.length(), region.other_length()].map(|length| [length.lo, length.hi]),
+        });
+        orders.insert(robot.name.clone(), row.collect());
+    }
+    robots.map(|robot| (robot.name.clone(), (robot.path, robot.granted, orders.remove(&robot.name).unwrap()))).collect()
+}
+
+/// Whether what is known after a restart holds all that was told before.
+fn keeps(after: &Supervisor, before: &HashMap<String, (u64, f64, Vec<Kept>)>, context: &str) {
+    let now = rights(after);
+    assert_eq!(now.len(), before.len(), "{context}");
+    for (name, (path, granted, orders)) in before {
+        let robot = after.robot(name).unwrap();
+        assert_eq!(robot.path, *path, "{context}: {name}");
+        assert!(robot.told >= *granted, "{context}: {name} was told {granted}, known is {}", robot.told);
+        assert!(robot.granted <= *granted, "{context}: {name} gets more than it had");
+        let same = |(a, b): (&Kept, &Kept)| {
+            // What is over for one of both times was passed: nobody has the right any more.
+            let over = [a.pass, b.pass].contains(&pcr_serve::entry::Side::Over);
+            a.with == b.with && a.lengths == b.lengths && (a.pass == b.pass || over)
+        };
+        let (own, count) = (&now[name].2, orders.len());
+        assert!(own.len() == count && own.iter().zip(orders).all(same), "{context}: {name}: {own:?} {orders:?}");
+    }
+}
+
+#[test]
+fn a_journal_that_ends_at_any_byte_keeps_all_that_was_told() {
+    let mut world = World::new(3, 3, GOOD);
+    let mut told = vec![(0, HashMap::new())];
+    while world.now < 12.0 {
+        world.step();
+        let written = world.disc.bytes.lock().unwrap().len();
+        // What is told without a write is in the journal already.
+        match told.last_mut() {
+            Some((last, rights_then)) if *last == written => *rights_then = rights(&world.supervisor),
+            _ => told.push((written, rights(&world.supervisor))),
+        }
+    }
+    let bytes = world.disc.bytes.lock().unwrap().clone();
+    assert!(told.len() > 10, "{} writes", told.len());
+    let (mut last, mut restarts) = (usize::MAX, 0);
+    for end in 16..=bytes.len() {
+        let (entries, read) = journal::read(&bytes[..end]).unwrap();
+        let Some((_, before)) = told.iter().rev().find(|(written, _)| *written <= end) else { continue };
+        let whole =
+            told.iter().rev().find(|(written, _)| *written <= end).map_or(16, |(written, _)| (*written).max(16));
+        assert_eq!(read, whole, "what was cut off is left out, all else is there");
+        if read != last {
+            let after = Supervisor::restored(Settings::default(), entries, Box::new(Nowhere)).unwrap();
+            keeps(&after, before, &format!("byte {end}"));
+            (last, restarts) = (read, restarts + 1);
+        }
+    }
+    assert_eq!(restarts, told.len());
+}
+
+#[test]
+fn a_journal_that_is_damaged_is_not_gone_on_with() {
+    let mut world = World::new(3, 2, GOOD);
+    while world.now < 4.0 {
+        world.step();
+    }
+    let bytes = world.disc.bytes.lock().unwrap().clone();
+    let (entries, end) = journal::read(&bytes).unwrap();
+    assert_eq!(end, bytes.len());
+    // Any byte that is another one is noticed, but in the last frame: that counts as cut off.
+    let last = bytes.len() - 40;
+    for place in (0..last).step_by(37) {
+        let mut other = bytes.clone();
+        other[place] ^= 0x10;
+        match journal::read(&other) {
+            Err(why) => assert!(!why.is_empty()),
+            Ok((read, end)) => assert!(end < bytes.len() && read.len() < entries.len(), "byte {place}"),
+        }
+    }
+    let mut newer = bytes.clone();
+    newer[12] = 2;
+    assert_eq!(journal::read(&newer).unwrap_err(), "it is that of another version");
+    assert_eq!(journal::read(b"{}").unwrap_err(), "it is no journal");
+}
+
+#[test]
+fn fleets_whose_supervisor_is_killed_in_the_middle_of_writes() {
+    let (mut kills, mut missions) = (0, 0);
+    for seed in 0..4 {
+        let mut world = World::new(seed, 3 + seed as usize, Trouble { lost: 0.1, late: 2.0, stops: 0.002 });
+        while world.now < 60.0 {
+            if world.disc.fails_at.load(Relaxed) == usize::MAX {
+                let further = world.dice().range(0.0, 6000.0) as usize;
+                let written = world.disc.bytes.lock().unwrap().len();
+                world.disc.fails_at.store(written + further, Relaxed);
+            }
+            world.step();
+        }
+        world.certify();
+        kills += world.kills;
+        missions += world.vehicles.iter().map(|vehicle| vehicle.missions).sum::<u32>();
+    }
+    println!("{kills} kills, {missions} missions");
+    assert!(kills > 40 && missions > 40, "{kills} kills, {missions} missions");
+}
+
+#[test]
+fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
+    let folder = folder("second");
+    let (mut journal, found) = Journal::open(&folder).unwrap();
+    assert!(found.entries.is_empty() && found.torn == 0);
+    assert_eq!(Journal::open(&folder).unwrap_err().kind(), ErrorKind::WouldBlock);
+    let mut world = World::new(1, 2, GOOD);
+    while world.now < 3.0 {
+        world.step();
+    }
+    pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot()).unwrap();
+    drop(journal);
+    let path = folder.join("journal");
+    std::fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(&[7, 0, 0]).unwrap();
+    let (mut journal, found) = Journal::open(&folder).unwrap();
+    assert!(found.torn == 3 && !found.entries.is_empty());
+    // Begun anew it holds the same.
+    let before = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
+    pcr_serve::entry::Keep::restart(&mut journal, &before.snapshot()).unwrap();
+    pcr_serve::entry::Keep::keep(&mut journal, &before.snapshot()).unwrap();
+    drop(journal);
+    let (_journal, found) = Journal::open(&folder).unwrap();
+    let after = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
+    keeps(&after, &rights(&before), "begun anew");
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
+/// The child of the test below: a fleet whose journal is a file, and that tells on standard output what it tells.
+#[test]
+#[ignore = "started by the test that kills it"]
+fn child() {
+    let folder = PathBuf::from(std::env::var_os("PCR_SERVE_FOLDER").expect("a folder"));
+    let (journal, _) = Journal::open(&folder).unwrap();
+    let mut world = World::new(11, 4, GOOD);
+    world.persist(Box::new(journal));
+    let mut out = std::io::stdout();
+    while world.now < 3000.0 * STEP {
+        for event in world.step() {
+            writeln!(out, "\ntold {}", serde_json::to_string(&event).unwrap()).unwrap();
+            out.flush().unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_process_that_is_killed_has_told_nothing_that_is_not_in_its_journal() {
+    let mut most = 0;
+    for round in 0..6_u64 {
+        let folder = folder(&format!("killed-{round}"));
+        let own = std::env::current_exe().unwrap();
+        let mut child = Command::new(own)
+            .args(["--ignored", "--exact", "kills::child", "--nocapture"])
+            .env("PCR_SERVE_FOLDER", &folder)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let (mut told, mut count) = (HashMap::new(), 0);
+        let mut take = |line: String| {
+            let Some(event) = line.strip_prefix("told ").and_then(|text| serde_json::from_str(text).ok()) else {
+                return;
+            };
+            match event {
+                Event::Hold { robot, path, hold, .. } => told.insert(robot, (path, hold)),
+                Event::Admitted { robot, path, hold, .. } => told.insert(robot, (path, hold)),
+                _ => None,
+            };
+        };
+        while count < 40 + 60 * round {
+            let Some(Ok(line)) = lines.next() else { break };
+            count += 1;
+            take(line);
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // What was on its way is told, too.
+        lines.map_while(Result::ok).for_each(&mut take);
+        let (_journal, found) = Journal::open(&folder).unwrap();
+        let after = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
+        for (name, (path, hold)) in &told {
+            let robot = after.robot(name).unwrap();
+            assert!(robot.path >= *path, "round {round}: a path of {name} is lost");
+            assert!(robot.path > *path || robot.told >= *hold, "round {round}: {name} was told {hold}");
+        }
+        most = most.max(told.len());
+        let _ = std::fs::remove_dir_all(&folder);
+    }
+    assert!(most > 1, "{most} robots were told something");
+}

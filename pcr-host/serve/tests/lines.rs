@@ -1,0 +1,215 @@
+//! The line protocol: the example of the document, the schema, and bytes that are no requests.
+
+use crate::world::Dice;
+use pcr_serve::entry::Nowhere;
+use pcr_serve::lines::{LONGEST, handle, news};
+use pcr_serve::log::{Level, Log};
+use pcr_serve::server::{Input, queue, serve};
+use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::{clients, http};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::thread;
+
+fn supervisor() -> Supervisor {
+    Supervisor::new(Settings::default(), Box::new(Nowhere))
+}
+
+fn document(name: &str) -> String {
+    std::fs::read_to_string(format!("{}/../../docs/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+fn fits(schema: &Value, line: &Value) {
+    let validator = jsonschema::draft202012::new(schema).unwrap();
+    let faults: Vec<String> = validator.iter_errors(line).map(|error| error.to_string()).collect();
+    assert!(faults.is_empty(), "{line}: {faults:?}");
+}
+
+/// Equal but for the digits that a document leaves out.
+fn near(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => (a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-4,
+        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| near(a, b)),
+        (Value::Object(a), Value::Object(b)) => {
+            a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| near(a, b)))
+        }
+        (a, b) => a == b,
+    }
+}
+
+#[test]
+fn the_example_of_the_document() {
+    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let text = document("serve.md");
+    let mut supervisor = supervisor();
+    let (mut said, mut now, mut requests): (Vec<Value>, f64, u32) = (Vec::new(), 0.0, 0);
+    for line in text.lines() {
+        if let Some(request) = line.strip_prefix("> ") {
+            assert!(said.is_empty(), "the document leaves out {said:?}");
+            let reply = handle(&mut supervisor, request.as_bytes(), now);
+            said.push(reply.answer);
+            let events = supervisor.settle(now).unwrap();
+            said.extend(events.iter().map(news));
+            if requests != 10 {
+                fits(&schema, &serde_json::from_str(request).unwrap());
+            }
+            (now, requests) = (now + 0.1, requests + 1);
+        } else if let Some(answer) = line.strip_prefix("< ") {
+            let told: Value = serde_json::from_str(answer).unwrap();
+            let found = said.remove(0);
+            assert!(near(&told, &found), "the document: {told}\nthe supervisor: {found}");
+            fits(&schema, &found);
+        }
+    }
+    assert!(said.is_empty() && requests == 11, "{requests} {said:?}");
+}
+
+const ABILITIES: &str = r#"{"radius": 0.25, "speed": 1, "acceleration": 0.5}"#;
+
+/// What clients can say that is right, or nearly.
+fn requests() -> Vec<String> {
+    let add = |name: &str, x: f64| {
+        format!(
+            r#"{{"id": 1, "verb": "add", "robot": "{name}", "start": {{"x": {x}, "y": 0, "heading": 0}}, "abilities": {ABILITIES}}}"#
+        )
+    };
+    let mut all = vec![
+        add("a", -3.0),
+        add("b", 3.0),
+        add("a", 3.0),
+        add("", 0.0),
+        r#"{"verb": "layout", "name": "hall", "lanes": [{"start": {"x": 0, "y": 0, "heading": 0}, "path": [{"kind": "arc", "radius": 1, "sweep": 2}, {"kind": "turn", "sweep": 1}]}]}"#.into(),
+        r#"{"id": "x", "verb": "mission", "robot": "a", "mission": "1", "path": [{"kind": "line", "length": 6.5}]}"#.into(),
+        r#"{"id": "x", "verb": "mission", "robot": "c", "mission": "1", "path": []}"#.into(),
+        r#"{"verb": "mission", "robot": "a", "mission": "2", "start": {"x": 9, "y": 0, "heading": 0}, "path": []}"#.into(),
+        r#"{"verb": "mission", "robot": "a", "mission": "3", "path": [{"kind": "arc", "radius": -1, "sweep": 1e9}]}"#.into(),
+        r#"{"verb": "replace", "robot": "a", "mission": "4", "path": []}"#.into(),
+        r#"{"verb": "position", "robot": "a", "path": 1, "at": [0, 0]}"#.into(),
+        r#"{"verb": "position", "robot": "a", "path": 9, "at": [0, 0]}"#.into(),
+        r#"{"verb": "position", "robot": "a", "path": 1, "at": [1, 0]}"#.into(),
+        r#"{"verb": "position", "robot": "a", "path": 1, "at": [0, 1e300], "age": -1}"#.into(),
+        r#"{"verb": "position", "robot": "a", "path": 1, "at": [4, 4.5]}"#.into(),
+        r#"{"verb": "off", "robot": "b", "x": 1, "y": 1}"#.into(),
+        r#"{"verb": "remove", "robot": "a"}"#.into(),
+        r#"{"verb": "remove", "robot": "a"}"#.into(),
+        r#"{"pcr": 2, "verb": "watch"}"#.into(),
+        r#"{"id": [1], "verb": "watch"}"#.into(),
+        r#"{"id": 1, "verb": "query", "what": "safe", "robot": "b", "length": [0, 0], "until": 10}"#.into(),
+        "[]".into(),
+        "\u{0}".into(),
+    ];
+    for what in ["robots", "holds", "counts", "regions", "conflicts"] {
+        let robot = if ["regions", "conflicts"].contains(&what) { r#", "robot": "b""# } else { "" };
+        all.push(format!(r#"{{"id": 1, "verb": "query", "what": "{what}"{robot}}}"#));
+    }
+    all
+}
+
+#[test]
+fn every_answer_fits_the_schema_and_nothing_panics() {
+    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let validator = jsonschema::draft202012::new(&schema).unwrap();
+    let (mut dice, mut kinds) = (Dice(7), std::collections::BTreeSet::new());
+    let all = requests();
+    let mut supervisor = supervisor();
+    for round in 0..4000 {
+        let mut line = all[if round < all.len() { round } else { dice.below(all.len()) }].clone().into_bytes();
+        // Damage of all kinds.
+        if round >= 2 * all.len() {
+            for _ in 0..dice.below(4) {
+                let place = dice.below(line.len());
+                match dice.below(3) {
+                    0 => line[place] = (dice.face() * 256.0) as u8,
+                    1 => drop(line.remove(place)),
+                    _ => line.insert(place, b"0\"{}[],:e-"[dice.below(10)]),
+                }
+                if line.is_empty() {
+                    line.push(b'{');
+                }
+            }
+        }
+        let now = round as f64 * 0.1;
+        let reply = handle(&mut supervisor, &line, now);
+        let events = supervisor.settle(now).unwrap();
+        for line in [reply.answer].into_iter().chain(events.iter().map(news)) {
+            assert!(validator.is_valid(&line), "{line}");
+            kinds.insert(line["event"].as_str().or(line["error"]["code"].as_str()).unwrap_or("ok").to_owned());
+        }
+        if round % 500 == 499 {
+            supervisor = self::supervisor();
+        }
+    }
+    let seen: Vec<&str> = kinds.iter().map(String::as_str).collect();
+    for kind in [
+        "admitted",
+        "alarm",
+        "apart",
+        "hold",
+        "invalid",
+        "malformed",
+        "no_such_path",
+        "no_such_robot",
+        "ok",
+        "robot_exists",
+        "silent",
+    ] {
+        assert!(seen.contains(&kind), "{kind} is not among {seen:?}");
+    }
+}
+
+#[test]
+fn clients_over_tcp_and_the_page() {
+    let mut supervisor = supervisor();
+    let (handle, inputs) = queue();
+    let (lines, page) = (TcpListener::bind("127.0.0.1:0").unwrap(), TcpListener::bind("127.0.0.1:0").unwrap());
+    let (at, shown) = (lines.local_addr().unwrap(), page.local_addr().unwrap());
+    let site = http::Site { page: "<p>here</p>".into(), draw: None, hosts: vec![shown.to_string()] };
+    let own = handle.clone();
+    thread::spawn(move || clients::listen(&own, &lines));
+    let own = handle.clone();
+    thread::spawn(move || http::listen(&own, &page, site));
+    let server = thread::spawn(move || serve(&mut supervisor, &inputs, Log::new(Level::Error)));
+
+    let (mut out, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
+    let mut answers = BufReader::new(out.try_clone().unwrap()).lines();
+    let mut others = BufReader::new(other.try_clone().unwrap()).lines();
+    let next = |lines: &mut dyn Iterator<Item = std::io::Result<String>>| -> Value {
+        serde_json::from_str(&lines.next().unwrap().unwrap()).unwrap()
+    };
+    other.write_all(b"{\"verb\": \"watch\"}\n").unwrap();
+    assert_eq!(next(&mut others)["ok"], json!({}));
+    for request in &requests()[..2] {
+        out.write_all(format!("{request}\n").as_bytes()).unwrap();
+        assert_eq!(next(&mut answers)["ok"], json!({ "path": 1 }));
+    }
+    // A line that is too long, and one without an end.
+    out.write_all(&vec![b'x'; LONGEST + 2]).unwrap();
+    out.write_all(b"\n{\"id\": 5, \"verb\": \"mission\", \"robot\": \"a\", \"mission\": \"m\", \"path\": [{\"kind\": \"line\", \"length\": 1}]}\n").unwrap();
+    assert_eq!(next(&mut answers)["error"]["code"], "malformed");
+    assert_eq!(next(&mut answers)["id"], 5);
+    assert_eq!(next(&mut others)["event"], "admitted");
+    assert_eq!(next(&mut others)["event"], "hold");
+
+    let get = |request: &str| {
+        let mut stream = TcpStream::connect(shown).unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut text = String::new();
+        stream.read_to_string(&mut text).unwrap();
+        text
+    };
+    let ask = |path: &str| get(&format!("GET {path} HTTP/1.1\r\nHost: {shown}\r\n\r\n"));
+    assert!(ask("/").ends_with("<p>here</p>"));
+    let metrics = ask("/metrics");
+    assert!(metrics.contains("\npcr_robots 2\n") && metrics.contains("pcr_latency_seconds_count 4\n"), "{metrics}");
+    let state = ask("/state");
+    let state: Value = serde_json::from_str(state.split("\r\n\r\n").nth(1).unwrap()).unwrap();
+    assert_eq!(state["robots"].as_array().unwrap().len(), 2);
+    assert!(ask("/etc/passwd").starts_with("HTTP/1.1 404"));
+    assert!(get(&format!("POST / HTTP/1.1\r\nHost: {shown}\r\n\r\n")).starts_with("HTTP/1.1 405"));
+    // A page of somebody else whose name leads here.
+    assert!(get("GET /state HTTP/1.1\r\nHost: example.org\r\n\r\n").starts_with("HTTP/1.1 403"));
+    assert!(get("GET /state HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 403"));
+    handle.send(Input::Stop);
+    server.join().unwrap().unwrap();
+}

@@ -1,0 +1,66 @@
+//! `pcr serve`, if the tool is built with it.
+
+#[cfg(feature = "serve")]
+mod run;
+
+use super::Stop;
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const STATUSES: &str = "\
+Exit status:
+  0  standard input has ended, and nobody else can ask
+  2  wrong arguments, or a journal that is damaged or open elsewhere
+  3  the journal could not be written: no right was given after that";
+
+const EXAMPLES: &str = "\
+Examples:
+  pcr serve --journal state                    lines of JSON on standard input and output (docs/serve.md)
+  pcr serve --journal state --listen 7070      the same for clients over TCP on this machine
+  pcr serve --journal state --page 8080        and a page on http://localhost:8080 to watch it";
+
+/// Supervise a fleet: decide how far each robot may go, by exact passing orders
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[cfg_attr(not(feature = "serve"), allow(dead_code))]
+pub(super) struct Arguments {
+    /// Directory of the journal; it outlives the program
+    #[arg(long, value_name = "DIR")]
+    journal: Option<PathBuf>,
+    /// Clients over TCP: a port of this machine, or ADDRESS:PORT
+    #[arg(long, value_name = "PORT")]
+    listen: Option<String>,
+    /// The live page and metrics: a port of this machine, or ADDRESS:PORT
+    #[arg(long, value_name = "PORT")]
+    page: Option<String>,
+    /// Go on when standard input has ended
+    #[arg(long)]
+    stay: bool,
+    /// How far a robot's place may be behind where it has to stop, when it stands, in m
+    #[arg(long, value_name = "M", default_value_t = 0.1)]
+    width: f64,
+    /// Robots are told how far they may go so long before they would have to brake, in s
+    #[arg(long, value_name = "S", default_value_t = 2.0)]
+    lookahead: f64,
+    /// A robot is silent when it was not heard for so long, in s
+    #[arg(long, value_name = "S", default_value_t = 5.0)]
+    silence: f64,
+    /// Logs on standard error: debug, info, warn or error
+    #[arg(long, value_name = "LEVEL", default_value = "info")]
+    log: String,
+}
+
+#[cfg(not(feature = "serve"))]
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        Err(Stop::arguments("this pcr was built without `serve`: cargo install --path pcr-host --features serve"))
+    }
+}
+
+#[cfg(feature = "serve")]
+impl Arguments {
+    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        run::run(self)
+    }
+}

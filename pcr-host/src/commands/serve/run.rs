@@ -1,0 +1,121 @@
+//! The supervisor and what is around it: journal, clients, page.
+
+use super::super::printed::quiet;
+use super::super::{NOT_WRITTEN, Stop};
+use super::Arguments;
+use pcr_drawing::live;
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
+use pcr_serve::course::Shape;
+use pcr_serve::entry::{Keep, Nowhere};
+use pcr_serve::http::{Drawn, Site};
+use pcr_serve::journal::Journal;
+use pcr_serve::log::{Level, Log};
+use pcr_serve::server::{Input, queue, serve};
+use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::{clients, http};
+use std::net::TcpListener;
+use std::process::ExitCode;
+use std::thread;
+
+pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
+    let within = |name: &str, value: f64, lo: f64, hi: f64| match (lo..=hi).contains(&value) {
+        true => Ok(value),
+        false => Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}"))),
+    };
+    let settings = Settings {
+        width: within("--width", arguments.width, 0.001, 10.0)?,
+        lookahead: within("--lookahead", arguments.lookahead, 0.1, 600.0)?,
+        silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
+        ..Settings::default()
+    };
+    let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;
+    let log = Log::new(if quiet() { Level::Error } else { level });
+    let mut supervisor = open(&arguments, settings, log)?;
+    let (handle, inputs) = queue();
+    if let Some(listener) = arguments.listen.as_deref().map(|place| bound("--listen", place, log)).transpose()? {
+        let handle = handle.clone();
+        thread::spawn(move || clients::listen(&handle, &listener));
+    }
+    if let Some(listener) = arguments.page.as_deref().map(|place| bound("--page", place, log)).transpose()? {
+        let site = site(&listener);
+        let handle = handle.clone();
+        thread::spawn(move || http::listen(&handle, &listener, site));
+    }
+    let stays = arguments.stay;
+    let own = handle.clone();
+    thread::spawn(move || {
+        clients::serve(&own, std::io::stdin(), std::io::stdout());
+        if !stays {
+            own.send(Input::Stop);
+        }
+    });
+    drop(handle);
+    serve(&mut supervisor, &inputs, log).map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn open(arguments: &Arguments, settings: Settings, log: Log) -> Result<Supervisor, Stop> {
+    let Some(folder) = &arguments.journal else {
+        log.write(
+            Level::Warn,
+            "no --journal: nothing outlives this program, and robots must stand when it starts",
+            &[],
+        );
+        let keeper: Box<dyn Keep> = Box::new(Nowhere);
+        return Ok(Supervisor::new(settings, keeper));
+    };
+    let (journal, found) = Journal::open(folder).map_err(|error| Stop::wrong(folder, error))?;
+    if found.torn > 0 {
+        log.write(
+            Level::Warn,
+            "the end of the journal was cut off, and is left out: nobody was told of it",
+            &[("bytes", &found.torn)],
+        );
+    }
+    let supervisor = Supervisor::restored(settings, found.entries, Box::new(journal));
+    let supervisor = supervisor.map_err(|damaged| Stop::wrong(folder, damaged))?;
+    log.write(Level::Info, "ready", &[("robots", &supervisor.robots().len())]);
+    Ok(supervisor)
+}
+
+/// A place to listen at: of this machine only, if no address is told.
+fn bound(option: &str, place: &str, log: Log) -> Result<TcpListener, Stop> {
+    let wrong = |error: &dyn std::fmt::Display| Stop::arguments(format!("{option}: {place}: {error}"));
+    let listener = match place.parse::<u16>() {
+        Ok(port) => TcpListener::bind(("127.0.0.1", port)),
+        Err(_) => TcpListener::bind(place),
+    };
+    let listener = listener.map_err(|error| wrong(&error))?;
+    let address = listener.local_addr().map_err(|error| wrong(&error))?;
+    if !address.ip().is_loopback() {
+        log.write(Level::Warn, "others than this machine can reach it: there is no password", &[("address", &address)]);
+    }
+    log.write(Level::Info, "listening", &[("for", &option), ("address", &address)]);
+    Ok(listener)
+}
+
+fn site(listener: &TcpListener) -> Site {
+    let address = listener.local_addr().ok();
+    let port = address.map_or(0, |address| address.port());
+    let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "[::1]"].map(|host| format!("{host}:{port}")).into();
+    hosts.extend(address.map(|address| address.to_string()));
+    Site { page: live::page(), draw: Some(draw), hosts }
+}
+
+/// The collision map of a robot, if all set off now.
+fn draw(fleet: &[Drawn], ego: usize) -> Result<String, String> {
+    let agents = fleet.iter().zip(1..).map(|(robot, id)| {
+        let path = robot.course.shapes().iter().map(|shape| match *shape {
+            Shape::Line { length } => PathSegment::Line { length },
+            Shape::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
+            Shape::Turn { sweep } => PathSegment::Arc { radius: TURN, sweep },
+        });
+        let start = robot.course.start();
+        let motion = MotionSpec::RestToRest { v_max: robot.abilities.speed, a_max: robot.abilities.acceleration };
+        let radius = robot.abilities.radius;
+        let agent = Agent::disc(id, radius, [start.x, start.y, start.heading], path.collect(), motion);
+        Agent { label: robot.name.clone(), ..agent }
+    });
+    let scenario = Scenario::new("fleet", agents.collect());
+    live::map(&scenario, ego).map_err(|error| error.to_string())
+}
