@@ -86,12 +86,12 @@ impl Exact {
             return Twofold::ZERO;
         }
         let ends = [(self, other.start), (self, other.end), (other, self.start), (other, self.end)];
-        let all = ends.map(|(edge, point)| edge.from_point(point));
+        let all = ends.map(|(edge, point)| edge.apart_from(point));
         all.into_iter().reduce(smaller).unwrap_or(Twofold::ZERO)
     }
 
     /// The square of the distance of a point.
-    fn from_point(&self, point: [Twofold; 2]) -> Twofold {
+    fn apart_from(&self, point: [Twofold; 2]) -> Twofold {
         let (way, to) = (less(self.end, self.start), less(point, self.start));
         let square = dot(way, way);
         let one = Twofold::from(1.0);
@@ -101,7 +101,7 @@ impl Exact {
     }
 
     /// The square of the distance of a point from where the vehicle is at a time.
-    pub fn from_point_at(&self, point: [f64; 2], time: f64) -> Twofold {
+    pub fn apart_from_at(&self, point: [f64; 2], time: f64) -> Twofold {
         let time = Twofold::from(time).clamp(Twofold::ZERO, self.duration);
         let apart = less(less(point.map(Twofold::from), self.start), by(self.velocity, time));
         dot(apart, apart)
@@ -118,7 +118,7 @@ impl Exact {
                 apart => Err(format!("a contact is missing: {} m apart", apart.sqrt().to_f64())),
             };
         };
-        if !(lo <= hi) {
+        if lo.is_nan() || hi.is_nan() || lo > hi {
             return Err(format!("no interval: {lo} {hi}"));
         }
         // Rounding may lead to where nobody is.

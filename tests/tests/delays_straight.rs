@@ -27,7 +27,7 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
                     times += 1;
                     let name = delays.nodes()[node].to_string();
                     let at = roadmap.nodes.iter().find(|(id, _)| *id == name).unwrap().1;
-                    let apart = interval.map(|time| exact[way].from_point_at(at, time).sqrt().to_f64());
+                    let apart = interval.map(|time| exact[way].apart_from_at(at, time).sqrt().to_f64());
                     let ends = [0.0, exact[way].duration()];
                     for (apart, (time, end)) in apart.into_iter().zip(interval.into_iter().zip(ends)) {
                         assert!((apart - reach).abs() < 1e-12 || (time - end).abs() < 1e-12 && apart < reach);

@@ -34,7 +34,7 @@ Examples:
   pcr certify --table table.json               a table as it is held, by whatever has made it, from its numbers alone
   pcr certify --table console.txt              one that a microcontroller has printed";
 
-/// Prove that no contact is missing from a table of regions or locks, or show one that is
+/// Prove that no contact is missing from a table of regions or locks, or show one
 ///
 /// The checker shares no geometry with what has computed the table, and covers, where others sample. What is proved: every contact of the
 /// discs lies in a piece of a region, a piece shows it, and nothing is told that is farther than the stated bound from a contact.

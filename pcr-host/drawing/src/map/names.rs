@@ -63,7 +63,7 @@ pub(in super::super) fn places(
     for contour in outlines.iter().flatten() {
         labels.avoid(WEIGHTS[1], spaced(contour));
     }
-    let boxes = Grid::new(outlines.iter().map(around).collect());
+    let boxes = Grid::new(outlines.iter().map(|outline| around(outline)).collect());
     // Small regions have the smallest choice.
     let mut order: Vec<(usize, &Shape)> = shapes.iter().enumerate().collect();
     let area = |shape: &Shape| shape.time.length() * shape.length.length();
@@ -125,7 +125,7 @@ fn candidates(shape: &Shape, [width, height]: [f64; 2], frame: &Frame) -> Vec<[f
 }
 
 /// The box around an outline: left, top, right and bottom \[px\].
-fn around(outline: &Vec<Vec<[f64; 2]>>) -> [f64; 4] {
+fn around(outline: &[Vec<[f64; 2]>]) -> [f64; 4] {
     let hull = |b: [f64; 4], [x, y]: &[f64; 2]| [b[0].min(*x), b[1].min(*y), b[2].max(*x), b[3].max(*y)];
     let nowhere = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     let found = outline.iter().flatten().fold(nowhere, hull);
