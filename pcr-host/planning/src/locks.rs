@@ -19,7 +19,7 @@ mod table;
 use crate::memory;
 pub use delays::{Delays, Driving, Unsafe, Way};
 pub use index::{Index, IndexError, Partner, write_index};
-pub use pass::Told;
+pub use pass::{Found, Told};
 use pcr_formats::footprint::Disc;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, Scenario};
@@ -27,7 +27,7 @@ use rides::Ride;
 pub use rides::{Rides, corridor};
 use serde::Serialize;
 pub use straight::Straight;
-pub use sweep::{Found, Sweep};
+pub use sweep::Sweep;
 pub use table::{Change, Table};
 
 /// The locks of a layout for a vehicle.

@@ -5,6 +5,7 @@
 //! door       bytes to values: sizes, counts, numbers                Limits, Refusal
 //! version    which edition of the standard                          Version
 //! topics     names of topics                                        Interface, Key, Kind
+//! header     what every message begins with                         Header
 //! order      orders                                                 Order
 //! state      states, positions                                      State
 //! messages   the others                                             Connection, InstantActions
@@ -18,6 +19,7 @@
 
 pub mod bridge;
 pub mod door;
+pub mod header;
 pub mod held;
 pub mod lane;
 pub mod messages;

@@ -1,16 +1,25 @@
 //! Which of all that vehicles sweep on a layout can touch, in one pass over those that come near one another: a grid finds them, and rows
 //! are computed on all cores.
 
-use super::sweep::Sweep;
+use super::sweep::{STRETCH, Sweep, Track};
 use super::{Extents, joined};
-use crate::memory;
+use crate::memory::{self, Held};
 use crate::rows::Grid;
 use pcr_core::{Full, Interval, Motion, Piece, overlaps};
 use pcr_formats::import::{Id, ImportError};
 use rayon::prelude::*;
 
-/// Pairs of discs that are looked at before what was found is handed on.
-pub(super) const STRETCH: usize = 1 << 16;
+/// Locks that are held to be put in order: more are told in the order of the tracks.
+const HELD: usize = 10_000_000;
+
+/// Two edges or nodes, by their places in [`Sweep::ids`], the lower first, and lengths of both at which vehicles may touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Edges come before nodes.
+    pub places: [usize; 2],
+    /// From the start of each \[m\].
+    pub lengths: Extents,
+}
 
 /// Pieces of two discs, which have one a pair of segments.
 pub(super) const PIECES: usize = 16;
@@ -95,6 +104,62 @@ pub(super) fn in_stretches<T: Send, E: From<ImportError>>(
 }
 
 impl Sweep {
+    /// What `make` makes of all that was found, on all cores, to `take`: pairs of edges, then edges with nodes, then pairs
+    /// of nodes, in the order of their names and lengths; or, where that is more than ten million, in that of the tracks.
+    ///
+    /// # Errors
+    /// What `take` refuses, and [`ImportError`] for a pair that no memory holds.
+    pub fn each<T: Send, E: From<ImportError>>(
+        &self,
+        told: Told<'_>,
+        make: impl Fn(&[Found]) -> T + Sync,
+        mut take: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let pass = Pass::new(self);
+        let most = |track: &Track| pass.counts[track.discs.clone()].iter().map(|&count| count as usize).sum::<usize>();
+        let expected: usize = self.tracks.iter().map(|track| most(track) * track.members.len().pow(2) / 2).sum();
+        let find = |track: usize| Ok(self.found(track, &pass.row(track, false)?));
+        if expected > HELD {
+            return pass.each(told, |track| find(track).map(|found| make(&found)), take);
+        }
+        let (mut all, mut held) = (Vec::new(), Held::default());
+        pass.each(told, find, |found| {
+            held.extend(&mut all, found, 0, "locks").map_err(|large| E::from(ImportError::new(large.to_string())))
+        })?;
+        all.par_sort_unstable_by(|a: &Found, b: &Found| {
+            let nodes = |found: &Found| found.places.map(|place| !self.is_edge(place));
+            let lengths = |k: usize| a.lengths[k][0].total_cmp(&b.lengths[k][0]);
+            (nodes(a), a.places).cmp(&(nodes(b), b.places)).then(lengths(0)).then(lengths(1))
+        });
+        for stretch in all.chunks(STRETCH) {
+            let parts = stretch.par_chunks(STRETCH / 16).map(&make);
+            parts.collect::<Vec<_>>().into_iter().try_for_each(&mut take)?;
+        }
+        Ok(())
+    }
+
+    /// What a row of tracks means for their members.
+    fn found(&self, track: usize, row: &[(usize, Extents)]) -> Vec<Found> {
+        let own = &self.tracks[track];
+        let mut all = Vec::new();
+        for &(other, [lengths, other_lengths]) in row {
+            let their = &self.tracks[other];
+            for (k, &(a, turned)) in own.members.iter().enumerate() {
+                // Of one track each pair of members once.
+                for &(b, other_turned) in their.members.iter().skip(if other == track { k + 1 } else { 0 }) {
+                    let (own, their) = (own.on_member(lengths, turned), their.on_member(other_lengths, other_turned));
+                    all.push(if a < b {
+                        Found { places: [a, b], lengths: [own, their] }
+                    } else {
+                        Found { places: [b, a], lengths: [their, own] }
+                    });
+                }
+            }
+        }
+        all.sort_by_key(|found| found.places);
+        all
+    }
+
     /// The extents of pairs of discs, by the other track.
     pub(super) fn grouped<'m>(
         &self,

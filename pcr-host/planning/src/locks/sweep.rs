@@ -3,12 +3,9 @@
 //! Two edges that are one line in both directions are a *track*: what is blocked on one is blocked on the other, and it is
 //! computed once.
 
-use super::Extents;
-use super::pass::{Pass, STRETCH, Told};
 use super::rides::{Lengths, Ride, Rides, reversed};
 use crate::bodies::{Bodies, Disced};
 use crate::fleet::Fleet;
-use crate::memory::Held;
 use crate::rows::area;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, PathSegment, Scenario, label};
@@ -16,17 +13,8 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Locks that are held to be put in order: more are told in the order of the tracks.
-const HELD: usize = 10_000_000;
-
-/// Two edges or nodes, by their places in [`Sweep::ids`], the lower first, and lengths of both at which vehicles may touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
-    /// Edges come before nodes.
-    pub places: [usize; 2],
-    /// From the start of each \[m\].
-    pub lengths: Extents,
-}
+/// Tracks, pairs of discs or locks that are made on all cores before they are handed on.
+pub(super) const STRETCH: usize = 1 << 16;
 
 /// What vehicles sweep on a layout.
 pub struct Sweep {
@@ -150,62 +138,6 @@ impl Sweep {
     /// Whether a place in [`Sweep::ids`] is that of an edge.
     pub fn is_edge(&self, place: usize) -> bool {
         place < self.edges
-    }
-
-    /// What `make` makes of all that was found, on all cores, to `take`: pairs of edges, then edges with nodes, then pairs
-    /// of nodes, in the order of their names and lengths; or, where that is more than ten million, in that of the tracks.
-    ///
-    /// # Errors
-    /// What `take` refuses, and [`ImportError`] for a pair that no memory holds.
-    pub fn each<T: Send, E: From<ImportError>>(
-        &self,
-        told: Told<'_>,
-        make: impl Fn(&[Found]) -> T + Sync,
-        mut take: impl FnMut(T) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let pass = Pass::new(self);
-        let most = |track: &Track| pass.counts[track.discs.clone()].iter().map(|&count| count as usize).sum::<usize>();
-        let expected: usize = self.tracks.iter().map(|track| most(track) * track.members.len().pow(2) / 2).sum();
-        let find = |track: usize| Ok(self.found(track, &pass.row(track, false)?));
-        if expected > HELD {
-            return pass.each(told, |track| find(track).map(|found| make(&found)), take);
-        }
-        let (mut all, mut held) = (Vec::new(), Held::default());
-        pass.each(told, find, |found| {
-            held.extend(&mut all, found, 0, "locks").map_err(|large| E::from(ImportError::new(large.to_string())))
-        })?;
-        all.par_sort_unstable_by(|a: &Found, b: &Found| {
-            let nodes = |found: &Found| found.places.map(|place| !self.is_edge(place));
-            let lengths = |k: usize| a.lengths[k][0].total_cmp(&b.lengths[k][0]);
-            (nodes(a), a.places).cmp(&(nodes(b), b.places)).then(lengths(0)).then(lengths(1))
-        });
-        for stretch in all.chunks(STRETCH) {
-            let parts = stretch.par_chunks(STRETCH / 16).map(&make);
-            parts.collect::<Vec<_>>().into_iter().try_for_each(&mut take)?;
-        }
-        Ok(())
-    }
-
-    /// What a row of tracks means for their members.
-    fn found(&self, track: usize, row: &[(usize, Extents)]) -> Vec<Found> {
-        let own = &self.tracks[track];
-        let mut all = Vec::new();
-        for &(other, [lengths, other_lengths]) in row {
-            let their = &self.tracks[other];
-            for (k, &(a, turned)) in own.members.iter().enumerate() {
-                // Of one track each pair of members once.
-                for &(b, other_turned) in their.members.iter().skip(if other == track { k + 1 } else { 0 }) {
-                    let (own, their) = (own.on_member(lengths, turned), their.on_member(other_lengths, other_turned));
-                    all.push(if a < b {
-                        Found { places: [a, b], lengths: [own, their] }
-                    } else {
-                        Found { places: [b, a], lengths: [their, own] }
-                    });
-                }
-            }
-        }
-        all.sort_by_key(|found| found.places);
-        all
     }
 }
 

@@ -13,7 +13,7 @@ mod states;
 
 pub use job::{Job, Sent, Stop};
 
-use super::messages::Header;
+use super::header::Header;
 use super::order::Order;
 use super::stamp;
 use super::state::{State, StateError};

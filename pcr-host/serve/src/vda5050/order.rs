@@ -1,7 +1,8 @@
 //! Orders: nodes and edges to be travelled, of which the first ones are released.
 
 use super::door::Refusal;
-use super::messages::{Action, message};
+use super::header::message;
+use super::messages::Action;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 

@@ -1,6 +1,6 @@
 //! States of vehicles.
 
-use super::messages::message;
+use super::header::message;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 

@@ -4,7 +4,8 @@
 //! begin at once, the one whose message the broker takes first goes on.
 
 use super::bridge::{Bridge, Publish};
-use super::messages::{Connection, Header};
+use super::header::Header;
+use super::messages::Connection;
 use super::mqtt::{Broker, Link, News};
 use super::stamp;
 use super::topics::{Interface, Key, Kind};

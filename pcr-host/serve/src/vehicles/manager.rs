@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use crate::vda5050::door::{self, Limits};
-use crate::vda5050::messages::Header;
+use crate::vda5050::header::Header;
 use crate::vda5050::order::{Edge, Node, NodePosition, Order};
 use crate::vda5050::stamp;
 use crate::vda5050::state::State;

@@ -1,7 +1,8 @@
 //! What a vehicle says.
 
 use super::vehicle::{Task, Vehicle};
-use crate::vda5050::messages::{Connection, Header, Visualization};
+use crate::vda5050::header::Header;
+use crate::vda5050::messages::{Connection, Visualization};
 use crate::vda5050::stamp;
 use crate::vda5050::state::{EdgeState, NodeState, Pose, State, Velocity};
 use crate::vda5050::topics::Kind;

@@ -1,7 +1,8 @@
 //! What the manager is told of the vehicle: its state, in the manager's numbers.
 
 use super::super::door::{self, Limits, Refusal};
-use super::super::messages::{Connection, Factsheet, Header};
+use super::super::header::Header;
+use super::super::messages::{Connection, Factsheet};
 use super::super::order::{Edge, Node};
 use super::super::state::{EdgeState, NodeState, State};
 use super::super::topics::Kind;

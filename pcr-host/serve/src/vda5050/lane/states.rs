@@ -1,7 +1,8 @@
 //! What the vehicle says.
 
 use super::super::door::{self, Limits, Refusal};
-use super::super::messages::{Header, Visualization};
+use super::super::header::Header;
+use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
 use super::Lane;

@@ -1,0 +1,71 @@
+//! What every message begins with.
+
+use super::door::Refusal;
+use super::topics::Key;
+use super::version::Version;
+use serde::{Deserialize, Serialize};
+
+/// A message: its header, then its fields, then all else.
+macro_rules! message {
+    ($(#[$meta:meta])* $name:ident { $($(#[$field_meta:meta])* $field:ident : $type:ty,)* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, ::serde::Serialize, ::serde::Deserialize)]
+        #[serde(rename_all = "camelCase")]
+        pub struct $name {
+            /// What is in every message.
+            #[serde(flatten)]
+            pub header: $crate::vda5050::header::Header,
+            $($(#[$field_meta])* pub $field: $type,)*
+            /// All else that was in the message.
+            #[serde(flatten)]
+            pub rest: ::serde_json::Map<String, ::serde_json::Value>,
+        }
+    };
+}
+pub(super) use message;
+
+/// What every message begins with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Header {
+    /// Counts the messages of a topic.
+    pub header_id: u64,
+    /// When it was written, by the clock of the sender.
+    pub timestamp: String,
+    /// Edition of the standard.
+    pub version: String,
+    /// Who has made the vehicle.
+    pub manufacturer: String,
+    /// Which of theirs.
+    pub serial_number: String,
+}
+
+impl Header {
+    /// That of a message of ours.
+    pub fn new(key: &Key, version: Version, header_id: u64, timestamp: String) -> Self {
+        let Key { manufacturer, serial_number } = key.clone();
+        Self { header_id, timestamp, version: version.text().into(), manufacturer, serial_number }
+    }
+
+    /// The edition, if the message is about the vehicle of its topic and of the major version of its topic.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self, key: &Key, is_third: bool) -> Result<Version, Refusal> {
+        for (field, said, topic) in [
+            ("manufacturer", &self.manufacturer, &key.manufacturer),
+            ("serialNumber", &self.serial_number, &key.serial_number),
+        ] {
+            if said != topic {
+                return Err(Refusal::new(field, format!("{said:?}, but the topic is that of {topic:?}")));
+            }
+        }
+        match Version::of(&self.version) {
+            None => Err(Refusal::new("version", format!("{:?}; 2.0, 2.1 and 3.0 are read", self.version))),
+            Some(version) if (version == Version::V3_0) != is_third => {
+                Err(Refusal::new("version", format!("{version} in a topic of v{}", if is_third { 3 } else { 2 })))
+            }
+            Some(version) => Ok(version),
+        }
+    }
+}
