@@ -36,6 +36,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Arc, Mutex};
 
 /// Exit status: a plan that collides, or no plan.
 const CONFLICTS: u8 = 1;
@@ -133,7 +134,7 @@ fn survive_limits() {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGABRT, SIGXFSZ};
-        use std::sync::{Arc, atomic::AtomicBool};
+        use std::sync::atomic::AtomicBool;
         // Where a signal cannot be caught, it ends the program as it does others; no file is damaged by that.
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
         let always = Arc::new(AtomicBool::new(true));
@@ -141,12 +142,25 @@ fn survive_limits() {
     }
 }
 
-/// Work on all cores; where the system has no more threads, on this one.
+/// Work on all cores; where the system has not as many threads, on this one.
+///
+/// A pool whose threads do not all start cannot be made a second time, so they are tried before.
 fn spread() {
-    if rayon::ThreadPoolBuilder::new().build_global().is_err() {
-        // Without another thread nothing can be refused, and a pool that is there already will do.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-    }
+    let gate = Arc::new(Mutex::new(()));
+    let closed = gate.lock();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let start = || {
+        let gate = Arc::clone(&gate);
+        std::thread::Builder::new().spawn(move || drop(gate.lock())).ok()
+    };
+    let threads: Vec<_> = (0..cores).map_while(|_| start()).collect();
+    drop(closed);
+    let all = threads.len() == cores;
+    // Their memory is taken again.
+    threads.into_iter().for_each(|thread| drop(thread.join()));
+    let pool = rayon::ThreadPoolBuilder::new();
+    // A pool that is there already will do.
+    let _ = if all { pool.build_global() } else { pool.num_threads(1).use_current_thread().build_global() };
 }
 
 /// Why the tool stops.

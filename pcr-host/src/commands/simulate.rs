@@ -22,7 +22,7 @@ Exit status:
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr simulate --foraging                      four robots foraging, under each of the three controllers
+  pcr simulate --foraging                      four robots foraging, under each controller
   pcr simulate --foraging -o replay.html       and a page on which to watch them
   pcr simulate fleet.json --controller pcr     a scenario: each agent with a path is a robot
   pcr simulate fleet.json --seed 7             the same with other disturbances

@@ -117,8 +117,8 @@ fn every_real_file_is_read_or_refused_by_name() {
             read += usize::from(run.status <= 1);
         }
     }
-    // Locks and traffic of 22 layouts; regions, conflicts and a plan of 9 logs and an order.
-    assert_eq!(read, 2 * 22 + 3 * 10);
+    // Locks and traffic of 22 layouts; regions, conflicts and a plan of 9 logs, an order and 5 plans on grids.
+    assert_eq!(read, 2 * 22 + 3 * 15);
 }
 
 #[test]
