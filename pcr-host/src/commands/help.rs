@@ -46,7 +46,8 @@ pub(super) fn command(long: bool) -> Command {
     let tailored = names.iter().fold(command, |command, name| command.mut_subcommand(name, |own| tailored(own, long)));
     match tailored.get_long_about().cloned() {
         Some(about) if long => tailored.about(about),
-        _ => tailored.after_help("Examples and exit statuses: pcr --help"),
+        // That there is more is said at `--help` already, and all commands need their lines.
+        _ => tailored.after_help(clap::builder::Resettable::Reset),
     }
 }
 

@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     /// Go on when standard input has ended
     #[arg(long)]
     stay: bool,
-    /// How far a robot's place may be behind where it has to stop, when it stands, in m
+    /// How far behind its stop a robot may stand, in m
     #[arg(long, value_name = "M", default_value_t = 0.1)]
     width: f64,
     /// Robots are told how far they may go so long before they would have to brake, in s
