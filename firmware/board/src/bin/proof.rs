@@ -245,7 +245,10 @@ fn queries<S: Scalar>(fleet: &[Motion<'_, S>]) {
 fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
     any(Ecm::build(any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
     if let [first, second, ..] = &*fleet {
-        any(overlaps(first, second, any(&mut [][..]), |region| { any(region.length()); }).is_ok());
+        any(overlaps(first, second, any(&mut [][..]), |region| {
+            any(region.length());
+        })
+        .is_ok());
     }
     let mut ecm = any(Ecm::<S, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8]));
     for &agent in agents {
