@@ -3,7 +3,7 @@
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
 #   .ci/test.sh            everything
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests serve pages web schemas python packages release instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve pages web schemas python packages release instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -58,8 +58,13 @@ tests() {
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
   step "the examples of the libraries"
   for example in "${examples[@]}"; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
+}
+
+# Not part of everything: that they compile is checked by the lints.
+benches() {
   step "benchmarks, one pass each, as the tests are built"
-  cargo bench "${options[@]}" --bench '*' -- --test
+  peer_libraries
+  cargo bench --workspace --profile checked --features pcr-tests/peers --locked --bench '*' -- --test
 }
 
 # Files that are written for openTCS, against its schema.
@@ -73,13 +78,17 @@ schemas() {
   cargo test --workspace --profile checked --features pcr-tests/peers --locked --test tool -- --ignored plant_models
 }
 
-# Vehicles, their manager and the supervisor at a real broker: fleets, and faults one after the other.
-# For hours: PCR_FAULTS=1000 .ci/test.sh serve
+# Vehicles, their manager and the supervisor at a real broker. Faults one after the other, which takes a machine that does nothing
+# else: PCR_FAULTS=1 .ci/test.sh serve, or more rounds of them.
 serve() {
   step "VDA 5050 over mosquitto, messages by the published schemas"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
   # As the tests build it.
-  cargo test --workspace --profile checked --features pcr-tests/peers --locked --test vda5050 -- --ignored --test-threads=3
+  local options=(--workspace --profile checked --features pcr-tests/peers --locked --test vda5050)
+  cargo test "${options[@]}" -- --ignored --test-threads=1 runs::
+  if [ -n "${PCR_FAULTS:-}" ]; then
+    cargo test "${options[@]}" -- --ignored --exact faults::faults_one_after_the_other
+  fi
 }
 
 # A browser for the pages; a package of Debian, where there is none.

@@ -14,7 +14,7 @@ fi
 jobs=("$@")
 # A minute or two in all, building aside; those that take longest for a run get fewest.
 if [ $# -eq 0 ]; then
-  jobs=(scenario=1500 pair=500 limits=300 fleet=200 rmf=200 nav2=300 lif=2000 vda5050=3000 opendrive=500 opentcs=500 ccbs=500 grid=500 path=500 dump=2000 serve=500 journal=1000)
+  jobs=(scenario=1500 pair=500 limits=150 fleet=200 rmf=200 nav2=300 lif=2000 vda5050=3000 opendrive=500 opentcs=500 ccbs=500 grid=500 path=500 dump=2000 serve=500 journal=1000)
 fi
 for run in "${jobs[@]}"; do
   target=${run%%=*} runs=${run##*=}
