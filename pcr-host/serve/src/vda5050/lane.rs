@@ -1,6 +1,6 @@
 //! One vehicle between its fleet manager and the supervisor.
 //!
-//! The manager's order is kept as it is ([`Held`]); the vehicle gets it under the same name, with its base cut to what the supervisor has
+//! The manager's order is kept as it is ([`Held`](super::held::Held)); the vehicle gets it under the same name, with its base cut to what the supervisor has
 //! allowed, and numbers of its own for nodes and updates, as the base may end in the middle of an edge. What the vehicle says is
 //! told to the manager in the manager's numbers.
 
