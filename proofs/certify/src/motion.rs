@@ -220,6 +220,14 @@ mod tests {
         agents.iter().map(|agent| Mover::new(agent, [-1e9, 1e9]).unwrap()).collect()
     }
 
+    #[test]
+    fn what_is_no_radius_is_no_disc() {
+        for radius in [f64::NAN, f64::INFINITY, -0.1] {
+            let wrong = Agent { radius, ..agent(1, [0.0; 2], 0.0, &[(4.0, None)], 0.0, 1.0) };
+            assert!(Mover::new(&wrong, [0.0, 1.0]).is_err(), "{radius}");
+        }
+    }
+
     /// The least distance of the centres at so many times.
     fn sampled(movers: &[Mover], from: f64, to: f64) -> f64 {
         let at = |mover: &Mover, t: f64| {

@@ -79,6 +79,9 @@ impl Mover {
     /// # Errors
     /// What is wrong with its path, or that it has no motion.
     pub fn new(agent: &Agent, time: [f64; 2]) -> Result<Self, String> {
+        if !(0.0..=1e15).contains(&agent.radius) {
+            return Err(format!("a radius of {} is out of range", agent.radius));
+        }
         let stretches = stretches(&agent.path)?;
         let travel = agent.travel.as_ref().ok_or("no motion")?;
         let start = Twofold::from(travel.start);
@@ -131,8 +134,11 @@ fn area(stretches: &[Stretch], reach: f64) -> Area {
                 // Once for each sum: the number itself is rounded, too.
                 let grown = (value.err + bulge).next_up() + reach;
                 let (middle, grown) = (value.mid.to_f64(), grown.next_up());
-                area[axis] = area[axis].min((middle.next_down() - grown).next_down());
-                area[axis + 2] = area[axis + 2].max((middle.next_up() + grown).next_up());
+                // What is no number may be anywhere.
+                let outward = |side: f64, end: f64| if side.is_nan() { end } else { side };
+                let (lo, hi) = ((middle.next_down() - grown).next_down(), (middle.next_up() + grown).next_up());
+                area[axis] = area[axis].min(outward(lo, f64::NEG_INFINITY));
+                area[axis + 2] = area[axis + 2].max(outward(hi, f64::INFINITY));
             };
             add(0, end.x);
             add(1, end.y);

@@ -7,6 +7,7 @@
 //! search    branch and bound over sides                  (internal)
 //! improve   large neighbourhood search                   (internal)
 //! groups    a bound from groups of agents                (internal)
+//! precedence  who has to start before whom               (internal)
 //! insert    one agent after the other                    (internal)
 //! leave     the fewest agents to leave out               (internal)
 //! ```
@@ -16,11 +17,13 @@ mod improve;
 mod insert;
 mod leave;
 mod net;
+mod precedence;
 mod problem;
 mod search;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use precedence::respecting;
 pub use problem::Objective;
 pub(crate) use problem::{NEVER, Pair, Problem, Ticks, earliest, slack};
 use search::{Search, Stop};

@@ -13,7 +13,7 @@
 //! neither discs that are delayed together nor searches over thousands of orders. What a region forbids is the core's in both
 //! (`RegionRef::forbidden_delays`).
 
-use super::delays::{NEVER, Objective, Pair, Problem, Ticks, earliest};
+use super::delays::{self, NEVER, Objective, Pair, Problem, Ticks, earliest};
 use super::grown;
 use crate::bodies::Bodies;
 use crate::memory;
@@ -21,8 +21,6 @@ use crate::regions::Failure;
 use crate::rows;
 use pcr_core::{Motion, Scalar};
 use pcr_formats::scenario::{Agent, Scenario};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// What an agent and another one forbid: differences of their delays, own less other, at which they meet \[ticks\], outward.
 #[derive(Clone, Copy, Debug)]
@@ -185,41 +183,8 @@ impl Forbidden {
     }
 
     /// The order, but for agents that have to start before others.
-    pub fn respecting(&self, order: Vec<usize>) -> Vec<usize> {
-        let mut ranks = vec![0; self.len()];
-        order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);
-        let mut after = vec![Vec::new(); self.len()];
-        let mut missing: Vec<usize> = self.first.iter().map(Vec::len).collect();
-        for (agent, first) in self.first.iter().enumerate() {
-            first.iter().for_each(|&other| after[other].push(agent));
-        }
-        let mut ready: BinaryHeap<Reverse<usize>> =
-            order.iter().filter(|&&agent| missing[agent] == 0).map(|&agent| Reverse(ranks[agent])).collect();
-        let mut placed = vec![false; self.len()];
-        let mut respecting = Vec::with_capacity(order.len());
-        let mut begin = 0;
-        while respecting.len() < order.len() {
-            // In a circle any of them is as good: the first one that is left.
-            let rank = ready.pop().map_or_else(
-                || (begin..order.len()).find(|&rank| !placed[order[rank]]).unwrap_or(begin),
-                |Reverse(rank)| rank,
-            );
-            let agent = order[rank];
-            if std::mem::replace(&mut placed[agent], true) {
-                continue;
-            }
-            while order.get(begin).is_some_and(|&agent| placed[agent]) {
-                begin += 1;
-            }
-            respecting.push(agent);
-            for &other in &after[agent] {
-                missing[other] -= 1;
-                if missing[other] == 0 && !placed[other] {
-                    ready.push(Reverse(ranks[other]));
-                }
-            }
-        }
-        respecting
+    pub fn respecting(&self, order: &[usize]) -> Vec<usize> {
+        delays::respecting(order, &self.first)
     }
 
     /// One agent after the other, each as early as those before it allow; one that cannot start is left out.

@@ -50,7 +50,7 @@ impl Starts {
         let forbidden = Forbidden::of(scenario)?;
         let ticks = forbidden.ticks();
         let problem = forbidden.problem(request.objective);
-        let schedules = planner.orders()?.into_iter().map(|order| forbidden.in_order(forbidden.respecting(order)));
+        let schedules = planner.orders()?.into_iter().map(|order| forbidden.in_order(forbidden.respecting(&order)));
         let schedules: Vec<Schedule> = schedules.collect();
         let is_best = request.priority == Priority::Best;
         let in_ticks = |schedule: &Schedule| {

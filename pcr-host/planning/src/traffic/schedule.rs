@@ -17,7 +17,7 @@ pub(super) fn best(forbidden: &Forbidden, longest_first: Vec<usize>, seed: u64) 
     let mut orders = Random(seed);
     let random: Vec<_> = (0..RANDOM).map(|_| orders.shuffled(&file)).collect();
     let tried = [file, longest_first].into_iter().chain(random).flat_map(|order| {
-        let first = forbidden.in_order(forbidden.respecting(order));
+        let first = forbidden.in_order(forbidden.respecting(&order));
         std::iter::successors(Some(first), |before| again(forbidden, before)).take(ROUNDS)
     });
     let waits = |schedule: &Schedule| schedule.delays.iter().flatten().sum::<f64>();
@@ -35,6 +35,6 @@ fn again(forbidden: &Forbidden, before: &Schedule) -> Option<Schedule> {
     let (mut order, mut later): (Vec<usize>, Vec<usize>) = before.order.iter().partition(|&&agent| moves_up(agent));
     order.append(&mut later);
     // Those that are out are tried before all others, even where that cannot be for all.
-    let order = if before.out.is_empty() { forbidden.respecting(order) } else { order };
+    let order = if before.out.is_empty() { forbidden.respecting(&order) } else { order };
     (order != before.order).then(|| forbidden.in_order(order))
 }

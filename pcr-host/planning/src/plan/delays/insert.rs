@@ -3,6 +3,7 @@
 //! Whoever cannot start goes first the next time, again and again (squeaky wheels, Joslin and Clements 1999), behind those that have to
 //! go before it.
 
+use super::precedence::respecting;
 use super::problem::{Constraint, Problem, earliest};
 use std::cmp::Reverse;
 
@@ -21,7 +22,7 @@ pub(super) fn inserted(problem: &Problem) -> Vec<Option<i64>> {
     for start in [natural, soonest, crowded] {
         let mut order = start;
         for _ in 0..ROUNDS {
-            let delays = table.in_order(table.respecting(&order));
+            let delays = table.in_order(respecting(&order, &table.first));
             let out = delays.iter().filter(|delay| delay.is_none()).count();
             // Whoever is out first, all in the order that they had.
             order.sort_by_key(|&agent| delays[agent].is_some());
@@ -60,20 +61,6 @@ impl<'a> Table<'a> {
             }
         }
         Self { problem, near, first }
-    }
-
-    /// The order, but for agents that have to start before others; in a circle any of them is as good.
-    fn respecting(&self, order: &[usize]) -> Vec<usize> {
-        let mut left = order.to_vec();
-        let mut placed = vec![false; order.len()];
-        let mut respecting = Vec::with_capacity(order.len());
-        while !left.is_empty() {
-            let is_next = |agent: &usize| self.first[*agent].iter().all(|&other| placed[other]);
-            let agent = left.remove(left.iter().position(is_next).unwrap_or(0));
-            placed[agent] = true;
-            respecting.push(agent);
-        }
-        respecting
     }
 
     fn in_order(&self, order: Vec<usize>) -> Vec<Option<i64>> {

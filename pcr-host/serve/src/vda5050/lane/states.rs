@@ -6,7 +6,7 @@ use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
 use super::Lane;
-use crate::course::Start;
+use crate::course::{Course, Start};
 use crate::supervisor::{Report, Supervisor};
 
 /// A vehicle that says otherwise so often in a row, for so long \[s\], has lost its order or was moved.
@@ -148,13 +148,16 @@ impl Lane {
     fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
         let Some(pose) = state.position().filter(|pose| pose.is_known() && self.reach(pose) >= 0.0) else { return };
         let start = Start { x: pose.x, y: pose.y, heading: pose.theta };
-        if supervisor.remove(&self.name).is_err() {
+        // Where it could not be added again it stays what it was: nobody may drive through one that is forgotten.
+        let abilities = self.profile.abilities;
+        let stands = Course::new(start, Vec::new()).and_then(|course| course.motion(abilities.reach()).map(drop));
+        if stands.is_err() || supervisor.remove(&self.name).is_err() {
             return;
         }
         self.astray = None;
         self.job = None;
         // If that fails it is added with its next state.
-        let _ = supervisor.add(&self.name, self.profile.abilities, start);
+        let _ = supervisor.add(&self.name, abilities, start);
     }
 
     /// Takes a position that comes between states. It says nothing of orders, hence counts only on the stretch that the newest state names.
