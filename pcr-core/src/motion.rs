@@ -232,8 +232,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.path.point_at(self.length_at(time))
     }
 
-    /// When the travelled length lies in `length` \[s\]: rounded outward by [`Motion::time_excess`] at most, but not
-    /// beyond [`Motion::time`].
+    /// When the travelled length lies in `length` \[s\]: rounded outward by [`Motion::time_excess`] at most and, where the agent all
+    /// but stands, by the time that it needs for what its lengths are off, but not beyond [`Motion::time`].
     pub fn time_in(&self, length: Interval<S>) -> Interval<S> {
         let Interval { lo: start, hi: arrival } = self.time;
         let lo = if length.lo > S::ZERO { start + self.profile.first_time_at(length.lo) } else { start };
@@ -241,7 +241,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Interval::new(lo, hi).widen(self.time_slack(), self.time)
     }
 
-    /// By how much a time of [`Motion::time_in`] is further out than the exact one, at most \[s\].
+    /// By how much a time of [`Motion::time_in`] is further out than the exact one of the lengths that it has, at most \[s\].
     pub fn time_excess(&self) -> S {
         self.time_slack().double()
     }

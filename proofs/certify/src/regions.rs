@@ -2,11 +2,11 @@
 //!
 //! The told time begins no later than when the agent reaches the first length of the region, and ends no earlier than when it leaves the
 //! last one (`docs/certificates.md`, lemma 7). Where rounding has let it begin later, at the length u, the lengths up to u must be
-//! farther than R from all that the pieces hold of the other path: then there is no contact there.
+//! farther than R from all that the pieces hold of the other path, but for what another region tells: then no contact there is untold.
 
 use crate::cell::{Claim, Outcome};
 use crate::data::{Agent, Pair, Travel};
-use crate::pair::{Findings, Placed, Promise, Radii, Segments};
+use crate::pair::{Findings, Placed, Promise, Radii, Segments, gaps};
 use crate::path::Stretch;
 use crate::travel;
 use crate::twofold::Twofold;
@@ -37,9 +37,9 @@ pub fn check(
             if !(from <= to && from.abs() < 1e15 && to.abs() < 1e15) {
                 return Err(format!("region {place}: its time from {from} to {to} s is none"));
             }
-            let told = Told { k, time, travel, agent: agents[k], lengths: region.lengths[k] };
+            let told = Told { region: place, k, time, travel, agent: agents[k], lengths: region.lengths[k] };
             for end in [0, 1] {
-                told.check(end, stretches, pair, &those, radii, findings);
+                told.check(end, stretches, pair, &those, pieces, radii, findings);
             }
         }
     }
@@ -61,6 +61,8 @@ fn lengths_are_those_of_pieces(pair: &Pair) -> Result<(), String> {
 
 /// The time of one agent of a region.
 struct Told<'a> {
+    /// Of which region.
+    region: usize,
     /// Which agent.
     k: usize,
     time: [f64; 2],
@@ -70,13 +72,15 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    /// Checks the beginning, or the end.
+    /// Checks the beginning, or the end, of a region of these `pieces`.
+    #[expect(clippy::too_many_arguments, reason = "what a witness is made of")]
     fn check(
         &self,
         end: usize,
         stretches: [&[Stretch]; 2],
         pair: &Pair,
         pieces: &[&Placed],
+        all: &[Placed],
         radii: &Radii,
         findings: &mut Findings,
     ) {
@@ -103,9 +107,15 @@ impl Told<'_> {
             // What the lengths along the path may be off is added.
             let reached = at(told)[1 - end] + inward(path.rounding);
             let strip = if end == 0 { [length, reached] } else { [reached, length] };
-            for piece in pieces.iter().filter(|_| strip[0] <= strip[1]) {
-                let outcome = self.strip_is_clear(strip, stretches, piece, radii, findings);
-                note(outcome, Promise::Timed, piece, findings);
+            if strip[0] <= strip[1] {
+                let told =
+                    |piece: &&Placed| self.is_told(strip, pair.regions[piece.region].times.map(|times| times[self.k]));
+                let elsewhere: Vec<&Placed> =
+                    all.iter().filter(|piece| piece.region != self.region).filter(told).collect();
+                for piece in pieces {
+                    let outcome = self.strip_is_clear(strip, stretches, piece, &elsewhere, radii, findings);
+                    note(outcome, Promise::Timed, piece, findings);
+                }
             }
         }
         // For messages the piece that the end is of.
@@ -117,12 +127,14 @@ impl Told<'_> {
         let by_then = told + inward(self.travel.time_excess);
         let [lo, hi] = at(by_then);
         let latest = end_of_all + Twofold::from(self.travel.time_excess);
+        // The phases that it goes through may be off by so much of its way.
+        let lag = Twofold::from(self.travel.lag);
         // Whether it is certain to have been there by then, or to be there no more; and whether it is certain not to.
         let (passed, not_yet) = match end {
             0 if self.lengths[0] <= 0.0 => (since(told) >= Twofold::ZERO, since(told) < Twofold::ZERO),
-            0 => (lo >= length || since(by_then) >= end_of_all, hi < length),
+            0 => (lo + lag >= length || since(by_then) >= end_of_all, hi + lag < length),
             _ if self.lengths[1] >= full => (since(told) <= latest, since(told) > latest),
-            _ => (hi <= length || since(by_then) <= Twofold::ZERO, lo > length),
+            _ => (hi - lag <= length || since(by_then) <= Twofold::ZERO, lo - lag > length),
         };
         let place = piece.lengths[self.k][end];
         let outcome = match (passed, not_yet) {
@@ -133,12 +145,25 @@ impl Told<'_> {
         note(outcome, Promise::Prompt, piece, findings);
     }
 
-    /// Whether no length of a strip that the piece holds is within R of what it holds of the other path.
+    /// Whether the agent is within the lengths of a strip at no other times than these.
+    fn is_told(&self, strip: [Twofold; 2], time: Option<[f64; 2]>) -> bool {
+        let Some(time) = time else { return false };
+        let [full, rounding] = [self.agent.path.segments.last().map_or(0.0, |last| last.to), self.agent.path.rounding];
+        let [begin, end] = time.map(|time| {
+            let since = Twofold::from(time) - Twofold::from(self.travel.start);
+            (since, travel::length_at(self.travel, Twofold::from(time), full))
+        });
+        (begin.0 <= Twofold::ZERO || begin.1[1] + Twofold::from(rounding) < strip[0])
+            && (end.0 >= Twofold::from(travel::duration(self.travel)) || end.1[0] - Twofold::from(rounding) > strip[1])
+    }
+
+    /// Whether no length of a strip that the piece holds is within R of what it holds of the other path and other pieces do not.
     fn strip_is_clear(
         &self,
         strip: [Twofold; 2],
         stretches: [&[Stretch]; 2],
         piece: &Placed,
+        elsewhere: &[&Placed],
         radii: &Radii,
         findings: &mut Findings,
     ) -> Outcome {
@@ -151,7 +176,19 @@ impl Told<'_> {
         if hi < lo {
             return Outcome::Proved;
         }
-        let mut near = stretches[other][piece.segments[other]].placed.part(piece.lengths[other]);
-        Claim::Above(radii.radius).decide(&own.placed.part([lo, hi]), &mut near, &mut findings.steps)
+        let holds = |it: &&&Placed| {
+            let [from, to] = it.lengths[self.k];
+            it.segments == piece.segments && from <= lo && hi <= to
+        };
+        let held = elsewhere.iter().filter(holds).map(|it| it.lengths[other]).collect();
+        let own = own.placed.part([lo, hi]);
+        for left in gaps(held, piece.lengths[other]) {
+            let mut near = stretches[other][piece.segments[other]].placed.part(left);
+            let outcome = Claim::Above(radii.radius).decide(&own, &mut near, &mut findings.steps);
+            if !matches!(outcome, Outcome::Proved) {
+                return outcome;
+            }
+        }
+        Outcome::Proved
     }
 }

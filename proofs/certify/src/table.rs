@@ -11,9 +11,9 @@ use crate::twofold::Twofold;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
-/// What is told of a length lies within R and so much of ε: slices are right within R + ε, and ends of ranges, whose turning points count
-/// up to half of it more, within R + 3/2 ε (docs/errors.md).
-const TOLD: f64 = 1.5;
+/// What is told of a length lies within R and so much of ε: ends of ranges are right within R + 3/2 ε, and what lies between pieces that
+/// are joined about the centre of an arc as large as the disc has been seen within 1.8 ε (docs/errors.md).
+const TOLD: f64 = 2.0;
 
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
