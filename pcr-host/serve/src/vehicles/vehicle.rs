@@ -8,6 +8,7 @@ use crate::vda5050::header::Header;
 use crate::vda5050::held::{Held, Rejected, Taken};
 use crate::vda5050::messages::{Action, InstantActions};
 use crate::vda5050::order::Order;
+use crate::vda5050::stamp;
 use crate::vda5050::state::{ActionState, StateError};
 use crate::vda5050::topics::{Key, Kind};
 use crate::vda5050::version::{Error, Version};
@@ -53,7 +54,8 @@ pub struct Vehicle {
     frozen: f64,
     pub(super) errors: Vec<StateError>,
     pub(super) headers: BTreeMap<Kind, u64>,
-    /// What its clock is off \[s\].
+    /// Time since 1970 \[s\], as it goes on; and what its clock is off.
+    pub(super) time: f64,
     pub(super) clock: f64,
     pub(super) out: Vec<(Kind, Vec<u8>)>,
     news: bool,
@@ -79,6 +81,7 @@ impl Vehicle {
             frozen: 0.0,
             errors: Vec::new(),
             headers: BTreeMap::new(),
+            time: stamp::seconds(),
             clock: 0.0,
             out: Vec::new(),
             news: true,
@@ -257,6 +260,7 @@ impl Vehicle {
 
     /// Goes on for a time \[s\].
     pub fn advance(&mut self, time: f64) {
+        self.time += time;
         self.frozen = (self.frozen - time).max(0.0);
         if self.frozen > 0.0 {
             return;

@@ -13,9 +13,9 @@ pub(crate) struct Mosquitto {
     port: u16,
 }
 
-/// A folder of this name that is empty.
+/// A folder of this name that is empty, of this process.
 pub(crate) fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
