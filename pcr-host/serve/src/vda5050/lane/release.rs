@@ -9,7 +9,7 @@ use crate::robot::Robot;
 use crate::supervisor::Supervisor;
 
 /// Between two attempts to send the same \[s\].
-const AGAIN: f64 = 1.0;
+pub(super) const AGAIN: f64 = 1.0;
 
 /// Holds are computed with more room than this \[m\].
 const ROUNDING: f64 = 1e-4;
@@ -24,6 +24,7 @@ impl Lane {
     /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
         let Some(version) = self.version else { return };
+        self.follow_cancel(now);
         let Some(allowed) = self.allowed(supervisor) else { return };
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };
@@ -92,7 +93,7 @@ impl Lane {
         Some(allowed)
     }
 
-    fn send(&mut self, version: Version) {
+    pub(super) fn send(&mut self, version: Version) {
         let deviation = self.deviation();
         let header = self.header(Kind::Order, version);
         let Some(job) = &self.job else { return };
