@@ -113,8 +113,12 @@ impl Link {
 
     /// Sends a message, if it is connected and the queue is not full: what is sent later would be old.
     pub fn publish(&self, message: Publish) -> bool {
-        let Publish { topic, payload, assured, retain } = message;
-        self.is_up() && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()
+        self.mouth().publish(message)
+    }
+
+    /// What sends messages over it, from wherever it is.
+    pub fn mouth(&self) -> Mouth {
+        Mouth { client: self.client.clone(), up: self.up.clone() }
     }
 
     /// Ends it in order: its last will is not done.
@@ -135,6 +139,21 @@ impl Link {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
+    }
+}
+
+/// What sends messages over a link.
+#[derive(Clone, Debug)]
+pub struct Mouth {
+    client: AsyncClient,
+    up: Arc<AtomicBool>,
+}
+
+impl Mouth {
+    /// As [`Link::publish`].
+    pub fn publish(&self, message: Publish) -> bool {
+        let Publish { topic, payload, assured, retain } = message;
+        self.up.load(Ordering::Relaxed) && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()
     }
 }
 

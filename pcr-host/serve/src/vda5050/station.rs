@@ -12,7 +12,7 @@ use super::topics::{Interface, Key, Kind};
 use super::version::Version;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::server::Handle;
+use crate::server::{Handle, Input};
 use crate::supervisor::Supervisor;
 use serde_json::{Map, Value};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -139,21 +139,26 @@ impl Station {
             }
         });
         taken.ok_or_else(ended)?;
-        // The next question is taken after what came before it is settled and in the journal.
+        // The next question is taken after what came before it is settled.
         let (own, works) = (bridge.clone(), self.works());
-        handle.ask(|_, _, _| ()).ok_or_else(ended)?;
         let told: Vec<Event> = events.try_iter().collect();
         let released = handle.ask(move |supervisor, _, now| {
             let mut bridge = locked(&own);
-            if works { bridge.settled(supervisor, &told, now) } else { bridge.told(&told) }
+            if works {
+                bridge.settled(supervisor, &told, now);
+                bridge.out()
+            } else {
+                bridge.told(&told);
+                Vec::new()
+            }
         });
-        released.ok_or_else(ended)?;
-        handle.ask(|_, _, _| ()).ok_or_else(ended)?;
-        let mut bridge = locked(bridge);
-        if works {
-            self.send(&mut bridge);
+        let (messages, mouth) = (released.ok_or_else(ended)?, self.link.mouth());
+        if !messages.is_empty() {
+            // What is not sent then is sent again.
+            let send = move || messages.into_iter().for_each(|message| _ = mouth.publish(message));
+            handle.send(Input::Then(Box::new(send)));
         }
-        Ok(bridge.log())
+        Ok(locked(bridge).log())
     }
 
     /// Whether vehicles may be told something now.
