@@ -99,7 +99,7 @@ impl Link {
         let (stop, up) = (Arc::new(Notify::new()), Arc::new(AtomicBool::new(false)));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| error.to_string())?;
-        let work = Work { client: client.clone(), filters, sink, up: up.clone(), asks: false };
+        let work = Work { client: client.clone(), filters, sink, up: up.clone(), asks: false, why: String::new() };
         let stopped = stop.clone();
         let thread = std::thread::Builder::new().name(id.into());
         let thread = thread.spawn(move || runtime.block_on(work.go_on(events, &stopped)));
@@ -171,6 +171,8 @@ struct Work<F> {
     up: Arc<AtomicBool>,
     /// It is connected, and has still to subscribe.
     asks: bool,
+    /// Why it is not connected, as was said last.
+    why: String,
 }
 
 impl<F: Fn(News)> Work<F> {
@@ -188,9 +190,7 @@ impl<F: Fn(News)> Work<F> {
                 Err(ConnectionError::RequestsDone) => return,
                 Err(error) => {
                     self.asks = false;
-                    if self.up.swap(false, Ordering::Relaxed) {
-                        (self.sink)(News::Down(error.to_string()));
-                    }
+                    self.is_down(error.to_string());
                     tokio::select! {
                         biased;
                         () = stop.notified() => return,
@@ -214,7 +214,7 @@ impl<F: Fn(News)> Work<F> {
                 let refused = |(code, _): &(&SubscribeReasonCode, _)| **code == SubscribeReasonCode::Failure;
                 match answer.return_codes.iter().zip(&self.filters).find(refused) {
                     None => self.is_up(),
-                    Some((_, filter)) => (self.sink)(News::Down(format!("the broker does not let us read {filter}"))),
+                    Some((_, filter)) => self.is_down(format!("the broker does not let us read {filter}")),
                 }
             }
             Event::Incoming(Packet::Publish(message)) => {
@@ -224,9 +224,18 @@ impl<F: Fn(News)> Work<F> {
         }
     }
 
-    fn is_up(&self) {
+    fn is_up(&mut self) {
+        self.why.clear();
         self.up.store(true, Ordering::Relaxed);
         (self.sink)(News::Up);
+    }
+
+    /// Said when it is news: it is tried again and again.
+    fn is_down(&mut self, why: String) {
+        if self.up.swap(false, Ordering::Relaxed) || why != self.why {
+            self.why.clone_from(&why);
+            (self.sink)(News::Down(why));
+        }
     }
 }
 

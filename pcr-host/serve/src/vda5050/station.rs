@@ -56,6 +56,7 @@ pub struct Station {
     key: Key,
     /// The vehicles are to be asked how things are.
     greets: bool,
+    log: Vec<String>,
 }
 
 /// Why a station stops.
@@ -80,7 +81,7 @@ impl Station {
         })?;
         let now = Instant::now();
         let (session, claim) = (session.into(), Claim::Asking(now));
-        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false })
+        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false, log: Vec::new() })
     }
 
     /// Seconds since it was opened.
@@ -113,10 +114,13 @@ impl Station {
         } else {
             bridge.told(&events);
         }
+        // Where nobody reads it.
+        self.log.clear();
         Ok(events)
     }
 
-    /// The same for a supervisor that another thread owns, which tells its events here. Returns why messages were refused.
+    /// The same for a supervisor that another thread owns, which tells its events here. Returns what somebody should look at: why messages
+    /// were refused, who is missing, why there is no broker.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -158,7 +162,9 @@ impl Station {
             let send = move || messages.into_iter().for_each(|message| _ = mouth.publish(message));
             handle.send(Input::Then(Box::new(send)));
         }
-        Ok(locked(bridge).log())
+        let mut log = std::mem::take(&mut self.log);
+        log.extend(locked(bridge).log());
+        Ok(log)
     }
 
     /// Whether vehicles may be told something now.
@@ -190,7 +196,7 @@ impl Station {
         while let Ok(news) = first {
             match news {
                 News::Up => self.claim = Claim::Asking(Instant::now()),
-                News::Down(_) => {}
+                News::Down(why) => self.log.push(format!("no broker: {why}")),
                 News::Message { topic, payload } if topic == self.topic => self.heard(&payload)?,
                 News::Message { topic, payload } => messages.push((topic, payload)),
             }

@@ -5,7 +5,7 @@ use crate::schemas;
 use crate::site::{Desk, Scene, Site, interfaces};
 use crate::yard::MIXED;
 use pcr_serve::entry::Nowhere;
-use pcr_serve::vda5050::mqtt::{Link, News};
+use pcr_serve::vda5050::mqtt::{Broker, Link, News};
 use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::weather::Climate;
@@ -35,7 +35,7 @@ fn one_vehicle_does_its_missions() {
     let broker = Mosquitto::start("one");
     let (mut site, profiles) = Site::open(&broker, FAIR);
     let desk = Desk::open(&broker, profiles, "one", Box::new(Nowhere));
-    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(2)));
+    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(1)));
     assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();
     assert!(found.travelled > 5.0, "{found:?}");
@@ -54,7 +54,7 @@ fn a_fleet_of_all_editions_keeps_apart() {
     let ear = Link::open(&broker.address(), "ear", None, everything, move |news| drop(sender.send(news))).unwrap();
     let (mut site, profiles) = Site::open(&broker, scene);
     let desk = Desk::open(&broker, profiles, "fleet", Box::new(Nowhere));
-    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(16)));
+    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(10)));
     assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();
     assert!(found.travelled > 100.0, "{found:?}");
@@ -71,4 +71,24 @@ fn a_fleet_of_all_editions_keeps_apart() {
             assert!(seen.contains_key(&format!("{version} {kind}")), "{seen:?}");
         }
     }
+}
+
+/// Whoever had no right to the broker tried again for ever, and said nothing.
+#[test]
+#[ignore = "needs a broker: .ci/test.sh serve"]
+fn a_broker_with_passwords_lets_in_who_has_one() {
+    let broker = Mosquitto::guarded("guarded", "pcr", "secret");
+    let first = |password: Option<&str>| {
+        let login = password.map(|password| ("pcr".into(), password.into()));
+        let (sender, news) = channel();
+        let broker = Broker { login, ..broker.address() };
+        let link = Link::open(&broker, "who", None, vec!["a/b".into()], move |it| drop(sender.send(it))).unwrap();
+        let first = news.recv().unwrap();
+        link.close();
+        first
+    };
+    for refused in [first(None), first(Some("guess"))] {
+        assert!(matches!(&refused, News::Down(why) if why.contains("NotAuthorized")), "{refused:?}");
+    }
+    assert_eq!(first(Some("secret")), News::Up);
 }
