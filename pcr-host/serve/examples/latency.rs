@@ -138,8 +138,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (out, lines) = sync_channel(BACKLOG);
     handle.send(Input::Opened(1, out));
     let robots = vec![Robot { path: 1, ..Robot::default() }; count];
-    let room = || Vec::with_capacity(2 * messages + 4 * count);
-    let (sent, times) = (Vec::with_capacity(2 * messages + 4 * count), [room(), room()]);
+    // Room that is there from the start: what grows is the supervisor's.
+    let room = 2 * messages + 4 * count;
+    let (mut sent, mut times) = (vec![Some(Instant::now()); room], [vec![1.0; room], vec![1.0; room]]);
+    sent.clear();
+    times.iter_mut().for_each(Vec::clear);
     let mut own = Driver { handle, lines, robots, sent, open: 0, times, last: None, done: 0 };
     own.ask(json!({ "verb": "watch" }), false);
     let width = SPACE * LANES as f64;

@@ -70,7 +70,7 @@ impl Office {
             let start = json!({ "x": 0.0, "y": y, "heading": 0.0 });
             own.ask(&json!({ "verb": "add", "robot": robot, "start": start, "abilities": abilities }));
         }
-        (0..3).for_each(|_| assert_eq!(own.next()["ok"].is_object(), true));
+        (0..3).for_each(|_| assert!(own.next()["ok"].is_object()));
         own
     }
 

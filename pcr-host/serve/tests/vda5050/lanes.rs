@@ -250,6 +250,29 @@ fn a_vehicle_that_has_lost_its_order_meanwhile_stands_where_it_says() {
     assert!(own.is_done("b"), "{:?}", own.state);
 }
 
+/// It stood for ever, with all of its way released.
+#[test]
+fn a_vehicle_that_was_paused_by_a_late_message_or_before_a_restart_goes_on() {
+    let mut own = Pair::new();
+    own.order("a", &TO);
+    own.lasts(3.0);
+    let pause = json!({ "actionType": "startPause", "actionId": "pcr-startPause-1", "blockingType": "NONE" });
+    let mut message = json!({ "actions": [pause], "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z" });
+    let header = json!({ "version": "2.1.0", "manufacturer": "sim", "serialNumber": "001" });
+    message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+    own.vehicle.receive(Kind::InstantActions, message.to_string().as_bytes());
+    own.restart();
+    own.lasts(60.0);
+    assert!(own.is_done("a"), "{:?}", own.state);
+    // One that somebody else has paused is theirs.
+    own.order("b", &FRO);
+    own.lasts(3.0);
+    message["actions"][0]["actionId"] = "by hand".into();
+    own.vehicle.receive(Kind::InstantActions, message.to_string().as_bytes());
+    own.lasts(60.0);
+    assert!(!own.is_done("b"));
+}
+
 #[test]
 fn who_is_missing_is_said() {
     let supervisor = Supervisor::new(settings(), Box::new(Nowhere));

@@ -1,6 +1,7 @@
 //! Updates for the vehicle: its base goes as far as the supervisor allows.
 
 use super::super::order::Order;
+use super::super::state::ActionState;
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::job::{Job, Sent, Stop};
@@ -66,7 +67,7 @@ impl Lane {
         let said = self.state.as_ref().and_then(|state| state.rest.get("paused")?.as_bool()).unwrap_or(false);
         match self.pause {
             // Who has paused it otherwise lets it go.
-            None if !stops => {}
+            None if !stops && !(said && self.has_paused()) => {}
             Some((false, _)) if !stops && !said => self.pause = None,
             Some((asked, at)) if asked == stops && (said == stops || now - at < AGAIN) => {}
             _ => {
@@ -74,6 +75,18 @@ impl Lane {
                 self.ask_for(if stops { "startPause" } else { "stopPause" });
             }
         }
+    }
+
+    /// Whether it was we who have paused it last: a message of ours that came late, or one from before a restart.
+    fn has_paused(&self) -> bool {
+        let Some(state) = &self.state else { return false };
+        let all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
+        let is_pause = |action: &&ActionState| {
+            let kind = action.rest.get("actionType").and_then(|kind| kind.as_str());
+            matches!(kind, Some("startPause" | "stopPause"))
+        };
+        let last = all.filter(is_pause).last();
+        last.is_some_and(|action| action.action_id.starts_with("pcr-startPause-"))
     }
 
     /// How far the vehicle may go \[m\]. After a restart the supervisor counts more as told than it has told, so that nobody else gets it;
