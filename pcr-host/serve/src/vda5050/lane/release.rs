@@ -67,7 +67,7 @@ impl Lane {
         let said = self.state.as_ref().and_then(|state| state.rest.get("paused")?.as_bool()).unwrap_or(false);
         match self.pause {
             // Who has paused it otherwise lets it go.
-            None if !stops && !(said && self.has_paused()) => {}
+            None if !(stops || said && self.has_paused()) => {}
             Some((false, _)) if !stops && !said => self.pause = None,
             Some((asked, at)) if asked == stops && (said == stops || now - at < AGAIN) => {}
             _ => {
@@ -80,12 +80,12 @@ impl Lane {
     /// Whether it was we who have paused it last: a message of ours that came late, or one from before a restart.
     fn has_paused(&self) -> bool {
         let Some(state) = &self.state else { return false };
-        let all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
+        let mut all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
         let is_pause = |action: &&ActionState| {
             let kind = action.rest.get("actionType").and_then(|kind| kind.as_str());
             matches!(kind, Some("startPause" | "stopPause"))
         };
-        let last = all.filter(is_pause).last();
+        let last = all.rfind(is_pause);
         last.is_some_and(|action| action.action_id.starts_with("pcr-startPause-"))
     }
 
