@@ -78,14 +78,14 @@ schemas() {
   cargo test --workspace --profile checked --features pcr-tests/peers --locked --test tool -- --ignored plant_models
 }
 
-# Vehicles, their manager and the supervisor at a real broker. Faults one after the other, which takes a machine that does nothing
-# else: PCR_FAULTS=1 .ci/test.sh serve, or more rounds of them.
+# Vehicles, their manager and the supervisor at a real broker. Faults one after the other, some minutes each round: PCR_FAULTS=1
+# .ci/test.sh serve, or more rounds of them.
 serve() {
   step "VDA 5050 over mosquitto, messages by the published schemas"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
   # As the tests build it.
   local options=(--workspace --profile checked --features pcr-tests/peers --locked --test vda5050)
-  cargo test "${options[@]}" -- --ignored --test-threads=1 runs::
+  cargo test "${options[@]}" -- --ignored runs::
   if [ -n "${PCR_FAULTS:-}" ]; then
     cargo test "${options[@]}" -- --ignored --exact faults::faults_one_after_the_other
   fi

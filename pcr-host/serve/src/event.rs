@@ -68,6 +68,15 @@ pub enum Event {
         /// Which.
         robot: String,
     },
+    /// Somebody has something to do and gets nowhere for long, because of this robot.
+    Standstill {
+        /// Which.
+        robot: String,
+        /// For how long it has not moved \[s\].
+        since: f64,
+        /// What it waits for, or that it does not go where it may.
+        why: String,
+    },
     /// Something is wrong with a robot.
     Alarm {
         /// With which.
@@ -105,6 +114,7 @@ impl Event {
             | Self::Dropped { robot, .. }
             | Self::Silent { robot, .. }
             | Self::Heard { robot }
+            | Self::Standstill { robot, .. }
             | Self::Alarm { robot, .. }
             | Self::Clear { robot }
             | Self::Stop { robot, .. }

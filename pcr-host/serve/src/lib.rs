@@ -8,6 +8,7 @@
 //! fault        why it refuses a request                                 Fault
 //! entry        what has to outlive the process                          Entry, Keep
 //! journal      a file of entries                                        Journal
+//! writer       a journal on a thread of its own                         Writer, Kept
 //! supervisor   robots, missions, positions, holds                       Supervisor
 //! query        what can be asked                                        Question
 //! lines        the line protocol                                        handle
@@ -22,7 +23,8 @@
 //! ```
 //!
 //! One thread owns the [`Supervisor`](supervisor::Supervisor); what others send it is handled in any number of calls, then
-//! [`settle`](supervisor::Supervisor::settle) decides, writes the journal, and returns what may be told.
+//! [`settle`](supervisor::Supervisor::settle) decides, writes the journal, and returns what may be told. With a journal on a thread
+//! of its own it is told as soon as it is on the disc, and what comes meanwhile is decided.
 
 pub mod board;
 pub mod clients;
@@ -41,3 +43,4 @@ pub mod server;
 pub mod supervisor;
 pub mod vda5050;
 pub mod vehicles;
+pub mod writer;

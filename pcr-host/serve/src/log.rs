@@ -76,7 +76,7 @@ impl Log {
             | Event::Clear { .. }
             | Event::Go { .. } => Level::Info,
             Event::Dropped { .. } | Event::Silent { .. } => Level::Warn,
-            Event::Alarm { .. } | Event::Stop { .. } => Level::Error,
+            Event::Standstill { .. } | Event::Alarm { .. } | Event::Stop { .. } => Level::Error,
         };
         if level >= self.least {
             let text = serde_json::to_string(event).unwrap_or_default();

@@ -136,6 +136,10 @@ pub struct Robot {
     pub waiting: Option<Waiting>,
     /// Whether it has been called silent.
     pub silent: bool,
+    /// When it was seen to go on last, or got a path \[s\].
+    pub moved: Option<f64>,
+    /// Whether it has been said since then that nothing goes on because of it.
+    pub stands: bool,
     /// What others have to remember of it, by what it is about.
     pub notes: BTreeMap<String, Value>,
 }
@@ -163,6 +167,8 @@ impl Robot {
             stopped: None,
             waiting: None,
             silent: false,
+            moved: None,
+            stands: false,
             notes: BTreeMap::new(),
         }
     }

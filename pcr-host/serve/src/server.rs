@@ -7,8 +7,9 @@ use crate::fault::Fault;
 use crate::lines;
 use crate::log::{Level, Log};
 use crate::supervisor::Supervisor;
+use crate::writer::Kept;
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,9 @@ const TICK: u64 = 50;
 /// A call of something that is done with the supervisor.
 pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) + Send>;
 
+/// What is done once all that was decided before is in the journal.
+pub type Then = Box<dyn FnOnce() + Send>;
+
 /// Something for the thread that owns the supervisor.
 pub enum Input {
     /// A client is there, and gets its lines here.
@@ -39,8 +43,12 @@ pub enum Input {
     Closed(u64),
     /// Something else: a page that wants to know what is so, a bridge to robots.
     Call(Call),
+    /// Something that tells others of what was decided.
+    Then(Then),
     /// Everything that is told goes here, too. Who reads too slowly is let go, which it sees by the end of its queue.
     Tell(SyncSender<Event>),
+    /// More of the journal is on the disc.
+    Kept,
     /// No more is to come.
     Stop,
 }
@@ -55,6 +63,11 @@ impl Handle {
     /// Sends something; waits while there is too much. False: it has ended.
     pub fn send(&self, input: Input) -> bool {
         self.sender.send((Instant::now(), input)).is_ok()
+    }
+
+    /// More of the journal is on the disc. Where the queue is full it is seen anyway.
+    pub fn wake(&self) {
+        let _ = self.sender.try_send((Instant::now(), Input::Kept));
     }
 
     /// Asks something and waits for the answer; none: it has ended.
@@ -82,15 +95,39 @@ struct Client {
     watches: bool,
 }
 
-/// Serves until it is told to stop, or the journal cannot be written.
+/// What may be told once so many batches of the journal are on the disc.
+#[derive(Default)]
+struct Told {
+    batches: u64,
+    now: f64,
+    answers: Vec<(u64, Value)>,
+    events: Vec<Event>,
+    thens: Vec<Then>,
+    closed: Vec<u64>,
+    times: Vec<Instant>,
+}
+
+/// The others, and what they are shown.
+struct Desk {
+    clients: HashMap<u64, Client>,
+    listeners: Vec<SyncSender<Event>>,
+    board: Board,
+    log: Log,
+}
+
+/// Serves until it is told to stop, or the journal cannot be written. `kept` is that of the supervisor's journal.
 ///
 /// # Errors
 /// [`Fault::Broken`].
-pub fn serve(supervisor: &mut Supervisor, inputs: &Receiver<(Instant, Input)>, log: Log) -> Result<(), Fault> {
+pub fn serve(
+    supervisor: &mut Supervisor,
+    inputs: &Receiver<(Instant, Input)>,
+    kept: &Kept,
+    log: Log,
+) -> Result<(), Fault> {
     let begin = Instant::now();
-    let mut clients: HashMap<u64, Client> = HashMap::new();
-    let mut listeners: Vec<SyncSender<Event>> = Vec::new();
-    let mut board = Board::default();
+    let mut desk = Desk { clients: HashMap::new(), listeners: Vec::new(), board: Board::default(), log };
+    let mut waiting: VecDeque<Told> = VecDeque::new();
     loop {
         let mut batch = Vec::new();
         match inputs.recv_timeout(Duration::from_millis(TICK)) {
@@ -104,41 +141,72 @@ pub fn serve(supervisor: &mut Supervisor, inputs: &Receiver<(Instant, Input)>, l
             batch.push(input);
         }
         let now = begin.elapsed().as_secs_f64();
-        let (mut answers, mut times, mut closed, mut stops) = (Vec::new(), Vec::new(), Vec::new(), false);
+        let (mut told, stops) = desk.take(supervisor, batch, now);
+        // What is said from here on is in the journal, or on its way there.
+        let settled = supervisor.settle(now).map(|events| told.events = events);
+        told.batches = kept.asked();
+        waiting.push_back(told);
+        let done = settled.and_then(|()| if stops { kept.wait() } else { Ok(()) }).and_then(|()| kept.done());
+        let done = match done {
+            Ok(done) => done,
+            Err(fault) => {
+                waiting.into_iter().for_each(|told| desk.withdraw(told, &fault));
+                log.write(Level::Error, "stopped", &[("why", &fault)]);
+                return Err(fault);
+            }
+        };
+        while waiting.front().is_some_and(|told| told.batches <= done)
+            && let Some(told) = waiting.pop_front()
+        {
+            desk.tell(told);
+        }
+        if stops {
+            return Ok(());
+        }
+    }
+}
+
+impl Desk {
+    /// Does what is asked; what is to be said of it, and whether it is the end.
+    fn take(&mut self, supervisor: &mut Supervisor, batch: Vec<(Instant, Input)>, now: f64) -> (Told, bool) {
+        let (mut told, mut stops) = (Told { now, ..Told::default() }, false);
         for (came, input) in batch {
             match input {
-                Input::Opened(client, out) => drop(clients.insert(client, Client { out, watches: false })),
+                Input::Opened(client, out) => drop(self.clients.insert(client, Client { out, watches: false })),
                 // What it has asked before is answered.
-                Input::Closed(client) => closed.push(client),
-                Input::TooLong(client) => answers.push((client, lines::too_long())),
+                Input::Closed(client) => told.closed.push(client),
+                Input::TooLong(client) => told.answers.push((client, lines::too_long())),
                 Input::Line(client, line) => {
                     let reply = lines::handle(supervisor, &line, now);
-                    if let (Some(watches), Some(client)) = (reply.watches, clients.get_mut(&client)) {
+                    if let (Some(watches), Some(client)) = (reply.watches, self.clients.get_mut(&client)) {
                         client.watches = watches;
                     }
-                    answers.push((client, reply.answer));
-                    times.push(came);
+                    told.answers.push((client, reply.answer));
+                    told.times.push(came);
                 }
-                Input::Call(call) => call(supervisor, &board, now),
-                Input::Tell(listener) => listeners.push(listener),
+                Input::Call(call) => call(supervisor, &self.board, now),
+                Input::Then(then) => told.thens.push(then),
+                Input::Tell(listener) => self.listeners.push(listener),
+                Input::Kept => {}
                 Input::Stop => stops = true,
             }
         }
-        // What is said from here on is in the journal.
-        let settled = supervisor.settle(now);
-        for (client, answer) in answers {
-            let answer = settled.as_ref().map_or_else(|fault| lines::withdrawn(&answer, fault), |_| answer.clone());
-            send(&mut clients, client, &answer, log);
+        (told, stops)
+    }
+
+    fn tell(&mut self, told: Told) {
+        let Self { clients, listeners, board, log } = self;
+        for (client, answer) in told.answers {
+            send(clients, client, &answer, *log);
         }
-        let events = settled.inspect_err(|fault| log.write(Level::Error, "stopped", &[("why", fault)]))?;
-        for event in &events {
+        for event in &told.events {
             log.event(event);
-            board.note(now, event);
+            board.note(told.now, event);
             let watching: Vec<u64> =
                 clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
             let news = if watching.is_empty() { Value::Null } else { lines::news(event) };
             for client in watching {
-                send(&mut clients, client, &news, log);
+                send(clients, client, &news, *log);
             }
             listeners.retain(|listener| {
                 let sent = listener.try_send(event.clone());
@@ -148,12 +216,17 @@ pub fn serve(supervisor: &mut Supervisor, inputs: &Receiver<(Instant, Input)>, l
                 sent.is_ok()
             });
         }
-        for client in closed {
+        told.thens.into_iter().for_each(|then| then());
+        for client in told.closed {
             clients.remove(&client);
         }
-        times.into_iter().for_each(|came| board.latency.add(came.elapsed()));
-        if stops {
-            return Ok(());
+        told.times.into_iter().for_each(|came| board.latency.add(came.elapsed()));
+    }
+
+    /// The journal could not be written: nothing of it is so.
+    fn withdraw(&mut self, told: Told, fault: &Fault) {
+        for (client, answer) in told.answers {
+            send(&mut self.clients, client, &lines::withdrawn(&answer, fault), self.log);
         }
     }
 }

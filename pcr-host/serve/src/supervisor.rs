@@ -8,6 +8,7 @@ mod alarms;
 mod places;
 mod release;
 mod restore;
+mod standstill;
 
 pub use admission::{Proposal, Verdict};
 pub use places::Report;
@@ -42,11 +43,13 @@ pub struct Settings {
     pub silence: f64,
     /// Less than this is not worth a message, but up to where it has to wait \[m\].
     pub step: f64,
+    /// When somebody has something to do and gets nowhere for so long, it is said why \[s\].
+    pub patience: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { width: 0.1, lookahead: 2.0, spare: 2.0, silence: 5.0, step: 0.05 }
+        Self { width: 0.1, lookahead: 2.0, spare: 2.0, silence: 5.0, step: 0.05, patience: 60.0 }
     }
 }
 
@@ -94,6 +97,8 @@ pub struct Supervisor {
     turn: u64,
     /// When waiting missions are tried again \[s\], how often they were, and what kept them.
     tries: HashMap<String, admission::Try>,
+    /// When it was looked last who gets nowhere \[s\].
+    looked: f64,
     /// Whether somebody may be in the way of somebody who has been allowed to go there.
     hazards: bool,
     counts: Counts,
@@ -122,6 +127,7 @@ impl Supervisor {
             unsaved: Vec::new(),
             turn: 0,
             tries: HashMap::new(),
+            looked: f64::NEG_INFINITY,
             hazards: false,
             counts: Counts::default(),
             broken: None,
@@ -295,6 +301,7 @@ impl Supervisor {
         self.note_silence(now);
         let limits = self.limits(now);
         self.release(&limits);
+        self.note_standstill(now);
         self.save()?;
         Ok(std::mem::take(&mut self.events))
     }

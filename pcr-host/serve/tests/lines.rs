@@ -6,6 +6,7 @@ use pcr_serve::lines::{LONGEST, handle, news};
 use pcr_serve::log::{Level, Log};
 use pcr_serve::server::{Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::writer::Kept;
 use pcr_serve::{clients, http};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
@@ -169,7 +170,7 @@ fn clients_over_tcp_and_the_page() {
     thread::spawn(move || clients::listen(&own, &lines));
     let own = handle.clone();
     thread::spawn(move || http::listen(&own, &page, site));
-    let server = thread::spawn(move || serve(&mut supervisor, &inputs, Log::new(Level::Error)));
+    let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
 
     let (mut out, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
     let mut answers = BufReader::new(out.try_clone().unwrap()).lines();

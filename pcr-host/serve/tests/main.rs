@@ -5,3 +5,4 @@ mod kills;
 mod lines;
 mod runs;
 mod world;
+mod writer;

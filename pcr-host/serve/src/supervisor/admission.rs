@@ -57,7 +57,7 @@ pub enum Verdict {
 pub(super) struct Try {
     next: f64,
     pause: f64,
-    last: Option<Verdict>,
+    pub(super) last: Option<Verdict>,
 }
 
 /// Between two attempts \[s\], at first and at most.
@@ -203,6 +203,7 @@ impl Supervisor {
         (robot.granted, robot.told) = (shifted(robot.granted), shifted(robot.told));
         // No more than that has been told.
         robot.ceiling = robot.told;
+        (robot.moved, robot.stands) = (None, false);
         robot.path += 1;
         robot.origin += dropped;
         robot.course = course;

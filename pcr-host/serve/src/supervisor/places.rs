@@ -7,6 +7,9 @@ use crate::fault::Fault;
 use crate::robot::{Alarm, ROOM};
 use serde::{Deserialize, Serialize};
 
+/// Who has not gone further than this has not moved \[m\].
+const STIR: f64 = 1e-3;
+
 /// A message of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -56,6 +59,9 @@ impl Supervisor {
         // Whoever stands at its end has not left what is there, whatever rounding says of where that ends.
         let lo = lo.min(robot.told).min(robot.course.length() - ROOM);
         if lo > robot.at {
+            if lo > robot.at + STIR {
+                (robot.moved, robot.stands) = (Some(now), false);
+            }
             robot.at = lo;
             self.unsaved[place] = true;
         }

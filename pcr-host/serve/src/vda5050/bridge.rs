@@ -53,13 +53,25 @@ pub struct Bridge {
     out: Vec<Publish>,
     counts: Counts,
     log: Vec<String>,
+    /// When it was said last for whom everybody waits \[s\].
+    said: f64,
 }
+
+/// Between two reminders of who is missing \[s\].
+const REMINDER: f64 = 30.0;
 
 impl Bridge {
     /// Of these vehicles, with what the supervisor remembers of them.
     pub fn new(settings: Settings, profiles: Vec<Profile>, supervisor: &Supervisor) -> Self {
         let lanes = profiles.into_iter().map(|profile| (profile.key.clone(), Lane::new(profile, supervisor)));
-        Self { settings, lanes: lanes.collect(), out: Vec::new(), counts: Counts::default(), log: Vec::new() }
+        Self {
+            settings,
+            lanes: lanes.collect(),
+            out: Vec::new(),
+            counts: Counts::default(),
+            log: Vec::new(),
+            said: 0.0,
+        }
     }
 
     /// What to subscribe to.
@@ -140,8 +152,14 @@ impl Bridge {
         self.told(events);
         self.lanes.values_mut().for_each(|lane| lane.pause(supervisor, now));
         // A vehicle that has never said where it stands may stand anywhere.
-        if self.lanes.values().all(|lane| supervisor.robot(lane.name()).is_ok()) {
+        let is_unknown = |lane: &&Lane| supervisor.robot(lane.name()).is_err();
+        let unknown: Vec<&str> = self.lanes.values().filter(is_unknown).map(Lane::name).collect();
+        if unknown.is_empty() {
             self.lanes.values_mut().for_each(|lane| lane.release(supervisor, now));
+        } else if now >= self.said + REMINDER {
+            self.said = now;
+            let names = unknown.join(", ");
+            self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
         }
         self.collect();
     }

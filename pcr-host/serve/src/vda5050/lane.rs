@@ -127,6 +127,11 @@ impl Lane {
         self.job.as_ref()
     }
 
+    /// What it has said last.
+    pub fn state_of(&self) -> Option<&State> {
+        self.state.as_ref()
+    }
+
     /// The messages to be sent.
     pub fn posts(&mut self) -> Vec<Post> {
         std::mem::take(&mut self.posts)

@@ -1,12 +1,16 @@
 //! A connection to a broker that comes back by itself.
 
 use super::bridge::Publish;
-use rumqttc::{Client, Event, LastWill, MqttOptions, Packet, QoS, RecvTimeoutError};
+use rumqttc::{
+    AsyncClient, ConnectionError, Event, EventLoop, LastWill, MqttOptions, Packet, QoS, SubscribeFilter,
+    SubscribeReasonCode,
+};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
+use tokio::sync::Notify;
 
 /// Where the broker is.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,8 +62,8 @@ const AGAIN: Duration = Duration::from_millis(200);
 
 /// A connection. Dropped, it breaks without a word, as when power is lost: its last will is done.
 pub struct Link {
-    client: Client,
-    stop: Arc<AtomicBool>,
+    client: AsyncClient,
+    stop: Arc<Notify>,
     up: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -91,49 +95,15 @@ impl Link {
             options.set_last_will(LastWill::new(&will.topic, will.payload, qos(will.assured), will.retain));
         }
         secure(&mut options, broker)?;
-        let (client, mut connection) = Client::new(options, QUEUE);
-        let (stop, up) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-        let (ended, is_up, subscriber) = (stop.clone(), up.clone(), client.clone());
-        let work = move || {
-            let mut waits = 0;
-            while !ended.load(Ordering::Relaxed) {
-                match connection.recv_timeout(Duration::from_millis(50)) {
-                    Ok(Ok(Event::Incoming(Packet::ConnAck(_)))) => {
-                        waits = filters.len();
-                        for filter in &filters {
-                            // The queue is as good as empty here; were it full, this would be tried again after a while.
-                            if subscriber.try_subscribe(filter, QoS::AtLeastOnce).is_err() {
-                                sink(News::Down("the queue is full".into()));
-                            }
-                        }
-                        if waits == 0 {
-                            is_up.store(true, Ordering::Relaxed);
-                            sink(News::Up);
-                        }
-                    }
-                    Ok(Ok(Event::Incoming(Packet::SubAck(_)))) if waits > 0 => {
-                        waits -= 1;
-                        if waits == 0 {
-                            is_up.store(true, Ordering::Relaxed);
-                            sink(News::Up);
-                        }
-                    }
-                    Ok(Ok(Event::Incoming(Packet::Publish(message)))) => {
-                        sink(News::Message { topic: message.topic, payload: message.payload.to_vec() });
-                    }
-                    Ok(Ok(_)) | Err(RecvTimeoutError::Timeout) => {}
-                    Ok(Err(error)) => {
-                        if is_up.swap(false, Ordering::Relaxed) {
-                            sink(News::Down(error.to_string()));
-                        }
-                        std::thread::sleep(AGAIN);
-                    }
-                    Err(RecvTimeoutError::Disconnected) => return,
-                }
-            }
-        };
-        let thread = std::thread::Builder::new().name(id.into()).spawn(work).map_err(|error| error.to_string())?;
-        Ok(Self { client, stop, up, thread: Some(thread) })
+        let (client, events) = AsyncClient::new(options, QUEUE);
+        let (stop, up) = (Arc::new(Notify::new()), Arc::new(AtomicBool::new(false)));
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.map_err(|error| error.to_string())?;
+        let work = Work { client: client.clone(), filters, sink, up: up.clone(), asks: false, why: String::new() };
+        let stopped = stop.clone();
+        let thread = std::thread::Builder::new().name(id.into());
+        let thread = thread.spawn(move || runtime.block_on(work.go_on(events, &stopped)));
+        Ok(Self { client, stop, up, thread: Some(thread.map_err(|error| error.to_string())?) })
     }
 
     /// Whether it is connected, as far as is known.
@@ -143,8 +113,12 @@ impl Link {
 
     /// Sends a message, if it is connected and the queue is not full: what is sent later would be old.
     pub fn publish(&self, message: Publish) -> bool {
-        let Publish { topic, payload, assured, retain } = message;
-        self.is_up() && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()
+        self.mouth().publish(message)
+    }
+
+    /// What sends messages over it, from wherever it is.
+    pub fn mouth(&self) -> Mouth {
+        Mouth { client: self.client.clone(), up: self.up.clone() }
     }
 
     /// Ends it in order: its last will is not done.
@@ -161,16 +135,107 @@ impl Link {
     }
 
     fn end(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop.notify_one();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
 }
 
+/// What sends messages over a link.
+#[derive(Clone, Debug)]
+pub struct Mouth {
+    client: AsyncClient,
+    up: Arc<AtomicBool>,
+}
+
+impl Mouth {
+    /// As [`Link::publish`].
+    pub fn publish(&self, message: Publish) -> bool {
+        let Publish { topic, payload, assured, retain } = message;
+        self.up.load(Ordering::Relaxed) && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()
+    }
+}
+
 impl Drop for Link {
     fn drop(&mut self) {
         self.end();
+    }
+}
+
+/// What the thread of a link does.
+struct Work<F> {
+    client: AsyncClient,
+    filters: Vec<String>,
+    sink: F,
+    up: Arc<AtomicBool>,
+    /// It is connected, and has still to subscribe.
+    asks: bool,
+    /// Why it is not connected, as was said last.
+    why: String,
+}
+
+impl<F: Fn(News)> Work<F> {
+    /// Until it is stopped. Whatever is under way is finished before, however long it takes: a connection that is given up
+    /// after a while, and begun anew, is never there where the broker takes longer than that while to answer.
+    async fn go_on(mut self, mut events: EventLoop, stop: &Notify) {
+        loop {
+            let event = tokio::select! {
+                biased;
+                () = stop.notified() => return,
+                event = events.poll() => event,
+            };
+            match event {
+                Ok(event) => self.take(event),
+                Err(ConnectionError::RequestsDone) => return,
+                Err(error) => {
+                    self.asks = false;
+                    self.is_down(error.to_string());
+                    tokio::select! {
+                        biased;
+                        () = stop.notified() => return,
+                        () = tokio::time::sleep(AGAIN) => {}
+                    }
+                }
+            }
+            // As long as the queue is full it is sent, with an event each time.
+            let wanted = || self.filters.iter().map(|filter| SubscribeFilter::new(filter.clone(), QoS::AtLeastOnce));
+            if self.asks && self.client.try_subscribe_many(wanted()).is_ok() {
+                self.asks = false;
+            }
+        }
+    }
+
+    fn take(&mut self, event: Event) {
+        match event {
+            Event::Incoming(Packet::ConnAck(_)) if self.filters.is_empty() => self.is_up(),
+            Event::Incoming(Packet::ConnAck(_)) => self.asks = true,
+            Event::Incoming(Packet::SubAck(answer)) if !self.up.load(Ordering::Relaxed) => {
+                let refused = |(code, _): &(&SubscribeReasonCode, _)| **code == SubscribeReasonCode::Failure;
+                match answer.return_codes.iter().zip(&self.filters).find(refused) {
+                    None => self.is_up(),
+                    Some((_, filter)) => self.is_down(format!("the broker does not let us read {filter}")),
+                }
+            }
+            Event::Incoming(Packet::Publish(message)) => {
+                (self.sink)(News::Message { topic: message.topic, payload: message.payload.to_vec() });
+            }
+            _ => {}
+        }
+    }
+
+    fn is_up(&mut self) {
+        self.why.clear();
+        self.up.store(true, Ordering::Relaxed);
+        (self.sink)(News::Up);
+    }
+
+    /// Said when it is news: it is tried again and again.
+    fn is_down(&mut self, why: String) {
+        if self.up.swap(false, Ordering::Relaxed) || why != self.why {
+            self.why.clone_from(&why);
+            (self.sink)(News::Down(why));
+        }
     }
 }
 
@@ -193,5 +258,70 @@ fn secure(_options: &mut MqttOptions, broker: &Broker) -> Result<(), String> {
     match broker.authority {
         Some(_) => Err("this build has no TLS: build it with the feature `tls`".into()),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Read, Write};
+    use std::net::{TcpListener, TcpStream};
+    use std::sync::mpsc::channel;
+
+    /// Reads one packet of less than 128 bytes: its kind.
+    fn packet(stream: &mut TcpStream) -> std::io::Result<u8> {
+        let mut head = [0; 2];
+        stream.read_exact(&mut head)?;
+        stream.read_exact(&mut vec![0; head[1].into()])?;
+        Ok(head[0])
+    }
+
+    /// Connections were given up after 50 ms and begun anew: behind a slow line, or on a busy machine, for ever.
+    #[test]
+    fn a_broker_that_takes_its_time_is_waited_for() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let broker = std::thread::spawn(move || {
+            let (mut stream, _) = listener.accept().unwrap();
+            assert_eq!(packet(&mut stream).unwrap(), 0x10);
+            std::thread::sleep(Duration::from_millis(300));
+            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
+            assert_eq!(packet(&mut stream).unwrap(), 0x82);
+            std::thread::sleep(Duration::from_millis(300));
+            stream.write_all(&[0x90, 4, 0, 1, 1, 1]).unwrap();
+            stream
+        });
+        let (sender, news) = channel();
+        let filters = ["a/b", "c/d"].map(String::from).to_vec();
+        let link = Link::open(&Broker::new("127.0.0.1", port), "slow", None, filters, move |it| drop(sender.send(it)));
+        let link = link.unwrap();
+        let stream = broker.join().expect("its first connection is the one that it keeps");
+        assert_eq!(news.recv().unwrap(), News::Up);
+        assert!(link.is_up());
+        drop(link);
+        drop(stream);
+    }
+
+    #[test]
+    fn what_may_not_be_read_is_said() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let broker = std::thread::spawn(move || {
+            let (mut stream, _) = listener.accept().unwrap();
+            packet(&mut stream).unwrap();
+            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
+            packet(&mut stream).unwrap();
+            stream.write_all(&[0x90, 4, 0, 1, 1, 0x80]).unwrap();
+            stream
+        });
+        let (sender, news) = channel();
+        let filters = ["a/b", "c/d"].map(String::from).to_vec();
+        let link = Link::open(&Broker::new("127.0.0.1", port), "id", None, filters, move |it| drop(sender.send(it)));
+        let link = link.unwrap();
+        let stream = broker.join().unwrap();
+        assert_eq!(news.recv().unwrap(), News::Down("the broker does not let us read c/d".into()));
+        assert!(!link.is_up());
+        drop(link);
+        drop(stream);
     }
 }

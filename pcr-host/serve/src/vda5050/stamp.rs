@@ -4,7 +4,12 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Now, as messages write it.
 pub fn now() -> String {
-    written(SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64()))
+    written(seconds())
+}
+
+/// Now \[s since 1970\].
+pub fn seconds() -> f64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64())
 }
 
 /// A time \[s since 1970\], from 0 to the year 9999, to the millisecond.
@@ -29,7 +34,7 @@ pub fn written(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::written;
     use pcr_formats::import::seconds;
 
     #[test]

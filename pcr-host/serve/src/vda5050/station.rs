@@ -12,7 +12,7 @@ use super::topics::{Interface, Key, Kind};
 use super::version::Version;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::server::Handle;
+use crate::server::{Handle, Input};
 use crate::supervisor::Supervisor;
 use serde_json::{Map, Value};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -56,6 +56,7 @@ pub struct Station {
     key: Key,
     /// The vehicles are to be asked how things are.
     greets: bool,
+    log: Vec<String>,
 }
 
 /// Why a station stops.
@@ -80,7 +81,7 @@ impl Station {
         })?;
         let now = Instant::now();
         let (session, claim) = (session.into(), Claim::Asking(now));
-        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false })
+        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false, log: Vec::new() })
     }
 
     /// Seconds since it was opened.
@@ -113,10 +114,13 @@ impl Station {
         } else {
             bridge.told(&events);
         }
+        // Where nobody reads it.
+        self.log.clear();
         Ok(events)
     }
 
-    /// The same for a supervisor that another thread owns, which tells its events here. Returns why messages were refused.
+    /// The same for a supervisor that another thread owns, which tells its events here. Returns what somebody should look at: why messages
+    /// were refused, who is missing, why there is no broker.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -139,21 +143,28 @@ impl Station {
             }
         });
         taken.ok_or_else(ended)?;
-        // The next question is taken after what came before it is settled and in the journal.
+        // The next question is taken after what came before it is settled.
         let (own, works) = (bridge.clone(), self.works());
-        handle.ask(|_, _, _| ()).ok_or_else(ended)?;
         let told: Vec<Event> = events.try_iter().collect();
         let released = handle.ask(move |supervisor, _, now| {
             let mut bridge = locked(&own);
-            if works { bridge.settled(supervisor, &told, now) } else { bridge.told(&told) }
+            if works {
+                bridge.settled(supervisor, &told, now);
+                bridge.out()
+            } else {
+                bridge.told(&told);
+                Vec::new()
+            }
         });
-        released.ok_or_else(ended)?;
-        handle.ask(|_, _, _| ()).ok_or_else(ended)?;
-        let mut bridge = locked(bridge);
-        if works {
-            self.send(&mut bridge);
+        let (messages, mouth) = (released.ok_or_else(ended)?, self.link.mouth());
+        if !messages.is_empty() {
+            // What is not sent then is sent again.
+            let send = move || messages.into_iter().for_each(|message| _ = mouth.publish(message));
+            handle.send(Input::Then(Box::new(send)));
         }
-        Ok(bridge.log())
+        let mut log = std::mem::take(&mut self.log);
+        log.extend(locked(bridge).log());
+        Ok(log)
     }
 
     /// Whether vehicles may be told something now.
@@ -185,7 +196,7 @@ impl Station {
         while let Ok(news) = first {
             match news {
                 News::Up => self.claim = Claim::Asking(Instant::now()),
-                News::Down(_) => {}
+                News::Down(why) => self.log.push(format!("no broker: {why}")),
                 News::Message { topic, payload } if topic == self.topic => self.heard(&payload)?,
                 News::Message { topic, payload } => messages.push((topic, payload)),
             }

@@ -51,6 +51,8 @@ pub struct Fleet<W: Write> {
     record: Record<W>,
     random: Random,
     begin: Instant,
+    /// When the last step was \[s\].
+    last: f64,
     /// Time of the vehicles \[s\].
     time: f64,
     /// Times that connections were lost.
@@ -59,6 +61,9 @@ pub struct Fleet<W: Write> {
 
 /// Vehicles go on in steps of this at most \[s\].
 const STEP: f64 = 0.05;
+
+/// No more of their time goes by between two looks at messages, on however busy a machine \[s\].
+const LEAP: f64 = 1.0;
 
 /// A connection that was lost is back within \[s\].
 const AWAY: f64 = 3.0;
@@ -82,7 +87,18 @@ impl<W: Write> Fleet<W> {
             Member { vehicle, link: None, again: 0.0, incoming, outgoing, told }
         });
         let members = members.collect();
-        Ok(Self { settings, members, news, sender, record, random, begin: Instant::now(), time: 0.0, drops: 0 })
+        Ok(Self {
+            settings,
+            members,
+            news,
+            sender,
+            record,
+            random,
+            begin: Instant::now(),
+            last: 0.0,
+            time: 0.0,
+            drops: 0,
+        })
     }
 
     /// Time of the vehicles \[s\].
@@ -132,9 +148,10 @@ impl<W: Write> Fleet<W> {
                 }
             }
         }
-        let until = now * self.settings.pace;
-        let steps = ((until - self.time) / STEP).ceil().max(1.0);
-        let step = (until - self.time) / steps;
+        let time = ((now - self.last) * self.settings.pace).clamp(0.0, LEAP);
+        self.last = now;
+        let steps = (time / STEP).ceil().max(1.0);
+        let step = time / steps;
         for _ in 0..steps as u64 {
             self.time += step;
             for (k, member) in self.members.iter_mut().enumerate() {

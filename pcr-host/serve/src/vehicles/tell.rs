@@ -10,14 +10,12 @@ use crate::vda5050::version::Version;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::f64::consts::{PI, TAU};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 impl Vehicle {
     fn header(&mut self, kind: Kind) -> Header {
         let number = self.headers.entry(kind).or_insert(0);
         *number += 1;
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64());
-        Header::new(&self.key, self.version, *number, stamp::written(now + self.clock))
+        Header::new(&self.key, self.version, *number, stamp::written(self.time + self.clock))
     }
 
     fn say(&mut self, kind: Kind, message: &impl Serialize) {

@@ -8,6 +8,7 @@ use crate::vda5050::header::Header;
 use crate::vda5050::held::{Held, Rejected, Taken};
 use crate::vda5050::messages::{Action, InstantActions};
 use crate::vda5050::order::Order;
+use crate::vda5050::stamp;
 use crate::vda5050::state::{ActionState, StateError};
 use crate::vda5050::topics::{Key, Kind};
 use crate::vda5050::version::{Error, Version};
@@ -42,6 +43,8 @@ pub struct Vehicle {
     pub(super) random: Random,
     pub(super) start: Start,
     pub(super) task: Option<Task>,
+    /// Orders before, oldest first: a message about one of them comes late.
+    past: Vec<String>,
     /// What is off, sideways \[m\], and how fast that changes.
     pub(super) off: f64,
     pub(super) actions: Vec<ActionState>,
@@ -53,7 +56,8 @@ pub struct Vehicle {
     frozen: f64,
     pub(super) errors: Vec<StateError>,
     pub(super) headers: BTreeMap<Kind, u64>,
-    /// What its clock is off \[s\].
+    /// Time since 1970 \[s\], as it goes on; and what its clock is off.
+    pub(super) time: f64,
     pub(super) clock: f64,
     pub(super) out: Vec<(Kind, Vec<u8>)>,
     news: bool,
@@ -70,6 +74,7 @@ impl Vehicle {
             random: Random::new(seed),
             start,
             task: None,
+            past: Vec::new(),
             off: 0.0,
             actions: Vec::new(),
             instant: Vec::new(),
@@ -79,6 +84,7 @@ impl Vehicle {
             frozen: 0.0,
             errors: Vec::new(),
             headers: BTreeMap::new(),
+            time: stamp::seconds(),
             clock: 0.0,
             out: Vec::new(),
             news: true,
@@ -207,6 +213,9 @@ impl Vehicle {
                 {
                     return Err(Rejected::new(Error::Order, "orderId", "another order is not finished"));
                 }
+                if self.past.contains(&order.order_id) {
+                    return Err(Rejected::new(Error::Order, "orderId", "it was there before"));
+                }
                 let start = task.as_ref().map_or(self.start, |task| task.way.pose(task.drive.at));
                 let held = Held::new(order)?;
                 let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
@@ -214,6 +223,10 @@ impl Vehicle {
                     return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", "too far off"));
                 }
                 self.start = start;
+                /// So many are remembered.
+                const MOST: usize = 32;
+                self.past.extend(task.take().map(|task| task.held.order_id));
+                self.past.drain(..self.past.len().saturating_sub(MOST));
                 *task = Some(Task { held, way, drive: Drive::new(), done: 0, cancelled: false });
                 self.actions = new;
             }
@@ -222,6 +235,10 @@ impl Vehicle {
     }
 
     fn act(&mut self, action: &Action) {
+        // One that comes again is the same one.
+        if self.instant.iter().any(|known| known.action_id == action.action_id) {
+            return;
+        }
         let mut state = waiting(action);
         let has_order = self
             .task
@@ -245,7 +262,6 @@ impl Vehicle {
             _ => "FAILED",
         };
         state.action_status = status.into();
-        self.instant.retain(|known| known.action_id != state.action_id);
         self.instant.push(state);
         /// No more than the last ones.
         const MOST: usize = 8;
@@ -257,6 +273,7 @@ impl Vehicle {
 
     /// Goes on for a time \[s\].
     pub fn advance(&mut self, time: f64) {
+        self.time += time;
         self.frozen = (self.frozen - time).max(0.0);
         if self.frozen > 0.0 {
             return;

@@ -32,7 +32,7 @@ impl World {
     /// So many vehicles of these editions and abilities in turn, at the first of the goals.
     ///
     /// # Errors
-    /// Too few goals.
+    /// Too few goals, or some that are on the ways of others.
     pub fn new(
         layout: Layout,
         goals: Vec<usize>,
@@ -55,7 +55,8 @@ impl World {
             vehicles.push(Vehicle::new(key.clone(), version, MAP, can, start, seed));
             clients.push((key, version, goal));
         }
-        let manager = Manager::new(layout, MAP, goals, clients, seed);
+        let clearance = 2.0 * profiles.iter().map(|profile| profile.abilities.reach()).fold(0.0, f64::max);
+        let manager = Manager::new(layout, MAP, goals, clearance, clients, seed)?;
         Ok(Self { profiles, vehicles, manager })
     }
 }

@@ -13,9 +13,9 @@ pub(crate) struct Mosquitto {
     port: u16,
 }
 
-/// A folder of this name that is empty.
+/// A folder of this name that is empty, of this process.
 pub(crate) fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
@@ -23,9 +23,24 @@ pub(crate) fn folder(name: &str) -> PathBuf {
 
 impl Mosquitto {
     pub(crate) fn start(name: &str) -> Self {
+        Self::with(folder(&format!("broker-{name}")), "allow_anonymous true")
+    }
+
+    /// Which lets in a user with a password only.
+    pub(crate) fn guarded(name: &str, user: &str, password: &str) -> Self {
         let folder = folder(&format!("broker-{name}"));
+        let file = folder.join("passwords");
+        let made = Command::new("mosquitto_passwd").args(["-b", "-c"]).arg(&file).args([user, password]).status();
+        assert!(made.is_ok_and(|status| status.success()), "mosquitto_passwd comes with mosquitto");
+        // It gives up the rights of root, which has written the file.
+        let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o644);
+        std::fs::set_permissions(&file, permissions).unwrap();
+        Self::with(folder, &format!("allow_anonymous false\npassword_file {}", file.display()))
+    }
+
+    fn with(folder: PathBuf, access: &str) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let config = format!("listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\nlog_dest none\n");
+        let config = format!("listener {port} 127.0.0.1\nset_tcp_nodelay true\nlog_dest none\n{access}\n");
         std::fs::write(folder.join("mosquitto.conf"), config).unwrap();
         let child = Self::spawn(&folder);
         let broker = Self { child, folder, port };

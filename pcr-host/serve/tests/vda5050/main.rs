@@ -1,9 +1,12 @@
 //! VDA 5050 over a real broker, and what does not need one. The runs with a broker: `.ci/test.sh serve`.
 
 mod broker;
+mod dump;
 mod faults;
+mod lanes;
 mod runs;
 mod samples;
 mod schemas;
 mod site;
 mod standing;
+mod yard;

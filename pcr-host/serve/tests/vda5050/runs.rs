@@ -3,8 +3,9 @@
 use crate::broker::Mosquitto;
 use crate::schemas;
 use crate::site::{Desk, Scene, Site, interfaces};
+use crate::yard::MIXED;
 use pcr_serve::entry::Nowhere;
-use pcr_serve::vda5050::mqtt::{Link, News};
+use pcr_serve::vda5050::mqtt::{Broker, Link, News};
 use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::weather::Climate;
@@ -34,9 +35,8 @@ fn one_vehicle_does_its_missions() {
     let broker = Mosquitto::start("one");
     let (mut site, profiles) = Site::open(&broker, FAIR);
     let desk = Desk::open(&broker, profiles, "one", Box::new(Nowhere));
-    let log = desk.log.clone();
-    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(2)));
-    assert!(told.is_ok(), "{:#?}", log.lock().unwrap());
+    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(1)));
+    assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();
     assert!(found.travelled > 5.0, "{found:?}");
     desk.close().unwrap();
@@ -46,26 +46,16 @@ fn one_vehicle_does_its_missions() {
 #[ignore = "needs a broker: .ci/test.sh serve"]
 fn a_fleet_of_all_editions_keeps_apart() {
     let broker = Mosquitto::start("fleet");
-    let small = Abilities { radius: 0.3, speed: 1.5, acceleration: 1.0, ..FAIR.abilities[0] };
-    let slow = Abilities { delay: 3.0, slip: 0.2, speed: 0.7, ..FAIR.abilities[0] };
-    let climate = Climate { lost: 0.05, twice: 0.1, late: 0.1, delay: 1.0 };
-    let scene = Scene {
-        count: 8,
-        versions: &Version::ALL,
-        abilities: &[FAIR.abilities[0], small, slow],
-        climate,
-        drops: 0.02,
-        ..FAIR
-    };
+    // By seconds of ours: ten of the vehicles go by in one..
+    let scene = Scene { climate: Climate { delay: 1.0, ..MIXED.climate }, drops: 0.02, ..MIXED };
     // Who listens to everything that is said.
     let (sender, said) = channel();
     let everything = ["uagv/#".to_owned(), "fleet/#".to_owned()].to_vec();
     let ear = Link::open(&broker.address(), "ear", None, everything, move |news| drop(sender.send(news))).unwrap();
     let (mut site, profiles) = Site::open(&broker, scene);
     let desk = Desk::open(&broker, profiles, "fleet", Box::new(Nowhere));
-    let log = desk.log.clone();
-    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(24)));
-    assert!(told.is_ok(), "{:#?}", log.lock().unwrap().iter().rev().take(60).collect::<Vec<_>>());
+    let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(10)));
+    assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();
     assert!(found.travelled > 100.0, "{found:?}");
     desk.close().unwrap();
@@ -81,4 +71,24 @@ fn a_fleet_of_all_editions_keeps_apart() {
             assert!(seen.contains_key(&format!("{version} {kind}")), "{seen:?}");
         }
     }
+}
+
+/// Whoever had no right to the broker tried again for ever, and said nothing.
+#[test]
+#[ignore = "needs a broker: .ci/test.sh serve"]
+fn a_broker_with_passwords_lets_in_who_has_one() {
+    let broker = Mosquitto::guarded("guarded", "pcr", "secret");
+    let first = |password: Option<&str>| {
+        let login = password.map(|password| ("pcr".into(), password.into()));
+        let (sender, news) = channel();
+        let broker = Broker { login, ..broker.address() };
+        let link = Link::open(&broker, "who", None, vec!["a/b".into()], move |it| drop(sender.send(it))).unwrap();
+        let first = news.recv().unwrap();
+        link.close();
+        first
+    };
+    for refused in [first(None), first(Some("guess"))] {
+        assert!(matches!(&refused, News::Down(why) if why.contains("NotAuthorized")), "{refused:?}");
+    }
+    assert_eq!(first(Some("secret")), News::Up);
 }

@@ -122,7 +122,7 @@ pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log:
         while !ended.load(Ordering::Relaxed) {
             match station.turn_at(&handle, &bridge, &events) {
                 Ok(lines) => {
-                    lines.iter().for_each(|line| log.write(Level::Warn, "a message was refused", &[("why", line)]));
+                    lines.iter().for_each(|line| log.write(Level::Warn, "bridge", &[("why", line)]));
                 }
                 Err(_) if ended.load(Ordering::Relaxed) => break,
                 Err(why) => {

@@ -13,6 +13,7 @@ use pcr_serve::journal::Journal;
 use pcr_serve::log::{Level, Log};
 use pcr_serve::server::{Handle, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::writer::{Kept, Writer};
 use pcr_serve::{clients, http};
 use std::net::TcpListener;
 use std::process::ExitCode;
@@ -34,8 +35,8 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         ..Settings::default()
     };
     let log = log_of(&arguments)?;
-    let mut supervisor = open(&arguments, settings, log)?;
     let (handle, inputs) = queue();
+    let (mut supervisor, kept) = open(&arguments, settings, &handle, log)?;
     let ends = match &demo {
         Some(demo) => Some(bridge::start(&handle, &supervisor, demo.fleet(), log)?),
         None => {
@@ -60,7 +61,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         }
     });
     interrupted(handle);
-    let served = serve(&mut supervisor, &inputs, log);
+    let served = serve(&mut supervisor, &inputs, &kept, log);
     drop(inputs);
     // The bridge and the demo end in order, whatever has ended this.
     let ended = ends.map_or(Ok(()), bridge::Work::end);
@@ -107,7 +108,7 @@ fn interrupted(handle: Handle) {
     drop(handle);
 }
 
-fn open(arguments: &Arguments, settings: Settings, log: Log) -> Result<Supervisor, Stop> {
+fn open(arguments: &Arguments, settings: Settings, handle: &Handle, log: Log) -> Result<(Supervisor, Kept), Stop> {
     let Some(folder) = &arguments.journal else {
         log.write(
             Level::Warn,
@@ -115,7 +116,7 @@ fn open(arguments: &Arguments, settings: Settings, log: Log) -> Result<Superviso
             &[],
         );
         let keeper: Box<dyn Keep> = Box::new(Nowhere);
-        return Ok(Supervisor::new(settings, keeper));
+        return Ok((Supervisor::new(settings, keeper), Kept::default()));
     };
     let (journal, found) = Journal::open(folder).map_err(|error| Stop::wrong(folder, error))?;
     if found.torn > 0 {
@@ -125,10 +126,13 @@ fn open(arguments: &Arguments, settings: Settings, log: Log) -> Result<Superviso
             &[("bytes", &found.torn)],
         );
     }
-    let supervisor = Supervisor::restored(settings, found.entries, Box::new(journal));
+    let own = handle.clone();
+    let writer = Writer::start(Box::new(journal), move || own.wake()).map_err(|error| Stop::wrong(folder, error))?;
+    let kept = writer.kept();
+    let supervisor = Supervisor::restored(settings, found.entries, Box::new(writer));
     let supervisor = supervisor.map_err(|damaged| Stop::wrong(folder, damaged))?;
     log.write(Level::Info, "ready", &[("robots", &supervisor.robots().len())]);
-    Ok(supervisor)
+    Ok((supervisor, kept))
 }
 
 /// A place to listen at: of this machine only, if no address is told.

@@ -4,6 +4,7 @@ use super::super::door::{self, Limits, Refusal};
 use super::super::messages::InstantActions;
 use super::super::topics::Kind;
 use super::super::version::Version;
+use super::release::AGAIN;
 use super::{Lane, To};
 use crate::event::Event;
 use crate::supervisor::{Proposal, Supervisor};
@@ -29,7 +30,7 @@ impl Lane {
         };
         let cancel = message.actions.iter().find(|action| action.action_type == "cancelOrder");
         if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
-            job.cancel = Some(cancel.action_id.clone());
+            (job.cancel, job.cancelled_at) = (Some(cancel.action_id.clone()), now);
             let given = job.given();
             self.note(supervisor, "order", given);
             // What waits to be admitted is given up: the way ends where it ends now.
@@ -60,17 +61,37 @@ impl Lane {
     }
 
     /// Cancels the order of the vehicle once more, under another name.
-    pub(super) fn cancel_again(&mut self, supervisor: &mut Supervisor) {
+    pub(super) fn cancel_again(&mut self, supervisor: &mut Supervisor, now: f64) {
         let Some(version) = self.version else { return };
         let header = self.header(Kind::InstantActions, version);
         let id = format!("pcr-cancelOrder-{}-{}", header.timestamp, header.header_id);
         if let Some(job) = &mut self.job {
-            job.cancel = Some(id.clone());
+            (job.cancel, job.cancelled_at) = (Some(id.clone()), now);
             let given = job.given();
             self.note(supervisor, "order", given);
         }
         let message = InstantActions::one(header, "cancelOrder", id);
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
+    }
+
+    /// What cancels the order may be lost, or be there before the order: the one or the other is sent again until the vehicle has both.
+    pub(super) fn follow_cancel(&mut self, now: f64) {
+        let (Some(version), Some(state), Some(job)) = (self.version, &self.state, &mut self.job) else { return };
+        let Some(id) = job.cancel.clone() else { return };
+        let has_it = job.held.order_id == state.order_id;
+        match state.action(&id) {
+            None if now - job.cancelled_at >= AGAIN => {
+                job.cancelled_at = now;
+                let header = self.header(Kind::InstantActions, version);
+                let message = InstantActions::one(header, "cancelOrder", id);
+                self.post(To::Vehicle, Kind::InstantActions, version, &message);
+            }
+            Some("FAILED") if !has_it && job.sent.is_some() && now - job.sent_at >= AGAIN => {
+                job.sent_at = now;
+                self.send(version);
+            }
+            _ => {}
+        }
     }
 
     /// Takes what the supervisor says of the vehicle.

@@ -55,6 +55,8 @@ pub struct Job {
     pub changed: bool,
     /// The action that cancels it.
     pub cancel: Option<String>,
+    /// When that was sent \[s\].
+    pub cancelled_at: f64,
 }
 
 /// What is remembered of the manager's order.
@@ -93,6 +95,7 @@ impl Job {
             acknowledged: None,
             changed: true,
             cancel: None,
+            cancelled_at: f64::NEG_INFINITY,
         }
     }
 

@@ -8,7 +8,7 @@ use super::super::version::{Error, Version};
 use super::super::way::{TOLERANCE, Way};
 use super::Lane;
 use super::job::{Job, mission};
-use crate::supervisor::{Proposal, Supervisor};
+use crate::supervisor::{Proposal, Supervisor, Verdict};
 
 /// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
 const BEGINS: f64 = 1.0;
@@ -67,7 +67,7 @@ impl Lane {
     }
 
     /// Whether the vehicle has done all of its order.
-    fn is_free(&self, supervisor: &Supervisor) -> bool {
+    pub(super) fn is_free(&self, supervisor: &Supervisor) -> bool {
         let (Some(job), Some(state), Ok(robot)) = (&self.job, &self.state, supervisor.robot(&self.name)) else {
             return self.job.is_none();
         };
@@ -160,7 +160,10 @@ impl Lane {
         let proposal =
             Proposal { robot: self.name.clone(), mission: mission(&job.held), after: None, start: None, path };
         let verdict = supervisor.mission(&proposal, now);
-        verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))?;
+        if verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))? == Verdict::Past {
+            // An old message that comes late: nothing would ever come of it.
+            return Err(Rejected::new(Error::Order, "orderId", "the vehicle had an order of this name before"));
+        }
         job.asked = job.held.base;
         Ok(())
     }

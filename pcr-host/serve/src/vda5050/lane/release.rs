@@ -1,6 +1,7 @@
 //! Updates for the vehicle: its base goes as far as the supervisor allows.
 
 use super::super::order::Order;
+use super::super::state::ActionState;
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::job::{Job, Sent, Stop};
@@ -9,7 +10,7 @@ use crate::robot::Robot;
 use crate::supervisor::Supervisor;
 
 /// Between two attempts to send the same \[s\].
-const AGAIN: f64 = 1.0;
+pub(super) const AGAIN: f64 = 1.0;
 
 /// Holds are computed with more room than this \[m\].
 const ROUNDING: f64 = 1e-4;
@@ -24,6 +25,7 @@ impl Lane {
     /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
         let Some(version) = self.version else { return };
+        self.follow_cancel(now);
         let Some(allowed) = self.allowed(supervisor) else { return };
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };
@@ -65,7 +67,7 @@ impl Lane {
         let said = self.state.as_ref().and_then(|state| state.rest.get("paused")?.as_bool()).unwrap_or(false);
         match self.pause {
             // Who has paused it otherwise lets it go.
-            None if !stops => {}
+            None if !(stops || said && self.has_paused()) => {}
             Some((false, _)) if !stops && !said => self.pause = None,
             Some((asked, at)) if asked == stops && (said == stops || now - at < AGAIN) => {}
             _ => {
@@ -73,6 +75,18 @@ impl Lane {
                 self.ask_for(if stops { "startPause" } else { "stopPause" });
             }
         }
+    }
+
+    /// Whether it was we who have paused it last: a message of ours that came late, or one from before a restart.
+    fn has_paused(&self) -> bool {
+        let Some(state) = &self.state else { return false };
+        let mut all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
+        let is_pause = |action: &&ActionState| {
+            let kind = action.rest.get("actionType").and_then(|kind| kind.as_str());
+            matches!(kind, Some("startPause" | "stopPause"))
+        };
+        let last = all.rfind(is_pause);
+        last.is_some_and(|action| action.action_id.starts_with("pcr-startPause-"))
     }
 
     /// How far the vehicle may go \[m\]. After a restart the supervisor counts more as told than it has told, so that nobody else gets it;
@@ -92,7 +106,7 @@ impl Lane {
         Some(allowed)
     }
 
-    fn send(&mut self, version: Version) {
+    pub(super) fn send(&mut self, version: Version) {
         let deviation = self.deviation();
         let header = self.header(Kind::Order, version);
         let Some(job) = &self.job else { return };

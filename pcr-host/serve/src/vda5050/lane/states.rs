@@ -128,11 +128,15 @@ impl Lane {
                 self.reseat(supervisor, &state);
             } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
                 // It came before the order.
-                self.cancel_again(supervisor);
+                self.cancel_again(supervisor, now);
+            } else if has_it && status == Some("FAILED") && job.is_acknowledged() && !self.is_free(supervisor) {
+                // It had come to the end of what it was given: nothing more will come.
+                self.reseat(supervisor, &state);
             }
             return;
         }
-        let had_it = job.acknowledged.is_some();
+        // An update is sent when the one before it was there, perhaps to another supervisor.
+        let had_it = job.acknowledged.is_some() || job.sent.is_some_and(|sent| sent.update > 0);
         if self.stays_astray(had_it && !has_it && self.is_still(&state), now) {
             self.reseat(supervisor, &state);
         }

@@ -1,0 +1,83 @@
+//! Somebody who has something to do and gets nowhere: for whom it waits in the end, and that this one does not go on. What robots keep
+//! from happening is no reason, but how they are sent, or one that stands, is.
+
+use super::Supervisor;
+use super::admission::Verdict;
+use crate::event::Event;
+use crate::robot::Robot;
+
+/// Between two looks \[s\].
+const PAUSE: f64 = 1.0;
+
+impl Supervisor {
+    /// Says why nothing goes on, once for each reason.
+    pub(super) fn note_standstill(&mut self, now: f64) {
+        if now < self.looked + PAUSE {
+            return;
+        }
+        self.looked = now;
+        self.robots.iter_mut().for_each(|robot| _ = robot.moved.get_or_insert(now));
+        for place in 0..self.robots.len() {
+            if self.is_busy(&self.robots[place]) && self.since(place, now) > self.settings.patience {
+                self.note_reason(place, now);
+            }
+        }
+    }
+
+    fn note_reason(&mut self, place: usize, now: f64) {
+        let (mut chain, mut last) = (vec![place], place);
+        while let Some(next) = self.kept_by(last) {
+            if let Some(begin) = chain.iter().position(|&known| known == next) {
+                chain.drain(..begin);
+                let first = chain.iter().copied().min().unwrap_or(next);
+                let names: Vec<&str> = chain.iter().map(|&one| self.robots[one].name.as_str()).collect();
+                return self.note_stand(first, now, format!("{} wait for one another", names.join(", ")));
+            }
+            chain.push(next);
+            last = next;
+        }
+        let robot = &self.robots[last];
+        // That is said already.
+        let is_known = robot.alarm.is_some() || robot.stopped.is_some() || robot.silent;
+        if is_known || self.since(last, now) <= self.settings.patience {
+            return;
+        }
+        let why = match (self.is_busy(robot), chain.iter().rev().nth(1)) {
+            (true, _) => format!("{} is at {:.2} m, and may go to {:.2} m", robot.name, robot.at, robot.told),
+            (false, Some(&before)) => {
+                format!("{} has nothing to do, and is in the way of {}", robot.name, self.robots[before].name)
+            }
+            (false, None) => return,
+        };
+        self.note_stand(last, now, why);
+    }
+
+    fn note_stand(&mut self, place: usize, now: f64, why: String) {
+        let since = self.since(place, now);
+        let robot = &mut self.robots[place];
+        if !std::mem::replace(&mut robot.stands, true) {
+            self.events.push(Event::Standstill { robot: robot.name.clone(), since, why });
+        }
+    }
+
+    fn since(&self, place: usize, now: f64) -> f64 {
+        self.robots[place].moved.map_or(0.0, |moved| now - moved)
+    }
+
+    fn is_busy(&self, robot: &Robot) -> bool {
+        robot.waiting.is_some() || !robot.has_arrived(self.settings.width)
+    }
+
+    /// For whom a robot waits, that has something to do and may not go on.
+    fn kept_by(&self, place: usize) -> Option<usize> {
+        let robot = &self.robots[place];
+        if !robot.has_arrived(self.settings.width) {
+            let waits = robot.told <= robot.at + self.settings.width;
+            return robot.hold.filter(|_| waits)?.by.map(|(by, _)| by);
+        }
+        match self.tries.get(&robot.name).filter(|_| robot.waiting.is_some())?.last.as_ref()? {
+            Verdict::Waiting { by: Some(by), .. } => self.place(by).ok().filter(|by| *by != place),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! A journal that is written by a thread of its own. While one write is on its way to the disc what comes meanwhile is collected, and is
+//! the next write; whoever tells others waits until [`Kept`] says that it is there.
+
+use crate::entry::{Entry, Keep};
+use crate::fault::Fault;
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+enum Job {
+    Keep(Vec<Entry>),
+    Restart(Vec<Entry>),
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    /// Batches that were handed over.
+    asked: AtomicU64,
+    /// Of these, on the disc; or why no more will be.
+    done: Mutex<(u64, Option<String>)>,
+    more: Condvar,
+    is_long: AtomicBool,
+}
+
+/// How far a journal is written. That of a journal which is written at once, on the thread that asks for it, is always there.
+#[derive(Clone, Debug, Default)]
+pub struct Kept {
+    shared: Arc<Shared>,
+}
+
+impl Kept {
+    /// Batches that were handed over.
+    pub fn asked(&self) -> u64 {
+        self.shared.asked.load(Ordering::Acquire)
+    }
+
+    /// Batches that are on the disc.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`]: no more will ever be.
+    pub fn done(&self) -> Result<u64, Fault> {
+        let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
+        done.1.clone().map_or(Ok(done.0), |why| Err(Fault::Broken { why }))
+    }
+
+    /// Waits until all that was handed over is on the disc.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`].
+    pub fn wait(&self) -> Result<(), Fault> {
+        let asked = self.asked();
+        let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let done = self.shared.more.wait_while(done, |(done, why)| *done < asked && why.is_none());
+        let done = done.unwrap_or_else(PoisonError::into_inner);
+        done.1.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
+    }
+}
+
+/// What hands entries over to the thread. Nothing of them may be told before [`Kept`] says that they are there.
+#[derive(Debug)]
+pub struct Writer {
+    sender: Option<Sender<Job>>,
+    thread: Option<JoinHandle<()>>,
+    kept: Kept,
+}
+
+impl Writer {
+    /// Starts the thread; `wake` is called after each write.
+    ///
+    /// # Errors
+    /// There is no thread for it.
+    pub fn start(mut keeper: Box<dyn Keep>, wake: impl Fn() + Send + 'static) -> io::Result<Self> {
+        let (sender, jobs) = channel();
+        let kept = Kept::default();
+        let own = kept.clone();
+        let work = move || {
+            while go_on(&mut *keeper, &jobs, &own) {
+                wake();
+            }
+            // Whoever waits for a write that has failed sees it.
+            wake();
+        };
+        let thread = std::thread::Builder::new().name("journal".into()).spawn(work)?;
+        Ok(Self { sender: Some(sender), thread: Some(thread), kept })
+    }
+
+    /// How far it is.
+    pub fn kept(&self) -> Kept {
+        self.kept.clone()
+    }
+
+    fn hand(&mut self, job: Job) -> io::Result<()> {
+        self.kept.done().map_err(|fault| io::Error::other(fault.to_string()))?;
+        let ended = || io::Error::other("the thread that writes the journal has ended");
+        self.sender.as_ref().ok_or_else(ended)?.send(job).map_err(|_| ended())?;
+        self.kept.shared.asked.fetch_add(1, Ordering::AcqRel);
+        Ok(())
+    }
+}
+
+impl Keep for Writer {
+    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+        self.hand(Job::Keep(entries.to_vec()))
+    }
+
+    fn is_long(&self) -> bool {
+        self.kept.shared.is_long.load(Ordering::Relaxed)
+    }
+
+    fn restart(&mut self, entries: &[Entry]) -> io::Result<()> {
+        self.kept.shared.is_long.store(false, Ordering::Relaxed);
+        self.hand(Job::Restart(entries.to_vec()))
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.sender = None;
+        if let Some(thread) = self.thread.take() {
+            // All that was handed over is written; one that has panicked says so itself.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Writes all that there is; false: nothing more will come, or nothing more can be written.
+fn go_on(keeper: &mut dyn Keep, jobs: &Receiver<Job>, kept: &Kept) -> bool {
+    let Ok(first) = jobs.recv() else { return false };
+    let (mut fresh, mut entries, mut count) = (None, Vec::new(), 0);
+    for job in std::iter::once(first).chain(jobs.try_iter()) {
+        count += 1;
+        match job {
+            Job::Keep(more) => entries.extend(more),
+            // All that was before is in it.
+            Job::Restart(all) => (fresh, entries) = (Some(all), Vec::new()),
+        }
+    }
+    let begun = fresh.map_or(Ok(()), |all| keeper.restart(&all));
+    let written = begun.and_then(|()| if entries.is_empty() { Ok(()) } else { keeper.keep(&entries) });
+    kept.shared.is_long.store(written.is_ok() && keeper.is_long(), Ordering::Relaxed);
+    let mut done = kept.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
+    match &written {
+        Ok(()) => done.0 += count,
+        Err(error) => done.1 = Some(error.to_string()),
+    }
+    kept.shared.more.notify_all();
+    written.is_ok()
+}

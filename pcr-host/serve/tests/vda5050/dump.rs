@@ -1,0 +1,56 @@
+//! What everybody believes, for whoever asks why nothing happens.
+
+use pcr_serve::supervisor::Supervisor;
+use pcr_serve::vda5050::bridge::Bridge;
+use pcr_serve::vda5050::state::State;
+use pcr_serve::vda5050::topics::Kind;
+use pcr_serve::vehicles::manager::Manager;
+use pcr_serve::vehicles::vehicle::Vehicle;
+
+/// A robot a line: what the supervisor knows of it, what its lane has sent, and what it has answered.
+pub(crate) fn supervised(supervisor: &Supervisor, bridge: &Bridge) -> Vec<String> {
+    let lines = bridge.lanes().map(|lane| {
+        let name = lane.name();
+        let Ok(robot) = supervisor.robot(name) else { return format!("{name}: not there") };
+        let waits = (supervisor.waits_for(robot), robot.waiting.as_ref().map(|waiting| &waiting.mission));
+        let own = format!(
+            "{name}: path {} of {:.2} m ({:?}), at {:.2}, granted {:.2}, told {:.2}, waits {waits:?}, {:?}, stopped {:?}, silent {}",
+            robot.path, robot.course.length(), robot.mission, robot.at, robot.granted, robot.told, robot.alarm, robot.stopped, robot.silent
+        );
+        let job = lane.job().map(|job| {
+            format!(
+                "job {} update {} base {} of {}, asked {}, stops {:?}, sent {:?}, acknowledged {:?}, changed {}, cancel {:?}",
+                job.held.order_id, job.held.update_id, job.held.base, job.held.nodes.len(), job.asked, job.stops.last(), job.sent,
+                job.acknowledged, job.changed, job.cancel
+            )
+        });
+        format!("{own}\n    {job:?}\n    heard {:?}", lane.state_of().map(brief))
+    });
+    lines.collect()
+}
+
+/// What vehicles would say now, and what their manager waits for.
+pub(crate) fn driven<'a>(vehicles: impl Iterator<Item = &'a mut Vehicle>, manager: &Manager) -> Vec<String> {
+    let vehicles = vehicles.map(|vehicle| {
+        vehicle.tell_state();
+        let said = vehicle.out().into_iter().rev().find(|(kind, _)| *kind == Kind::State);
+        let state = said.and_then(|(_, payload)| serde_json::from_slice::<State>(&payload).ok());
+        format!("{}: says {:?} at {:?}", vehicle.key(), state.as_ref().map(brief), vehicle.place())
+    });
+    let orders = manager.orders().map(|(key, order, at)| format!("{key}: is to do {order:?} to node {at}"));
+    vehicles.chain(orders).collect()
+}
+
+fn brief(state: &State) -> String {
+    let released = state.node_states.iter().filter(|node| node.released).count();
+    format!(
+        "order {} update {} node {}, {released} of {} nodes ahead released, driving {}, idle {}, errors {:?}",
+        state.order_id,
+        state.order_update_id,
+        state.last_node_sequence_id,
+        state.node_states.len(),
+        state.driving,
+        state.is_idle(),
+        state.errors.iter().map(|error| &error.error_type).collect::<Vec<_>>()
+    )
+}

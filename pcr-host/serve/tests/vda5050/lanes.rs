@@ -1,0 +1,328 @@
+//! One vehicle, its supervisor, and a manager that sends what the test says: any single message may be lost, and work goes on.
+
+use crate::site::{interfaces, settings};
+use pcr_serve::course::Start;
+use pcr_serve::entry::Nowhere;
+use pcr_serve::event::Event;
+use pcr_serve::supervisor::{Report, Supervisor};
+use pcr_serve::vda5050::bridge::{self, Bridge};
+use pcr_serve::vda5050::door::Limits;
+use pcr_serve::vda5050::state::State;
+use pcr_serve::vda5050::topics::{Key, Kind};
+use pcr_serve::vda5050::version::Version;
+use pcr_serve::vehicles::drive::Abilities;
+use pcr_serve::vehicles::vehicle::Vehicle;
+use pcr_serve::vehicles::world::profile;
+use serde_json::{Value, json};
+
+const CAN: Abilities = Abilities {
+    radius: 0.4,
+    speed: 1.0,
+    acceleration: 0.5,
+    rotation: 1.0,
+    slip: 0.0,
+    drift: 0.0,
+    noise: 0.01,
+    delay: 0.0,
+};
+
+const STEP: f64 = 0.1;
+
+struct Pair {
+    vehicle: Vehicle,
+    supervisor: Supervisor,
+    bridge: Bridge,
+    time: f64,
+    /// The newest state that the manager has.
+    state: Option<State>,
+    /// What is lost on the way to the vehicle: the next message that this is true of.
+    loses: Option<fn(Kind, &Value) -> bool>,
+    header: u64,
+}
+
+fn key() -> Key {
+    Key::new("sim", "001").unwrap()
+}
+
+impl Pair {
+    fn new() -> Self {
+        let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+        let vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
+        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let bridge = Self::bridge(&supervisor);
+        let mut own = Self { vehicle, supervisor, bridge, time: 0.0, state: None, loses: None, header: 0 };
+        own.lasts(1.0);
+        assert!(own.supervisor.robot("sim/001").is_ok());
+        own
+    }
+
+    fn bridge(supervisor: &Supervisor) -> Bridge {
+        let [manager, vehicles] = interfaces();
+        let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
+        Bridge::new(settings, vec![profile(key(), &CAN)], supervisor)
+    }
+
+    /// Killed, and another one in its place.
+    fn restart(&mut self) {
+        let entries = self.supervisor.snapshot();
+        self.supervisor = Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap();
+        self.bridge = Self::bridge(&self.supervisor);
+    }
+
+    fn lasts(&mut self, time: f64) {
+        let [manager, vehicles] = interfaces();
+        let until = self.time + time;
+        while self.time < until {
+            self.time += STEP;
+            self.vehicle.advance(STEP);
+            self.vehicle.tell_state();
+            for (kind, payload) in self.vehicle.out() {
+                let topic = vehicles.topic(Version::V2_1, &key(), kind);
+                self.bridge.receive(&mut self.supervisor, &topic, &payload, self.time);
+            }
+            let events = self.supervisor.settle(self.time).unwrap();
+            self.bridge.settled(&mut self.supervisor, &events, self.time);
+            for message in self.bridge.out() {
+                if let Some((_, _, kind)) = vehicles.parse(&message.topic) {
+                    let said = serde_json::from_slice(&message.payload).unwrap();
+                    if self.loses.is_some_and(|loses| loses(kind, &said)) {
+                        self.loses = None;
+                        continue;
+                    }
+                    self.vehicle.receive(kind, &message.payload);
+                } else if let Some((_, _, Kind::State)) = manager.parse(&message.topic) {
+                    self.state = Some(serde_json::from_slice(&message.payload).unwrap());
+                }
+            }
+        }
+    }
+
+    /// What the manager says.
+    fn says(&mut self, kind: Kind, mut message: Value) {
+        self.header += 1;
+        let header = json!({ "headerId": self.header, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0",
+            "manufacturer": "sim", "serialNumber": "001" });
+        message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+        let [manager, _] = interfaces();
+        let topic = manager.topic(Version::V2_1, &key(), kind);
+        self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
+    }
+
+    /// An order over these places.
+    fn order(&mut self, id: &str, places: &[[f64; 2]]) {
+        self.says(Kind::Order, order(id, 0, 0, places, places.len()));
+    }
+
+    fn cancels(&mut self, id: &str) {
+        let action = json!({ "actionType": "cancelOrder", "actionId": id, "blockingType": "NONE" });
+        self.says(Kind::InstantActions, json!({ "actions": [action] }));
+    }
+
+    fn is_done(&self, id: &str) -> bool {
+        self.state.as_ref().is_some_and(|state| state.order_id == id && state.is_idle())
+    }
+
+    fn errors(&self) -> Vec<String> {
+        let state = self.state.as_ref().unwrap();
+        state.errors.iter().map(|error| serde_json::to_string(error).unwrap()).collect()
+    }
+}
+
+fn order(id: &str, update: u64, first: u64, places: &[[f64; 2]], released: usize) -> Value {
+    let number = |k: usize| first + 2 * k as u64;
+    let nodes: Vec<_> = (places.iter().enumerate())
+        .map(|(k, [x, y])| {
+            json!({ "nodeId": format!("n{}", number(k)), "sequenceId": number(k), "released": k < released, "actions": [],
+                "nodePosition": { "x": x, "y": y, "mapId": "map" } })
+        })
+        .collect();
+    let edges: Vec<_> = (1..places.len())
+        .map(|k| {
+            json!({ "edgeId": "e", "sequenceId": number(k) - 1, "released": k < released, "actions": [],
+                "startNodeId": format!("n{}", number(k - 1)), "endNodeId": format!("n{}", number(k)) })
+        })
+        .collect();
+    json!({ "orderId": id, "orderUpdateId": update, "nodes": nodes, "edges": edges })
+}
+
+const TO: [[f64; 2]; 3] = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]];
+const FRO: [[f64; 2]; 3] = [[5.0, 5.0], [5.0, 0.0], [0.0, 0.0]];
+
+#[test]
+fn an_order_that_is_lost_is_sent_again() {
+    let mut own = Pair::new();
+    own.loses = Some(|kind, _| kind == Kind::Order);
+    own.order("a", &TO);
+    own.lasts(60.0);
+    assert!(own.is_done("a"), "{:?}", own.state);
+}
+
+#[test]
+fn any_update_that_is_lost_is_sent_again() {
+    for lost in [1, 2] {
+        let mut own = Pair::new();
+        own.loses = match lost {
+            1 => Some(|kind, said| kind == Kind::Order && said["orderUpdateId"] == 1),
+            _ => Some(|kind, said| kind == Kind::Order && said["orderUpdateId"] == 2),
+        };
+        own.says(Kind::Order, order("a", 0, 0, &TO[..1], 1));
+        own.lasts(2.0);
+        own.says(Kind::Order, order("a", 1, 0, &TO[..2], 2));
+        own.lasts(2.0);
+        own.says(Kind::Order, order("a", 2, 2, &TO[1..], 2));
+        own.lasts(60.0);
+        assert!(own.is_done("a") && own.loses.is_none(), "{lost}: {:?}", own.state);
+    }
+}
+
+/// An old order that came late, between two others, was taken, and never admitted: every order after it was refused.
+#[test]
+fn an_order_that_comes_late_keeps_nobody_from_work() {
+    let mut own = Pair::new();
+    own.order("a", &TO);
+    own.lasts(60.0);
+    own.order("b", &FRO);
+    own.lasts(60.0);
+    assert!(own.is_done("b"));
+    own.order("a", &TO);
+    own.lasts(1.0);
+    assert!(own.errors()[0].contains("an order of this name before"), "{:?}", own.errors());
+    own.order("c", &TO);
+    own.lasts(60.0);
+    assert!(own.is_done("c"), "{:?}", own.state);
+}
+
+/// It was sent once: lost, the vehicle went on to where its base ended, and stood there for ever.
+#[test]
+fn what_cancels_an_order_is_sent_until_it_is_there() {
+    for moment in [0.5, 4.0, 60.0] {
+        let mut own = Pair::new();
+        own.loses =
+            Some(|kind, said| kind == Kind::InstantActions && said["actions"][0]["actionType"] == "cancelOrder");
+        // The end is not released: it waits there.
+        own.says(Kind::Order, order("a", 0, 0, &TO, 2));
+        own.lasts(moment);
+        own.cancels("stop");
+        own.lasts(30.0);
+        assert!(own.loses.is_none());
+        let state = own.state.clone().unwrap();
+        assert_eq!(state.action("stop"), Some("FINISHED"), "{moment}: {state:?}");
+        // From where it stands.
+        let pose = state.position().unwrap();
+        own.order("b", &[[pose.x, pose.y], [8.0, 0.0]]);
+        own.lasts(60.0);
+        assert!(own.is_done("b"), "{moment}: {:?}", own.state);
+    }
+}
+
+/// The vehicle said that there was nothing to cancel, as the order was lost: neither was sent again.
+#[test]
+fn an_order_that_is_cancelled_before_it_is_there_is_over() {
+    let mut own = Pair::new();
+    own.loses = Some(|kind, _| kind == Kind::Order);
+    own.order("a", &TO);
+    own.lasts(0.3);
+    assert!(own.loses.is_none());
+    own.cancels("stop");
+    own.lasts(30.0);
+    own.order("b", &[[0.0, 0.0], [0.0, 4.0]]);
+    own.lasts(60.0);
+    assert!(own.is_done("b"), "{:?}", own.state);
+}
+
+/// Its order was lost while the supervisor was away: the new one sent an update that no vehicle could take, for ever.
+#[test]
+fn a_vehicle_that_has_lost_its_order_meanwhile_stands_where_it_says() {
+    let mut own = Pair::new();
+    own.says(Kind::Order, order("a", 0, 0, &TO[..2], 2));
+    own.lasts(20.0);
+    own.says(Kind::Order, order("a", 1, 2, &TO[1..], 2));
+    own.lasts(5.0);
+    own.restart();
+    let [x, y] = own.vehicle.place();
+    let time = own.time;
+    own.vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, Start { x, y, heading: 0.0 }, 2);
+    own.vehicle.set_clock(100.0);
+    own.lasts(10.0);
+    assert!(own.time > time);
+    own.order("b", &[[x, y], [8.0, 0.0]]);
+    own.lasts(60.0);
+    assert!(own.is_done("b"), "{:?}", own.state);
+}
+
+/// It stood for ever, with all of its way released.
+#[test]
+fn a_vehicle_that_was_paused_by_a_late_message_or_before_a_restart_goes_on() {
+    let mut own = Pair::new();
+    own.order("a", &TO);
+    own.lasts(3.0);
+    let pause = json!({ "actionType": "startPause", "actionId": "pcr-startPause-1", "blockingType": "NONE" });
+    let mut message = json!({ "actions": [pause], "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z" });
+    let header = json!({ "version": "2.1.0", "manufacturer": "sim", "serialNumber": "001" });
+    message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+    own.vehicle.receive(Kind::InstantActions, message.to_string().as_bytes());
+    own.restart();
+    own.lasts(60.0);
+    assert!(own.is_done("a"), "{:?}", own.state);
+    // One that somebody else has paused is theirs.
+    own.order("b", &FRO);
+    own.lasts(3.0);
+    message["actions"][0]["actionId"] = "by hand".into();
+    own.vehicle.receive(Kind::InstantActions, message.to_string().as_bytes());
+    own.lasts(60.0);
+    assert!(!own.is_done("b"));
+}
+
+#[test]
+fn who_is_missing_is_said() {
+    let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+    let mut own = Pair::new();
+    own.supervisor = supervisor;
+    own.bridge = Pair::bridge(&own.supervisor);
+    own.bridge.settled(&mut own.supervisor, &[], 31.0);
+    assert_eq!(own.bridge.log(), ["nobody is released anything until these have said where they stand: sim/001"]);
+}
+
+fn standstills(events: Vec<Event>) -> Vec<String> {
+    let why = |event| if let Event::Standstill { why, .. } = event { Some(why) } else { None };
+    events.into_iter().filter_map(why).collect()
+}
+
+#[test]
+fn who_gets_nowhere_is_said_and_why() {
+    use pcr_serve::course::Shape;
+    use pcr_serve::supervisor::Proposal;
+    let abilities = profile(key(), &CAN).abilities;
+    let line = |robot: &str, length| Proposal {
+        robot: robot.into(),
+        mission: "1".into(),
+        after: None,
+        start: None,
+        path: vec![Shape::Line { length }],
+    };
+    let at = |x, heading| Start { x, y: 0.0, heading };
+    let mut own = Supervisor::new(settings(), Box::new(Nowhere));
+    own.add("a", abilities, at(0.0, 0.0)).unwrap();
+    own.add("b", abilities, at(6.0, std::f64::consts::PI)).unwrap();
+    let all = |own: &mut Supervisor, times: std::ops::Range<u32>| -> Vec<String> {
+        let mut said = Vec::new();
+        for time in times {
+            for robot in ["a", "b"] {
+                let known = own.robot(robot).unwrap();
+                let report = Report { robot: robot.into(), path: known.path, at: [known.at; 2], age: 0.0 };
+                own.position(&report, time.into()).unwrap();
+            }
+            said.extend(standstills(own.settle(time.into()).unwrap()));
+        }
+        said
+    };
+    // Nobody wants anything.
+    assert_eq!(all(&mut own, 0..100), [""; 0]);
+    own.mission(&line("a", 10.0), 100.0).unwrap();
+    assert_eq!(all(&mut own, 100..300), ["b has nothing to do, and is in the way of a"]);
+    own.mission(&line("b", 10.0), 300.0).unwrap();
+    assert_eq!(all(&mut own, 300..500), ["a, b wait for one another"]);
+    own.remove("b").unwrap();
+    own.add("b", abilities, Start { x: 0.0, y: 50.0, heading: 0.0 }).unwrap();
+    assert_eq!(all(&mut own, 500..700), ["a is at 0.00 m, and may go to 10.00 m"]);
+}
