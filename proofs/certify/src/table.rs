@@ -126,7 +126,8 @@ impl<'a> Checker<'a> {
             return Err("the excess of those that are left out is out of range".into());
         }
         let area = |placed: &Placed<'_>| reach(placed.agent, &placed.stretches, excess);
-        let (near, id) = (Near::new(self.agents.iter().map(area).collect()), |place: usize| self.agents[place].agent.id);
+        let (near, id) =
+            (Near::new(self.agents.iter().map(area).collect()), |place: usize| self.agents[place].agent.id);
         let missing = |a: usize| near.after(a).into_iter().find(|&b| id(a) != id(b) && !there.contains(&[a, b]));
         match (0..self.agents.len()).find_map(|a| missing(a).map(|b| (a, b))) {
             Some((a, b)) => Err(format!("the pair of places {a} and {b} is missing, and they come near one another")),

@@ -6,8 +6,10 @@ const [first, last] = data.horizon;
 const state = { time: first, ego: busiest(), shown: agents.map(() => true), pinned: null };
 
 function busiest() {
+  // Of some agents there may be no map.
+  const count = (k) => data.maps[k]?.regions.length ?? -1;
   let best = 0;
-  data.maps.forEach((map, k) => { if (map.regions.length > data.maps[best].regions.length) best = k; });
+  data.maps.forEach((_, k) => { if (count(k) > count(best)) best = k; });
   return best;
 }
 
@@ -357,6 +359,7 @@ function step(now) {
 // ---- Choices ----
 
 function selectEgo(k) {
+  if (!data.maps[k]) return;
   state.ego = k;
   state.pinned = null;
   state.shown[k] = true;
@@ -377,14 +380,19 @@ function show() {
 }
 
 function start() {
-  const regions = data.maps.reduce((sum, map) => sum + map.regions.length, 0);
-  $("summary").textContent = `${agents.length} agents, ${regions} collision regions (both sides of each pair), `
+  const maps = data.maps.filter((map) => map);
+  const regions = maps.reduce((sum, map) => sum + map.regions.length, 0);
+  const of = maps.length < agents.length ? `maps of ${maps.length} with ${regions} collision regions, `
+    : `${regions} collision regions (both sides of each pair), `;
+  $("summary").textContent = `${agents.length} agents, ${of}`
     + `${number(first)} to ${number(last)} s`;
   agents.forEach((agent, k) => {
-    const option = document.createElement("option");
-    option.value = k;
-    option.textContent = `${agent.name} (${data.maps[k].regions.length})`;
-    $("ego").append(option);
+    if (data.maps[k]) {
+      const option = document.createElement("option");
+      option.value = k;
+      option.textContent = `${agent.name} (${data.maps[k].regions.length})`;
+      $("ego").append(option);
+    }
     const chip = document.createElement("button");
     chip.type = "button";
     chip.className = "agent chip";

@@ -45,7 +45,9 @@ fn of_rows<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>]) -> Result<T
         close.after(i).into_iter().filter(|&j| agents.get(j).map(|agent| agent.id) != own).collect::<Vec<_>>()
     };
     let count: u64 = (0..agents.len()).map(|i| near(i).len() as u64).sum();
-    memory::ask(count * PAIR_BYTES, || format!("the certificate of {count} pairs of discs that come near one another"))?;
+    memory::ask(count * PAIR_BYTES, || {
+        format!("the certificate of {count} pairs of discs that come near one another")
+    })?;
     let pairs = rows::gathered(motions, "pairs", |row| {
         let i = row.agents()[row.place()] as usize;
         let told = |j: usize| {
