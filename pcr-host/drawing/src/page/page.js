@@ -80,8 +80,8 @@ function axis([lo, hi], from, to) {
   return { at, ticks };
 }
 
-// Plots are at most this wide and high.
-const side = 700;
+// Plots are at most this wide and high: not much more than there is room for, so that letters are not scaled down.
+const side = Math.min(700, Math.max(400, 1.2 * $("workspace").parentElement.clientWidth));
 const room = { left: 34, top: 14, right: 14, bottom: 58 };
 
 function frame(svg, xs, ys, width, height, titles) {
@@ -119,7 +119,7 @@ function drawWorkspace() {
   // Below this extent ticks could not be told apart.
   const extent = Math.max(x1 - x0, y1 - y0, 1e-6, 1e-9 * Math.max(...data.bounds.map(Math.abs)));
   // As high as the map beside it, or nearly: letters are then as large in both.
-  const least = 480, margin = 0.03 * extent;
+  const least = Math.min(480, side), margin = 0.03 * extent;
   const metre = side / (extent + 2 * margin);
   const fit = (lo, hi) => {
     const pixels = Math.max((hi - lo + 2 * margin) * metre, least);
@@ -185,7 +185,7 @@ function onKey(event) {
 
 function drawMap() {
   const map = data.maps[state.ego], ego = agents[state.ego];
-  const width = side, height = Math.max(drawWorkspace.height, 480);
+  const width = side, height = Math.max(drawWorkspace.height, Math.min(480, side));
   const view = frame($("map"), map?.time ?? [0, 1], map?.length ?? [0, 1], width, height, ["time t [s]", "travelled length l [m]"]);
   cursor = null;
   if (!map) return;
