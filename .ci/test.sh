@@ -100,8 +100,8 @@ browser() {
 pages() {
   step "pages, in a real browser"
   browser
-  # As the tests build it, with the fleet of the live page.
-  cargo build --workspace --profile checked --features pcr-tests/peers --locked --bins --example watched
+  # As the tests build it.
+  cargo build --workspace --profile checked --features pcr-tests/peers --locked
   pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
 }
 

@@ -1,10 +1,8 @@
 //! A small server of HTTP/1.1 for the live page and the metrics: it answers GET, nothing can be changed through it.
 
-use crate::course::Shape;
 use crate::metrics;
 use crate::query::View;
 use crate::server::Handle;
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, TURN};
 use serde_json::json;
 use std::io::{self, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -31,21 +29,6 @@ pub struct Drawn {
     pub abilities: crate::robot::Abilities,
     /// What is left of its path.
     pub course: crate::course::Course,
-}
-
-impl Drawn {
-    /// The same as an agent of a scenario, by this number.
-    pub fn agent(&self, id: u64) -> Agent {
-        let path = self.course.shapes().iter().map(|shape| match *shape {
-            Shape::Line { length } => PathSegment::Line { length },
-            Shape::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
-            Shape::Turn { sweep } => PathSegment::Arc { radius: TURN, sweep },
-        });
-        let start = self.course.start();
-        let motion = MotionSpec::RestToRest { v_max: self.abilities.speed, a_max: self.abilities.acceleration };
-        let start = [start.x, start.y, start.heading];
-        Agent { label: self.name.clone(), ..Agent::disc(id, self.abilities.radius, start, path.collect(), motion) }
-    }
 }
 
 /// What is served.

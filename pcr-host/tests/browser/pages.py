@@ -4,7 +4,6 @@
 - nothing is written to the console, and nothing is asked of the network;
 - nothing reaches beyond the right edge of a window of 390, 900 and 1400 px, light and dark;
 - the Tab key reaches every control;
-- the live page shows every robot of its fleet, and the map of one;
 - on the page of locks every edge can be chosen with the keyboard, by its list and by the search, and it is printed at scale;
 - at 1400 by 900 px both pictures of a page are inside the window while it plays, and time goes on;
 - nothing moves by itself for who asked for less motion.
@@ -48,8 +47,6 @@ class Browser:
         os.close(to_read)
         os.close(to_write)
         self.buffer, self.last, self.events, self.session = b"", 0, [], None
-        # From where the page is that is open: it may ask there.
-        self.origin = "file:"
         target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
@@ -78,14 +75,12 @@ class Browser:
                 return answer["result"]
             self.events.append(answer)
 
-    def open(self, page, width, scheme, motion="no-preference"):
-        """A file, or an address."""
-        self.origin = page if isinstance(page, str) else "file:"
+    def open(self, path, width, scheme, motion="no-preference"):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
         features = [{"name": "prefers-color-scheme", "value": scheme}, {"name": "prefers-reduced-motion", "value": motion}]
         self.call("Emulation.setEmulatedMedia", features=features)
         # By way of an empty page: the same address again would not be loaded anew.
-        for url in ("about:blank", page if isinstance(page, str) else page.as_uri()):
+        for url in ("about:blank", path.as_uri()):
             self.events.clear()
             self.call("Page.navigate", url=url)
             while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
@@ -114,7 +109,7 @@ class Browser:
             method, params = event.get("method"), event.get("params", {})
             if method in ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"):
                 said.append(json.dumps(params)[:300])
-            if method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file:", "about:", self.origin)):
+            if method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file:", "about:")):
                 said.append(f"request of {params['request']['url']}")
         return said
 
@@ -225,28 +220,6 @@ def check_audit(browser):
     return wrong
 
 
-def check_live(browser):
-    """Every robot has its row, and the map of one that is chosen is there; a page that pauses stands still."""
-    browser.value(SLEEP.format(300))
-    robots, rows = browser.value("state.robots.length"), browser.value("document.querySelectorAll('#robots tbody tr').length")
-    states = browser.value("[...document.querySelectorAll('#robots tbody tr')].map((row) => row.lastChild.textContent)")
-    wrong = [] if robots == rows == 6 else [f"{rows} rows for {robots} robots"]
-    for state in ("goes", "waits for", "there", "off its path"):
-        if not any(state in told for told in states):
-            wrong.append(f"no robot {state}: {states}")
-    browser.value("document.getElementById('ego').selectedIndex = 2; document.getElementById('ego').onchange()")
-    browser.value(SLEEP.format(500))
-    if not browser.value("document.getElementById('map').naturalWidth > 300"):
-        wrong.append("the map of a robot is not there")
-    browser.value("document.getElementById('pause').click()")
-    browser.value(SLEEP.format(600))
-    before = browser.value("document.getElementById('clock').textContent")
-    browser.value(SLEEP.format(1200))
-    if browser.value("document.getElementById('clock').textContent") != before:
-        wrong.append("it goes on though it pauses")
-    return wrong
-
-
 def check_time(browser, name):
     """Both pictures are seen whole while time goes on."""
     wrong = []
@@ -267,28 +240,23 @@ def check(browser, name, page, folder):
     for scheme in ("light", "dark"):
         for width in WIDTHS:
             browser.open(page, width, scheme)
-            browser.value(SLEEP.format(600 if name == "live" else 100))
-            if name == "live":
-                browser.value("document.getElementById('ego').selectedIndex = 2; document.getElementById('ego').onchange()")
-                browser.value(SLEEP.format(400))
+            browser.value(SLEEP.format(100))
             wide = browser.value("document.documentElement.scrollWidth")
             if wide > width:
                 wrong.append(f"{width} px, {scheme}: {wide} px wide")
             browser.screenshot(folder / f"{name}-{width}-{scheme}.png")
             wrong += [f"{width} px, {scheme}: {said}" for said in browser.noise()]
     browser.open(page, 1400, "light", "reduce")
-    browser.value(SLEEP.format(600 if name == "live" else 100))
     before = browser.value("document.getElementById('clock')?.textContent")
     browser.value(SLEEP.format(300))
-    # What a live page tells is news, no motion.
-    if name != "live" and browser.value("document.getElementById('clock')?.textContent") != before:
+    if browser.value("document.getElementById('clock')?.textContent") != before:
         wrong.append("it moves by itself under reduced motion")
     count, missed = reached_by_tab(browser)
     wrong += [f"Tab does not reach {control}" for control in missed]
-    if count < (3 if name == "live" else 4):
+    if count < 4:
         wrong.append(f"{count} controls only")
     browser.open(page, 1400, "light")
-    kinds = {"locks": check_locks, "audit": check_audit, "large": check_large, "live": check_live}
+    kinds = {"locks": check_locks, "audit": check_audit, "large": check_large}
     wrong += kinds[name](browser) if name in kinds else check_time(browser, name)
     wrong += browser.noise()
     return wrong, count
@@ -307,10 +275,6 @@ def main(tool, folder):
     run("locks", "large.xml", "--radius", 0.4, "-q", "-o", "large")
     run("simulate", "--foraging", "-o", "replay.html")
     pages = {"map": "map/index.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "audit": "audit/audit.html", "large": "large/locks.html", "replay": "replay.html"}
-    pages = {name: folder / page for name, page in pages.items()}
-    # Beside the tool: cargo build --example watched
-    watched = subprocess.Popen([Path(tool).parent / "examples/watched"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    pages["live"] = watched.stdout.readline().strip()
     program = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
     if not program:
         raise SystemExit("pages: no Chromium (Debian's package chromium)")
@@ -318,15 +282,13 @@ def main(tool, folder):
     failed = 0
     try:
         for name, page in pages.items():
-            wrong, count = check(browser, name, page, folder)
+            wrong, count = check(browser, name, folder / page, folder)
             failed += len(wrong)
             print(f"{name}: {len(WIDTHS) * 2} windows, {count} controls: {'ok' if not wrong else ''}")
             for line in wrong:
                 print(f"  {line}")
     finally:
         browser.close()
-        watched.stdin.close()
-        watched.wait()
     if failed:
         raise SystemExit(1)
 

@@ -5,7 +5,8 @@ use super::super::{NOT_WRITTEN, Stop};
 use super::demo::Demo;
 use super::{Arguments, bridge};
 use pcr_drawing::live;
-use pcr_formats::scenario::Scenario;
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
+use pcr_serve::course::Shape;
 use pcr_serve::entry::{Keep, Nowhere};
 use pcr_serve::http::{Drawn, Site};
 use pcr_serve::journal::Journal;
@@ -156,7 +157,18 @@ fn site(listener: &TcpListener) -> Site {
 
 /// The collision map of a robot, if all set off now.
 fn draw(fleet: &[Drawn], ego: usize) -> Result<String, String> {
-    let agents = fleet.iter().zip(1..).map(|(robot, id)| robot.agent(id));
+    let agents = fleet.iter().zip(1..).map(|(robot, id)| {
+        let path = robot.course.shapes().iter().map(|shape| match *shape {
+            Shape::Line { length } => PathSegment::Line { length },
+            Shape::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
+            Shape::Turn { sweep } => PathSegment::Arc { radius: TURN, sweep },
+        });
+        let start = robot.course.start();
+        let motion = MotionSpec::RestToRest { v_max: robot.abilities.speed, a_max: robot.abilities.acceleration };
+        let radius = robot.abilities.radius;
+        let agent = Agent::disc(id, radius, [start.x, start.y, start.heading], path.collect(), motion);
+        Agent { label: robot.name.clone(), ..agent }
+    });
     let scenario = Scenario::new("fleet", agents.collect());
     live::map(&scenario, ego).map_err(|error| error.to_string())
 }
