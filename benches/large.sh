@@ -1,14 +1,20 @@
 #!/bin/bash
-# benches/large.sh PCR [AGENTS...]: what `check` and `regions` take for fleets of pairs that cross, 8 m apart: processor time an agent and
-# memory, as a table. The time is that of all cores, reading and printing included, and hardly depends on what else the machine does.
+# benches/large.sh PCR [AGENTS...]: what the commands take for fleets of pairs that cross, 8 m apart: processor time an agent and memory, as
+# a table. The time is that of all cores, reading and printing included, and hardly depends on what else the machine does. `map` draws
+# one agent with those that it meets.
 set -euo pipefail
 tool=${1:?the tool}
 shift
 [ $# -gt 0 ] || set -- 10000 100000 1000000
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
-echo "| agents | \`check\`, an agent | memory | \`regions\`, an agent | memory |"
-echo "|---:|---:|---:|---:|---:|"
+commands=("check --format csv" "regions --format csv" "plan -q" "certify -q" "map --agent 1 -q -o $folder/maps")
+head="| agents |" line="|---:|"
+for command in "${commands[@]}"; do
+    head+=" \`${command%% *}\` | memory |" line+="---:|---:|"
+done
+echo "$head"
+echo "$line"
 for agents in "$@"; do
     awk -v agents="$agents" 'BEGIN {
         pairs = agents / 2; side = int(sqrt(pairs)) + 1
@@ -21,9 +27,10 @@ for agents in "$@"; do
         printf "]}"
     }' > "$folder/fleet.json"
     row="| $agents |"
-    for command in check regions; do
+    for command in "${commands[@]}"; do
+        read -ra words <<< "$command"
         # They collide: exit status 1 is an answer.
-        /usr/bin/time -o "$folder/time" -f '%U %S %M' "$tool" "$command" "$folder/fleet.json" --format csv > /dev/null || [ $? = 1 ]
+        /usr/bin/time -o "$folder/time" -f '%U %S %M' "$tool" "${words[0]}" "$folder/fleet.json" "${words[@]:1}" > /dev/null || [ $? = 1 ]
         row+=$(tail -1 "$folder/time" | awk -v agents="$agents" '{ printf " %.1f µs | %d MB |", ($1 + $2) / agents * 1e6, $3 / 1000 }')
     done
     echo "$row"

@@ -2,7 +2,7 @@
 //!
 //! The long command is `cargo run --release -p pcr-tests --example certify -- --pairs 10000000 --seed 1`.
 
-use pcr_certify::data::Table;
+use pcr_certify::data::{Pair, Table};
 use pcr_certify::pair::Findings;
 use pcr_certify::table::{Checker, Margin};
 use pcr_core::scalar::Micro;
@@ -238,11 +238,60 @@ fn a_table_that_a_microcontroller_printed_is_that_of_the_tool() {
         let mut table = table_of::<S>(&fleet("paper12.json")).unwrap().remove(0);
         // The firmware numbers them from 0.
         (0..).zip(&mut table.agents).for_each(|(place, agent)| agent.id = place);
-        assert_eq!(dump.certificate, [table], "{file}");
+        // The firmware prints all pairs; those that the tool leaves out have no region.
+        let [whole] = dump.certificate.as_slice() else { panic!("{file}: one table") };
+        let is_there = |pair: &Pair| table.pairs.iter().any(|there| there.agents == pair.agents);
+        let (pairs, far): (Vec<Pair>, Vec<Pair>) = whole.pairs.iter().cloned().partition(is_there);
+        assert!(far.iter().all(|pair| pair.regions.is_empty() && pair.pieces.is_empty()), "{file}");
+        assert_eq!(Table { agents: whole.agents.clone(), pairs, apart: table.apart }, table, "{file}");
         assert_eq!(Certified::of(file, &dump.certificate[0], true).verdict, Some("proved"));
     }
     is_the_same::<f32>("dumps/paper12-f32.txt");
     is_the_same::<Q16>("dumps/paper12-q16.txt");
+}
+
+/// A fleet of pairs that cross, of which only neighbours come near one another.
+fn scattered(pairs: usize) -> Scenario {
+    let agent = |k: usize| {
+        let (x, y) = ((k / 2 % 10) as f64 * 8.0, (k / 20) as f64 * 8.0);
+        let [x, y, heading] = if k % 2 == 0 { [x - 2.0, y, 0.0] } else { [x, y - 2.0, TAU / 4.0] };
+        serde_json::json!({ "id": k + 1, "radius": 0.3, "v_max": 1, "a_max": 1, "path": [{ "kind": "line", "length": 4 }],
+            "start": { "x": x, "y": y, "heading": heading } })
+    };
+    Scenario::from_value(&serde_json::json!({ "agents": (0..2 * pairs).map(agent).collect::<Vec<_>>() })).unwrap()
+}
+
+fn pairs_that_are_far_apart_are_left_out<S: Format>() {
+    let table = table_of::<S>(&scattered(50)).unwrap().remove(0);
+    let named: Vec<[usize; 2]> = table.pairs.iter().map(|pair| pair.agents).collect();
+    assert_eq!(named, (0..50).map(|k| [2 * k, 2 * k + 1]).collect::<Vec<_>>(), "{}", S::NAME);
+    let found = Checker::new(&table).unwrap().check(Margin::Needed).unwrap();
+    assert!(found.refuted.is_empty() && found.undecided.is_empty(), "{}", S::NAME);
+    let refused = |change: &dyn Fn(&mut Table)| {
+        let mut other = table.clone();
+        change(&mut other);
+        Checker::new(&other).map(drop).unwrap_err()
+    };
+    // One that comes near may not be left out, and nobody where the table does not say so.
+    assert!(refused(&|table| drop(table.pairs.remove(7))).contains("places 14 and 15 is missing, and they come near"));
+    assert!(refused(&|table| table.apart = None).contains("missing"));
+    // Two that come near because one of them is larger, or somewhere else, than when the pairs were told.
+    assert!(refused(&|table| table.agents[0].radius = 4.5).contains("places 0 and 2 is missing"));
+    assert!(refused(&|table| table.agents[40].path.start = [0.0, 0.0]).contains("and 40 is missing"));
+    // An ε that reaches the neighbours; and what is none.
+    assert!(refused(&|table| table.apart = Some(2.0)).contains("missing"));
+    for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(refused(&|table| table.apart = Some(none)).contains("out of range"), "{none}");
+    }
+}
+
+#[test]
+fn far_pairs_are_left_out_in_every_format() {
+    pairs_that_are_far_apart_are_left_out::<f64>();
+    pairs_that_are_far_apart_are_left_out::<f32>();
+    pairs_that_are_far_apart_are_left_out::<Q20>();
+    pairs_that_are_far_apart_are_left_out::<Q16>();
+    pairs_that_are_far_apart_are_left_out::<Q12>();
 }
 
 #[test]

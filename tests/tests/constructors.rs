@@ -1,7 +1,8 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
 use pcr_core::{Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
-use pcr_planning::fleet::Format;
+use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
+use pcr_planning::fleet::{Fleet, Format};
 
 fn at<S: Format>(x: f64, y: f64, heading: f64) -> Pose<S> {
     Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading) }
@@ -167,10 +168,59 @@ fn motions<S: Format>() {
     }
 }
 
+/// A profile of 8 m, and a few digits more or less, on a path of so many metres: what a file is read with is what the library takes.
+fn files_and_motions_take_the_same<S: Format>() {
+    let (length, speed) = (8.0, 0.5);
+    let path = Path::<S, 1>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.line(S::from_f64(length)));
+    let path = path.expect("a line");
+    let motion = |travelled: f64| {
+        let profile = Profile::<S, 1>::from_pieces(S::from_f64(speed), [(S::from_f64(travelled / speed), S::ZERO)]);
+        Motion::new(path.as_path(), profile.expect("a piece").as_profile(), S::from_f64(0.25), S::ZERO).map(drop)
+    };
+    let read = |travelled: f64| {
+        Scenario::from_value(&serde_json::json!({ "agents": [{
+            "id": 1, "radius": 0.25, "start": { "x": 0, "y": 0, "heading": 0 }, "path": [{ "kind": "line", "length": length }],
+            "profile": { "v0": speed, "pieces": [{ "duration": travelled / speed, "accel": 0 }] },
+        }] }))
+    };
+    // The number itself, the next one beyond it, and the same inwards.
+    let most = length * (1.0 + LENGTH_TOLERANCE);
+    let least = length * (1.0 - LENGTH_TOLERANCE);
+    for (travelled, fits) in [
+        (length, true),
+        (most, true),
+        (most.next_up().next_up(), false),
+        (least, true),
+        (least.next_down().next_down(), false),
+        (length * (1.0 + 0.5 * LENGTH_TOLERANCE), true),
+        (length * (1.0 + 1.5 * LENGTH_TOLERANCE), false),
+        (length * (1.0 - 1.5 * LENGTH_TOLERANCE), false),
+    ] {
+        let scenario = read(travelled);
+        assert_eq!(scenario.is_ok(), fits, "a file, {travelled} m");
+        let refused = |outcome: Result<(), Invalid>| matches!(outcome, Err(Invalid::LengthMismatch { .. }));
+        if let Ok(scenario) = scenario {
+            assert!(Fleet::<S>::new(&scenario).is_ok(), "scaled, {travelled} m");
+            assert_eq!(motion(travelled), Ok(()), "{travelled} m");
+        } else if S::from_f64(1.0 + f64::EPSILON).to_f64() > 1.0 {
+            // Others round more than that.
+            assert!(refused(motion(travelled)), "{travelled} m");
+        }
+        let rounded = S::slack(S::from_f64(length + 0.5)).to_f64();
+        let beyond = length + 2.0 * rounded.max(length * LENGTH_TOLERANCE);
+        assert!(refused(motion(beyond)) && refused(motion(2.0 * length - beyond)), "{beyond} m");
+    }
+}
+
 macro_rules! in_format {
     ($module:ident, $format:ident) => {
         mod $module {
             use super::*;
+
+            #[test]
+            fn files_and_motions_take_the_same_profiles() {
+                files_and_motions_take_the_same::<$format>();
+            }
 
             #[test]
             fn poses_are_finite_and_in_range() {

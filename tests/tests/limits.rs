@@ -4,7 +4,7 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Encounter, Interval, Invalid, Limits, Motion, Path, Point, Pose, Profile, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_formats::scenario::Scenario;
+use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
 use pcr_planning::fleet::{Fleet, Format};
 use pcr_tests::limits::{GARBAGE, NUMBERS, number, survives};
 use proptest::prelude::*;
@@ -109,7 +109,7 @@ fn tolerances<S: Format>() {
 fn gaps_count<S: Format>() {
     let (path, profile) = driven(S::ZERO, S::from_f64(10.0), S::from_f64(1.0)).expect("small");
     let exact = Motion::new(path.as_path(), profile.as_profile(), S::from_f64(0.5), S::ZERO).expect("small");
-    let slack = S::slack(exact.extent());
+    let slack = S::slack(exact.extent()).max(S::from_f64(10.0 * LENGTH_TOLERANCE));
     let (mut accepted, mut refused) = (0, 0);
     for k in -40..=40 {
         let by = S::from_f64(f64::from(k) / 16.0 * slack.to_f64());

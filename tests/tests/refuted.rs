@@ -88,9 +88,9 @@ impl Changes {
         let others = (0..agents.len()).filter(|place| !pairs.contains(place));
         let far: Vec<Pair> = others
             .flat_map(|other| pairs.map(|one| [one.min(other), one.max(other)]))
-            .map(|pair| table.pairs.iter().find(|there| there.agents == pair).unwrap().clone())
+            .filter_map(|pair| table.pairs.iter().find(|there| there.agents == pair).cloned())
             .collect();
-        let small = Table { agents, pairs: far.into_iter().chain([changed]).collect() };
+        let small = Table { agents, pairs: far.into_iter().chain([changed]).collect(), apart: table.apart };
         let found = findings(&small);
         if !found.refuted.is_empty() {
             self.refuted += 1;

@@ -60,7 +60,7 @@ use std::{io, thread};
 /// - `index.html`: the workspace and the map of a selected agent in a browser, in motion, without any other file;
 /// - `overview`: the workspace beside the map of the agent with the most regions,
 /// - `workspace`: the paths, with the discs at their starts and ends,
-/// - `ecm-<id>` for every agent: its extended collision map with its trajectory,
+/// - `ecm-<id>` for every agent, or for those at the places `egos`: its extended collision map with its trajectory,
 ///
 /// all but the first as `.svg`, with the feature `png` also as `.png`. The workspace is drawn on the `ground`, if there is one.
 ///
@@ -72,14 +72,15 @@ use std::{io, thread};
 /// those of writing files.
 pub fn write(
     scenario: &Scenario,
+    egos: Option<&[usize]>,
     ground: Option<Ground<'_>>,
     directory: &Path,
     progress: &mut dyn FnMut(usize, usize),
 ) -> io::Result<Vec<PathBuf>> {
-    with_scene(scenario, ground, |scene| {
+    with_scene(scenario, egos, ground, |scene| {
         output::folder(directory)?;
         let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
-        pictures.extend((0..scene.motions.len()).map(Picture::Map));
+        pictures.extend(scene.egos().map(Picture::Map));
         let mut files = vec![Vec::new(); pictures.len()];
         let mut done = 0;
         progress(done, pictures.len());
@@ -149,7 +150,7 @@ pub fn write_audit(
 /// # Errors
 /// As [`write()`], without the files.
 pub fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Result<String> {
-    with_scene(scenario, None, |scene| Ok(overlay::picture(scene, ego, overlay)))
+    with_scene(scenario, None, None, |scene| Ok(overlay::picture(scene, ego, overlay)))
 }
 
 /// The workspace, on the ground if there is one, beside the map of the agent with the most regions, as SVG.
@@ -157,11 +158,12 @@ pub fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Resul
 /// # Errors
 /// As [`write()`].
 pub fn overview(scenario: &Scenario, ground: Option<Ground<'_>>) -> io::Result<String> {
-    with_scene(scenario, ground, |scene| Ok(overview::picture(scene)))
+    with_scene(scenario, None, ground, |scene| Ok(overview::picture(scene)))
 }
 
 fn with_scene<T>(
     scenario: &Scenario,
+    egos: Option<&[usize]>,
     ground: Option<Ground<'_>>,
     draw: impl FnOnce(&Scene<'_>) -> io::Result<T>,
 ) -> io::Result<T> {
@@ -169,7 +171,7 @@ fn with_scene<T>(
     let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
-    draw(&Scene { scenario, motions: &motions, ecm: &ecm, ground })
+    draw(&Scene { scenario, motions: &motions, ecm: &ecm, egos, ground })
 }
 
 /// One picture of a scenario.
@@ -254,7 +256,7 @@ mod tests {
         let scenario = Scenario::from_json(&scenario.to_string()).unwrap();
         let directory = std::env::temp_dir().join(format!("pcr-pictures-{test}-{}", std::process::id()));
         let mut calls = Vec::new();
-        let files = write(&scenario, None, &directory, &mut |done, total| calls.push((done, total))).unwrap();
+        let files = write(&scenario, None, None, &directory, &mut |done, total| calls.push((done, total))).unwrap();
         let total = scenario.agents.len() + 3;
         assert_eq!(calls, (0..=total).map(|done| (done, total)).collect::<Vec<_>>());
         assert_eq!(files.len(), 2 * total - 1);
@@ -364,7 +366,7 @@ mod tests {
         let scenario = Scenario::from_json(r#"{ "agents": [] }"#).unwrap();
         let file = std::env::temp_dir().join(format!("pcr-pictures-file-{}", std::process::id()));
         fs::write(&file, "").unwrap();
-        assert!(write(&scenario, None, &file.join("below"), &mut |_, _| {}).is_err());
+        assert!(write(&scenario, None, None, &file.join("below"), &mut |_, _| {}).is_err());
         fs::remove_file(file).unwrap();
     }
 }

@@ -24,5 +24,5 @@ pub fn page() -> String {
 /// # Errors
 /// As [`write()`](crate::write()), without the files.
 pub fn map(scenario: &Scenario, ego: usize) -> io::Result<String> {
-    with_scene(scenario, None, |scene| Ok(map::picture(scene, ego)))
+    with_scene(scenario, None, None, |scene| Ok(map::picture(scene, ego)))
 }

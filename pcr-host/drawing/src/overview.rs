@@ -12,10 +12,9 @@ const SIDE: f64 = 400.0;
 /// Smallest height of the map \[px\].
 const LEAST: f64 = 260.0;
 
-/// The agent with the most regions, the first of them; the first agent of a fleet without any.
+/// The agent with the most regions, the first of them, of those whose maps are drawn; the first agent of a fleet without any.
 pub(super) fn busiest(scene: &Scene<'_>) -> usize {
-    let places = 0..scene.motions.len();
-    places.rev().max_by_key(|place| scene.count(*place)).unwrap_or(0)
+    scene.egos().rev().max_by_key(|place| scene.count(*place)).unwrap_or(0)
 }
 
 /// The picture; of an empty fleet the workspace alone.

@@ -39,7 +39,12 @@ pub(super) fn page(scene: &Scene<'_>) -> String {
 fn data(scene: &Scene<'_>) -> Value {
     let Bounds { x, y } = scene.bounds();
     let agents = scene.motions.iter().enumerate().map(|(place, motion)| agent(scene, place, motion));
-    let maps = (0..scene.motions.len()).map(|ego| map(scene, ego));
+    let mut maps = vec![Value::Null; scene.motions.len()];
+    for ego in scene.egos() {
+        if let Some(place) = maps.get_mut(ego) {
+            *place = map(scene, ego);
+        }
+    }
     json!({
         "name": scene.scenario.name,
         "grid": GRID,
@@ -49,7 +54,7 @@ fn data(scene: &Scene<'_>) -> Value {
         "bounds": [x.lo, x.hi, y.lo, y.hi],
         "ground": scene.ground.map(|ground| ground.lines()),
         "agents": agents.collect::<Vec<_>>(),
-        "maps": maps.collect::<Vec<_>>(),
+        "maps": maps,
     })
 }
 
@@ -179,7 +184,7 @@ mod tests {
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).unwrap();
-        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm, ground: None })
+        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None })
     }
 
     fn data_of(page: &str) -> Value {

@@ -14,6 +14,8 @@ pub(super) struct Scene<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) motions: &'a [Motion<'a, f64>],
     pub(super) ecm: &'a HostEcm<f64>,
+    /// Places in the scenario of the agents whose maps are drawn, in order; none for all of them.
+    pub(super) egos: Option<&'a [usize]>,
     /// What the agents travel on.
     pub(super) ground: Option<Ground<'a>>,
 }
@@ -95,6 +97,12 @@ impl Scene<'_> {
         let unit = Interval::new(-1.0, 1.0);
         let ground = self.ground.iter().map(Ground::bounds).map(|[x, y]| Bounds { x, y });
         grown.chain(ground).reduce(Bounds::hull).unwrap_or(Bounds { x: unit, y: unit })
+    }
+
+    /// Places of the agents whose maps are drawn.
+    pub(super) fn egos(&self) -> impl DoubleEndedIterator<Item = usize> {
+        let all = if self.egos.is_some() { 0..0 } else { 0..self.motions.len() };
+        self.egos.into_iter().flatten().copied().chain(all)
     }
 
     /// Number of regions of an ego.

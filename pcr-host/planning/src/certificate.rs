@@ -4,7 +4,7 @@
 
 use crate::fleet::{Fleet, Format, HostEcm};
 use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Region, Segment, Share, Table, Travel};
-use pcr_core::{Curve, Interval, Motion, Turn, excess};
+use pcr_core::{Curve, Interval, Motion, RegionRef, Turn, excess};
 
 /// A motion: `heading` is that at the start of its path, `turns` its turns in place, each before the segment of this place.
 pub fn agent<S: Format>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turns: &[(usize, S::Angle)]) -> Agent {
@@ -60,22 +60,28 @@ pub fn agents<S: Format>(fleet: &Fleet<S>, motions: &[Motion<'_, S>], ids: &[u64
     .collect()
 }
 
-/// The table of these discs.
+/// A whole table of these discs, pair by pair.
 pub fn table<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>], ecm: &HostEcm<S>) -> Table {
     let mut pairs = Vec::new();
     for (i, own) in agents.iter().enumerate() {
         for (j, other) in agents.iter().enumerate().skip(i + 1) {
             if own.id != other.id {
-                pairs.push(pair(motions, ecm, [i, j]));
+                let regions = ecm.pair(motions, i, j).expect("the table of the fleet");
+                pairs.push(pair([i, j], [&motions[i], &motions[j]], regions));
             }
         }
     }
-    Table { agents, pairs }
+    Table { agents, pairs, apart: None }
 }
 
-fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 2]) -> Pair {
+/// Two discs with their regions, in the order of the table.
+pub fn pair<'a, S: Format + 'a>(
+    agents: [usize; 2],
+    [first, second]: [&Motion<'_, S>; 2],
+    all: impl Iterator<Item = RegionRef<'a, S>>,
+) -> Pair {
     let (mut regions, mut pieces) = (Vec::new(), Vec::new());
-    for (number, region) in ecm.pair(motions, i, j).expect("the table of the fleet").enumerate() {
+    for (number, region) in all.enumerate() {
         regions.push(Region {
             lengths: [ends_of(region.length()), ends_of(region.other_length())],
             times: Some([ends_of(region.clone().swapped().time()), ends_of(region.time())]),
@@ -91,5 +97,5 @@ fn pair<S: Format>(motions: &[Motion<'_, S>], ecm: &HostEcm<S>, [i, j]: [usize; 
             region: number,
         }));
     }
-    Pair { agents: [i, j], excess: excess(&motions[i], &motions[j]).to_f64(), regions, pieces }
+    Pair { agents, excess: excess(first, second).to_f64(), regions, pieces }
 }

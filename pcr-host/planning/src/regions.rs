@@ -6,11 +6,11 @@
 mod outlines;
 mod record;
 mod sheet;
+mod tables;
 
-use crate::bodies::{Bodies, Disced};
-use crate::certificate;
+use crate::bodies::Disced;
 use crate::fleet::{Format, HostEcm, Refused, build_ecm};
-use crate::memory::{self, TooLarge};
+use crate::memory::TooLarge;
 use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
 use pcr_formats::footprint::Disc;
@@ -19,6 +19,7 @@ pub use record::{Descriptor, Piece, Region, Slice};
 use serde::Serialize;
 pub use sheet::{Sheet, Told};
 use std::fmt;
+pub use tables::table_of;
 
 /// Regions of one scenario, or why there are none.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -189,30 +190,6 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
         }
         full => Failure::Full(full).named(scenario),
     })
-}
-
-/// What a pair of discs takes in a certificate and in the checker \[bytes\].
-const PAIR_BYTES: u64 = 128;
-
-/// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
-///
-/// # Errors
-/// [`Failure`] where a value does not fit the format.
-pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
-    let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
-    let motions = fleet.motions();
-    let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
-    let mut tables = vec![motions.clone()];
-    if motions.iter().any(|motion| motion.margin() > S::ZERO) {
-        tables.push(motions.iter().map(|motion| motion.inflated()).collect());
-    }
-    let certificate = |motions: &Vec<_>| {
-        let pairs = motions.len() as u64 * motions.len().saturating_sub(1) as u64 / 2;
-        memory::ask(pairs * PAIR_BYTES, || format!("the certificate of all {pairs} pairs of discs"))?;
-        let agents = certificate::agents(&fleet, motions, &ids);
-        Ok(certificate::table(agents, motions, &table(&discs, motions)?))
-    };
-    tables.iter().map(certificate).collect()
 }
 
 /// The number of the agent that is asked for by its number or, where there is no such number, by its label.

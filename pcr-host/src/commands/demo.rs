@@ -55,7 +55,7 @@ impl Arguments {
         let took = begin.elapsed();
         let answer = Answer::of::<f64>(&scenario, Request::default())?;
         report::overview(&scenario, &answer, took, &mut out)?;
-        draw(&scenario, None, &self.output.unwrap_or_else(|| DIRECTORY.into()), &mut out)?;
+        draw(&scenario, None, None, &self.output.unwrap_or_else(|| DIRECTORY.into()), &mut out)?;
         Ok(ExitCode::SUCCESS)
     }
 }

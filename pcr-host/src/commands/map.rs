@@ -4,12 +4,14 @@ use super::sources::source;
 use super::{STATUSES, Stop, quiet, scenario};
 use crate::progress::Progress;
 use clap::Args;
+use pcr_core::Motion;
 use pcr_drawing::{self as picture, Ground};
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::memory;
 use pcr_planning::regions::{self, Failure};
+use pcr_planning::{memory, rows};
+use std::collections::HashSet;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -17,7 +19,11 @@ use std::process::ExitCode;
 const EXAMPLES: &str = "\
 Examples:
   pcr map fleet.json -o pictures                 begin with pictures/index.html
+  pcr map site.json --agent 7 -o pictures        agent 7 and those that it meets, of any number of agents
   pcr demo --scenario | pcr map -o pictures      the paper's 12 agents";
+
+/// Agents of which all are drawn: some 20 ms of a core each, a picture of each in two formats, and 50 kB of the page.
+const MOST: usize = 2000;
 
 /// What a drawn region takes \[bytes\].
 const SHAPE_BYTES: u64 = 4096;
@@ -31,16 +37,21 @@ pub(super) struct Arguments {
     /// Directory for the pictures; created where it does not exist, files in it are overwritten
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// Only the map of the agent of this number or label, beside those that come near it; as often as there are agents to be drawn
+    #[arg(long = "agent", value_name = "AGENT")]
+    agents: Vec<String>,
     #[command(flatten)]
     import: Options,
 }
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = &source(self.file)?;
+        let file = &source(self.file.clone())?;
         let scenario = scenario(file, &self.import)?;
         // What is wrong with the scenario is said before anything is written.
         let named = |failure: Failure| Stop::wrong(file, failure);
+        let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
+        let (scenario, egos) = self.asked(scenario, fleet.motions()).map_err(named)?;
         let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
         let table = regions::table(&scenario, &fleet.motions()).map_err(named)?;
         // Each region is drawn for both of its agents, in the page and in a picture.
@@ -49,20 +60,45 @@ impl Arguments {
         memory::ask(shapes * SHAPE_BYTES, what).map_err(|large| named(large.into()))?;
         drop(table);
         let mut out: Box<dyn Write> = if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) };
-        draw(&scenario, None, &self.output, &mut out)?;
+        draw(&scenario, egos.as_deref(), None, &self.output, &mut out)?;
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// Those who are asked for and all that come near them, and the places of the former among them; all agents where nobody is asked for.
+    fn asked(
+        &self,
+        mut scenario: Scenario,
+        motions: Vec<Motion<'_, f64>>,
+    ) -> Result<(Scenario, Option<Vec<usize>>), Failure> {
+        if self.agents.is_empty() {
+            let (what, agents) = ("without --agent, maps are drawn", motions.len());
+            let few = agents <= MOST;
+            return if few { Ok((scenario, None)) } else { Err(Failure::TooMany { what, agents, most: MOST }) };
+        }
+        let ids = self.agents.iter().map(|asked| regions::find(&scenario, asked)).collect::<Result<HashSet<_>, _>>()?;
+        let (grid, mut near, mut some) = (rows::grid(&motions), Vec::new(), HashSet::new());
+        for (place, _) in scenario.agents.iter().enumerate().filter(|(_, agent)| ids.contains(&agent.id)) {
+            grid.around(place, &mut near);
+            some.extend(near.iter().map(|&other| other as usize).chain([place]));
+        }
+        let mut place = 0..;
+        scenario.agents.retain(|_| place.next().is_some_and(|place| some.contains(&place)));
+        let egos = scenario.agents.iter().enumerate().filter(|(_, agent)| ids.contains(&agent.id));
+        let egos = egos.map(|(place, _)| place).collect();
+        Ok((scenario, Some(egos)))
     }
 }
 
-/// Draws a scenario, on a layout if there is one, to a directory.
+/// Draws a scenario, on a layout if there is one, to a directory; with the maps of the agents at the places `egos`, or of all.
 pub(super) fn draw(
     scenario: &Scenario,
+    egos: Option<&[usize]>,
     ground: Option<Ground<'_>>,
     directory: &Path,
     out: &mut impl Write,
 ) -> Result<(), Stop> {
     let progress = Progress::new("pictures");
-    let files = picture::write(scenario, ground, directory, &mut |done, total| progress.set(done, total));
+    let files = picture::write(scenario, egos, ground, directory, &mut |done, total| progress.set(done, total));
     drop(progress);
     let files = files.map_err(|error| Stop::not_written(directory, &error))?;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));

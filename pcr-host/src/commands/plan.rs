@@ -209,9 +209,9 @@ impl Arguments {
         if let Some(directory) = &self.pictures {
             // Beside the report, which may be for a machine.
             let told = &mut notes();
-            draw(&scenario, None, &directory.join("before"), told)?;
+            draw(&scenario, None, None, &directory.join("before"), told)?;
             if let Some(solved) = &solved {
-                draw(solved, None, &directory.join("after"), told)?;
+                draw(solved, None, None, &directory.join("after"), told)?;
             }
         }
         Ok(solved.is_some() && plan.left_out.is_empty())

@@ -93,7 +93,7 @@ impl Arguments {
         out.flush()?;
         if let Some(directory) = &self.output {
             let ground = Ground { imported: &imported, level: imported.layout.largest_level() };
-            map::draw(&plan, Some(ground), directory, &mut notes())?;
+            map::draw(&plan, None, Some(ground), directory, &mut notes())?;
             write_to(&directory.join("missions.json"), &missions.to_json())?;
             write_to(&directory.join("plan.json"), &plan.to_json())?;
         }

@@ -60,6 +60,7 @@ fn every_output_is_whole_or_not_there() {
         &["simulate", name, "-o", target],
         &["import", "nav2", layout, "--route", "0:50", "--route", "50:0", "--route", "3:4", "-o", target],
         &["locks", layout, "--radius", "0.4", "-o", target],
+        &["locks", layout, "--radius", "0.4", "--write", "nav2", "-o", target],
         &["traffic", layout, "--agents", "3", "--radius", "0.4", "-o", target],
         &["compare", name, "--method", "polyline", "--rounds", "1", "-o", target],
         &["demo", "-o", target],

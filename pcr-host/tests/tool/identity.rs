@@ -102,6 +102,12 @@ fn importers_keep_names() {
         check(run(&arguments), labels);
     };
     routes("nav2/aws_graph.geojson", ["0:1", "1:0"], json!({ "1": "0 > 1", "2": "1 > 0" }));
+    routes("lif/example_07.lif.json", ["N3:N11", "N3:N1"], json!({ "1": "N3 > N11", "2": "N3 > N1" }));
+    let names = json!({ "1": "presupplies > patrol_D2", "2": "patrol_D1 > L1/45" });
+    routes("rmf/office.building.yaml", ["presupplies:patrol_D2", "L1/43:L1/45"], names);
+    let first = "Vehicle-01-VDA5050-2.0 Point-0001 > Point-0002";
+    let run = run(&["check", &real("opentcs/Demo-01.xml"), "--route", "Point-0001:Point-0002", "--json", "-q"]);
+    check(run, json!({ "1": first }));
 }
 
 #[test]

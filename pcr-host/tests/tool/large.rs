@@ -1,6 +1,6 @@
 //! Fleets beyond what a table numbers, and beyond what memory holds.
 
-use crate::fixture::{file, run};
+use crate::fixture::{directory, file, run, straight};
 use serde_json::json;
 use std::process::Command;
 
@@ -19,6 +19,57 @@ fn more_agents_than_a_table_numbers_are_answered() {
     let name = file("large", "discs.json", discs(70_000, 3.0));
     assert_eq!(run(&["regions", &name, "--format", "csv"]).ok().lines().count(), 1);
     assert_eq!(run(&["check", &name]).ok(), "discs: no conflicts\n");
+}
+
+/// Pairs of agents that cross, 8 m apart.
+fn crossings(pairs: usize) -> String {
+    let agent = |k: usize| {
+        let (x, y, north) = ((k / 2 % 100) as f64 * 8.0, (k / 200) as f64 * 8.0, k % 2 == 1);
+        let [x, y, heading] = if north { [x, y - 2.0, std::f64::consts::FRAC_PI_2] } else { [x - 2.0, y, 0.0] };
+        straight(k as u64 + 1, [x, y, heading], 4.0)
+    };
+    json!({ "agents": (0..2 * pairs).map(agent).collect::<Vec<_>>() }).to_string()
+}
+
+#[test]
+fn large_fleets_are_certified_by_those_that_come_near() {
+    // More than a table numbers; nobody comes near anybody.
+    let name = file("large", "certified.json", discs(70_000, 3.0));
+    let proved = run(&["certify", &name, "--json"]).json();
+    assert_eq!(
+        [&proved["verdict"], &proved["discs"], &proved["pieces"]],
+        [&json!("proved"), &json!(70_000), &json!(0)]
+    );
+    // The pairs and no others are looked at: the work grows with the fleet, not with its square.
+    let name = file("large", "crossings.json", crossings(2_000));
+    let proved = run(&["certify", &name, "--json"]).json();
+    assert_eq!([&proved["verdict"], &proved["segment_pairs"]], [&json!("proved"), &json!(2_000)]);
+}
+
+#[test]
+fn of_large_fleets_the_maps_are_drawn_that_are_asked_for() {
+    let name = file("large", "maps.json", crossings(1_001));
+    let maps = directory("large").join("maps");
+    let _ = std::fs::remove_dir_all(&maps);
+    let folder = maps.to_str().unwrap();
+    let message = run(&["map", &name, "-o", folder]).failed(2);
+    assert!(message.contains("without --agent, maps are drawn for 2000 agents at most; there are 2002"), "{message}");
+    assert!(!maps.exists());
+    let said = run(&["map", &name, "--agent", "401", "--agent", "7", "-o", folder]).ok();
+    let mut drawn: Vec<String> = std::fs::read_dir(&maps)
+        .unwrap()
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .filter(|file| file.ends_with(".svg") && file.starts_with("ecm"))
+        .collect();
+    drawn.sort();
+    assert_eq!(drawn, ["ecm-401.svg", "ecm-7.svg"], "{said}");
+    // With those whom they meet, and nobody else.
+    let page = std::fs::read_to_string(maps.join("index.html")).unwrap();
+    for (there, id) in [(true, 401), (true, 402), (true, 7), (true, 8), (false, 9), (false, 1)] {
+        assert_eq!(page.contains(&format!("\"id\":\"{id}\"")), there, "{id}");
+    }
+    let message = run(&["map", &name, "--agent", "5000", "-o", folder]).failed(2);
+    assert!(message.contains("no agent 5000"), "{message}");
 }
 
 /// Runs with so much address space \[kB\].
@@ -68,7 +119,7 @@ fn whatever_memory_there_is_every_command_ends_with_a_reason() {
     let many = file("limits", "many.json", discs(4_000, 3.0));
     let comb = file("limits", "comb.json", comb(1_000));
     let site = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
-    let maps = crate::fixture::directory("limits").join("maps").to_str().unwrap().to_owned();
+    let maps = directory("limits").join("maps").to_str().unwrap().to_owned();
     // Below the first one the system does not load the program.
     let least = (0..60).map(|step| 8_000 + 4_000 * step).find(|&limit| limited(limit, &["--version"]).0 == Some(0));
     let least = least.unwrap();

@@ -95,7 +95,7 @@ fn profiles_that_do_not_fit() {
     };
     assert_eq!(
         profile(json!([{ "duration": 3.0, "accel": 0.0 }])),
-        "1: agent 2, profile: travels 3 m on a path of 4 m; allowed is a relative difference of 1e-6"
+        "1: agent 2, profile: travels 3 m on a path of 4 m; allowed is a relative difference of 9.54e-7"
     );
     assert_eq!(
         profile(json!([{ "duration": 3.0, "accel": -1.0 }])),

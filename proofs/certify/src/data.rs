@@ -150,7 +150,7 @@ pub struct Pair {
     pub pieces: Vec<Piece>,
 }
 
-/// A table of collision regions: every two agents that are not discs of one body are a pair of it.
+/// A table of collision regions: every two agents that are not discs of one body are a pair of it, or far apart.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -159,4 +159,7 @@ pub struct Table {
     pub agents: Vec<Agent>,
     /// The pairs.
     pub pairs: Vec<Pair>,
+    /// ε of those that are left out because their paths are far apart: they have no region \[m\]; none where nobody is left out.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub apart: Option<f64>,
 }

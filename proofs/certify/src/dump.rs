@@ -262,7 +262,7 @@ pub fn decode(text: &str) -> Result<Table, String> {
         let count = words.count()?;
         words.end()?;
         let agents = (0..count as u64).map(|id| lines.agent(id)).collect::<Result<_, _>>()?;
-        Ok(Table { agents, pairs: lines.pairs()? })
+        Ok(Table { agents, pairs: lines.pairs()?, apart: None })
     };
     read().map_err(|problem: String| format!("line {}: {problem}", lines.number))
 }

@@ -46,7 +46,7 @@
 //!     let pieces = vec![Piece { segments: [0, 0], lengths, share: Share::Only, region: 0 }];
 //!     let regions = vec![Region { lengths, times: None }];
 //!     let pairs = vec![Pair { agents: [0, 1], excess: 1e-3, regions, pieces }];
-//!     let table = Table { agents: agents.clone(), pairs };
+//!     let table = Table { agents: agents.clone(), pairs, apart: None };
 //!     Checker::new(&table)?.check(Margin::Needed)
 //! };
 //! let proved = verdict(0.5005)?;

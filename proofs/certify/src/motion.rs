@@ -52,7 +52,7 @@ pub fn meetings(movers: &[Mover]) -> Meetings {
     movers.iter().for_each(|mover| *bodies.entry(mover.id).or_default() += 1);
     let own: usize = bodies.values().map(|&discs| pairs_of(discs)).sum();
     let mut found = Meetings { pairs: pairs_of(movers.len()) - own, ..Meetings::default() };
-    let near = Near::new(movers);
+    let near = Near::new(movers.iter().map(|mover| mover.area).collect());
     for (place, own) in movers.iter().enumerate() {
         for other in near.after(place).into_iter().map(|other| &movers[other]).filter(|other| other.id != own.id) {
             pair(own, other, &mut found);

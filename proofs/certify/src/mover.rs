@@ -6,7 +6,7 @@
 
 use crate::ball::{Ball, Real};
 use crate::data::{Agent, Phase};
-use crate::near::Area;
+use crate::near::{Area, area};
 use crate::path::{Stretch, stretches};
 use crate::plane::{Carrier, Vector};
 use crate::travel::{self, Ramp};
@@ -117,34 +117,6 @@ impl Mover {
     pub(crate) fn leg(&self, time: f64) -> usize {
         self.legs.partition_point(|(from, _)| *from <= time).saturating_sub(1)
     }
-}
-
-/// The box around all stretches, grown by a reach. No point of a stretch is farther from its nearer end than half its length, and a line
-/// lies between its ends.
-fn area(stretches: &[Stretch], reach: f64) -> Area {
-    let mut area = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-    for stretch in stretches {
-        let (carrier, length) = (stretch.placed.exact, stretch.placed.length);
-        let bulge = match carrier {
-            Carrier::Line { .. } => 0.0,
-            Carrier::Circle { .. } => (0.5 * length.to_f64()).next_up().next_up(),
-        };
-        for end in [Ball::from(0.0), exact(length)].map(|along| carrier.point(along)) {
-            let mut add = |axis: usize, value: Ball<Twofold>| {
-                // Once for each sum: the number itself is rounded, too.
-                let grown = (value.err + bulge).next_up() + reach;
-                let (middle, grown) = (value.mid.to_f64(), grown.next_up());
-                // What is no number may be anywhere.
-                let outward = |side: f64, end: f64| if side.is_nan() { end } else { side };
-                let (lo, hi) = ((middle.next_down() - grown).next_down(), (middle.next_up() + grown).next_up());
-                area[axis] = area[axis].min(outward(lo, f64::NEG_INFINITY));
-                area[axis + 2] = area[axis + 2].max(outward(hi, f64::INFINITY));
-            };
-            add(0, end.x);
-            add(1, end.y);
-        }
-    }
-    area
 }
 
 fn exact(value: Twofold) -> Ball<Twofold> {

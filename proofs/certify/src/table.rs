@@ -3,6 +3,7 @@
 use crate::ball::Ball;
 use crate::cell::Both;
 use crate::data::{Agent, Pair, Table};
+use crate::near::{Area, Near, area};
 use crate::pair::{Findings, Radii, Segments, pieces_of};
 use crate::path::{Stretch, stretches};
 use crate::regions;
@@ -39,6 +40,34 @@ pub struct Placed<'a> {
 pub struct Checker<'a> {
     agents: Vec<Placed<'a>>,
     pairs: &'a [Pair],
+    apart: Option<f64>,
+}
+
+/// Who may come near whom: of these a table has to tell the regions.
+#[derive(Clone, Debug)]
+pub struct Close(Near);
+
+impl Close {
+    /// Those of a table whose pairs have an ε of this at most \[m\].
+    ///
+    /// # Errors
+    /// A path that is none.
+    pub fn new(agents: &[Agent], excess: f64) -> Result<Self, String> {
+        let area = |agent: &Agent| Ok(reach(agent, &stretches(&agent.path)?, excess));
+        Ok(Self(Near::new(agents.iter().map(area).collect::<Result<_, String>>()?)))
+    }
+
+    /// Places behind this one that may come near it, in order.
+    pub fn after(&self, place: usize) -> Vec<usize> {
+        self.0.after(place)
+    }
+}
+
+/// The box of all that an agent passes. Two agents whose boxes do not meet are nowhere within R and all that has to be covered or may
+/// be told beyond it: that is ε, or what their lengths are off, at most.
+fn reach(agent: &Agent, stretches: &[Stretch], excess: f64) -> Area {
+    let off = agent.path.rounding + agent.travel.as_ref().map_or(0.0, |travel| travel.lag);
+    area(stretches, ((agent.radius + off).next_up() + excess).next_up())
 }
 
 impl<'a> Checker<'a> {
@@ -59,7 +88,7 @@ impl<'a> Checker<'a> {
             let over = arcs.map(|(length, radius)| length - TAU * radius).fold(0.0, f64::max);
             Ok(Placed { agent, stretches: stretches(&agent.path).map_err(wrong)?, over })
         });
-        let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs };
+        let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs, apart: table.apart };
         checker.all_pairs_are_there()?;
         Ok(checker)
     }
@@ -81,6 +110,9 @@ impl<'a> Checker<'a> {
                 return Err(format!("an arc of place {place} is longer than a turn"));
             }
         }
+        if let Some(excess) = self.apart {
+            return self.all_near_are_among(&there, excess);
+        }
         let mut bodies: HashMap<u64, usize> = HashMap::new();
         (0..count).for_each(|place| *bodies.entry(id(place)).or_default() += 1);
         let pairs_of = |discs: usize| discs * discs.saturating_sub(1) / 2;
@@ -91,6 +123,20 @@ impl<'a> Checker<'a> {
         let missing = all.into_iter().find(|&[a, b]| id(a) != id(b) && !there.contains(&[a, b]));
         let [a, b] = missing.unwrap_or_default();
         Err(format!("the pair of places {a} and {b} is missing"))
+    }
+
+    fn all_near_are_among(&self, there: &HashSet<[usize; 2]>, excess: f64) -> Result<(), String> {
+        if !(excess > 0.0 && excess < 1e15) {
+            return Err("the excess of those that are left out is out of range".into());
+        }
+        let area = |placed: &Placed<'_>| reach(placed.agent, &placed.stretches, excess);
+        let (near, id) =
+            (Near::new(self.agents.iter().map(area).collect()), |place: usize| self.agents[place].agent.id);
+        let missing = |a: usize| near.after(a).into_iter().find(|&b| id(a) != id(b) && !there.contains(&[a, b]));
+        match (0..self.agents.len()).find_map(|a| missing(a).map(|b| (a, b))) {
+            Some((a, b)) => Err(format!("the pair of places {a} and {b} is missing, and they come near one another")),
+            None => Ok(()),
+        }
     }
 
     /// Checks every pair.

@@ -176,7 +176,7 @@ mod tests {
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).unwrap();
-        let scene = Scene { scenario: &scenario, motions: &motions, ecm: &ecm, ground: None };
+        let scene = Scene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None };
         for ego in 0..motions.len() {
             let [time, length] = spans(&scene, ego);
             let frame = Frame::new(time, length, [0.0, 0.0, 400.0, 320.0]);

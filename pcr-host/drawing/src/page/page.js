@@ -6,8 +6,10 @@ const [first, last] = data.horizon;
 const state = { time: first, ego: busiest(), shown: agents.map(() => true), pinned: null };
 
 function busiest() {
+  // Of some agents there may be no map.
+  const count = (k) => data.maps[k]?.regions.length ?? -1;
   let best = 0;
-  data.maps.forEach((map, k) => { if (map.regions.length > data.maps[best].regions.length) best = k; });
+  data.maps.forEach((_, k) => { if (count(k) > count(best)) best = k; });
   return best;
 }
 
@@ -78,8 +80,8 @@ function axis([lo, hi], from, to) {
   return { at, ticks };
 }
 
-// Plots are at most this wide and high.
-const side = 700;
+// Plots are at most this wide and high: not much more than there is room for, so that letters are not scaled down.
+const side = Math.min(700, Math.max(400, 1.2 * $("workspace").parentElement.clientWidth));
 const room = { left: 34, top: 14, right: 14, bottom: 58 };
 
 function frame(svg, xs, ys, width, height, titles) {
@@ -117,7 +119,7 @@ function drawWorkspace() {
   // Below this extent ticks could not be told apart.
   const extent = Math.max(x1 - x0, y1 - y0, 1e-6, 1e-9 * Math.max(...data.bounds.map(Math.abs)));
   // As high as the map beside it, or nearly: letters are then as large in both.
-  const least = 480, margin = 0.03 * extent;
+  const least = Math.min(480, side), margin = 0.03 * extent;
   const metre = side / (extent + 2 * margin);
   const fit = (lo, hi) => {
     const pixels = Math.max((hi - lo + 2 * margin) * metre, least);
@@ -183,7 +185,7 @@ function onKey(event) {
 
 function drawMap() {
   const map = data.maps[state.ego], ego = agents[state.ego];
-  const width = side, height = Math.max(drawWorkspace.height, 480);
+  const width = side, height = Math.max(drawWorkspace.height, Math.min(480, side));
   const view = frame($("map"), map?.time ?? [0, 1], map?.length ?? [0, 1], width, height, ["time t [s]", "travelled length l [m]"]);
   cursor = null;
   if (!map) return;
@@ -357,6 +359,7 @@ function step(now) {
 // ---- Choices ----
 
 function selectEgo(k) {
+  if (!data.maps[k]) return;
   state.ego = k;
   state.pinned = null;
   state.shown[k] = true;
@@ -377,14 +380,19 @@ function show() {
 }
 
 function start() {
-  const regions = data.maps.reduce((sum, map) => sum + map.regions.length, 0);
-  $("summary").textContent = `${agents.length} agents, ${regions} collision regions (both sides of each pair), `
+  const maps = data.maps.filter((map) => map);
+  const regions = maps.reduce((sum, map) => sum + map.regions.length, 0);
+  const of = maps.length < agents.length ? `maps of ${maps.length} with ${regions} collision regions, `
+    : `${regions} collision regions (both sides of each pair), `;
+  $("summary").textContent = `${agents.length} agents, ${of}`
     + `${number(first)} to ${number(last)} s`;
   agents.forEach((agent, k) => {
-    const option = document.createElement("option");
-    option.value = k;
-    option.textContent = `${agent.name} (${data.maps[k].regions.length})`;
-    $("ego").append(option);
+    if (data.maps[k]) {
+      const option = document.createElement("option");
+      option.value = k;
+      option.textContent = `${agent.name} (${data.maps[k].regions.length})`;
+      $("ego").append(option);
+    }
     const chip = document.createElement("button");
     chip.type = "button";
     chip.className = "agent chip";

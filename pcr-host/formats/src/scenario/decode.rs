@@ -13,8 +13,8 @@ use std::fmt;
 /// What a scenario file holds.
 const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 
-/// Relative difference between the travelled length and the length of the path that is still scaled away.
-pub const LENGTH_TOLERANCE: f64 = 1e-6;
+/// Relative difference between the travelled length and the length of the path that is still scaled away: what the library takes, 2⁻²⁰.
+pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE) as f64;
 
 /// Speed below zero that a profile may reach by the rounding of its numbers, relative to its largest speed (or to
 /// 1 m/s if that is more): nine digits, which is what files carry.
@@ -337,7 +337,7 @@ impl MotionSpec {
                 format!("reaches {} m/s; allowed is up to {LIMIT:e}", figure(fastest))
             } else {
                 format!(
-                    "travels {} m on a path of {} m; allowed is a relative difference of {LENGTH_TOLERANCE:e}",
+                    "travels {} m on a path of {} m; allowed is a relative difference of {LENGTH_TOLERANCE:.2e}",
                     figure(travelled),
                     figure(length)
                 )

@@ -156,7 +156,7 @@ fn profiles_have_to_fit_the_path() {
     assert_eq!(fits(0.5, json!([{ "duration": 7.000001, "accel": 0.0 }])), Ok(7.000001));
     assert_eq!(
         fits(0.5, json!([{ "duration": 7.1, "accel": 0.0 }])).unwrap_err(),
-        "agent 7, profile: travels 3.55 m on a path of 3.5 m; allowed is a relative difference of 1e-6"
+        "agent 7, profile: travels 3.55 m on a path of 3.5 m; allowed is a relative difference of 9.54e-7"
     );
     assert_eq!(
         fits(0.5, json!([{ "duration": 1.0, "accel": 0.0 }, { "duration": 2.0, "accel": -0.5 }])).unwrap_err(),

@@ -1,0 +1,63 @@
+//! The tables of a scenario as the checker takes them, for fleets of any size.
+
+use super::Failure;
+use crate::bodies::Bodies;
+use crate::fleet::Format;
+use crate::{certificate, memory, rows};
+use pcr_certify::data::{Agent, Table};
+use pcr_certify::table::Close;
+use pcr_core::{Motion, excess};
+use pcr_formats::scenario::Scenario;
+
+/// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
+///
+/// # Errors
+/// [`Failure`] where a value does not fit the format.
+pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
+    let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
+    let motions = fleet.motions();
+    let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
+    let mut tables = vec![motions.clone()];
+    if motions.iter().any(|motion| motion.margin() > S::ZERO) {
+        tables.push(motions.iter().map(|motion| motion.inflated()).collect());
+    }
+    let certificate = |motions: &Vec<_>| {
+        let agents = certificate::agents(&fleet, motions, &ids);
+        of_rows(agents, motions).map_err(|failure| failure.named(&discs))
+    };
+    tables.iter().map(certificate).collect()
+}
+
+/// The table of a fleet of any size, row by row: of the pairs that come near one another, by what the checker takes for near.
+///
+/// # Errors
+/// As [`rows::Row::new`], and [`TooLarge`](memory::TooLarge) where memory does not hold the pairs.
+fn of_rows<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>]) -> Result<Table, Failure> {
+    // That of a pair is made of the extents, the lags and the rounding of arcs of both: at most once each of the largest with itself.
+    let largest = motions.iter().map(|motion| excess(motion, motion).to_f64()).fold(0.0, f64::max);
+    let apart = 3.0 * largest.max(f64::MIN_POSITIVE);
+    let Ok(close) = Close::new(&agents, apart) else {
+        // The checker says what is wrong.
+        return Ok(Table { agents, pairs: Vec::new(), apart: None });
+    };
+    let near = |i: usize| {
+        let own = agents.get(i).map(|agent| agent.id);
+        close.after(i).into_iter().filter(|&j| agents.get(j).map(|agent| agent.id) != own).collect::<Vec<_>>()
+    };
+    let count: u64 = (0..agents.len()).map(|i| near(i).len() as u64).sum();
+    memory::ask(count * PAIR_BYTES, || {
+        format!("the certificate of {count} pairs of discs that come near one another")
+    })?;
+    let pairs = rows::gathered(motions, "pairs", |row| {
+        let i = row.agents()[row.place()] as usize;
+        let told = |j: usize| {
+            let regions = row.pair(i, j).expect("the row of the agent");
+            certificate::pair([i, j], [&motions[i], &motions[j]], regions)
+        };
+        near(i).into_iter().map(told).collect()
+    })?;
+    Ok(Table { agents, pairs, apart: Some(apart) })
+}
+
+/// What a pair of discs takes in a certificate and in the checker \[bytes\].
+const PAIR_BYTES: u64 = 128;
