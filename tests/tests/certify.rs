@@ -254,7 +254,7 @@ fn a_table_that_a_microcontroller_printed_is_that_of_the_tool() {
 fn scattered(pairs: usize) -> Scenario {
     let agent = |k: usize| {
         let (x, y) = ((k / 2 % 10) as f64 * 8.0, (k / 20) as f64 * 8.0);
-        let [x, y, heading] = if k % 2 == 0 { [x - 2.0, y, 0.0] } else { [x, y - 2.0, TAU / 4.0] };
+        let [x, y, heading] = if k.is_multiple_of(2) { [x - 2.0, y, 0.0] } else { [x, y - 2.0, TAU / 4.0] };
         serde_json::json!({ "id": k + 1, "radius": 0.3, "v_max": 1, "a_max": 1, "path": [{ "kind": "line", "length": 4 }],
             "start": { "x": x, "y": y, "heading": heading } })
     };
