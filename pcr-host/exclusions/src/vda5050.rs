@@ -102,7 +102,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         // What the mark of a token, of takes and of bars, ends with goes on if the token is there in the next step.
         let mut last: HashMap<(usize, bool), usize> = HashMap::new();
         for k in 0..count as usize {
-            let [from, to] = [k, k + 1].map(|k| length * k as f64 / count);
+            // The last one ends where the edge does, and not a digit before.
+            let [from, to] = [k, k + 1].map(|k| if k as f64 == count { length } else { length * k as f64 / count });
             let at = stretch(&edge.curve, [(from + to) / 2.0; 2]);
             let at = at.first().map_or(layout.nodes[edge.ends[0]].at, |piece| piece.at);
             let claim = claim(&levels, at, reach + (to - from) / 2.0);
