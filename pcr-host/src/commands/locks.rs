@@ -54,8 +54,7 @@ pub(super) struct Arguments {
     /// Only what an edge (or a node) shares its time with
     #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
     edge: Option<String>,
-    /// Write the locks to this file instead, in which --edge finds an edge without reading the others; with --edge find it there,
-    /// if the file is of this layout and vehicle
+    /// Write the locks to this file, in which --edge finds an edge by itself; with --edge look there, if it is of this layout
     #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output"])]
     index: Option<PathBuf>,
     /// Draw the layout with its locks to this directory as well; with --write the file to be written
