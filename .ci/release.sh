@@ -1,15 +1,21 @@
 #!/usr/bin/env bash
 # What a release consists of, built twice from clean clones in two folders and compared bit for bit:
 #   .ci/release.sh OUT            everything
-#   .ci/release.sh OUT PART...    some: tool wheel library playground
-# OUT gets the tool as a static binary with completions and its manual page, the Python wheel, the library for C, the playground, the
-# bill of materials (CycloneDX) and SHA256SUMS. What is not committed is not in it.
+#   .ci/release.sh OUT PART...    some: x86_64 aarch64 wheel library playground
+# OUT gets the tool as a static binary (musl) for two machines with completions and its manual page, the Python wheel, the library for C,
+# the playground, the bill of materials (CycloneDX) and SHA256SUMS. What is not committed is not in it.
 set -euo pipefail
 [ $# -ge 1 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
 shift
-parts=" ${*:-tool wheel library playground} "
+parts=" ${*:-x86_64 aarch64 wheel library playground} "
+for part in $parts; do
+  case $part in
+    x86_64 | aarch64 | wheel | library | playground) ;;
+    *) echo "release: no part is called $part" >&2; exit 2 ;;
+  esac
+done
 cd "$(dirname "$0")/.."
 root=$PWD
 if [ -n "$(git status --porcelain)" ]; then echo "release: what is not committed is not in it" >&2; fi
@@ -21,20 +27,6 @@ unset CARGO_TARGET_DIR
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Static binaries: with musl where the toolchain has it, otherwise with the C library of this machine, which this tool asks for
-# nothing that it would load at run time.
-targets=()
-has() { ls "$(rustc --print target-libdir --target "$1" 2>/dev/null)"/libstd-*.rlib >/dev/null 2>&1; }
-for machine in x86_64 aarch64; do
-  if has $machine-unknown-linux-musl; then
-    targets+=($machine-unknown-linux-musl)
-  elif [ "$host" = $machine-unknown-linux-gnu ]; then
-    targets+=("$host")
-  else
-    echo "release: no binary for $machine: rustup target add $machine-unknown-linux-musl" >&2
-  fi
-done
-
 # pack ARCHIVE FOLDER: the same bytes for the same files.
 pack() { tar --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner -C "$(dirname "$2")" -cf - "$(basename "$2")" | gzip -9n >"$1"; }
 
@@ -42,21 +34,26 @@ pack() { tar --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --num
 flags() { echo "--remap-path-prefix=$1=/pcr --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=/cargo"; }
 
 tool() {
-  local target=$1 here=$2 made=$3 folder=$3/.pcr name pcr
+  local here=$1 made=$2 folder=$2/.pcr machine=$3 target=$3-unknown-linux-musl name pcr run=()
   name=CARGO_TARGET_$(tr 'a-z.-' 'A-Z__' <<<"$target")_RUSTFLAGS
-  env "$name=$(flags "$here") -Ctarget-feature=+crt-static" cargo build --release --locked --quiet --target "$target" -p pcr-host
-  mkdir -p "$folder/pcr-$version-$target"
-  cp "target/$target/release/pcr" README.md LICENSE-MIT LICENSE-APACHE "$folder/pcr-$version-$target"
-  strip "$folder/pcr-$version-$target/pcr"
-  if [ "${target%%-*}" = "${host%%-*}" ]; then
-    if ldd "$folder/pcr-$version-$target/pcr" 2>&1 | grep -q '=>'; then echo "release: $target is not static" >&2; return 1; fi
-    pcr=$folder/pcr-$version-$target/pcr
-    if "$pcr" check -q docs/crossing.json >/dev/null; then return 1; fi # they collide
-    for shell in bash zsh fish; do "$pcr" completions $shell >"$folder/pcr-$version-$target/pcr.$shell"; done
-    "$pcr" man >"$folder/pcr-$version-$target/pcr.1"
+  env "$name=$(flags "$here")" firmware/cross.sh "$target" build --release --locked --quiet -p pcr-host
+  folder+=/pcr-$version-$target
+  mkdir -p "$folder"
+  cp "target/$target/release/pcr" README.md LICENSE-MIT LICENSE-APACHE "$folder"
+  pcr=$folder/pcr
+  if readelf -lW "$pcr" | grep -q INTERP; then echo "release: $target is not static" >&2; return 1; fi
+  # The other machine is emulated.
+  if [ "$machine" != "$(uname -m)" ]; then
+    command -v "qemu-$machine" >/dev/null || .ci/install.sh qemu-user
+    run=("qemu-$machine")
   fi
-  pack "$made/pcr-$version-$target.tar.gz" "$folder/pcr-$version-$target"
-  rm -r "$folder"
+  run+=("$pcr")
+  if "${run[@]}" check -q docs/crossing.json >/dev/null; then echo "release: $target finds no conflict" >&2; return 1; fi
+  "${run[@]}" plan -q docs/crossing.json -o - | "${run[@]}" check -q >/dev/null # planned they do not collide
+  for shell in bash zsh fish; do "${run[@]}" completions $shell >"$folder/pcr.$shell"; done
+  "${run[@]}" man >"$folder/pcr.1"
+  pack "$made/pcr-$version-$target.tar.gz" "$folder"
+  rm -r "$made/.pcr"
 }
 
 wheel() {
@@ -88,11 +85,11 @@ playground() {
 
 # once FOLDER: a release, from a clone there.
 once() {
-  local here=$scratch/$1/source made=$scratch/$1/made target part
+  local here=$scratch/$1/source made=$scratch/$1/made part
   git clone -q "$root" "$here"
   mkdir -p "$made"
   cd "$here"
-  if [[ $parts == *" tool "* ]]; then for target in "${targets[@]}"; do tool "$target" "$here" "$made"; done; fi
+  for part in x86_64 aarch64; do if [[ $parts == *" $part "* ]]; then tool "$here" "$made" $part; fi; done
   for part in wheel library playground; do if [[ $parts == *" $part "* ]]; then $part "$here" "$made"; fi; done
   .ci/dependencies.py sbom pcr-host >"$made/pcr-$version.cdx.json"
   (cd "$made" && find . -maxdepth 1 -type f ! -name SHA256SUMS -printf '%f\n' | sort | xargs sha256sum >SHA256SUMS)

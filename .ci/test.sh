@@ -110,12 +110,14 @@ web() {
   browser
   cargo build --workspace --profile checked --features pcr-tests/peers --locked
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+  .ci/readme.py "In the browser"
 }
 
 python() {
   step "the Python package"
   cargo build --workspace --profile checked --features pcr-tests/peers --locked
   bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+  .ci/readme.py "In Python"
 }
 
 # The crates that could be published: licences, a README and all that they need are in them.
@@ -231,6 +233,7 @@ print(",".join(tomllib.load(open(sys.argv[1], "rb"))["package"]["metadata"]["doc
 c() {
   step "the C interface, on the host and in QEMU"
   bindings/c/c/run.sh
+  .ci/readme.py "In C"
 }
 
 firmware() {

@@ -31,11 +31,6 @@ import doctest, sys, pcr
 failed, run = doctest.testmod(pcr)
 sys.exit(1 if failed or run < 5 else 0)
 DOCTEST
-# The example of the top folder's README runs.
-"$bin/python" - README.md <<'TOP'
-import sys
-exec(open(sys.argv[1]).read().split("```python\n")[1].split("```")[0], {})
-TOP
 # The example of the package's README prints what that says.
 "$bin/python" - bindings/python/README.md <<'README'
 import contextlib, io, sys

@@ -3,7 +3,7 @@
 
 - nothing is written to the console, nothing asked of the network, nothing wider than windows of 390, 900 and 1400 px;
 - the Tab key reaches every control;
-- a drag of a leg, of a start and a slider change the scenario, and all regions and conflicts are then those of the tool PCR, bit for bit;
+- a drag of a leg, of a start, by a finger, too, and a slider change the scenario, and all regions and conflicts are then those of the tool PCR, bit for bit;
 - delays that the page plans leave no conflict for the tool;
 - a saved scenario comes back by its link, and what is no scenario is refused with a reason.
 
@@ -25,15 +25,21 @@ def mouse(browser, kind, x, y):
     browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
 
 
-def drag(browser, kind, by):
+def finger(browser, kind, x, y):
+    browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[] if kind == "touchEnd" else [{"x": x, "y": y}])
+
+
+def drag(browser, kind, by, touch=False):
+    act = finger if touch else mouse
+    begin, on, end = ("touchStart", "touchMove", "touchEnd") if touch else ("mousePressed", "mouseMoved", "mouseReleased")
     handle = browser.value(f"""(() => {{ const p = $('plane'), b = p.getBoundingClientRect();
       const h = handles(scenario.agents[chosen], frame(p.clientWidth, p.clientHeight).at).find((h) => h.kind === '{kind}');
       return [h.x + b.left, h.y + b.top]; }})()""")
-    mouse(browser, "mousePressed", *handle)
+    act(browser, begin, *handle)
     for part in (0.5, 1):
-        mouse(browser, "mouseMoved", handle[0] + by[0] * part, handle[1] + by[1] * part)
+        act(browser, on, handle[0] + by[0] * part, handle[1] + by[1] * part)
         browser.value(SLEEP.format(50))
-    mouse(browser, "mouseReleased", handle[0] + by[0], handle[1] + by[1])
+    act(browser, end, handle[0] + by[0], handle[1] + by[1])
     browser.value(SLEEP.format(100))
 
 
@@ -92,6 +98,16 @@ def main(tool, page, folder):
             wrong.append("dragging changes nothing")
         wrong += same(tool, folder, browser, "after dragging")
         browser.screenshot(folder / "playground-dragged.png")
+        before = browser.value("JSON.stringify(scenario)")
+        browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
+        drag(browser, "leg", (-40, 30), touch=True)
+        browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+        if browser.value("JSON.stringify(scenario)") == before:
+            wrong.append("a finger changes nothing")
+        wrong += same(tool, folder, browser, "after a finger")
+        # Judged by nobody: machines differ.
+        frame = browser.value("(() => { const before = performance.now(); for (let k = 0; k < 50; k++) update(); return (performance.now() - before) / 50; })()")
+        print(f"a frame of {browser.value('scenario.agents.length')} agents, regions and pictures: {frame:.1f} ms")
         link = browser.value("toLink(scenario)")
         again = browser.value(f"JSON.stringify(read(fromLink('{link}'))) === JSON.stringify(scenario)")
         wrong += [] if again else ["the link holds another scenario"]

@@ -6,7 +6,7 @@
 
 use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
 use pcr_certify::motion::{Meeting, Mover, meetings};
-use pcr_exclusions::{Claim, Rules};
+use pcr_exclusions::{Claim, Rules, Section};
 use pcr_formats::import::Imported;
 use pcr_formats::scenario::{PathSegment, Placed};
 use pcr_planning::random::Random;
@@ -73,6 +73,8 @@ struct Trip {
 pub struct World<'a> {
     imported: &'a Imported,
     rules: &'a Rules,
+    /// Of each edge, forward and backward.
+    sections: Vec<[Vec<Section>; 2]>,
     random: Random,
     vehicles: Vec<Vehicle>,
     /// Edges that leave each node, and whether backward.
@@ -113,6 +115,7 @@ pub fn run(imported: &Imported, rules: &Rules, missions: usize, seed: u64) -> Ru
     let mut world = World {
         imported,
         rules,
+        sections: rules.edges.iter().map(|ways| [0, 1].map(|k: usize| ways[k].sections())).collect(),
         random: Random(seed),
         vehicles,
         leaving,
@@ -170,7 +173,7 @@ impl World<'_> {
                 }
             }
             Place::Edge { edge, back, section } => {
-                let sections = &self.rules.edges[edge][usize::from(back)];
+                let sections = &self.sections[edge][usize::from(back)];
                 if section + 1 < sections.len() {
                     let next = &sections[section + 1].claim;
                     if !self.is_free(k, next) {
@@ -192,7 +195,7 @@ impl World<'_> {
     }
 
     fn claim_of(&self, edge: usize, back: bool, section: usize) -> &Claim {
-        &self.rules.edges[edge][usize::from(back)][section].claim
+        &self.sections[edge][usize::from(back)][section].claim
     }
 
     /// Whether the others let a vehicle have a claim.
@@ -222,7 +225,7 @@ impl World<'_> {
         }
         let (edge, back) = self.leaving[from][self.random.below(self.leaving[from].len())];
         let node = self.imported.layout.edges[edge].ends[usize::from(!back)];
-        let sections = &self.rules.edges[edge][usize::from(back)];
+        let sections = &self.sections[edge][usize::from(back)];
         let Some(last) = sections.last() else { return };
         // It must not be there against the will of one that is there already, nor come upon one.
         let others = self.vehicles.iter().filter(|vehicle| vehicle.place != Place::Out);
@@ -295,7 +298,7 @@ impl World<'_> {
     /// Travels a stretch at some speed, with a stop now and then; returns when it is through.
     fn travel(&mut self, k: usize, edge: usize, back: bool, section: usize, now: f64) -> f64 {
         let length = self.imported.layout.edges[edge].length();
-        let sections = &self.rules.edges[edge][usize::from(back)];
+        let sections = &self.sections[edge][usize::from(back)];
         let [from, to] = sections[section].length;
         let last = section + 1 == sections.len();
         let end = if last {

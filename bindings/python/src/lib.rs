@@ -10,10 +10,10 @@ use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::{Fleet as Parts, HostEcm};
-use pcr_planning::locks::Locks;
+use pcr_planning::locks::{Delays, Driving, Locks};
 use pcr_planning::plan::{self, Method, Plan};
 use pcr_planning::regions::{Answer, Request, find, table};
-use pcr_planning::report::{self, Document};
+use pcr_planning::report::{self, DelayTable, Document};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -312,15 +312,28 @@ struct Layout(Imported);
 
 #[pymethods]
 impl Layout {
+    /// With an acceleration for vehicles that drive from rest to rest.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<Self> {
         py.detach(|| {
-            input::read_layout(&path, &options.into(), false).map(|(imported, _)| Self(imported)).map_err(refused)
+            let moves = options.acceleration.is_some();
+            input::read_layout(&path, &options.into(), moves).map(|(imported, _)| Self(imported)).map_err(refused)
         })
     }
 
     fn locks_json(&self, py: Python<'_>, nodes: bool) -> PyResult<String> {
         py.detach(|| Locks::of(&self.0, nodes).map_err(refused).and_then(|locks| json(&locks)))
+    }
+
+    /// For a layout that was read with this speed and acceleration, on which the limits of edges depend.
+    #[pyo3(signature = (speed, acceleration))]
+    fn delays_json(&self, py: Python<'_>, speed: f64, acceleration: Option<f64>) -> PyResult<String> {
+        let driving = Driving { speed, acceleration };
+        py.detach(|| {
+            let delays = Delays::new(&self.0, driving, false).map_err(refused)?;
+            let head = Locks::head(&self.0, false);
+            DelayTable::of(head, driving, &delays, &|_, _| {}).map_err(refused).and_then(|table| json(&table))
+        })
     }
 
     fn sizes(&self) -> (String, usize, usize) {

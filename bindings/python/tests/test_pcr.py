@@ -43,6 +43,21 @@ class Tool(unittest.TestCase):
         told = tool("locks", GRAPH, "--radius", 0.4)["locks"]
         self.assertEqual(found, [[lock[k] for k in ("a", "b", "a_length", "b_length")] for lock in told])
 
+    def test_delays_are_those_of_the_tool(self) -> None:
+        # Straight at constant speed, from rest to rest, and curves; the limits of the nav2 graph are shares of the speed.
+        lif = TOP / "tests/data/real/lif/example_02.lif.json"
+        for file, radius, speed, acceleration in ((GRAPH, 0.4, 1.5, None), (GRAPH, 0.4, 0.8, 0.5), (lif, 0.3, 1.0, None)):
+            with self.subTest(file=file.name, acceleration=acceleration):
+                more = () if acceleration is None else ("--acceleration", acceleration)
+                told = tool("locks", file, "--radius", radius, "--delays", "--speed", speed, *more)["delays"]
+                rows = [[d["a"], d["b"], d["delay"], d.get("a_backward", False), d.get("b_backward", False)] for d in told]
+                # Read for another vehicle.
+                found = pcr.Layout.read(file, radius=0.1).delays(radius, speed, acceleration=acceleration)
+                self.assertEqual([[d.a, d.b, list(d.delay), d.a_backward, d.b_backward] for d in found], rows)
+                self.assertGreater(len(found), 100 if file == GRAPH else 2)
+                own = pcr.Layout.read(file, radius=radius).delays(None, speed, acceleration=acceleration)
+                self.assertEqual(own, found)
+
     def test_layouts_of_every_format_are_read(self) -> None:
         real = TOP / "tests/data/real"
         files = [GRAPH, real / "lif/example_02.lif.json", real / "rmf/office.building.yaml", real / "opendrive/Town01.planview.xodr",
@@ -151,7 +166,9 @@ class Refusals(unittest.TestCase):
                     lambda: fleet.safe_intervals(1, math.nan, (0.0, 1.0)), lambda: fleet.safe_intervals(1, 1.0, (2.0, 1.0)),
                     lambda: fleet.safe_intervals(99, 1.0, (0.0, 1.0)), lambda: fleet.holds([0.0]), lambda: fleet.plan("fast"),
                     lambda: fleet.closest(1, 99), lambda: pcr.Fleet.read("no such file"), lambda: pcr.Layout.read(TWELVE),
-                    lambda: pcr.Layout.read(GRAPH, radius=-1.0), lambda: pcr.Fleet.read(TWELVE, radius=0.5)):
+                    lambda: pcr.Layout.read(GRAPH, radius=-1.0), lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, 0.0),
+                    lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, math.nan), lambda: pcr.Layout.read(GRAPH).delays(0.4, 1.0, acceleration=-1.0),
+                    lambda: pcr.Fleet.read(TWELVE, radius=0.5)):
             with self.assertRaises(pcr.Error):
                 ask()
         with self.assertRaises(IndexError):

@@ -4,7 +4,7 @@
 //! that ends there, and that edge touches whatever the node does; hence for a node and an edge it is enough that a vehicle
 //! at the node keeps others off the edge, and two nodes need nothing more.
 
-use crate::{Claim, Group, Rules, Section, Target, nearest, stretch};
+use crate::{Group, Rules, Target, Way, nearest, stretch};
 use pcr_formats::import::{Id, Imported, Layout};
 use pcr_formats::scenario::Placed;
 use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor};
@@ -169,25 +169,33 @@ impl<'a> Auditor<'a> {
         &self.imported.layout
     }
 
-    /// The sections of an edge in the directions in which it may be travelled.
-    fn ways(&self, edge: usize) -> impl Iterator<Item = &'a [Section]> {
+    /// An edge in the directions in which it may be travelled.
+    fn ways(&self, edge: usize) -> impl Iterator<Item = &'a Way> {
         let both = self.layout().edges[edge].two_way;
-        let ways = self.rules.edges.get(edge).into_iter().flatten().take(if both { 2 } else { 1 });
-        ways.map(Vec::as_slice)
+        self.rules.edges.get(edge).into_iter().flatten().take(if both { 2 } else { 1 })
+    }
+
+    /// Both edges in all such directions.
+    fn both_ways(&self, [a, b]: [usize; 2]) -> impl Iterator<Item = [&'a Way; 2]> {
+        let of_b: Vec<&Way> = self.ways(b).collect();
+        self.ways(a).flat_map(move |own| of_b.clone().into_iter().map(move |other| [own, other]))
     }
 
     /// Where on two edges vehicles can touch, of these lengths of a lock: the deepest such place.
-    fn gap(&self, [a, b]: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<Gap> {
+    fn gap(&self, pair: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<Gap> {
         let mut worst: Option<Gap> = None;
         let mut seen = BTreeSet::new();
-        for own in self.ways(a).flatten() {
-            let Some(own_length) = common(own.length, a_length) else { continue };
-            for other in self.ways(b).flatten().filter(|other| !own.claim.excludes(&other.claim)) {
-                let Some(other_length) = common(other.length, b_length) else { continue };
-                if seen.insert([own_length, other_length].map(|range| range.map(f64::to_bits))) {
-                    let gap = self.touching([a, b], [own_length, other_length]);
-                    if gap.as_ref().is_some_and(|gap| worst.as_ref().is_none_or(|worst| worst.depth < gap.depth)) {
-                        worst = gap;
+        for [own, other] in self.both_ways(pair) {
+            let [sections, others] = Way::between(own, other);
+            for own in &sections {
+                let Some(own_length) = common(own.length, a_length) else { continue };
+                for other in others.iter().filter(|other| !own.claim.excludes(&other.claim)) {
+                    let Some(other_length) = common(other.length, b_length) else { continue };
+                    if seen.insert([own_length, other_length].map(|range| range.map(f64::to_bits))) {
+                        let gap = self.touching(pair, [own_length, other_length]);
+                        if gap.as_ref().is_some_and(|gap| worst.as_ref().is_none_or(|worst| worst.depth < gap.depth)) {
+                            worst = gap;
+                        }
                     }
                 }
             }
@@ -245,7 +253,8 @@ impl<'a> Auditor<'a> {
     fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<Gap> {
         let (claim, there) = (self.rules.nodes.get(node)?, self.layout().nodes.get(node)?);
         let (own, stands) = (&self.layout().edges[edge], [Placed::line(there.at, there.at)]);
-        let open = self.ways(edge).flatten().filter(|section| !claim.keeps_out(&section.claim));
+        let sections = self.ways(edge).flat_map(|way| way.beside(claim));
+        let open = sections.filter(|section| !claim.keeps_out(&section.claim));
         let ranges = open.filter_map(|section| common(section.length, length));
         let gaps = ranges.filter_map(|range| {
             let curve = stretch(&own.curve, range);
@@ -269,37 +278,48 @@ impl<'a> Auditor<'a> {
 
     /// Pairs of different edges of which some sections exclude each other.
     fn excluded_pairs(&self) -> BTreeSet<[usize; 2]> {
-        let mut taking: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-        let claims = |edge: usize| self.ways(edge).flatten().map(|section| &section.claim);
-        for edge in 0..self.layout().edges.len() {
-            for token in claims(edge).flat_map(|claim: &Claim| &claim.takes) {
-                taking.entry(*token).or_default().insert(edge);
-            }
-        }
+        let edges = 0..self.layout().edges.len();
+        let having = |edge: usize, bars: bool| {
+            let marks = self.ways(edge).flat_map(Way::marks).filter(move |mark| mark.bars == bars);
+            marks.map(|mark| mark.token)
+        };
+        let mut taking: Vec<[usize; 2]> =
+            edges.clone().flat_map(|edge| having(edge, false).map(move |token| [token, edge])).collect();
+        taking.sort_unstable();
+        taking.dedup();
+        let takers = |token: usize| {
+            let begin = taking.partition_point(|taken| taken[0] < token);
+            taking[begin..].iter().take_while(move |taken| taken[0] == token).map(|taken| taken[1])
+        };
         let mut pairs: BTreeSet<[usize; 2]> = BTreeSet::new();
-        for a in 0..self.layout().edges.len() {
-            let tokens: BTreeSet<usize> = claims(a).flat_map(|claim: &Claim| claim.bars.iter().copied()).collect();
-            let others: BTreeSet<usize> =
-                tokens.iter().filter_map(|token| taking.get(token)).flatten().copied().collect();
+        for a in edges {
+            let mut tokens: Vec<usize> = having(a, true).collect();
+            tokens.sort_unstable();
+            tokens.dedup();
             // What excludes each other shows from either side.
-            let excludes = |b: &usize| claims(a).any(|own| claims(*b).any(|other| own.excludes(other)));
-            pairs.extend(others.into_iter().filter(|b| *b > a && excludes(b)).map(|b| [a, b]));
+            let others: BTreeSet<usize> = tokens.into_iter().flat_map(takers).filter(|b| *b > a).collect();
+            pairs.extend(others.into_iter().map(|b| [a, b]).filter(|&pair| self.excludes(pair)));
         }
         pairs
     }
 
+    fn excludes(&self, pair: [usize; 2]) -> bool {
+        self.both_ways(pair).any(|[own, other]| {
+            let [own, other] = Way::between(own, other);
+            own.iter().any(|own| other.iter().any(|other| own.claim.excludes(&other.claim)))
+        })
+    }
+
     /// Lengths of two edges at which they exclude each other, in the directions in which most are left \[m²\].
     fn area(&self, a: usize, b: usize) -> f64 {
-        let area = |own: &[Section], other: &[Section]| {
+        let size = |length: [f64; 2]| length[1] - length[0];
+        let area = |[own, other]: [&Way; 2]| {
+            let [own, other] = Way::between(own, other);
             let pairs = own.iter().flat_map(|own| other.iter().map(move |other| (own, other)));
-            let size = |section: &Section| section.length[1] - section.length[0];
-            pairs
-                .filter(|(own, other)| own.claim.excludes(&other.claim))
-                .map(|(own, other)| size(own) * size(other))
-                .sum::<f64>()
+            let excluded = pairs.filter(|(own, other)| own.claim.excludes(&other.claim));
+            excluded.map(|(own, other)| size(own.length) * size(other.length)).sum::<f64>()
         };
-        let all = self.ways(a).flat_map(|own| self.ways(b).map(move |other| area(own, other)));
-        all.fold(f64::INFINITY, f64::min)
+        self.both_ways([a, b]).map(area).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -12,6 +12,7 @@
 //! | pcr | takes the locks of the stretch it is on | bars the stretches of its locks |
 //!
 //! ```text
+//! way       an edge in one direction, with what a vehicle has on its stretches
 //! nearest   the least distance of two stretches
 //! audit     what can touch and is not excluded, and what is excluded and cannot touch   Audit
 //! cover     cliques that cover the pairs of a graph, and how many it takes at least
@@ -37,12 +38,14 @@ pub mod report;
 mod rmf;
 mod settings;
 mod vda5050;
+mod way;
 mod write;
 mod yaml;
 
 pub use audit::{Audit, Gap, Needless, Spot};
 pub use nearest::{Approach, nearest, stretch};
 pub use settings::Settings;
+pub use way::{Mark, Section, Way};
 pub use write::{Written, write};
 
 use pcr_formats::import::{Format, ImportError, Imported};
@@ -157,15 +160,6 @@ impl Claim {
     }
 }
 
-/// A stretch of an edge on which a vehicle has a claim.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Section {
-    /// From and to, from the start of the edge \[m\].
-    pub length: [f64; 2],
-    /// What it has there.
-    pub claim: Claim,
-}
-
 /// A group, block, zone or list of a file.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Group {
@@ -180,8 +174,8 @@ pub struct Group {
 /// What vehicles have to keep to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rules {
-    /// For each edge of the layout its sections in the direction of the edge, and those of its way back, both from the start of the edge.
-    pub edges: Vec<[Vec<Section>; 2]>,
+    /// For each edge of the layout the way in its direction, and the way back.
+    pub edges: Vec<[Way; 2]>,
     /// For each node of the layout what a vehicle has that stands there.
     pub nodes: Vec<Claim>,
     /// What the file has, as it is named there.
@@ -199,12 +193,9 @@ impl Rules {
 
     /// Rules of whole edges, each forward and backward.
     pub(crate) fn of_ways(imported: &Imported, ways: Vec<[Claim; 2]>, nodes: Vec<Claim>) -> Self {
-        let layout = &imported.layout;
-        let edges = layout
-            .edges
-            .iter()
-            .zip(ways)
-            .map(|(edge, claims)| claims.map(|claim| vec![Section { length: [0.0, edge.length()], claim }]));
+        let edges = imported.layout.edges.iter().zip(ways).map(|(edge, claims)| {
+            [false, true].map(|back| Way::whole(edge.length(), back, &claims[usize::from(back)]))
+        });
         Self { edges: edges.collect(), nodes, ..Self::default() }
     }
 }

@@ -6,12 +6,12 @@
 
 use crate::outline::{around, distance};
 use crate::settings::{Notes, Settings};
-use crate::{Claim, Group, Rules, Section, stretch};
+use crate::{Claim, Group, Mark, Rules, Way, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;
 use serde_json::{Value, json};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::FRAC_PI_4;
 
 /// Zones reach this far beyond corridors, so that rounding does not count \[m\].
@@ -98,26 +98,40 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         let reach = radius + edge.deviation;
         let length = edge.length();
         let count = (length / (STEP * radius)).ceil().max(1.0);
-        let mut sections: Vec<Section> = Vec::new();
+        let (mut marks, mut closed): (Vec<Mark>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
+        // What the mark of a token, of takes and of bars, ends with goes on if the token is there in the next step.
+        let mut last: HashMap<(usize, bool), usize> = HashMap::new();
         for k in 0..count as usize {
-            let [from, to] = [k, k + 1].map(|k| length * k as f64 / count);
+            // The last one ends where the edge does, and not a digit before.
+            let [from, to] = [k, k + 1].map(|k| if k as f64 == count { length } else { length * k as f64 / count });
             let at = stretch(&edge.curve, [(from + to) / 2.0; 2]);
             let at = at.first().map_or(layout.nodes[edge.ends[0]].at, |piece| piece.at);
             let claim = claim(&levels, at, reach + (to - from) / 2.0);
-            match sections.last_mut() {
-                Some(last) if last.claim == claim => last.length[1] = to,
-                _ => sections.push(Section { length: [from, to], claim }),
+            for (tokens, bars) in [(&claim.takes, false), (&claim.bars, true)] {
+                for &token in tokens {
+                    match last.get(&(token, bars)).and_then(|&place| marks.get_mut(place)) {
+                        Some(mark) if mark.range[1] == from => mark.range[1] = to,
+                        _ => {
+                            last.insert((token, bars), marks.len());
+                            marks.push(Mark { token, bars, range: [from, to] });
+                        }
+                    }
+                }
+            }
+            match closed.last_mut().filter(|last| last[1] == from) {
+                Some(last) if claim.closed => last[1] = to,
+                _ if claim.closed => closed.push([from, to]),
+                _ => {}
             }
         }
-        let back = sections.iter().rev().cloned().collect();
-        [sections, back]
+        Way::both(length, marks, closed)
     });
-    let edges: Vec<[Vec<Section>; 2]> = edges.collect();
+    let edges: Vec<[Way; 2]> = edges.collect();
     let nodes = layout.nodes.iter().map(|node| claim(&[node.level], node.at, radius)).collect();
     let mut members: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
     for (edge, ways) in layout.edges.iter().zip(&edges) {
-        for token in ways[0].iter().flat_map(|section| &section.claim.takes) {
-            members.entry(*token).or_default().insert(edge.id.to_string());
+        for mark in ways[0].marks().iter().filter(|mark| !mark.bars) {
+            members.entry(mark.token).or_default().insert(edge.id.to_string());
         }
     }
     for (token, edges) in members {

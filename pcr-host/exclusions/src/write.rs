@@ -108,7 +108,8 @@ pub fn write(
     let rules = read(target, &written, &again)?;
     let audit = Audit::of(&again, &locks, &rules, target);
     if let Some(gap) = audit.gaps.first() {
-        return refused(format!("{:?} and {:?} are not excluded by what would be written", gap.a, gap.b));
+        let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
+        return refused(format!("{a:?} and {b:?} are not excluded by what would be written ({depth} m deep)"));
     }
     let report = Written {
         layout: locks.layout.clone(),

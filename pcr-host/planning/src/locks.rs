@@ -10,6 +10,7 @@
 mod change;
 mod delays;
 mod index;
+mod origin;
 mod pass;
 mod rides;
 mod straight;
@@ -19,6 +20,7 @@ mod table;
 use crate::memory;
 pub use delays::{Delays, Driving, Unsafe, Way};
 pub use index::{Index, IndexError, Partner, write_index};
+pub use origin::origin;
 pub use pass::{Found, Told};
 use pcr_formats::footprint::Disc;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};

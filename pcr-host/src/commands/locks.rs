@@ -10,7 +10,7 @@ use clap::Args;
 use pcr_drawing as picture;
 use pcr_formats::import::{ImportError, Options};
 use pcr_formats::output;
-use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, write_index};
+use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, origin, write_index};
 use pcr_planning::memory;
 use pcr_planning::report::{self, DelayTable, EdgeLocks, LocksUnprinted};
 use std::io::{self, BufWriter, Write};
@@ -54,8 +54,8 @@ pub(super) struct Arguments {
     /// Only what an edge (or a node) shares its time with
     #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
     edge: Option<String>,
-    /// Write the locks to this file instead, in which --edge finds an edge without reading the others
-    #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output", "edge", "format", "json"])]
+    /// Write the locks to this file, in which --edge finds an edge by itself; with --edge look there, if it is of this layout
+    #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output"])]
     index: Option<PathBuf>,
     /// Draw the layout with its locks to this directory as well; with --write the file to be written
     #[arg(short, long, value_name = "DIR")]
@@ -86,8 +86,13 @@ impl Arguments {
         let told: Told<'_> = &|done, total| progress.set(done, total);
         let wrong = |error: ImportError| Stop::wrong(file, error);
         if let Some(index) = &self.index {
+            if self.printed.form() != Form::Table {
+                return Err(Stop::arguments(
+                    "--format and --json are of no use with --index: the locks go to a file of its own form",
+                ));
+            }
             let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
-            let written = output::stream(index, |out| write_index(&sweep, out, told));
+            let written = output::stream(index, |out| write_index(&sweep, origin(&imported), out, told));
             let records = written.map_err(|error| match error {
                 IndexError::Import(error) => wrong(error),
                 IndexError::Io(error) => Stop::not_written(index, &error),
@@ -172,9 +177,22 @@ impl Arguments {
 
     /// The locks of one edge, of a layout or from a file that has them.
     fn of_edge(&self, file: &Path, edge: &str) -> Result<ExitCode, Stop> {
+        let found = |index: &Path, of: Option<u32>| {
+            let wrong = |error: IndexError| Stop::wrong(index, error);
+            let mut held = Index::open(index).map_err(wrong)?;
+            if of.is_some_and(|of| of != held.origin()) {
+                let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";
+                return Err(Stop::wrong(index, stale));
+            }
+            held.of(edge).map_err(wrong)
+        };
         let partners = if Index::is_one(file) {
-            let wrong = |error: IndexError| Stop::wrong(file, error);
-            Index::open(file).map_err(wrong)?.of(edge).map_err(wrong)?
+            if self.index.is_some() {
+                return Err(Stop::arguments("--index beside a table of locks: the layout is expected there"));
+            }
+            found(file, None)?
+        } else if let Some(index) = &self.index {
+            found(index, Some(origin(&layout(file, &self.import, STANDING, false)?)))?
         } else {
             let imported = layout(file, &self.import, STANDING, false)?;
             let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;

@@ -51,6 +51,8 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
+        # As in a window that somebody uses.
+        self.call("Emulation.setFocusEmulationEnabled", enabled=True)
 
     def message(self):
         while b"\0" not in self.buffer:
@@ -203,7 +205,12 @@ def check_large(browser):
     longest = browser.value(hover)
     blocked = browser.value("document.querySelectorAll('#about tbody tr').length")
     print(f"pages: {edges} edges: painted after {paint} ms, ready after {loaded:.0f} ms, an edge is shown within {longest:.0f} ms")
-    return [] if edges > 14000 and shown * 2 == edges and blocked > 10 else [f"{edges} edges, {shown} shown, {blocked} blocked"]
+    # What time depends on: pointing at an edge lays out no list of all of them, which is there for who uses it.
+    listed = browser.value("document.getElementById('edge').length")
+    browser.value("document.getElementById('edge').focus()")
+    all_listed = browser.value("document.getElementById('edge').length")
+    right = edges > 14000 and shown * 2 == edges and blocked > 10 and listed <= 2 and all_listed == edges + 1
+    return [] if right else [f"{edges} edges, {shown} shown, {blocked} blocked, {listed} listed, then {all_listed}"]
 
 
 def check_audit(browser):

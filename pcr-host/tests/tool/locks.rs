@@ -163,6 +163,38 @@ fn a_damaged_index_gives_no_answer() {
     assert!(run(&asked).failed(2).contains("it is longer or shorter than its header says"));
 }
 
+#[test]
+fn an_index_that_is_out_of_date_gives_no_answer() {
+    let name = file("locks", "now.geojson", cross());
+    let index = directory("locks").join("stale.locks");
+    let path = index.to_str().unwrap();
+    let of = |layout: &str, radius: &str| {
+        run(&["locks", layout, "--radius", radius, "--index", path, "--edge", "7", "--json"])
+    };
+    assert_eq!(run(&["locks", &name, "--radius", "0.25", "--index", path, "-q"]).status, 0);
+    let whole = std::fs::read(&index).unwrap();
+    let answer = of(&name, "0.25").ok();
+    assert_eq!(answer, run(&["locks", path, "--edge", "7", "--json"]).ok());
+    let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";
+    assert!(of(&name, "0.26").failed(2).contains(stale));
+    // One node by a tenth of a micrometre.
+    let moved = cross().replacen("-2.0", "-2.0000001", 1);
+    assert_ne!(moved, cross());
+    assert!(of(&file("locks", "moved.geojson", moved), "0.25").failed(2).contains(stale));
+    // The version before this one, which did not say what it is of.
+    let mut older = whole.clone();
+    older[8] = 1;
+    std::fs::write(&index, older).unwrap();
+    assert!(of(&name, "0.25").failed(2).contains("version 1; known is 2"));
+    // Cut anywhere.
+    for length in 0..whole.len() {
+        std::fs::write(&index, &whole[..length]).unwrap();
+        let run = of(&name, "0.25");
+        assert!(run.status == 2 && run.out.is_empty(), "{length} bytes: {}", run.out);
+    }
+    assert_eq!(run(&["locks", &name, "--radius", "0.25", "--index", path, "--json"]).status, 2);
+}
+
 /// A roadmap as Continuous-CBS has them, each way in both directions: a lattice with diagonals, not all of it even.
 fn roadmap(side: usize) -> String {
     let mut text = String::from("<graphml><graph edgedefault=\"directed\">");

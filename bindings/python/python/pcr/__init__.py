@@ -30,7 +30,7 @@ from . import _pcr
 from ._options import Options
 from ._pcr import Error
 
-__all__ = ["Conflict", "Error", "Fleet", "Layout", "Lock", "Plan", "Region", "Regions", "ScenarioError"]
+__all__ = ["Conflict", "Delay", "Error", "Fleet", "Layout", "Lock", "Plan", "Region", "Regions", "ScenarioError"]
 __version__ = _pcr.version
 
 Path = Union[str, PathLike[str]]
@@ -133,6 +133,18 @@ class Lock(NamedTuple):
     b: Any
     a_length: Span
     b_length: Span
+
+
+class Delay(NamedTuple):
+    """How much later [s] than on edge ``a`` a vehicle may not set off on edge ``b``, because the two would touch."""
+
+    a: Any
+    b: Any
+    #: Less than 0 is earlier.
+    delay: Span
+    #: Whether ``a`` is driven from its end to its start.
+    a_backward: bool
+    b_backward: bool
 
 
 #: The fields of an array of regions, for ``numpy.dtype``.
@@ -349,17 +361,40 @@ class Layout:
         """A layout file, for vehicles of this radius, or of this type."""
         return cls(path, _options(radius, None, None, None, vehicle, (), partial))
 
+    def _for(self, radius: Optional[float], speed: Optional[float], acceleration: Optional[float]) -> _pcr.Layout:
+        """The layout for another vehicle."""
+        own = self._options
+        radius = own["radius"] if radius is None else radius
+        return _pcr.Layout.read(self._path, _options(radius, speed, acceleration, None, own["vehicle"], (), own["partial"]))
+
     def locks(self, radius: Optional[float] = None) -> list[Lock]:
         """Which edges exclude one another, and on which lengths: two vehicles on other lengths cannot touch.
 
         With a ``radius`` for vehicles of that radius, whatever the layout was read for.
         """
-        layout = self._layout
-        if radius is not None:
-            options = _options(radius, None, None, None, self._options["vehicle"], (), self._options["partial"])
-            layout = _pcr.Layout.read(self._path, options)
+        layout = self._layout if radius is None else self._for(radius, None, None)
         found = json.loads(layout.locks_json(False))["locks"]
         return [Lock(lock["a"], lock["b"], tuple(lock["a_length"]), tuple(lock["b_length"])) for lock in found]
+
+    def delays(self, radius: Optional[float], speed: float, *, acceleration: Optional[float] = None) -> list[Delay]:
+        """Unsafe delays: how much later than on one edge a vehicle may not set off on another. Pairs that are not listed never touch.
+
+        Edges are driven at constant ``speed`` (that of the edge, where its limit is lower), with an ``acceleration`` from rest to rest;
+        one that may be driven in both directions is two ways. Without a ``radius`` for vehicles as the layout was read for.
+
+        >>> import tempfile
+        >>> points = [[-2, 0], [2, 0], [0, -2], [0, 2]]
+        >>> nodes = [{"type": "Feature", "properties": {"id": k, "frame": "map"}, "geometry": {"type": "Point", "coordinates": at}} for k, at in enumerate(points)]
+        >>> edges = [{"type": "Feature", "properties": {"id": 10 + k, "startid": k, "endid": k + 1}, "geometry": {"type": "MultiLineString", "coordinates": []}} for k in (0, 2)]
+        >>> with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
+        ...     _ = file.write(json.dumps({"type": "FeatureCollection", "features": nodes + edges}))
+        ...     file.flush()
+        ...     crossing = Layout.read(file.name).delays(0.25, 1.0)
+        >>> [(d.a, d.b, [round(s, 3) for s in d.delay]) for d in crossing]
+        [(10, 10, [-0.5, 0.5]), (10, 12, [-0.707, 0.707]), (12, 12, [-0.5, 0.5])]
+        """
+        found = json.loads(self._for(radius, speed, acceleration).delays_json(speed, acceleration))["delays"]
+        return [Delay(d["a"], d["b"], tuple(d["delay"]), d.get("a_backward", False), d.get("b_backward", False)) for d in found]
 
     def __repr__(self) -> str:
         name, nodes, edges = self._layout.sizes()

@@ -52,7 +52,7 @@ const lines = make(world, "g", {});
 const overlay = make(world, "g", { "pointer-events": "none" });
 const targets = make(world, "g", {});
 const targets_of = new Map(), nodes = new Map();
-let pinned = null;
+let pinned = null, shown = null;
 
 /** A button that shows another edge. */
 function link(parent, other) {
@@ -65,7 +65,24 @@ function link(parent, other) {
 function pin(k) {
   pinned = k;
   show(k);
+  choice.value = k === null ? "" : String(k);
 }
+
+/** Makes the list of edges anew: these, and the one that is shown. */
+function list(edges) {
+  choice.replaceChildren();
+  text(choice, "option", "none").value = "";
+  for (const k of edges.length > 0 || shown === null ? edges : [shown]) text(choice, "option", data.edges[k].id).value = String(k);
+  choice.value = shown === null ? "" : String(shown);
+}
+
+// All edges are in it only while it is used: browsers lay thousands of them out anew whenever another one is chosen.
+function list_all() {
+  const at = Number(level.value);
+  if (choice.length <= 2) list([...data.edges.keys()].filter((k) => data.edges[k].level === at));
+}
+for (const use of ["pointerdown", "focus", "keydown"]) choice.addEventListener(use, list_all);
+choice.addEventListener("blur", () => list([]));
 
 function range([from, to]) {
   return from.toFixed(3) + " – " + to.toFixed(3);
@@ -74,7 +91,8 @@ function range([from, to]) {
 function show(k) {
   overlay.replaceChildren();
   about.replaceChildren();
-  choice.value = k === null ? "" : String(k);
+  shown = k;
+  if (document.activeElement !== choice) list([]);
   if (k === null) {
     text(about, "p", "Point at an edge to see its corridor (blue) and what it blocks (red); click to keep it, again for the next edge on the same line.");
     return;
@@ -138,13 +156,10 @@ function draw() {
   targets.replaceChildren();
   targets_of.clear();
   nodes.clear();
-  choice.replaceChildren();
-  text(choice, "option", "none").value = "";
   // What is only seen is one path for all edges, and one for corridors of a width.
   const of_width = new Map(), drawn = new Set();
   data.edges.forEach((edge, k) => {
     if (edge.level !== at) return;
-    text(choice, "option", edge.id).value = String(k);
     if (edge.path === "" || line_of[k].some((other) => drawn.has(other))) return;
     drawn.add(k);
     for (const [d, width] of edge.corridor) {

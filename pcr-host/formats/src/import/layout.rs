@@ -1,12 +1,12 @@
 //! A layout: nodes, and edges between them with their true geometry, whatever file they come from.
 
 use crate::scenario::Placed;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 
 /// Name of a node or an edge, as in the source file.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Id {
     /// A number.

@@ -14,7 +14,7 @@ use std::path::Path;
 const MAGIC: [u8; 8] = *b"pcrlocks";
 
 /// Of the layout of the file; another one is not read.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What a header takes, and so where the records begin \[bytes\].
 const HEADER: u64 = 128;
@@ -69,11 +69,11 @@ fn outward([lo, hi]: [f64; 2]) -> [f32; 2] {
     [below, if f64::from(above) < hi { above.next_up() } else { above }]
 }
 
-/// Writes all locks of a layout; returns how many records that are.
+/// Writes all locks of a layout, with its [`origin`](super::origin); returns how many records that are.
 ///
 /// # Errors
 /// [`IndexError`].
-pub fn write_index(sweep: &Sweep, out: &mut File, told: Told<'_>) -> Result<u64, IndexError> {
+pub fn write_index(sweep: &Sweep, origin: u32, out: &mut File, told: Told<'_>) -> Result<u64, IndexError> {
     let pass = Pass::new(sweep);
     let mut writer = BufWriter::with_capacity(1 << 20, &mut *out);
     writer.write_all(&[0; HEADER as usize])?;
@@ -122,7 +122,7 @@ pub fn write_index(sweep: &Sweep, out: &mut File, told: Told<'_>) -> Result<u64,
     drop(writer);
     let counts = [sweep.ids().len() as u64, sweep.tracks.len() as u64, records, directory.len() as u64];
     let mut rest: Vec<u8> = counts.iter().flat_map(|count| count.to_le_bytes()).collect();
-    rest.extend(crc32(&directory).to_le_bytes());
+    rest.extend([crc32(&directory), origin].iter().flat_map(|sum| sum.to_le_bytes()));
     rest.resize(HEADER as usize - 16, 0);
     let header = [&MAGIC[..], &VERSION.to_le_bytes(), &crc32(&rest).to_le_bytes(), &rest].concat();
     out.seek(SeekFrom::Start(0))?;
@@ -137,6 +137,7 @@ pub struct Index {
     directory: Vec<u8>,
     /// Edges and nodes, tracks, and records.
     counts: [u64; 3],
+    origin: u32,
     /// Bytes of records that were read.
     read: u64,
 }
@@ -193,13 +194,18 @@ impl Index {
         if crc32(&directory) != word(48) {
             return damaged("the checksum of its names is wrong");
         }
-        Ok(Self { file, directory, counts: [places, tracks, records], read: 0 })
+        Ok(Self { file, directory, counts: [places, tracks, records], origin: word(52), read: 0 })
     }
 
     /// Whether a file begins like one.
     pub fn is_one(file: &Path) -> bool {
         let mut begin = [0; MAGIC.len()];
         File::open(file).and_then(|mut file| file.read_exact(&mut begin)).is_ok() && begin == MAGIC
+    }
+
+    /// The [`origin`](super::origin) of the layout and the vehicle whose locks it holds.
+    pub fn origin(&self) -> u32 {
+        self.origin
     }
 
     /// Edges and nodes, and records, that it holds.

@@ -1,0 +1,172 @@
+//! An edge in one direction, with what a vehicle has on its stretches.
+
+use crate::Claim;
+use std::iter::Peekable;
+use std::sync::Arc;
+
+/// A stretch of an edge on which a vehicle has a claim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// From and to, from the start of the edge \[m\].
+    pub length: [f64; 2],
+    /// What it has there.
+    pub claim: Claim,
+}
+
+/// A stretch on which a vehicle takes a token, or bars others from taking it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Number of the token.
+    pub token: usize,
+    /// Whether others are barred.
+    pub bars: bool,
+    /// From and to, from the start of the edge \[m\].
+    pub range: [f64; 2],
+}
+
+/// An edge in one direction. What it has is held by marks, as sections of an edge with hundreds of locks would each repeat most of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    length: f64,
+    back: bool,
+    /// By token.
+    marks: Arc<Vec<Mark>>,
+    /// Where nobody may be.
+    closed: Arc<Vec<[f64; 2]>>,
+}
+
+impl Way {
+    /// Both directions of an edge with the same marks.
+    pub(crate) fn both(length: f64, mut marks: Vec<Mark>, closed: Vec<[f64; 2]>) -> [Self; 2] {
+        marks.sort_by(|a, b| (a.token, a.bars).cmp(&(b.token, b.bars)).then(a.range[0].total_cmp(&b.range[0])));
+        let (marks, closed) = (Arc::new(marks), Arc::new(closed));
+        [false, true].map(|back| Self { length, back, marks: Arc::clone(&marks), closed: Arc::clone(&closed) })
+    }
+
+    /// One claim on all of an edge.
+    pub(crate) fn whole(length: f64, back: bool, claim: &Claim) -> Self {
+        let range = [0.0, length];
+        let mark = |bars: bool| move |&token: &usize| Mark { token, bars, range };
+        let marks = claim.takes.iter().map(mark(false)).chain(claim.bars.iter().map(mark(true))).collect();
+        let [ahead, backward] = Self::both(length, marks, if claim.closed { vec![range] } else { Vec::new() });
+        if back { backward } else { ahead }
+    }
+
+    /// What is taken and barred somewhere, by token; again for every stretch.
+    pub fn marks(&self) -> &[Mark] {
+        &self.marks
+    }
+
+    /// Its stretches in the order in which they are travelled, each with its claim.
+    pub fn sections(&self) -> Vec<Section> {
+        self.cut(&self.marks)
+    }
+
+    /// The sections of two ways as far as one of them excludes the other.
+    pub(crate) fn between(a: &Self, b: &Self) -> [Vec<Section>; 2] {
+        let [mut of_a, mut of_b] = [Vec::new(), Vec::new()];
+        let (mut ahead_a, mut ahead_b) = (a.marks.iter().peekable(), b.marks.iter().peekable());
+        while let (Some(one), Some(other)) = (ahead_a.peek(), ahead_b.peek()) {
+            let token = one.token.min(other.token);
+            let from = [of_a.len(), of_b.len()];
+            take(&mut ahead_a, token, &mut of_a);
+            take(&mut ahead_b, token, &mut of_b);
+            let has = |marks: &[Mark], from: usize, bars: bool| marks[from..].iter().any(|mark| mark.bars == bars);
+            let meets = [false, true].iter().any(|&bars| has(&of_a, from[0], bars) && has(&of_b, from[1], !bars));
+            if !meets {
+                of_a.truncate(from[0]);
+                of_b.truncate(from[1]);
+            }
+        }
+        [a.cut(&of_a), b.cut(&of_b)]
+    }
+
+    /// Its sections as far as somebody with this claim keeps others off them.
+    pub(crate) fn beside(&self, claim: &Claim) -> Vec<Section> {
+        let barred = |mark: &&Mark| !mark.bars && claim.bars.binary_search(&mark.token).is_ok();
+        self.cut(&self.marks.iter().filter(barred).copied().collect::<Vec<_>>())
+    }
+
+    /// Cut wherever one of these marks begins or ends.
+    fn cut(&self, marks: &[Mark]) -> Vec<Section> {
+        let ends = marks.iter().flat_map(|mark| mark.range).chain(self.closed.iter().flatten().copied());
+        let mut cuts: Vec<f64> = ends.chain([0.0, self.length]).map(|cut| cut.clamp(0.0, self.length)).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        if cuts.len() == 1 {
+            cuts.push(self.length);
+        }
+        let section = |pair: &[f64]| {
+            let covers = |[from, to]: [f64; 2]| from <= pair[0] && pair[1] <= to;
+            let tokens = |bars: bool| {
+                let there = marks.iter().filter(|mark| mark.bars == bars && covers(mark.range));
+                let mut tokens: Vec<usize> = there.map(|mark| mark.token).collect();
+                tokens.dedup();
+                tokens
+            };
+            let closed = self.closed.iter().any(|&range| covers(range));
+            Section { length: [pair[0], pair[1]], claim: Claim { takes: tokens(false), bars: tokens(true), closed } }
+        };
+        let mut sections: Vec<Section> = Vec::new();
+        for pair in cuts.windows(2) {
+            let next = section(pair);
+            match sections.last_mut() {
+                Some(last) if last.claim == next.claim => last.length[1] = next.length[1],
+                _ => sections.push(next),
+            }
+        }
+        if self.back {
+            sections.reverse();
+        }
+        sections
+    }
+}
+
+/// The marks of a token, from marks that are ahead by token.
+fn take<'a>(ahead: &mut Peekable<impl Iterator<Item = &'a Mark>>, token: usize, into: &mut Vec<Mark>) {
+    while let Some(mark) = ahead.next_if(|mark| mark.token <= token) {
+        into.push(*mark);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_between_two_ways_exclude_as_all_of_them_do() {
+        let mut state = 9_u64;
+        let mut below = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % most
+        };
+        let mut excluded = 0;
+        for _ in 0..300 {
+            let mut way = |closes: bool| {
+                let mark = |_| {
+                    let (from, long) = (below(10), below(6));
+                    let range = [from as f64, (from + long) as f64];
+                    Mark { token: below(5) as usize, bars: below(2) == 0, range }
+                };
+                let marks = (0..8).map(mark).collect();
+                let [ahead, _] = Way::both(10.0, marks, if closes { vec![[2.0, 3.0]] } else { Vec::new() });
+                ahead
+            };
+            let (a, b) = (way(false), way(true));
+            let [of_a, of_b] = Way::between(&a, &b);
+            assert!(of_a.len() <= a.sections().len());
+            let at = |sections: &[Section], l: f64| {
+                let found = sections.iter().find(|section| section.length[0] <= l && l <= section.length[1]);
+                found.map(|section| section.claim.clone()).unwrap()
+            };
+            for l in (0..10).map(|k| 0.5 + f64::from(k)) {
+                for s in (0..10).map(|k| 0.5 + f64::from(k)) {
+                    let whole = at(&a.sections(), l).excludes(&at(&b.sections(), s));
+                    assert_eq!(at(&of_a, l).excludes(&at(&of_b, s)), whole, "{l} {s}");
+                    excluded += usize::from(whole);
+                }
+            }
+        }
+        assert!(excluded > 1000);
+    }
+}

@@ -1,0 +1,18 @@
+//! Of what layout and vehicle a table of locks is: a checksum, so that one that is out of date is told from one that is not.
+
+use crate::checksum::crc32;
+use pcr_formats::import::Imported;
+use std::fmt::Debug;
+
+/// The checksum of all that locks depend on: names, places and levels of nodes, curves and ends of edges, and the vehicle. Speeds
+/// do not count.
+pub fn origin(imported: &Imported) -> u32 {
+    let (layout, vehicle) = (&imported.layout, &imported.vehicle);
+    let mut sum = 0;
+    let mut add = |part: &dyn Debug| sum = crc32(format!("{sum} {part:?}").as_bytes());
+    add(&(vehicle.radius, vehicle.margin, &vehicle.footprint, layout.nodes.len(), layout.edges.len()));
+    layout.nodes.iter().for_each(|node| add(&(&node.id, node.level, node.at)));
+    let edges = layout.edges.iter();
+    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.two_way, edge.deviation)));
+    sum
+}
