@@ -2,8 +2,10 @@
 //! sooner by that.
 
 use super::book::Region;
-use super::forecast::{Forecast, Stuck, Trial, Waits};
+use super::forecast::{Forecast, Stuck, Trial};
 use super::scene::Scene;
+use super::timetable::Timeline;
+use super::waits::Waits;
 use super::way::Way;
 use std::cell::Cell;
 
@@ -20,8 +22,11 @@ const DELAYS: (f64, u32) = (2.0, 60);
 /// One way of one robot.
 pub(super) struct Case<'c> {
     pub(super) scene: &'c Scene<'c>,
-    pub(super) base: &'c Forecast,
-    pub(super) waits: &'c Waits,
+    /// When the others would be where without it.
+    pub(super) base: &'c [Timeline],
+    pub(super) waits: &'c Waits<'c>,
+    /// Robots that are taken in any case, where not all are.
+    pub(super) taken: &'c [usize],
     pub(super) robot: usize,
     pub(super) way: &'c Way,
     pub(super) at: f64,
@@ -31,10 +36,11 @@ pub(super) struct Case<'c> {
 }
 
 impl Case<'_> {
-    fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
+    pub(super) fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
-        Trial { robots, waits: self.waits, abilities, time, changed }.forecast()
+        let kept = self.scene.timetable.map(|timetable| (timetable, self.taken));
+        Trial { robots, waits: self.waits, abilities, time, changed, kept }.forecast()
     }
 
     /// Which of the two can go first at a region: the robot, the other one.
@@ -95,14 +101,14 @@ impl Case<'_> {
     /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
     fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
         let now = self.way.time(self.at) - late;
-        let other = region.robots[1];
+        let (other, time) = (&self.base[region.robots[1]], self.scene.time);
         let (mut first, mut second) = (0.0_f64, 0.0_f64);
         for timed in region.gates_of(1) {
-            let comes = self.base.from(other, timed.comes, timed.gate.at);
+            let comes = other.from(timed.comes, timed.gate.at, time);
             first = first.max(timed.opens - now - comes);
         }
         for timed in region.gates_of(0) {
-            let opens = self.base.from(other, timed.opens, timed.gate.needs);
+            let opens = other.from(timed.opens, timed.gate.needs, time);
             second = second.max(opens - (timed.comes - now).max(late));
         }
         (first, second)
