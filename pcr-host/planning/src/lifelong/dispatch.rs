@@ -25,6 +25,9 @@ const ENDS: usize = 3;
 const WORK: usize = 30_000;
 const FORECASTS: [usize; 2] = [12, 96];
 
+/// The same where a forecast looks at some robots of many.
+const FEW: usize = 4;
+
 /// A way that was admitted.
 #[derive(Debug)]
 pub(super) struct Admitted {
@@ -117,7 +120,7 @@ impl Scene<'_> {
         };
         let [least, most] = FORECASTS;
         let (alone, taken, budget) = match self.timetable {
-            Some(_) => (Vec::new(), self.waiting_for(robot), least),
+            Some(_) => (Vec::new(), self.waiting_for(robot), FEW),
             None => (alone().unwrap_or_default(), Vec::new(), (WORK / waits.len().max(1)).clamp(least, most)),
         };
         let (base, taken) = (self.timetable.map_or(&alone[..], |timetable| &timetable.lines), &taken[..]);
@@ -207,7 +210,15 @@ impl Scene<'_> {
             let is_safe = || self.locks.is_safe(self.site, self.robots, Some((robot, &way, at, kept.atoms.len())));
             if !is_passed && !(0..self.robots.len()).any(stands) && is_safe() {
                 let (kept, before, cost) = (kept.atoms.len(), kept.before, way.time(way.length()));
-                return Some(Admitted { way, kept, before, regions: Vec::new(), departs: self.time, cost, lines: Vec::new() });
+                return Some(Admitted {
+                    way,
+                    kept,
+                    before,
+                    regions: Vec::new(),
+                    departs: self.time,
+                    cost,
+                    lines: Vec::new(),
+                });
             }
         }
         None

@@ -8,15 +8,15 @@ use super::book::Region;
 use super::gates::Timed;
 use super::robot::{Robot, SHORT};
 use super::timetable::{Timeline, Timetable};
-use super::waits::{Wait, Waits, add, sort};
+use super::waits::{Wait, Waits, sort};
 use super::way::Way;
 
 /// What is looked at: the fleet, one of its robots on another way.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<'t> {
+pub(super) struct Trial<'t, 'w> {
     pub(super) robots: &'t [Robot],
     /// Without those of the robot that has another way.
-    pub(super) waits: &'t Waits<'t>,
+    pub(super) waits: &'t Waits<'w>,
     pub(super) abilities: &'t Abilities,
     pub(super) time: f64,
     /// The robot, its way, where it is on it, when it sets off, and its regions.
@@ -43,13 +43,16 @@ pub(super) struct Stuck {
     pub(super) region: Option<usize>,
 }
 
-/// Robots that are taken at most; smaller fleets are taken whole.
-pub(super) const MOST: usize = 64;
+/// Fleets of up to so many robots are taken whole.
+pub(super) const WHOLE: usize = 64;
+
+/// Robots of a larger one that are taken at most.
+pub(super) const MOST: usize = 32;
 
 /// In no set of robots.
 const NONE: u32 = u32::MAX;
 
-impl<'t> Trial<'t> {
+impl<'t, 'w: 't> Trial<'t, 'w> {
     fn way(&self, robot: usize) -> (&'t Way, f64) {
         match self.changed {
             Some((changed, way, at, ..)) if changed == robot => (way, at),
@@ -61,18 +64,18 @@ impl<'t> Trial<'t> {
         self.changed.is_some_and(|changed| changed.0 == robot)
     }
 
-    /// Adds the gates of a robot.
-    fn gates(&self, robot: usize, into: &mut Vec<Wait>) {
-        let from = into.len();
+    /// What a robot passes second.
+    fn row(&self, robot: usize) -> Vec<Wait<'t>> {
         let known = self.waits.row(robot);
-        into.extend_from_slice(known);
+        let mut row: Vec<Wait<'t>> = known.to_vec();
         let regions = self.changed.iter().flat_map(|(.., regions)| regions.iter().enumerate());
         for (place, region) in regions.filter(|(_, region)| region.second() == robot) {
-            add(region, Some(place), region.robots.map(|robot| self.way(robot).1), into);
+            row.extend(Wait::of(region, Some(place), region.robots.map(|robot| self.way(robot).1)));
         }
-        if into.len() > from + known.len() {
-            sort(&mut into[from..]);
+        if row.len() > known.len() {
+            sort(&mut row);
         }
+        row
     }
 
     /// When robots would be where, or those that would wait for ever; nobody in particular where too many would have to be taken.
@@ -105,7 +108,7 @@ impl<'t> Trial<'t> {
                     return;
                 }
                 let at = region.robots.map(|robot| self.way(robot).1);
-                if !region.is_over(at) && timetable.is_broken(region, line, self.time, at[region.first], self.way(second).0) {
+                if timetable.is_broken(region, line, self.time, at, self.way(second).0) {
                     is_known[second] = true;
                     found.push(second);
                 }
@@ -121,67 +124,47 @@ impl<'t> Trial<'t> {
 
     /// Takes some robots from gate to gate.
     fn taken(&self, robots: Vec<usize>) -> Result<Forecast, Vec<Stuck>> {
-        let count = robots.len();
         let mut places = vec![NONE; self.robots.len()];
-        let mut lines: Vec<Timeline> = Vec::with_capacity(count);
-        let mut waits: Vec<Wait> = Vec::new();
-        let mut ranges = Vec::with_capacity(count);
+        let mut taken: Vec<Taken<'t>> = Vec::with_capacity(robots.len());
         for (place, &robot) in robots.iter().enumerate() {
             places[robot] = place as u32;
-            let it = &self.robots[robot];
             let changed =
                 self.changed.filter(|changed| changed.0 == robot).map(|(_, way, at, departs, _)| (way, at, departs));
-            let start = it.progress(changed, self.time, self.abilities);
-            lines.push(Timeline::new(start, self.time));
-            let from = waits.len();
-            self.gates(robot, &mut waits);
-            ranges.push((from, waits.len()));
+            let start = self.robots[robot].progress(changed, self.time, self.abilities);
+            taken.push(Taken::new(Timeline::new(start, self.time), self.row(robot), self.way(robot).0.length()));
         }
-        // The next gate of each robot, and who waits for it to go on.
-        let mut next: Vec<usize> = ranges.iter().map(|range| range.0).collect();
-        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); count];
-        let mut open: Vec<usize> = (0..count).collect();
+        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); robots.len()];
+        let mut open: Vec<usize> = (0..robots.len()).collect();
         let lost = self.abilities.stop();
         while let Some(place) = open.pop() {
-            let (way, _) = self.way(robots[place]);
-            let before = next[place];
-            while next[place] < ranges[place].1 {
-                let Wait { timed, first, .. } = waits[next[place]];
-                let Timed { gate, comes, opens } = timed;
-                if gate.at >= way.length() {
-                    next[place] = ranges[place].1;
-                    break;
-                }
-                let there = self.way(first).0;
+            let before = taken[place].steps;
+            while let Some((first, timed, is_left)) = taken[place].ahead() {
                 let opens = match (places[first], self.kept) {
-                    (NONE, Some((timetable, _))) => timetable.lines[first].opens(&timed, self.time),
+                    (NONE, Some((timetable, _))) => Some(timetable.lines[first].opens(timed, self.time)),
                     (first, _) => {
-                        let first = first as usize;
-                        let known = match waits[next[first]..ranges[first].1].first() {
-                            Some(wait) => wait.timed.gate.at.min(there.length()) - 2.0 * SHORT,
-                            None => there.length(),
-                        };
-                        if gate.needs > known {
-                            waiting[first].push(place);
-                            break;
-                        }
-                        lines[first].from(opens, gate.needs, self.time)
+                        let first = &taken[first as usize];
+                        let is_known = timed.gate.needs <= first.known();
+                        is_known.then(|| first.line.from(timed.opens, timed.gate.needs, self.time))
                     }
                 };
-                lines[place].wait(gate.at, comes, opens, lost);
-                next[place] += 1;
+                match (opens, is_left) {
+                    (Some(opens), false) => taken[place].wait(opens, lost),
+                    (opens, true) => taken[place].meet(opens),
+                    (None, false) => {
+                        waiting[places[first] as usize].push(place);
+                        break;
+                    }
+                }
             }
-            if next[place] > before {
+            if taken[place].steps > before {
                 open.append(&mut waiting[place]);
             }
         }
-        let stuck: Vec<Stuck> = (0..count)
-            .filter(|&place| next[place] < ranges[place].1)
-            .map(|place| Stuck { region: waits[next[place]].region })
-            .collect();
+        let stuck: Vec<Stuck> = taken.iter().filter_map(Taken::stuck).collect();
         if !stuck.is_empty() {
             return Err(stuck);
         }
+        let lines: Vec<Timeline> = taken.into_iter().map(|taken| taken.line).collect();
         let cost = robots.iter().zip(&lines).map(|(&robot, line)| {
             let way = self.way(robot).0;
             let planned = match self.kept {
@@ -192,5 +175,78 @@ impl<'t> Trial<'t> {
         });
         let cost = cost.sum();
         Ok(Forecast { robots, lines, cost })
+    }
+}
+
+/// A robot that is taken from gate to gate.
+struct Taken<'r> {
+    line: Timeline,
+    /// What it has still to pass second, the nearest last.
+    regions: Vec<Wait<'r>>,
+    /// Gates of regions that it may have to wait at, with who is first there and the place of the region, the nearest last.
+    gates: Vec<(&'r Timed, usize, Option<usize>)>,
+    length: f64,
+    /// Gates and regions that it has passed.
+    steps: usize,
+}
+
+impl<'r> Taken<'r> {
+    fn new(line: Timeline, mut regions: Vec<Wait<'r>>, length: f64) -> Self {
+        regions.reverse();
+        Self { line, regions, gates: Vec::new(), length, steps: 0 }
+    }
+
+    /// Whether a region comes before the next gate.
+    fn meets(&self) -> bool {
+        let gate = self.gates.last().map_or(f64::INFINITY, |gate| gate.0.gate.at);
+        self.regions.last().is_some_and(|wait| wait.gates[0].gate.at < gate)
+    }
+
+    /// What comes next: who is first there, and the gate; of a region the last one, which tells whether it has been left.
+    fn ahead(&self) -> Option<(usize, &'r Timed, bool)> {
+        if self.next() >= self.length {
+            return None;
+        }
+        match (self.meets(), self.regions.last(), self.gates.last()) {
+            (true, Some(wait), _) => Some((wait.first, wait.ends()[1], true)),
+            (_, _, Some(&(timed, first, _))) => Some((first, timed, false)),
+            _ => None,
+        }
+    }
+
+    /// Length of what comes next.
+    fn next(&self) -> f64 {
+        let region = self.regions.last().map_or(f64::INFINITY, |wait| wait.gates[0].gate.at);
+        self.gates.last().map_or(region, |gate| gate.0.gate.at.min(region))
+    }
+
+    /// Up to which length it is known when it is there.
+    fn known(&self) -> f64 {
+        let next = self.next();
+        if next < self.length { next - 2.0 * SHORT } else { self.length }
+    }
+
+    /// Comes to a region that the first leaves then, if that is known: its gates count unless it has been left by then.
+    fn meet(&mut self, left: Option<f64>) {
+        let Some(wait) = self.regions.pop() else { return };
+        self.steps += 1;
+        if left.is_some_and(|left| self.line.comes(wait.ends()[0].comes) >= left) {
+            return;
+        }
+        self.gates.extend(wait.gates.iter().map(|timed| (timed, wait.first, wait.place)));
+        self.gates.sort_by(|a, b| b.0.gate.at.total_cmp(&a.0.gate.at));
+    }
+
+    /// Passes a gate, which opens then.
+    fn wait(&mut self, opens: f64, lost: f64) {
+        if let Some((timed, ..)) = self.gates.pop() {
+            self.steps += 1;
+            self.line.wait(timed.gate.at, timed.comes, opens, lost);
+        }
+    }
+
+    fn stuck(&self) -> Option<Stuck> {
+        let (_, _, is_left) = self.ahead()?;
+        self.gates.last().filter(|_| !is_left).map(|gate| Stuck { region: gate.2 })
     }
 }

@@ -3,6 +3,7 @@
 
 use super::book::Region;
 use super::forecast::{Forecast, Stuck, Trial};
+use super::gates::Timed;
 use super::scene::Scene;
 use super::timetable::Timeline;
 use super::waits::Waits;
@@ -20,11 +21,11 @@ const REPAIRS: usize = 12;
 const DELAYS: (f64, u32) = (2.0, 60);
 
 /// One way of one robot.
-pub(super) struct Case<'c> {
+pub(super) struct Case<'c, 'w> {
     pub(super) scene: &'c Scene<'c>,
     /// When the others would be where without it.
     pub(super) base: &'c [Timeline],
-    pub(super) waits: &'c Waits<'c>,
+    pub(super) waits: &'c Waits<'w>,
     /// Robots that are taken in any case, where not all are.
     pub(super) taken: &'c [usize],
     pub(super) robot: usize,
@@ -35,7 +36,7 @@ pub(super) struct Case<'c> {
     pub(super) budget: &'c Cell<usize>,
 }
 
-impl Case<'_> {
+impl Case<'_, '_> {
     pub(super) fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
@@ -102,16 +103,12 @@ impl Case<'_> {
     fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
         let now = self.way.time(self.at) - late;
         let (other, time) = (&self.base[region.robots[1]], self.scene.time);
-        let (mut first, mut second) = (0.0_f64, 0.0_f64);
-        for timed in region.gates_of(1) {
-            let comes = other.from(timed.comes, timed.gate.at, time);
-            first = first.max(timed.opens - now - comes);
-        }
-        for timed in region.gates_of(0) {
-            let opens = other.from(timed.opens, timed.gate.needs, time);
-            second = second.max(opens - (timed.comes - now).max(late));
-        }
-        (first, second)
+        let theirs = |timed: &Timed| other.from(timed.comes, timed.gate.at, time);
+        let own = |timed: &Timed| (timed.comes - now).max(late);
+        (
+            longest(region.gates_of(1), |timed| timed.opens - now, theirs),
+            longest(region.gates_of(0), |timed| other.from(timed.opens, timed.gate.needs, time), own),
+        )
     }
 
     /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
@@ -162,4 +159,14 @@ impl Case<'_> {
         }
         None
     }
+}
+
+/// The longest wait at some gates that open, and that the second comes to, then.
+fn longest(gates: &[Timed], opens: impl Fn(&Timed) -> f64, comes: impl Fn(&Timed) -> f64) -> f64 {
+    // None where the last one is open before the second comes to the first one.
+    let (Some(head), Some(last)) = (gates.first(), gates.last()) else { return 0.0 };
+    if opens(last) <= comes(head) {
+        return 0.0;
+    }
+    gates.iter().map(|timed| opens(timed) - comes(timed)).fold(0.0, f64::max)
 }

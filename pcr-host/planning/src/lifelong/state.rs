@@ -1,12 +1,11 @@
 //! The state of a run: the fleet, its missions, and what has come of it so far.
 
-use super::{Method, Request};
 use super::abilities::Abilities;
 use super::book::Book;
 use super::dispatch::Admitted;
 use super::draws::{self, starts};
 use super::ends::Ends;
-use super::forecast::MOST;
+use super::forecast::WHOLE;
 use super::locks::Locks;
 use super::outcome::{Outcome, Shares};
 use super::record::Certificate;
@@ -17,6 +16,7 @@ use super::site::Site;
 use super::tasks::{Queue, Tasks};
 use super::timetable::Timetable;
 use super::way::Way;
+use super::{Method, Request};
 use pcr_formats::import::Imported;
 use std::time::Duration;
 
@@ -171,7 +171,7 @@ impl Run {
 
     /// Whether decisions look at some of the robots only.
     pub(super) fn is_large(&self) -> bool {
-        self.request.method == Method::Orders && self.robots.len() > MOST
+        self.request.method == Method::Orders && self.robots.len() > WHOLE
     }
 
     pub(super) fn scene(&self, now: f64) -> Scene<'_> {

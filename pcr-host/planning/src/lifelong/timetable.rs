@@ -6,6 +6,7 @@
 use super::book::Region;
 use super::gates::Timed;
 use super::robot::SHORT;
+use super::waits::Wait;
 use super::way::Way;
 
 /// What an end counts beside a goal.
@@ -39,11 +40,16 @@ impl Timeline {
         self.from(timed.opens, timed.gate.needs + 2.0 * SHORT, now)
     }
 
+    /// When it comes to where it would be at this time of its way, after all waits so far, from when this was made \[s\].
+    pub(super) fn comes(&self, time: f64) -> f64 {
+        (time - self.start).max(0.0) + self.delays.last().map_or(0.0, |delay| delay.1)
+    }
+
     /// It waits at a length, to which it comes at this time of its way, until so long after the line was made; it loses so much by a stop
     /// \[m, s\].
     pub(super) fn wait(&mut self, at: f64, comes: f64, opens: f64, lost: f64) {
         let so_far = self.delays.last().map_or(0.0, |delay| delay.1);
-        let wait = opens - ((comes - self.start).max(0.0) + so_far);
+        let wait = opens - self.comes(comes);
         if wait > 0.0 {
             self.delays.push((at, so_far + wait + 0.5 * lost.min(wait)));
         }
@@ -89,14 +95,16 @@ impl Timetable {
         Self { lines: vec![Timeline::default(); robots] }
     }
 
-    /// Whether the second of a region, which has this way, sets off too early at one of its gates if the first, which is at `at`, has
-    /// this line.
-    pub(super) fn is_broken(&self, region: &Region, first: &Timeline, now: f64, at: f64, way: &Way) -> bool {
-        let (gates, second) = (region.gates(), &self.lines[region.second()]);
-        let passed = gates.partition_point(|timed| timed.gate.needs <= at);
-        gates[passed..].iter().take_while(|timed| timed.gate.at < way.length()).any(|timed| {
-            first.opens(timed, now) > second.beyond(timed.comes, timed.gate.at, now)
-        })
+    /// Whether the second of a region, which has this way, sets off too early at one of its gates if the first has this line; they are at
+    /// these places.
+    pub(super) fn is_broken(&self, region: &Region, first: &Timeline, now: f64, at: [f64; 2], way: &Way) -> bool {
+        let Some(wait) = Wait::of(region, None, at) else { return false };
+        let second = &self.lines[region.second()];
+        let is_early = |[at, needs]: [&Timed; 2]| {
+            at.gate.at < way.length() && first.opens(needs, now) > second.beyond(at.comes, at.gate.at, now)
+        };
+        // Where the first has left before the second comes no gate matters.
+        is_early(wait.ends()) && wait.gates.iter().any(|timed| is_early([timed; 2]))
     }
 
     /// Other lines for some robots.

@@ -5,21 +5,39 @@ use super::gates::Timed;
 use super::robot::Robot;
 use std::cell::OnceCell;
 
-/// A gate on a way, and whom it is about.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wait {
-    pub(super) timed: Timed,
+/// A region that a robot passes second.
+#[derive(Clone, Copy)]
+pub(super) struct Wait<'r> {
     pub(super) first: usize,
+    /// The gates that it has still to pass there: at least one.
+    pub(super) gates: &'r [Timed],
     /// Its place among the regions of the robot that has another way.
-    pub(super) region: Option<usize>,
+    pub(super) place: Option<usize>,
 }
 
-/// The gates that robots have still to pass, the nearest first; found when they are asked for.
+impl<'r> Wait<'r> {
+    /// With the robots of the region at these places; none if nobody has to wait there any more.
+    pub(super) fn of(region: &'r Region, place: Option<usize>, at: [f64; 2]) -> Option<Self> {
+        if region.is_over(at) {
+            return None;
+        }
+        let (gates, first) = (region.gates(), region.robots[region.first]);
+        let gates = &gates[gates.partition_point(|timed| timed.gate.needs <= at[region.first])..];
+        (!gates.is_empty()).then_some(Self { first, gates, place })
+    }
+
+    /// The nearest gate, and the one at which the first has left.
+    pub(super) fn ends(&self) -> [&'r Timed; 2] {
+        [&self.gates[0], &self.gates[self.gates.len() - 1]]
+    }
+}
+
+/// The regions that robots have still to pass second, the nearest first; found when they are asked for.
 pub(super) struct Waits<'w> {
     robots: &'w [Robot],
     book: &'w Book,
     without: Option<usize>,
-    rows: Vec<OnceCell<Vec<Wait>>>,
+    rows: Vec<OnceCell<Vec<Wait<'w>>>>,
 }
 
 impl<'w> Waits<'w> {
@@ -34,35 +52,24 @@ impl<'w> Waits<'w> {
         self.book.row(robot).filter(move |region| without.is_none_or(|without| !region.robots.contains(&without)))
     }
 
-    /// The gates of a robot.
-    pub(super) fn row(&self, robot: usize) -> &[Wait] {
+    /// Those of a robot.
+    pub(super) fn row(&self, robot: usize) -> &[Wait<'w>] {
         self.rows[robot].get_or_init(|| {
-            let mut waits = Vec::new();
-            for region in self.regions(robot).filter(|region| region.second() == robot) {
-                add(region, None, region.robots.map(|robot| self.robots[robot].at), &mut waits);
-            }
+            let second = self.regions(robot).filter(|region| region.second() == robot);
+            let at = |region: &Region| region.robots.map(|robot| self.robots[robot].at);
+            let mut waits: Vec<Wait<'w>> = second.filter_map(|region| Wait::of(region, None, at(region))).collect();
             sort(&mut waits);
             waits
         })
     }
 
-    /// How many there are: what a forecast of all costs.
+    /// Gates of all of them: what a forecast of all costs.
     pub(super) fn len(&self) -> usize {
-        (0..self.robots.len()).map(|robot| self.row(robot).len()).sum()
+        (0..self.robots.len()).flat_map(|robot| self.row(robot)).map(|wait| wait.gates.len()).sum()
     }
 }
 
-/// The gates of a region that the second has still to pass.
-pub(super) fn add(region: &Region, place: Option<usize>, at: [f64; 2], into: &mut Vec<Wait>) {
-    if region.is_over(at) {
-        return;
-    }
-    let (gates, first) = (region.gates(), region.robots[region.first]);
-    let passed = gates.partition_point(|timed| timed.gate.needs <= at[region.first]);
-    into.extend(gates[passed..].iter().map(|&timed| Wait { timed, first, region: place }));
-}
-
-pub(super) fn sort(waits: &mut [Wait]) {
-    // Made of runs that are in order: stable sorting makes use of that.
-    waits.sort_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
+/// The nearest first.
+pub(super) fn sort(waits: &mut [Wait<'_>]) {
+    waits.sort_by(|a, b| a.gates[0].gate.at.total_cmp(&b.gates[0].gate.at));
 }
