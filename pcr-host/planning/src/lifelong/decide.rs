@@ -109,17 +109,17 @@ impl Run {
         if !self.is_large() {
             return;
         }
-        for robot in (tick % ROUND..self.robots.len()).step_by(ROUND) {
-            if self.robots[robot].has_arrived() {
+        let Self { robots, abilities, book, timetable, .. } = self;
+        let waits = &Waits::of(robots, book, None);
+        for robot in (tick % ROUND..robots.len()).step_by(ROUND) {
+            if robots[robot].has_arrived() {
                 continue;
             }
-            let Self { robots, abilities, book, timetable, .. } = self;
-            let waits = &Waits::of(robots, book, None);
             let kept = Some((&*timetable, &[robot][..]));
             let trial = Trial { robots, waits, abilities, time: now, changed: None, kept };
             if let Ok(forecast) = trial.forecast() {
                 let lines = forecast.robots.into_iter().zip(forecast.lines).collect();
-                self.timetable.change(lines);
+                timetable.change(lines);
             }
         }
     }

@@ -244,3 +244,42 @@ fn reached(site: &Site, from: usize, back: bool, open: impl Fn(usize) -> bool) -
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lifelong::streets;
+
+    /// Nodes and edges that cut others off, by looking at all nodes.
+    #[test]
+    fn what_is_found_near_a_node_holds_for_all() {
+        for (count, radius) in [(2, 0.4), (4, 0.4), (4, 1.2), (4, 2.0)] {
+            let mut imported = streets(count);
+            imported.vehicle.radius = radius;
+            // A street for both directions, so that some bridge is none.
+            imported.layout.edges[0].two_way = true;
+            let site = Site::new(&imported).expect("a site");
+            let nodes = strongest(&site);
+            assert_eq!(nodes.len(), count * count + 6 * count * (count - 1));
+            let mut is_inside = vec![false; site.points.len()];
+            nodes.iter().for_each(|&node| is_inside[node] = true);
+            let mut search = Search::new(&site);
+            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, node)).count();
+            for &node in &nodes {
+                let cuts = !is_open(&site, &nodes, &[node]);
+                assert_eq!(cuts_off(&mut search, &is_inside, node), cuts, "{count}, {radius}: {node}");
+            }
+            assert!(found > 0 && (found < nodes.len() || radius > 1.0), "{found} of {}", nodes.len());
+            let cuts = |edge: usize| {
+                [false, true].into_iter().any(|back| {
+                    let found = reached(&site, nodes[0], back, |atom| site.atoms[atom].edge != Some(edge));
+                    nodes.iter().any(|&node| !found[node])
+                })
+            };
+            let edges = imported.layout.edges.iter().enumerate().filter(|(place, edge)| edge.two_way && cuts(*place));
+            let edges: Vec<usize> = edges.map(|edge| edge.0).collect();
+            assert_eq!(bridges(&site, &is_inside), edges);
+            assert!(!edges.is_empty());
+        }
+    }
+}

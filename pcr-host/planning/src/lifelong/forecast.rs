@@ -47,7 +47,10 @@ pub(super) struct Stuck {
 pub(super) const WHOLE: usize = 64;
 
 /// Robots of a larger one that are taken at most.
-pub(super) const MOST: usize = 32;
+pub(super) const MOST: usize = 16;
+
+/// How often others are added to them at most.
+const ROUNDS: usize = 5;
 
 /// In no set of robots.
 const NONE: u32 = u32::MAX;
@@ -82,7 +85,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
     pub(super) fn forecast(&self) -> Result<Forecast, Vec<Stuck>> {
         let Some((timetable, some)) = self.kept else { return self.taken((0..self.robots.len()).collect()) };
         let mut taken = some.to_vec();
-        loop {
+        for _ in 0..ROUNDS {
             let forecast = self.taken(std::mem::take(&mut taken))?;
             let late = self.delayed(timetable, &forecast);
             if late.is_empty() {
@@ -91,9 +94,10 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
             taken = forecast.robots;
             taken.extend(late);
             if taken.len() > MOST {
-                return Err(Vec::new());
+                break;
             }
         }
+        Err(Vec::new())
     }
 
     /// Who keeps to the timetable, but would have to wait longer for somebody who does not.
@@ -233,7 +237,7 @@ impl<'r> Taken<'r> {
         if left.is_some_and(|left| self.line.comes(wait.ends()[0].comes) >= left) {
             return;
         }
-        self.gates.extend(wait.gates.iter().map(|timed| (timed, wait.first, wait.place)));
+        self.gates.extend(wait.gates.iter().rev().map(|timed| (timed, wait.first, wait.place)));
         self.gates.sort_by(|a, b| b.0.gate.at.total_cmp(&a.0.gate.at));
     }
 

@@ -14,6 +14,9 @@ use std::cell::Cell;
 const TURNS: usize = 16;
 const LEAST_TURNS: usize = 4;
 
+/// The same in a large fleet.
+const FEW_TURNS: usize = 1;
+
 /// Orders that are turned round where somebody would wait for ever.
 const REPAIRS: usize = 12;
 
@@ -78,10 +81,11 @@ impl Case<'_, '_> {
 
     /// Turns orders round where all are expected to arrive sooner by that.
     pub(super) fn improved(&self, mut regions: Vec<Region>, mut cost: f64) -> (Vec<Region>, f64) {
+        let least = if self.scene.timetable.is_some() { FEW_TURNS } else { LEAST_TURNS };
         let mut turns = 0;
         for k in 0..regions.len() {
             let (ahead, behind) = self.waits(&regions[k], 0.0);
-            if turns >= LEAST_TURNS && self.budget.get() == 0 {
+            if turns >= least && self.budget.get() == 0 {
                 break;
             }
             let free = if regions[k].first == 0 { ahead == 0.0 } else { behind == 0.0 };
