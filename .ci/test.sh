@@ -51,11 +51,11 @@ tests() {
   # Not the examples: the lints have checked that they compile, and those that are run are named.
   cargo test "${options[@]}" --lib --bins --tests
   cargo test "${options[@]}" --doc
-  step "plans of 100000 random fleets by either method, checked by the oracle"
+  step "plans of 20000 random fleets by either method, checked by the oracle"
   local example examples=(fleet_server late_robots no_fpu)
   # Not `cargo run`, which would build what it depends on with other features.
   cargo build "${options[@]}" "${examples[@]/#/--example=}" --example=fleets
-  "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 100000
+  "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 20000
   step "the examples of the libraries"
   for example in "${examples[@]}"; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
 }

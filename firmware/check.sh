@@ -45,8 +45,8 @@ tools() {
   cargo build --locked --quiet --target "$host" -p pcr-link
   cargo test --locked --quiet --target "$host" -p pcr-supervisor --features micromath,fixed
   step "random fleets on a bad line: no two discs touch (docs/firmware.md has the long one)"
-  link passing f32 1000
-  link passing q16 1000
+  link passing f32 300
+  link passing q16 300
 }
 
 link() { "$out/$host/debug/pcr-link" "$@"; }

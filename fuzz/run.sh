@@ -14,7 +14,7 @@ fi
 jobs=("$@")
 # A minute or two in all, building aside; those that take longest for a run get fewest.
 if [ $# -eq 0 ]; then
-  jobs=(scenario=1500 pair=500 limits=150 fleet=200 rmf=200 nav2=300 lif=2000 vda5050=3000 opendrive=500 opentcs=500 ccbs=500 grid=500 path=500 dump=2000 serve=500 journal=1000)
+  jobs=(scenario=1000 pair=250 limits=80 fleet=100 rmf=100 nav2=150 lif=1000 vda5050=1500 opendrive=300 opentcs=300 ccbs=300 grid=300 path=300 dump=1000 serve=300 journal=500)
 fi
 for run in "${jobs[@]}"; do
   target=${run%%=*} runs=${run##*=}

@@ -83,7 +83,7 @@ fn tables_that_were_not_proved_once_are() {
     is_proved_of::<f32>(&[6, 16, 53, 68, 188, 6825, 12872, 25920]);
     is_proved_of::<Q20>(&[16, 68, 188, 4698, 59166]);
     is_proved_of::<Q16>(&[35497, 65178, 86630]);
-    is_proved_of::<Q12>(&[3285, 13525, 27854, 52685, 66637, 89197]);
+    is_proved_of::<Q12>(&[3285, 13525, 27854, 52685, 66637, 89197, 134_448]);
 }
 
 fn data(name: &str) -> PathBuf {

@@ -74,7 +74,7 @@ fn orders_do_more_missions_than_locks_on_other_layouts() {
 /// There are 17 safe ends: the others stand where they cut off few, and go away when asked.
 #[test]
 fn more_robots_than_safe_ends_go_on_all_the_same() {
-    let (agents, minutes) = if cfg!(optimized) { (25, 6.0) } else { (19, 2.0) };
+    let (agents, minutes) = if cfg!(optimized) { (20, 4.0) } else { (19, 2.0) };
     let outcome = warehouse(agents, minutes, 0.02, Method::Orders);
     assert!(outcome.robots == agents && outcome.missions > agents / 2, "{outcome:?}");
 }
@@ -90,7 +90,7 @@ fn large_fleets_never_touch_and_all_arrive() {
 /// The same missions, the same delays.
 #[test]
 fn orders_do_more_missions_than_locks_and_start_delays() {
-    let minutes = if cfg!(optimized) { 20.0 } else { 4.0 };
+    let minutes = if cfg!(optimized) { 12.0 } else { 4.0 };
     let [orders, routes, edges, delays] = Method::ALL.map(|method| warehouse(8, minutes, 0.02, method).missions);
     assert!([routes, edges, delays].iter().all(|&missions| missions > 0 && missions < orders), "{orders}");
     assert!(2 * routes < orders, "{orders}, locks on routes {routes}, on edges {edges}");

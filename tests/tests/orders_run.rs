@@ -21,7 +21,7 @@ fn fleets<S: Format>(seeds: u64) -> Tally {
     all
 }
 
-const SEEDS: u64 = if cfg!(optimized) { 400 } else { 40 };
+const SEEDS: u64 = if cfg!(optimized) { 200 } else { 40 };
 
 fn audited<S: Format>() {
     let all = fleets::<S>(SEEDS);

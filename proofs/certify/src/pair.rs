@@ -14,7 +14,7 @@ pub enum Promise {
     Covered,
     /// The piece that holds it stands for the interval that holds it (C-share).
     Shared,
-    /// No length is told that is farther than R + ε from all lengths of the other path told with it (C4).
+    /// No length is told that is farther than R + 3/2 ε from all lengths of the other path told with it (C4).
     Near,
     /// Whenever an agent is at a contact of a region, that is within the time told of the region (E_t).
     Timed,
@@ -73,7 +73,7 @@ pub struct Radii {
     pub radius: Ball<Twofold>,
     /// What all contacts are within: R + δ \[m\].
     pub covered: Ball<Twofold>,
-    /// What everything told is within: R + ε \[m\].
+    /// What everything told is within: R + 3/2 ε \[m\].
     pub told: Ball<Twofold>,
 }
 

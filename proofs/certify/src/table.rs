@@ -11,6 +11,10 @@ use crate::twofold::Twofold;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
+/// What is told of a length lies within R and so much of ε: slices are right within R + ε, and ends of ranges, whose turning points count
+/// up to half of it more, within R + 3/2 ε (docs/errors.md).
+const TOLD: f64 = 1.5;
+
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Margin {
@@ -116,7 +120,7 @@ impl<'a> Checker<'a> {
         };
         let number = Ball::<Twofold>::from;
         let radius = number(first.radius) + number(second.radius);
-        Radii { radius, covered: radius + number(more), told: radius + number(pair.excess) }
+        Radii { radius, covered: radius + number(more), told: radius + number(TOLD * pair.excess) }
     }
 
     fn pair(&self, pair: &Pair, wholes: &[Vec<Both<'a>>], radii: Radii, tells: bool) -> Result<Findings, String>
