@@ -35,9 +35,8 @@ pub(super) struct Switching<'a> {
     regions: Vec<([usize; 2], [Vec<Gate>; 2])>,
     /// Which of the two is second; none if it is over.
     second: Vec<usize>,
-    /// What each robot may have to wait at, the nearest first, and how much of that is behind it.
+    /// What each robot may still have to wait at, the nearest first.
     rows: Vec<Vec<Wait>>,
-    passed: Vec<usize>,
     ends: Vec<f64>,
 }
 
@@ -76,17 +75,13 @@ impl<'a> Switching<'a> {
         }
         rows.iter_mut().for_each(|row| row.sort_by(|a, b| a.gate.at.total_cmp(&b.gate.at)));
         let second = kept.pairs.iter().map(|pair| pair.second).collect();
-        Self { kept, regions, second, passed: vec![0; rows.len()], rows, ends }
+        Self { kept, regions, second, rows, ends }
     }
 
     /// When all are where if they go on as they can and stops last as long as is known; none if somebody waits for ever.
     fn forecast(&self, at: &[f64], stopped: &[f64]) -> Result<Forecast, Vec<usize>> {
         let count = at.len();
-        let line = |robot: usize| Line {
-            start: stopped[robot] - at[robot] / SPEED,
-            delays: Vec::new(),
-            next: self.passed[robot],
-        };
+        let line = |robot: usize| Line { start: stopped[robot] - at[robot] / SPEED, delays: Vec::new(), next: 0 };
         let mut lines: Vec<Line> = (0..count).map(line).collect();
         let mut known: Vec<f64> = vec![f64::NEG_INFINITY; count];
         let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -166,11 +161,10 @@ impl Holds for Switching<'_> {
     }
 
     fn look(&mut self, at: &[f64], stopped: &[f64]) {
-        for (robot, passed) in self.passed.iter_mut().enumerate() {
-            let row = &self.rows[robot];
-            while row.get(*passed).is_some_and(|wait| wait.gate.at < at[robot] && wait.gate.needs <= at[wait.first]) {
-                *passed += 1;
-            }
+        for (robot, row) in self.rows.iter_mut().enumerate() {
+            // Whoever is beyond a gate has used its right there.
+            let counts = |wait: &Wait| wait.gate.at >= at[robot] || self.second[wait.region] == wait.side;
+            row.retain(|wait| wait.gate.needs > at[wait.first] && counts(wait));
         }
         let Ok(mut forecast) = self.forecast(at, stopped) else { return };
         let mut tried = Vec::new();
