@@ -26,7 +26,7 @@ const WORK: usize = 30_000;
 const FORECASTS: [usize; 2] = [12, 96];
 
 /// The same where a forecast looks at some robots of many.
-const FEW: usize = 4;
+const FEW: usize = 2;
 
 /// A way that was admitted.
 #[derive(Debug)]

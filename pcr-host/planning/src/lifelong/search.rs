@@ -119,8 +119,11 @@ impl Case<'_, '_> {
     fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
         let mut tried = vec![false; regions.len()];
         for _ in 0..REPAIRS {
-            if self.budget.get() == 0 {
-                return None;
+            match (self.budget.get(), self.scene.timetable) {
+                (0, None) => return None,
+                // That the others go first is tried in any case.
+                (0, Some(_)) => break,
+                _ => {}
             }
             self.budget.set(self.budget.get() - 1);
             let stuck = match self.forecast(regions, self.scene.time) {
