@@ -25,6 +25,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             let cells = carried_out(&plan, radii[0], By::Cells, &stops)?;
             for &radius in &radii {
                 let orders = carried_out(&plan, radius, By::Orders, &stops)?;
+                let switched = carried_out(&plan, radius, By::Switching, &stops)?;
+                println!(
+                    "{name} {kind} radius {radius}: switching {:.2} s, {:.3} of cells; stuck {}; {}; orders in {:.2?}, run {:.2?}",
+                    switched.travel,
+                    switched.travel / cells.travel,
+                    switched.stuck,
+                    switched.proof.verdict,
+                    switched.times[0],
+                    switched.times[1],
+                );
                 println!(
                     "{name} {kind} radius {radius}: travel {:.2} s, by cells {:.2} s, {:.3}, alone {:.2} s; last {:.1}, {:.1} s; stuck {}, {}; {}, {}; orders in {:.2?}, run {:.2?}, by cells {:.2?}",
                     orders.travel,

@@ -56,7 +56,7 @@ fn plans_are_what_was_published_for_discs_of_half_a_cell() {
 fn without_stops_plans_are_carried_out_as_planned() {
     for (name, text) in NAMES.into_iter().zip(PLANS) {
         let plan = plan(text);
-        for by in [By::Orders, By::Cells] {
+        for by in [By::Orders, By::Switching, By::Cells] {
             let outcome = carried_out(&plan, 0.45, by, &Vec::new()).expect("a plan");
             assert_sound(&outcome, name);
             // Nobody waits for a time: who can go on does.
@@ -84,6 +84,9 @@ fn late_robots_touch_nobody_and_arrive() {
                 let orders = carried_out(&plan, radius, By::Orders, &stops).expect("a plan");
                 assert_sound(&orders, name);
                 assert_eq!(orders.alone, cells.alone);
+                let switching = carried_out(&plan, radius, By::Switching, &stops).expect("a plan");
+                assert_sound(&switching, name);
+                assert!(switching.travel < orders.travel, "{name}, {radius}: {}", switching.travel);
                 // Smaller discs wait for less.
                 assert!(orders.travel >= last && orders.travel < cells.travel, "{name}, {radius}: {}", orders.travel);
                 last = orders.travel;
@@ -99,6 +102,11 @@ fn who_never_goes_on_keeps_only_those_behind() {
     let plan = plan(
         "2\nAgent 0: (0,0)->(1,0)->(2,0)->(3,0)->\nAgent 1: (2,-3)->(2,-3)->(2,-3)->(2,-2)->(2,-1)->(2,0)->(2,1)->\n",
     );
+    // Whoever has not come to the crossing lets the other one go first.
+    let stops = vec![vec![[1.0, 100.0]], Vec::new()];
+    let outcome = carried_out(&plan, 0.4, By::Switching, &stops).expect("a plan");
+    assert_sound(&outcome, "switching");
+    assert!((outcome.travel - outcome.alone).abs() < 1e-9, "{outcome:?}");
     for by in [By::Orders, By::Cells] {
         let stops = vec![vec![[1.0, 100.0]], Vec::new()];
         let outcome = carried_out(&plan, 0.4, by, &stops).expect("a plan");

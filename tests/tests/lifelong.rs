@@ -1,7 +1,7 @@
 //! Fleets that run for a while on a real layout: no contact, nobody beyond its hold, everybody arrives in the end.
 
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
-use pcr_planning::lifelong::{Delays, Method, Outcome, Request, Shares, run};
+use pcr_planning::lifelong::{Delays, Method, Outcome, Request, Shares, run, streets};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 
@@ -77,6 +77,14 @@ fn more_robots_than_safe_ends_go_on_all_the_same() {
     let (agents, minutes) = if cfg!(optimized) { (20, 4.0) } else { (19, 2.0) };
     let outcome = warehouse(agents, minutes, 0.02, Method::Orders);
     assert!(outcome.robots == agents && outcome.missions > agents / 2, "{outcome:?}");
+}
+
+/// More robots than are taken whole: decisions keep a timetable of all others.
+#[test]
+fn large_fleets_never_touch_and_all_arrive() {
+    let (agents, minutes) = if cfg!(optimized) { (120, 6.0) } else { (70, 1.0) };
+    let outcome = driven(&streets(10), agents, minutes, 0.05, Method::Orders);
+    assert!(outcome.robots == agents && outcome.missions > agents / 4, "{outcome:?}");
 }
 
 /// The same missions, the same delays.

@@ -4,12 +4,14 @@
 //! stopped, whatever it is doing. Nobody has a clock: who passes whom first is as planned, and whoever passes second waits.
 //!
 //! ```text
-//! orders   who passes each collision region first, as in the plan     Orders of pcr-core
-//! cells    who enters each cell after whom: an action dependency graph (Hoenig et al. 2019)
+//! orders     who passes each collision region first, as in the plan     Orders of pcr-core
+//! switching  orders that are turned round where that is sooner
+//! cells      who enters each cell after whom: an action dependency graph (Hoenig et al. 2019)
 //! ```
 
 mod cells;
 mod orders;
+mod switching;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;
@@ -21,9 +23,13 @@ use pcr_formats::import::{GridPlan, sectioned};
 use pcr_formats::scenario::Scenario;
 use serde::Deserialize;
 use std::time::{Duration, Instant};
+use switching::Switching;
 
 /// Time between two controls \[s\]: a binary fraction, with which steps of a second are met exactly.
 const STEP: f64 = 1.0 / 16.0;
+
+/// Controls between two looks at the whole fleet.
+const LOOK: u32 = 16;
 
 /// Speed of all robots \[m/s\]: a cell a step.
 const SPEED: f64 = 1.0;
@@ -46,6 +52,8 @@ pub type Stops = Vec<Vec<[f64; 2]>>;
 pub enum By {
     /// By the passing orders of the plan, on the geometry of discs.
     Orders,
+    /// By the same orders, which are turned round where somebody who is late holds others up and has not used its right.
+    Switching,
     /// By cells: one is entered only when whoever was there before has come to its next one.
     Cells,
 }
@@ -55,6 +63,7 @@ impl By {
     pub fn name(self) -> &'static str {
         match self {
             Self::Orders => "orders",
+            Self::Switching => "switching",
             Self::Cells => "cells",
         }
     }
@@ -83,6 +92,9 @@ pub struct Outcome {
 trait Holds {
     /// How far a robot may go when all are here \[m\]; more than `wanted` does not matter. It never decreases.
     fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64;
+
+    /// Once a second: where all are, and for how long they are stopped as far as is known \[s\].
+    fn look(&mut self, _at: &[f64], _stopped: &[f64]) {}
 }
 
 /// Nobody is in anybody's way.
@@ -104,11 +116,18 @@ pub fn carried_out(plan: &GridPlan, radius: f64, by: By, stops: &Stops) -> Resul
     let motions = fleet.motions();
     let begin = Instant::now();
     let (run, known) = match by {
-        By::Orders => {
+        By::Orders | By::Switching => {
             let table = orders::table(&motions)?;
             let mut kept = Kept::new(&table, &motions)?;
-            let known = begin.elapsed();
-            (Run::new(&motions, stops).driven(&mut kept), known)
+            if by == By::Switching {
+                let ends = motions.iter().map(|motion| motion.path().length()).collect();
+                let mut switching = Switching::new(kept, ends);
+                let known = begin.elapsed();
+                (Run::new(&motions, stops).driven(&mut switching), known)
+            } else {
+                let known = begin.elapsed();
+                (Run::new(&motions, stops).driven(&mut kept), known)
+            }
         }
         By::Cells => {
             let mut cells = Cells::new(plan.cells());
@@ -203,6 +222,10 @@ impl<'a> Run<'a> {
         for step in 0_u32.. {
             let time = f64::from(step) * STEP;
             let before = self.at.clone();
+            if step % LOOK == 0 {
+                let stopped: Vec<f64> = (0..before.len()).map(|robot| self.stopped_for(robot, time)).collect();
+                holds.look(&before, &stopped);
+            }
             let (mut goes, mut waits) = (false, false);
             for robot in 0..before.len() {
                 let left = self.ends[robot] - before[robot];
@@ -223,6 +246,14 @@ impl<'a> Run<'a> {
             }
         }
         self
+    }
+
+    /// For how long a robot is stopped that is stopped now \[s\].
+    fn stopped_for(&mut self, robot: usize, time: f64) -> f64 {
+        if !self.is_stopped(robot, time) {
+            return 0.0;
+        }
+        self.stops[robot].get(self.passed[robot]).map_or(0.0, |stop| stop[1] - time)
     }
 
     fn is_stopped(&mut self, robot: usize, time: f64) -> bool {

@@ -14,6 +14,8 @@
 //! robot      how robots move and are delayed
 //! way        from node to node, and times without waits
 //! book       regions of the ways, and who goes first
+//! timetable  when robots would be where                        Timetable
+//! waits      what robots wait for on their ways
 //! forecast   whether all can finish, and when
 //! tasks      places where robots begin, and tasks that come      Tasks
 //! locks      edges one at a time, for comparison
@@ -24,6 +26,7 @@
 //! record     what was done, for the independent checker        Certificate
 //! outcome    what comes of a run                               Outcome
 //! draws      goals, delays, starts
+//! streets    a generated site of any size                      streets
 //! state      the fleet, its missions, what has come of it
 //! decide     who looks for a way when
 //! run        a run
@@ -50,7 +53,10 @@ mod scene;
 mod search;
 mod site;
 mod state;
+mod streets;
 mod tasks;
+mod timetable;
+mod waits;
 mod way;
 
 pub use answer::{Driven, Lifelong};
@@ -58,7 +64,10 @@ pub use ends::WellFormedness;
 pub use outcome::{Outcome, Report, Shares};
 pub use record::Certificate;
 pub use run::{run, run_tasks};
+pub use streets::streets;
 pub use tasks::Tasks;
+
+pub(crate) use gates::{Gate, gates};
 
 use ends::Ends;
 use pcr_formats::import::Imported;

@@ -20,10 +20,10 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         "## Plans on grids, carried out\n\nPlans that others publish for discs of up to half a cell (PBS, `tests/data/real/stpg`), carried out by robots of one cell a \
         second that change their speed at once, as in these plans, and are stopped: as published with the plan, one situation of few late robots, or each with a probability of {} % a second, for 10 to 20 s. *Orders*: who \
         passes each collision region first is as planned, holds are those of discs of that radius, in cells. *Cells*: an action dependency graph (Hönig et al. 2019), in which a cell is entered when who was \
-        there before has come to its next one. *Alone*: what the stops cost if nobody waited for anybody, below which no execution is. Means of the times until robots arrive, the same stops for all; \
-        *faster*: than real time, with the time to find the regions and orders; *contact*: what the independent checker says of the recorded motions, of orders and cells. The other plans of that source: \
+        there before has come to its next one. *Alone*: what the stops cost if nobody waited for anybody, below which no execution is. *Switching*: orders are turned round where somebody is late who has not used its right, if all can still finish and arrive sooner by that; looked at once a second, for how long who is stopped now will be is taken as known, as it is published with these situations. Means of the times until robots arrive, the same stops for all; \
+        *faster*: than real time, with the time to find the regions and orders, by switching; *contact*: what the independent checker says of the recorded motions, of orders, switching and cells. The other plans of that source: \
         `cargo run --release -p pcr-tests --example execution -- DIRECTORY`.\n\n\
-        | plan | robots | stops | radius | alone | cells | orders | orders / cells | stuck | faster | contact |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|\n",
+        | plan | robots | stops | radius | alone | cells | orders | switching | orders / cells | switching / cells | stuck | faster | contact |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|---:|---|\n",
         100.0 * RATE
     );
     let files = plans(&fleets.data.join("real/stpg"))?;
@@ -35,30 +35,36 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             let cells = carried_out(&plan, RADII[0], By::Cells, &stops).map_err(problem)?;
             for radius in RADII {
                 let orders = carried_out(&plan, radius, By::Orders, &stops).map_err(problem)?;
+                let switching = carried_out(&plan, radius, By::Switching, &stops).map_err(problem)?;
                 let name = file.file_stem().unwrap_or_default().to_string_lossy();
-                text.push_str(&row(name.trim_start_matches("map_"), plan.cells().len(), kind, radius, &orders, &cells));
+                let of = (name.trim_start_matches("map_"), plan.cells().len(), kind, radius);
+                text.push_str(&row(of, [&orders, &switching, &cells]));
             }
         }
     }
     Ok(Section { text, pictures: Vec::new() })
 }
 
-fn row(name: &str, robots: usize, kind: &str, radius: f64, orders: &Outcome, cells: &Outcome) -> String {
-    let taken = orders.times.iter().map(std::time::Duration::as_secs_f64).sum::<f64>();
+fn row((name, robots, kind, radius): (&str, usize, &str, f64), [orders, switching, cells]: [&Outcome; 3]) -> String {
+    let taken = switching.times.iter().map(std::time::Duration::as_secs_f64).sum::<f64>();
     let verdict = |outcome: &Outcome| if outcome.proof.verdict == "proved" { "none" } else { outcome.proof.verdict };
     let mut row = String::new();
     // Writing to memory does not fail.
     let _ = writeln!(
         row,
-        "| {name} | {robots} | {kind} | {radius} | {} s | {} s | {} s | {:.3} | {}, {} | {} × | {}, {} |",
+        "| {name} | {robots} | {kind} | {radius} | {} s | {} s | {} s | {} s | {:.3} | {:.3} | {}, {}, {} | {} × | {}, {}, {} |",
         digits(orders.alone),
         digits(cells.travel),
         digits(orders.travel),
+        digits(switching.travel),
         orders.travel / cells.travel,
+        switching.travel / cells.travel,
         orders.stuck,
+        switching.stuck,
         cells.stuck,
-        digits(orders.makespan / taken),
+        digits(switching.makespan / taken),
         verdict(orders),
+        verdict(switching),
         verdict(cells)
     );
     row

@@ -2,7 +2,7 @@
 
 use super::{Extent, Fleets, Problem, Section};
 use pcr_formats::import::Imported;
-use pcr_planning::lifelong::{Delays, Driven, Lifelong, Method, Request};
+use pcr_planning::lifelong::{Delays, Driven, Lifelong, Method, Request, streets};
 use pcr_planning::report::figures::digits;
 use std::fmt::Write as _;
 
@@ -30,7 +30,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     );
     let mut safe = 0;
     for &agents in sizes {
-        let answer = driven(&imported, agents, hours)?;
+        let answer = driven(&imported, agents, hours, &Method::ALL)?;
         safe = answer.well_formedness.safe_ends.len();
         answer.runs.iter().for_each(|run| text.push_str(&row(agents, run)));
     }
@@ -38,14 +38,49 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         text,
         "\nThe graph has {safe} safe ends: with more robots somebody always stands in the way of somebody else, and missions may wait for ever."
     );
+    text.push_str(&large(extent)?);
     Ok(Section { text, pictures: Vec::new() })
 }
 
-fn driven(imported: &Imported, agents: usize, hours: f64) -> Result<Lifelong, Problem> {
+/// Fleets of which each decision looks at some robots only.
+fn large(extent: Extent) -> Result<String, Problem> {
+    let (sizes, hours): (&[[usize; 2]], f64) = match extent {
+        Extent::Full => (&[[100, 14], [300, 22], [1000, 40]], 0.1),
+        Extent::Quick => (&[[70, 10]], 0.005),
+    };
+    let mut text = format!(
+        "\nLarge fleets, by orders: streets that cross every 6 m, one-way to and fro by turns, with two bays a block, the same robots and delays, {hours} h \
+        (`cargo run --release -p pcr-planning --example streets -- ROBOTS {hours} STREETS`). *Faster*: than real time, on one core, with all decisions and the simulation \
+        of the robots, without the certificate.\n\n\
+        | nodes | robots | missions | an hour | travel | stuck | decision | faster | contact |\n|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
+    );
+    for &[agents, count] in sizes {
+        let answer = driven(&streets(count), agents, hours, &[Method::Orders])?;
+        for run in &answer.runs {
+            let it = &run.outcome;
+            let contact = if it.certificate.verdict == "proved" { "none, proved" } else { it.certificate.verdict };
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} | {} | {} | {} ms | {} × | {contact} |",
+                answer.well_formedness.nodes,
+                it.robots,
+                it.missions,
+                digits(it.missions_per_hour),
+                it.travel_over_unimpeded.map_or_else(|| "–".to_owned(), digits),
+                it.stuck,
+                digits(1e3 * run.decision_p99),
+                digits(3600.0 * hours / run.computed_in)
+            );
+        }
+    }
+    Ok(text)
+}
+
+fn driven(imported: &Imported, agents: usize, hours: f64, methods: &[Method]) -> Result<Lifelong, Problem> {
     let (duration, delays) = (3600.0 * hours, Delays::default());
     let request = Request { agents, duration, delays, seed: 1, method: Method::Orders };
     let refused = |problem| Problem::Method(format!("{agents} robots"), problem);
-    Lifelong::of(imported, request, &Method::ALL).map_err(refused)
+    Lifelong::of(imported, request, methods).map_err(refused)
 }
 
 fn row(agents: usize, run: &Driven) -> String {

@@ -20,6 +20,8 @@ pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostOrders<f64>, Stri
 
 /// A region that a robot passes second.
 struct Order<'a> {
+    /// Its place among all regions.
+    place: usize,
     region: RegionRef<'a, f64>,
     first: usize,
     /// Least length of the robot in it, and its largest \[m\].
@@ -29,8 +31,23 @@ struct Order<'a> {
     exit: f64,
 }
 
+/// A region of two robots, of which the ego is the first one, and which of them passes it second.
+pub(super) struct Pair<'a> {
+    pub(super) region: RegionRef<'a, f64>,
+    pub(super) robots: [usize; 2],
+    pub(super) second: usize,
+}
+
+impl<'a> Pair<'a> {
+    /// The region as one of the two sees it.
+    pub(super) fn seen(&self, side: usize) -> RegionRef<'a, f64> {
+        if side == 0 { self.region.clone() } else { self.region.clone().swapped() }
+    }
+}
+
 /// The orders of each robot, by their entries.
 pub(super) struct Kept<'a> {
+    pub(super) pairs: Vec<Pair<'a>>,
     rows: Vec<Vec<Order<'a>>>,
     /// Holds that were found.
     known: Vec<f64>,
@@ -38,24 +55,40 @@ pub(super) struct Kept<'a> {
 
 impl<'a> Kept<'a> {
     pub(super) fn new(table: &'a HostOrders<f64>, motions: &'a [Motion<'a, f64>]) -> Result<Self, String> {
-        let row = |robot: usize| {
+        let mut pairs = Vec::new();
+        for robot in 0..motions.len() {
             let row = table.row(motions, robot).map_err(|mismatch| mismatch.to_string())?;
-            let second = row.filter(|(_, _, pass)| *pass == Pass::Second);
-            let mut orders: Vec<Order<'a>> = second.map(|(_, region, _)| Order::of(region)).collect();
-            orders.sort_by(|a, b| a.entry.total_cmp(&b.entry));
-            Ok(orders)
-        };
-        let rows = (0..motions.len()).map(row).collect::<Result<Vec<_>, String>>()?;
-        Ok(Self { known: vec![f64::NEG_INFINITY; rows.len()], rows })
+            for (_, region, pass) in row.filter(|(_, region, _)| region.other() > robot) {
+                let robots = [robot, region.other()];
+                pairs.push(Pair { region, robots, second: usize::from(pass == Pass::First) });
+            }
+        }
+        let mut rows: Vec<Vec<Order<'a>>> = motions.iter().map(|_| Vec::new()).collect();
+        for (place, pair) in pairs.iter().enumerate() {
+            rows[pair.robots[pair.second]].push(Order::of(place, pair.seen(pair.second)));
+        }
+        rows.iter_mut().for_each(|row| row.sort_by(|a, b| a.entry.total_cmp(&b.entry)));
+        Ok(Self { known: vec![f64::NEG_INFINITY; rows.len()], rows, pairs })
+    }
+
+    /// The other robot passes a region second from now on.
+    pub(super) fn switch(&mut self, place: usize) {
+        let pair = &mut self.pairs[place];
+        self.rows[pair.robots[pair.second]].retain(|order| order.place != place);
+        pair.second = 1 - pair.second;
+        let (robot, order) = (pair.robots[pair.second], Order::of(place, pair.seen(pair.second)));
+        let row = &mut self.rows[robot];
+        row.insert(row.partition_point(|other| other.entry < order.entry), order);
+        self.known[robot] = f64::NEG_INFINITY;
     }
 }
 
 impl<'a> Order<'a> {
-    fn of(region: RegionRef<'a, f64>) -> Self {
+    fn of(place: usize, region: RegionRef<'a, f64>) -> Self {
         let (own, their) = (region.length(), region.other_length());
         let leaves = their.hi < region.other_motion().path().length();
         let exit = if leaves { their.hi } else { f64::INFINITY };
-        Self { first: region.other(), entry: own.lo, over: own.hi, exit, region }
+        Self { place, first: region.other(), entry: own.lo, over: own.hi, exit, region }
     }
 }
 

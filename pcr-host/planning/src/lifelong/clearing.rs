@@ -16,7 +16,7 @@ impl Scene<'_> {
     /// Who stands for good on a route of a robot, the first one first.
     pub(super) fn standing_on(&self, robot: usize, route: &[usize]) -> Vec<usize> {
         let mut found = Vec::new();
-        for &atom in route {
+        for &atom in route.iter().filter(|&&atom| self.parked[atom] > 0) {
             for (other, it) in self.robots.iter().enumerate() {
                 if other != robot && !found.contains(&other) && self.site.passes(atom, it.way.end()) {
                     found.push(other);

@@ -3,7 +3,9 @@
 
 use super::Method;
 use super::draws;
+use super::forecast::Trial;
 use super::state::{Mission, Run};
+use super::waits::Waits;
 use std::time::Instant;
 
 /// Between two tries for the same mission \[s\].
@@ -96,6 +98,28 @@ impl Run {
             if let Some(robot) = next {
                 self.reviewed[robot] = now;
                 self.review(robot, now);
+            }
+        }
+    }
+
+    /// Brings the timetable of a large fleet up to date, some robots at a time: it holds without that, but would be later and later.
+    pub(super) fn refresh(&mut self, tick: usize, now: f64) {
+        /// Controls in which everybody's turn comes.
+        const ROUND: usize = 50;
+        if !self.is_large() {
+            return;
+        }
+        let Self { robots, abilities, book, timetable, .. } = self;
+        let waits = &Waits::of(robots, book, None);
+        for robot in (tick % ROUND..robots.len()).step_by(ROUND) {
+            if robots[robot].has_arrived() {
+                continue;
+            }
+            let kept = Some((&*timetable, &[robot][..]));
+            let trial = Trial { robots, waits, abilities, time: now, changed: None, kept };
+            if let Ok(forecast) = trial.forecast() {
+                let lines = forecast.robots.into_iter().zip(forecast.lines).collect();
+                timetable.change(lines);
             }
         }
     }

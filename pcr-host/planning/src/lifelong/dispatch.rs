@@ -3,10 +3,12 @@
 
 use super::Method;
 use super::book::Region;
-use super::forecast::{Trial, Waits};
+use super::forecast::{MOST, Trial};
 use super::scene::{Scene, TOLLS};
 use super::search::Case;
 use super::site::From;
+use super::timetable::Timeline;
+use super::waits::Waits;
 use super::way::{Kept, Way};
 use std::cell::Cell;
 
@@ -23,6 +25,9 @@ const ENDS: usize = 3;
 const WORK: usize = 30_000;
 const FORECASTS: [usize; 2] = [12, 96];
 
+/// The same where a forecast looks at some robots of many.
+const FEW: usize = 2;
+
 /// A way that was admitted.
 #[derive(Debug)]
 pub(super) struct Admitted {
@@ -36,6 +41,8 @@ pub(super) struct Admitted {
     pub(super) departs: f64,
     /// Forecast, for comparison.
     pub(super) cost: f64,
+    /// Robots of a large fleet that go by another timetable then.
+    pub(super) lines: Vec<(usize, Timeline)>,
 }
 
 /// A route, and after how many of its atoms the goals are.
@@ -50,7 +57,11 @@ impl Scene<'_> {
 
     /// Another way and other orders for a robot that has a mission, with which all are expected to arrive sooner by `gain` \[s\].
     pub(super) fn better(&self, robot: usize, goals: &[usize], gain: f64) -> Option<Admitted> {
-        let cost = self.base().ok()?.cost;
+        let it = &self.robots[robot];
+        let cost = match self.timetable {
+            Some(timetable) => timetable.lines[robot].cost(&it.way, self.time),
+            None => self.base().ok()?.cost,
+        };
         self.dispatch(robot, goals).filter(|found| found.cost + gain < cost)
     }
 
@@ -58,7 +69,12 @@ impl Scene<'_> {
     fn candidates(&self, robot: usize, kept: &Kept, goals: &[usize]) -> Vec<Route> {
         let mut found: Vec<Route> = Vec::new();
         let mut good: Option<Vec<usize>> = None;
+        // In a large fleet the quickest way has to do, if there is any: decisions cost what they are about.
+        let (is_large, ends) = (self.timetable.is_some(), if self.timetable.is_some() { 1 } else { ENDS });
         for tolls in TOLLS {
+            if is_large && !found.is_empty() {
+                break;
+            }
             let (mut way, mut marks, mut from) = (Vec::new(), Vec::new(), kept.on);
             for &goal in goals {
                 let part = self.onward(robot, from, tolls, |node| node == goal, Some(goal), 1).pop();
@@ -72,11 +88,11 @@ impl Scene<'_> {
                 continue;
             }
             let safe = |node: usize| self.is_free(robot, node) && self.ends[node];
-            let mut onward = self.onward(robot, from, tolls, safe, None, ENDS);
+            let mut onward = self.onward(robot, from, tolls, safe, None, ends);
             if onward.is_empty() {
                 // More robots than ends: wherever nobody stands.
                 let good = good.get_or_insert_with(|| self.harmless(robot, |node| self.is_free(robot, node)));
-                onward = self.onward(robot, from, tolls, |node| good.contains(&node), None, ENDS);
+                onward = self.onward(robot, from, tolls, |node| good.contains(&node), None, ends);
             }
             for end in onward {
                 let way: Vec<usize> = way.iter().chain(&end).copied().collect();
@@ -98,10 +114,17 @@ impl Scene<'_> {
         let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
         // The orders of all are sound before, the more so without this robot.
         let Scene { robots, abilities, time, .. } = *self;
-        let alone = Trial { robots, waits, abilities, time, changed: Some((robot, &it.way, it.at, time, &[])) };
-        let base = &alone.forecast().unwrap_or_default();
+        let alone = || {
+            let changed = Some((robot, &it.way, it.at, time, &[][..]));
+            Trial { robots, waits, abilities, time, changed, kept: None }.forecast().map(|found| found.lines)
+        };
         let [least, most] = FORECASTS;
-        let budget = &Cell::new((WORK / waits.len().max(1)).clamp(least, most));
+        let (alone, taken, budget) = match self.timetable {
+            Some(_) => (Vec::new(), self.waiting_for(robot), FEW),
+            None => (alone().unwrap_or_default(), Vec::new(), (WORK / waits.len().max(1)).clamp(least, most)),
+        };
+        let (base, taken) = (self.timetable.map_or(&alone[..], |timetable| &timetable.lines), &taken[..]);
+        let budget = &Cell::new(budget);
         let ways = candidates.into_iter().map(|(route, goals)| {
             let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
             let goals: Vec<usize> = goals.iter().map(|goal| kept.atoms.len() + goal).collect();
@@ -111,7 +134,7 @@ impl Scene<'_> {
         let mut found: Vec<Found> = Vec::new();
         for way in ways {
             let regions = self.book.regions(self.site, self.robots, robot, &way, at);
-            let case = Case { scene: self, base, waits, robot, way: &way, at, stop, budget };
+            let case = Case { scene: self, base, waits, taken, robot, way: &way, at, stop, budget };
             let solved = match self.method {
                 Method::RouteLocks => regions.is_empty().then(|| (Vec::new(), self.time, way.time(way.length()))),
                 Method::StartDelays => case.delayed(regions.clone()),
@@ -130,7 +153,7 @@ impl Scene<'_> {
             places.truncate(SHIFTED);
             for place in places {
                 let (way, regions) = &tried[place];
-                let case = Case { scene: self, base, waits, robot, way, at, stop, budget };
+                let case = Case { scene: self, base, waits, taken, robot, way, at, stop, budget };
                 for shift in SHIFTS {
                     if budget.get() == 0 {
                         break;
@@ -144,15 +167,32 @@ impl Scene<'_> {
         let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
         let Found { place, mut regions, departs, mut cost } = best;
         let way = tried.swap_remove(place).0;
+        let mut lines = Vec::new();
         if self.method == Method::Orders {
-            let case = Case { scene: self, base, waits, robot, way: &way, at, stop, budget };
+            let case = Case { scene: self, base, waits, taken, robot, way: &way, at, stop, budget };
             (regions, cost) = case.improved(regions, cost);
+            if self.timetable.is_some() {
+                let forecast = case.forecast(&regions, departs).ok()?;
+                lines = forecast.robots.into_iter().zip(forecast.lines).collect();
+            }
         }
-        Some(Admitted { way, kept: kept.atoms.len(), before: kept.before, regions, departs, cost })
+        Some(Admitted { way, kept: kept.atoms.len(), before: kept.before, regions, departs, cost, lines })
     }
 }
 
 impl Scene<'_> {
+    /// A robot of a large fleet, and those who wait for it by the timetable: they may be earlier when it has another way.
+    fn waiting_for(&self, robot: usize) -> Vec<usize> {
+        let mut found = vec![robot];
+        let firsts = self.book.row(robot).filter(|region| region.second() != robot);
+        for region in firsts.filter(|region| self.timetable.is_some_and(|timetable| timetable.waits_at(region))) {
+            if found.len() < MOST / 2 && !found.contains(&region.second()) {
+                found.push(region.second());
+            }
+        }
+        found
+    }
+
     /// The first way of which all edges can be got one after the other: nobody stands on it for good, its end is on nobody's way, and
     /// all can finish.
     fn locked(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Option<Admitted> {
@@ -170,7 +210,15 @@ impl Scene<'_> {
             let is_safe = || self.locks.is_safe(self.site, self.robots, Some((robot, &way, at, kept.atoms.len())));
             if !is_passed && !(0..self.robots.len()).any(stands) && is_safe() {
                 let (kept, before, cost) = (kept.atoms.len(), kept.before, way.time(way.length()));
-                return Some(Admitted { way, kept, before, regions: Vec::new(), departs: self.time, cost });
+                return Some(Admitted {
+                    way,
+                    kept,
+                    before,
+                    regions: Vec::new(),
+                    departs: self.time,
+                    cost,
+                    lines: Vec::new(),
+                });
             }
         }
         None

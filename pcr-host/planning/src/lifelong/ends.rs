@@ -4,6 +4,7 @@ use super::site::Site;
 use crate::random::Random;
 use pcr_formats::import::{Id, Layout};
 use serde::Serialize;
+use std::collections::VecDeque;
 
 /// How often safe ends are looked for, from another order of nodes.
 const DRAWS: usize = 40;
@@ -52,8 +53,11 @@ impl Ends {
     /// What is told of them.
     pub(super) fn report(&self, site: &Site, layout: &Layout) -> WellFormedness {
         let ids = |nodes: Vec<usize>| nodes.into_iter().map(|node| layout.nodes[node].id.clone()).collect();
-        let other = |node: &usize| !self.nodes.contains(node);
-        let never = |node: &usize| !is_open(site, &self.nodes, &[*node]);
+        let mut is_inside = vec![false; site.points.len()];
+        self.nodes.iter().for_each(|&node| is_inside[node] = true);
+        let other = |node: &usize| !is_inside[*node];
+        let mut search = Search::new(site);
+        let never = |node: &usize| cuts_off(&mut search, &is_inside, *node);
         let mut safe = self.safe.clone();
         safe.sort_unstable();
         WellFormedness {
@@ -61,7 +65,7 @@ impl Ends {
             cut_off: ids(site.nodes.iter().copied().filter(other).collect()),
             safe_ends: ids(safe),
             never_ends: ids(self.nodes.iter().copied().filter(never).collect()),
-            bridges: bridges(site, &self.nodes).into_iter().map(|edge| layout.edges[edge].id.clone()).collect(),
+            bridges: bridges(site, &is_inside).into_iter().map(|edge| layout.edges[edge].id.clone()).collect(),
             dead_ends_only: self.nodes.len() > SMALL,
         }
     }
@@ -157,18 +161,71 @@ pub(super) fn cut_off(site: &Site, nodes: &[usize], parked: &[u16], more: &[u16]
     nodes.len() - sizes.max().unwrap_or(0)
 }
 
+/// Whether a robot that stands at one of the nodes that can all be reached from one another cuts some of them off: other nodes within
+/// its disc, or those beyond it. Ways that lead past it begin where an edge comes near it and end where one leaves; there have to be others
+/// between these, and then there are for all.
+fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], node: usize) -> bool {
+    let site = search.site;
+    let covers = site.covers(node);
+    let edges = || covers.iter().filter(|&&atom| site.atoms[atom].edge.is_some());
+    let ends = |end: usize| {
+        let mut ends: Vec<usize> = edges().map(|&atom| site.atoms[atom].ends[end]).collect();
+        ends.retain(|&end| end != node && is_inside[end]);
+        ends.sort_unstable();
+        ends.dedup();
+        ends
+    };
+    let [from, to] = [ends(0), ends(1)];
+    let mut others = covers.iter().filter_map(|&atom| atom.checked_sub(site.standing(0)));
+    let is_covered = others.any(|other| other != node && is_inside[other]);
+    is_covered || from.iter().any(|&from| to.iter().any(|&to| !search.leads(from, to, |atom| !covers.contains(&atom))))
+}
+
 /// Two-way edges without which not all nodes can be reached from one another.
-fn bridges(site: &Site, nodes: &[usize]) -> Vec<usize> {
-    let Some(&hub) = nodes.first() else { return Vec::new() };
+fn bridges(site: &Site, is_inside: &[bool]) -> Vec<usize> {
+    let mut search = Search::new(site);
     let two_way =
         site.atoms.iter().enumerate().filter(|(place, _)| site.back[*place].is_some_and(|back| back > *place));
-    let cuts = |edge: usize| {
-        [false, true].into_iter().any(|back| {
-            let found = reached(site, hub, back, |atom| site.atoms[atom].edge != Some(edge));
-            nodes.iter().any(|&node| !found[node])
-        })
+    let inside = two_way.filter(|(_, atom)| atom.ends.iter().all(|&node| is_inside[node]));
+    let mut cuts = |edge: usize, [a, b]: [usize; 2]| {
+        // From a dead end the search is over at once.
+        let (a, b) = if site.leaving[a].len() < site.leaving[b].len() { (a, b) } else { (b, a) };
+        let mut leads = |from: usize, to: usize| search.leads(from, to, |atom| site.atoms[atom].edge != Some(edge));
+        !leads(a, b) || !leads(b, a)
     };
-    two_way.filter_map(|(_, atom)| atom.edge).filter(|&edge| cuts(edge)).collect()
+    inside.filter_map(|(_, atom)| atom.edge.filter(|&edge| cuts(edge, atom.ends))).collect()
+}
+
+/// Looks for ways between two nodes, those that are near first.
+struct Search<'s> {
+    site: &'s Site,
+    /// The search in which a node was found last.
+    found: Vec<u32>,
+    count: u32,
+}
+
+impl<'s> Search<'s> {
+    fn new(site: &'s Site) -> Self {
+        Self { site, found: vec![0; site.points.len()], count: 0 }
+    }
+
+    /// Whether a way leads from a node to another one over these atoms.
+    fn leads(&mut self, from: usize, to: usize, open: impl Fn(usize) -> bool) -> bool {
+        self.count += 1;
+        self.found[from] = self.count;
+        let mut left = VecDeque::from([from]);
+        while self.found[to] != self.count
+            && let Some(node) = left.pop_front()
+        {
+            for &atom in self.site.leaving[node].iter().filter(|&&atom| open(atom)) {
+                let next = self.site.atoms[atom].ends[1];
+                if std::mem::replace(&mut self.found[next], self.count) != self.count {
+                    left.push_back(next);
+                }
+            }
+        }
+        self.found[to] == self.count
+    }
 }
 
 /// The nodes that can be reached from one, or from which it can be, over these atoms.
@@ -186,4 +243,43 @@ fn reached(site: &Site, from: usize, back: bool, open: impl Fn(usize) -> bool) -
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lifelong::streets;
+
+    /// Nodes and edges that cut others off, by looking at all nodes.
+    #[test]
+    fn what_is_found_near_a_node_holds_for_all() {
+        for (count, radius) in [(2, 0.4), (4, 0.4), (4, 1.2), (4, 2.0)] {
+            let mut imported = streets(count);
+            imported.vehicle.radius = radius;
+            // A street for both directions, so that some bridge is none.
+            imported.layout.edges[0].two_way = true;
+            let site = Site::new(&imported).expect("a site");
+            let nodes = strongest(&site);
+            assert_eq!(nodes.len(), count * count + 6 * count * (count - 1));
+            let mut is_inside = vec![false; site.points.len()];
+            nodes.iter().for_each(|&node| is_inside[node] = true);
+            let mut search = Search::new(&site);
+            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, node)).count();
+            for &node in &nodes {
+                let cuts = !is_open(&site, &nodes, &[node]);
+                assert_eq!(cuts_off(&mut search, &is_inside, node), cuts, "{count}, {radius}: {node}");
+            }
+            assert!(found > 0 && (found < nodes.len() || radius > 1.0), "{found} of {}", nodes.len());
+            let cuts = |edge: usize| {
+                [false, true].into_iter().any(|back| {
+                    let found = reached(&site, nodes[0], back, |atom| site.atoms[atom].edge != Some(edge));
+                    nodes.iter().any(|&node| !found[node])
+                })
+            };
+            let edges = imported.layout.edges.iter().enumerate().filter(|(place, edge)| edge.two_way && cuts(*place));
+            let edges: Vec<usize> = edges.map(|edge| edge.0).collect();
+            assert_eq!(bridges(&site, &is_inside), edges);
+            assert!(!edges.is_empty());
+        }
+    }
 }

@@ -1,87 +1,38 @@
 //! Whether everybody can finish under some orders, and about when: robots are taken from gate to gate, each as soon as what it waits
 //! for has happened. Whoever is left has to wait for ever.
+//!
+//! In a large fleet only those are taken that something changes for. The others keep to the timetable, which shows that all can finish.
 
 use super::abilities::Abilities;
-use super::book::{Book, Region};
+use super::book::Region;
 use super::gates::Timed;
 use super::robot::{Robot, SHORT};
+use super::timetable::{Timeline, Timetable};
+use super::waits::{Wait, Waits, sort};
 use super::way::Way;
 
 /// What is looked at: the fleet, one of its robots on another way.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<'t> {
+pub(super) struct Trial<'t, 'w> {
     pub(super) robots: &'t [Robot],
     /// Without those of the robot that has another way.
-    pub(super) waits: &'t Waits,
+    pub(super) waits: &'t Waits<'w>,
     pub(super) abilities: &'t Abilities,
     pub(super) time: f64,
     /// The robot, its way, where it is on it, when it sets off, and its regions.
     pub(super) changed: Option<(usize, &'t Way, f64, f64, &'t [Region])>,
-}
-
-/// When a robot would be where.
-#[derive(Clone, Debug, Default)]
-struct Timeline {
-    /// Time of its way at which it is now \[s\].
-    start: f64,
-    /// Lengths beyond which it is later, and by how much in all \[m, s\].
-    delays: Vec<(f64, f64)>,
-}
-
-/// A gate on a way, and whom it is about.
-#[derive(Clone, Copy, Debug)]
-struct Wait {
-    timed: Timed,
-    first: usize,
-    /// Its place among the regions of the robot that has another way.
-    region: Option<usize>,
-}
-
-/// The gates that robots have still to pass, the nearest first.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Waits(Vec<Vec<Wait>>);
-
-impl Waits {
-    /// By the orders of the fleet, those of one robot left out.
-    pub(super) fn of(robots: &[Robot], book: &Book, without: Option<usize>) -> Self {
-        let all = (0..robots.len()).map(|robot| {
-            let mut waits = Vec::new();
-            let kept = |region: &&Region| without.is_none_or(|without| !region.robots.contains(&without));
-            for region in book.row(robot).filter(|region| region.second() == robot).filter(kept) {
-                add(region, None, region.robots.map(|robot| robots[robot].at), &mut waits);
-            }
-            sort(&mut waits);
-            waits
-        });
-        Self(all.collect())
-    }
-
-    /// How many there are: what a forecast costs.
-    pub(super) fn len(&self) -> usize {
-        self.0.iter().map(Vec::len).sum()
-    }
-}
-
-/// The gates of a region that the second has still to pass.
-fn add(region: &Region, place: Option<usize>, at: [f64; 2], into: &mut Vec<Wait>) {
-    if region.is_over(at) {
-        return;
-    }
-    let (gates, first) = (region.gates(), region.robots[region.first]);
-    let passed = gates.partition_point(|timed| timed.gate.needs <= at[region.first]);
-    into.extend(gates[passed..].iter().map(|&timed| Wait { timed, first, region: place }));
-}
-
-fn sort(waits: &mut [Wait]) {
-    // Made of runs that are in order: stable sorting makes use of that.
-    waits.sort_by(|a, b| a.timed.gate.at.total_cmp(&b.timed.gate.at));
+    /// What the others keep to, and who is taken in any case; none: all are taken.
+    pub(super) kept: Option<(&'t Timetable, &'t [usize])>,
 }
 
 /// When robots would be where.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forecast {
-    lines: Vec<Timeline>,
-    /// Sum of the times until goals are reached, and a little of those until all stand \[s\].
+    /// Those that were taken.
+    pub(super) robots: Vec<usize>,
+    pub(super) lines: Vec<Timeline>,
+    /// Sum of the times until goals are reached, and a little of those until all stand; by how much that is more than by the timetable,
+    /// where others keep to it \[s\].
     pub(super) cost: f64,
 }
 
@@ -92,10 +43,19 @@ pub(super) struct Stuck {
     pub(super) region: Option<usize>,
 }
 
-/// What an end counts beside a goal.
-const TAIL: f64 = 0.1;
+/// Fleets of up to so many robots are taken whole.
+pub(super) const WHOLE: usize = 64;
 
-impl<'t> Trial<'t> {
+/// Robots of a larger one that are taken at most.
+pub(super) const MOST: usize = 16;
+
+/// How often others are added to them at most.
+const ROUNDS: usize = 5;
+
+/// In no set of robots.
+const NONE: u32 = u32::MAX;
+
+impl<'t, 'w: 't> Trial<'t, 'w> {
     fn way(&self, robot: usize) -> (&'t Way, f64) {
         match self.changed {
             Some((changed, way, at, ..)) if changed == robot => (way, at),
@@ -103,108 +63,194 @@ impl<'t> Trial<'t> {
         }
     }
 
-    /// Adds the gates of a robot.
-    fn gates(&self, robot: usize, into: &mut Vec<Wait>) {
-        let from = into.len();
-        let known = self.waits.0.get(robot).map_or(&[][..], Vec::as_slice);
-        into.extend_from_slice(known);
-        let regions = self.changed.iter().flat_map(|(.., regions)| regions.iter().enumerate());
-        for (place, region) in regions.filter(|(_, region)| region.second() == robot) {
-            add(region, Some(place), region.robots.map(|robot| self.way(robot).1), into);
-        }
-        if into.len() > from + known.len() {
-            sort(&mut into[from..]);
-        }
+    fn is_changed(&self, robot: usize) -> bool {
+        self.changed.is_some_and(|changed| changed.0 == robot)
     }
 
-    /// When all would be where, or those that would wait for ever.
+    /// What a robot passes second.
+    fn row(&self, robot: usize) -> Vec<Wait<'t>> {
+        let known = self.waits.row(robot);
+        let mut row: Vec<Wait<'t>> = known.to_vec();
+        let regions = self.changed.iter().flat_map(|(.., regions)| regions.iter().enumerate());
+        for (place, region) in regions.filter(|(_, region)| region.second() == robot) {
+            row.extend(Wait::of(region, Some(place), region.robots.map(|robot| self.way(robot).1)));
+        }
+        if row.len() > known.len() {
+            sort(&mut row);
+        }
+        row
+    }
+
+    /// When robots would be where, or those that would wait for ever; nobody in particular where too many would have to be taken.
     pub(super) fn forecast(&self) -> Result<Forecast, Vec<Stuck>> {
-        let count = self.robots.len();
-        let mut lines: Vec<Timeline> = Vec::with_capacity(count);
-        let mut waits: Vec<Wait> = Vec::new();
-        let mut ranges = Vec::with_capacity(count);
-        for robot in 0..count {
-            let it = &self.robots[robot];
+        let Some((timetable, some)) = self.kept else { return self.taken((0..self.robots.len()).collect()) };
+        let mut taken = some.to_vec();
+        for _ in 0..ROUNDS {
+            let forecast = self.taken(std::mem::take(&mut taken))?;
+            let late = self.delayed(timetable, &forecast);
+            if late.is_empty() {
+                return Ok(forecast);
+            }
+            taken = forecast.robots;
+            taken.extend(late);
+            if taken.len() > MOST {
+                break;
+            }
+        }
+        Err(Vec::new())
+    }
+
+    /// Who keeps to the timetable, but would have to wait longer for somebody who does not.
+    fn delayed(&self, timetable: &Timetable, forecast: &Forecast) -> Vec<usize> {
+        let mut is_known = vec![false; self.robots.len()];
+        forecast.robots.iter().for_each(|&robot| is_known[robot] = true);
+        let mut found = Vec::new();
+        for (&robot, line) in forecast.robots.iter().zip(&forecast.lines) {
+            let mut look = |region: &Region| {
+                let second = region.second();
+                if is_known[second] || region.robots[region.first] != robot {
+                    return;
+                }
+                let at = region.robots.map(|robot| self.way(robot).1);
+                if timetable.is_broken(region, line, self.time, at, self.way(second).0) {
+                    is_known[second] = true;
+                    found.push(second);
+                }
+            };
+            match self.changed {
+                Some((changed, .., regions)) if changed == robot => regions.iter().for_each(look),
+                _ if line.is_later(&timetable.lines[robot]) => self.waits.regions(robot).for_each(&mut look),
+                _ => {}
+            }
+        }
+        found
+    }
+
+    /// Takes some robots from gate to gate.
+    fn taken(&self, robots: Vec<usize>) -> Result<Forecast, Vec<Stuck>> {
+        let mut places = vec![NONE; self.robots.len()];
+        let mut taken: Vec<Taken<'t>> = Vec::with_capacity(robots.len());
+        for (place, &robot) in robots.iter().enumerate() {
+            places[robot] = place as u32;
             let changed =
                 self.changed.filter(|changed| changed.0 == robot).map(|(_, way, at, departs, _)| (way, at, departs));
-            let start = it.progress(changed, self.time, self.abilities);
-            lines.push(Timeline { start, delays: Vec::new() });
-            let from = waits.len();
-            self.gates(robot, &mut waits);
-            ranges.push((from, waits.len()));
+            let start = self.robots[robot].progress(changed, self.time, self.abilities);
+            taken.push(Taken::new(Timeline::new(start, self.time), self.row(robot), self.way(robot).0.length()));
         }
-        // The next gate of each robot, and who waits for it to go on.
-        let mut next: Vec<usize> = ranges.iter().map(|range| range.0).collect();
-        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); count];
-        let mut open: Vec<usize> = (0..count).collect();
+        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); robots.len()];
+        let mut open: Vec<usize> = (0..robots.len()).collect();
         let lost = self.abilities.stop();
-        while let Some(robot) = open.pop() {
-            let (way, _) = self.way(robot);
-            let before = next[robot];
-            while next[robot] < ranges[robot].1 {
-                let Wait { timed: Timed { gate, comes, opens }, first, .. } = waits[next[robot]];
-                if gate.at >= way.length() {
-                    next[robot] = ranges[robot].1;
-                    break;
-                }
-                let there = self.way(first).0;
-                let known = match waits[next[first]..ranges[first].1].first() {
-                    Some(wait) => wait.timed.gate.at.min(there.length()) - 2.0 * SHORT,
-                    None => there.length(),
+        while let Some(place) = open.pop() {
+            let before = taken[place].steps;
+            while let Some((first, timed, is_left)) = taken[place].ahead() {
+                let opens = match (places[first], self.kept) {
+                    (NONE, Some((timetable, _))) => Some(timetable.lines[first].opens(timed, self.time)),
+                    (first, _) => {
+                        let first = &taken[first as usize];
+                        let is_known = timed.gate.needs <= first.known();
+                        is_known.then(|| first.line.from(timed.opens, timed.gate.needs, self.time))
+                    }
                 };
-                if gate.needs > known {
-                    waiting[first].push(robot);
-                    break;
+                match (opens, is_left) {
+                    (Some(opens), false) => taken[place].wait(opens, lost),
+                    (opens, true) => taken[place].meet(opens),
+                    (None, false) => {
+                        waiting[places[first] as usize].push(place);
+                        break;
+                    }
                 }
-                let so_far = lines[robot].delays.last().map_or(0.0, |delay| delay.1);
-                let comes = (comes - lines[robot].start).max(0.0) + so_far;
-                let opens = (opens - lines[first].start).max(0.0) + lines[first].late(gate.needs);
-                if opens > comes {
-                    let wait = opens - comes;
-                    lines[robot].delays.push((gate.at, so_far + wait + 0.5 * lost.min(wait)));
-                }
-                next[robot] += 1;
             }
-            if next[robot] > before {
-                open.append(&mut waiting[robot]);
+            if taken[place].steps > before {
+                open.append(&mut waiting[place]);
             }
         }
-        let stuck: Vec<Stuck> = (0..count)
-            .filter(|&robot| next[robot] < ranges[robot].1)
-            .map(|robot| {
-                let Wait { region, .. } = waits[next[robot]];
-                Stuck { region }
-            })
-            .collect();
+        let stuck: Vec<Stuck> = taken.iter().filter_map(Taken::stuck).collect();
         if !stuck.is_empty() {
             return Err(stuck);
         }
-        let cost = (0..count).map(|robot| {
+        let lines: Vec<Timeline> = taken.into_iter().map(|taken| taken.line).collect();
+        let cost = robots.iter().zip(&lines).map(|(&robot, line)| {
             let way = self.way(robot).0;
-            let goals: f64 = way.goals.iter().map(|&goal| lines[robot].time(way, goal)).sum();
-            goals + TAIL * lines[robot].time(way, way.length())
+            let planned = match self.kept {
+                Some((timetable, _)) if !self.is_changed(robot) => timetable.lines[robot].cost(way, self.time),
+                _ => 0.0,
+            };
+            line.cost(way, self.time) - planned
         });
         let cost = cost.sum();
-        Ok(Forecast { lines, cost })
+        Ok(Forecast { robots, lines, cost })
     }
 }
 
-impl Timeline {
-    fn time(&self, way: &Way, length: f64) -> f64 {
-        (way.time(length) - self.start).max(0.0) + self.late(length)
-    }
-
-    /// By how much it is later at a length \[s\].
-    fn late(&self, length: f64) -> f64 {
-        let last = self.delays.partition_point(|delay| delay.0 < length).checked_sub(1);
-        last.map_or(0.0, |last| self.delays[last].1)
-    }
+/// A robot that is taken from gate to gate.
+struct Taken<'r> {
+    line: Timeline,
+    /// What it has still to pass second, the nearest last.
+    regions: Vec<Wait<'r>>,
+    /// Gates of regions that it may have to wait at, with who is first there and the place of the region, the nearest last.
+    gates: Vec<(&'r Timed, usize, Option<usize>)>,
+    length: f64,
+    /// Gates and regions that it has passed.
+    steps: usize,
 }
 
-impl Forecast {
-    /// When a robot is at a length of its way, which it would be at at this time of its way, from now \[s\].
-    pub(super) fn from(&self, robot: usize, time: f64, length: f64) -> f64 {
-        let line = &self.lines[robot];
-        (time - line.start).max(0.0) + line.late(length)
+impl<'r> Taken<'r> {
+    fn new(line: Timeline, mut regions: Vec<Wait<'r>>, length: f64) -> Self {
+        regions.reverse();
+        Self { line, regions, gates: Vec::new(), length, steps: 0 }
+    }
+
+    /// Whether a region comes before the next gate.
+    fn meets(&self) -> bool {
+        let gate = self.gates.last().map_or(f64::INFINITY, |gate| gate.0.gate.at);
+        self.regions.last().is_some_and(|wait| wait.gates[0].gate.at < gate)
+    }
+
+    /// What comes next: who is first there, and the gate; of a region the last one, which tells whether it has been left.
+    fn ahead(&self) -> Option<(usize, &'r Timed, bool)> {
+        if self.next() >= self.length {
+            return None;
+        }
+        match (self.meets(), self.regions.last(), self.gates.last()) {
+            (true, Some(wait), _) => Some((wait.first, wait.ends()[1], true)),
+            (_, _, Some(&(timed, first, _))) => Some((first, timed, false)),
+            _ => None,
+        }
+    }
+
+    /// Length of what comes next.
+    fn next(&self) -> f64 {
+        let region = self.regions.last().map_or(f64::INFINITY, |wait| wait.gates[0].gate.at);
+        self.gates.last().map_or(region, |gate| gate.0.gate.at.min(region))
+    }
+
+    /// Up to which length it is known when it is there.
+    fn known(&self) -> f64 {
+        let next = self.next();
+        if next < self.length { next - 2.0 * SHORT } else { self.length }
+    }
+
+    /// Comes to a region that the first leaves then, if that is known: its gates count unless it has been left by then.
+    fn meet(&mut self, left: Option<f64>) {
+        let Some(wait) = self.regions.pop() else { return };
+        self.steps += 1;
+        if left.is_some_and(|left| self.line.comes(wait.ends()[0].comes) >= left) {
+            return;
+        }
+        self.gates.extend(wait.gates.iter().rev().map(|timed| (timed, wait.first, wait.place)));
+        self.gates.sort_by(|a, b| b.0.gate.at.total_cmp(&a.0.gate.at));
+    }
+
+    /// Passes a gate, which opens then.
+    fn wait(&mut self, opens: f64, lost: f64) {
+        if let Some((timed, ..)) = self.gates.pop() {
+            self.steps += 1;
+            self.line.wait(timed.gate.at, timed.comes, opens, lost);
+        }
+    }
+
+    fn stuck(&self) -> Option<Stuck> {
+        let (_, _, is_left) = self.ahead()?;
+        self.gates.last().filter(|_| !is_left).map(|gate| Stuck { region: gate.2 })
     }
 }

@@ -6,9 +6,9 @@ use pcr_core::{Hold, Interval, Motion, RegionRef};
 
 /// The second waits at `at` \[m\] until the first is at `needs` \[m\] of its path or beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gate {
-    pub(super) at: f64,
-    pub(super) needs: f64,
+pub(crate) struct Gate {
+    pub(crate) at: f64,
+    pub(crate) needs: f64,
 }
 
 /// A gate of two ways, and when both would be there with nobody in their way, from the starts of their ways \[s\].
@@ -48,7 +48,7 @@ impl Contact {
 }
 
 /// The gates of the ego of some regions with one other, as the second.
-fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
+pub(crate) fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
     let Some(extent) = regions.iter().map(|region| region.other_length()).reduce(Interval::hull) else {
         return Vec::new();
     };

@@ -3,7 +3,7 @@
 use super::abilities::Abilities;
 use super::site::{From, Site, wrapped};
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{BinaryHeap, HashSet};
 
 /// An atom that can be left after this time \[s\], with what is left at least.
 #[derive(PartialEq)]
@@ -50,11 +50,12 @@ pub(super) fn routes(
         }
         None => 0.0,
     };
-    let mut best: HashMap<usize, (f64, usize)> = HashMap::new();
-    let mut done: HashSet<usize> = HashSet::new();
+    // The least cost of each atom, and the one before it.
+    let mut best: Vec<(f64, usize)> = vec![(f64::INFINITY, usize::MAX); site.atoms.len()];
+    let mut done = vec![false; site.atoms.len()];
     let mut heap = BinaryHeap::new();
     let relax = |heap: &mut BinaryHeap<Reached>,
-                 best: &mut HashMap<usize, (f64, usize)>,
+                 best: &mut [(f64, usize)],
                  atom: usize,
                  before: Option<usize>,
                  cost: f64,
@@ -63,8 +64,8 @@ pub(super) fn routes(
         let turn = heading.zip(it.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
         let corner = if turn.abs() > 1e-6 { abilities.turn(turn) + abilities.stop() } else { 0.0 };
         let cost = cost + corner + it.length / it.speed + toll(atom);
-        if cost < f64::INFINITY && best.get(&atom).is_none_or(|known| cost < known.0) {
-            best.insert(atom, (cost, before.unwrap_or(usize::MAX)));
+        if cost < best[atom].0 {
+            best[atom] = (cost, before.unwrap_or(usize::MAX));
             heap.push(Reached { bound: cost + left(it.ends[1]), cost, atom });
         }
     };
@@ -73,24 +74,23 @@ pub(super) fn routes(
     }
     while found.len() < count {
         let Some(Reached { cost, atom, .. }) = heap.pop() else { break };
-        if !done.insert(atom) {
+        if std::mem::replace(&mut done[atom], true) {
             continue;
         }
         let node = site.atoms[atom].ends[1];
         if asked(node) && met.insert(node) {
             let mut route = vec![atom];
-            while let Some(&(_, before)) = route.last().and_then(|last| best.get(last)) {
-                if before == usize::MAX {
-                    break;
-                }
+            let mut before = best[atom].1;
+            while before != usize::MAX {
                 route.push(before);
+                before = best[before].1;
             }
             route.reverse();
             found.push(route);
         }
         let heading = site.atoms[atom].headings.map(|headings| headings[1]);
         for &next in &site.leaving[node] {
-            if !done.contains(&next) {
+            if !done[next] {
                 relax(&mut heap, &mut best, next, Some(atom), cost, heading);
             }
         }

@@ -54,6 +54,7 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
         let begin = Instant::now();
         if open {
             run.give(now);
+            run.refresh(tick, now);
             run.decide(now);
         }
         let before: f64 = run.robots.iter().map(|robot| robot.at).sum();

@@ -4,11 +4,13 @@ use super::Method;
 use super::abilities::Abilities;
 use super::book::Book;
 use super::ends::cut_off;
-use super::forecast::{Forecast, Stuck, Trial, Waits};
+use super::forecast::{Forecast, Stuck, Trial};
 use super::locks::Locks;
 use super::robot::Robot;
 use super::routes::routes;
 use super::site::{From, Site};
+use super::timetable::Timetable;
+use super::waits::Waits;
 use super::way::Kept;
 
 /// What a route costs more: past a robot that stands for good, and for each robot that comes the other way \[s\].
@@ -30,6 +32,8 @@ pub(super) struct Scene<'s> {
     /// How many robots stand for good in the way of an atom.
     pub(super) parked: &'s [u16],
     pub(super) time: f64,
+    /// What the others keep to while one is decided on, in a large fleet.
+    pub(super) timetable: Option<&'s Timetable>,
     pub(super) method: Method,
 }
 
@@ -38,7 +42,7 @@ impl Scene<'_> {
     pub(super) fn base(&self) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self;
         let waits = &Waits::of(robots, self.book, None);
-        Trial { robots, waits, abilities, time, changed: None }.forecast()
+        Trial { robots, waits, abilities, time, changed: None, kept: None }.forecast()
     }
 
     pub(super) fn kept(&self, robot: usize) -> Kept {

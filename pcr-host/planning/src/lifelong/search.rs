@@ -2,14 +2,20 @@
 //! sooner by that.
 
 use super::book::Region;
-use super::forecast::{Forecast, Stuck, Trial, Waits};
+use super::forecast::{Forecast, Stuck, Trial};
+use super::gates::Timed;
 use super::scene::Scene;
+use super::timetable::Timeline;
+use super::waits::Waits;
 use super::way::Way;
 use std::cell::Cell;
 
 /// Orders that are turned round in search of better ones, at most, and even if a decision has taken long already.
 const TURNS: usize = 16;
 const LEAST_TURNS: usize = 4;
+
+/// The same in a large fleet.
+const FEW_TURNS: usize = 1;
 
 /// Orders that are turned round where somebody would wait for ever.
 const REPAIRS: usize = 12;
@@ -18,10 +24,13 @@ const REPAIRS: usize = 12;
 const DELAYS: (f64, u32) = (2.0, 60);
 
 /// One way of one robot.
-pub(super) struct Case<'c> {
+pub(super) struct Case<'c, 'w> {
     pub(super) scene: &'c Scene<'c>,
-    pub(super) base: &'c Forecast,
-    pub(super) waits: &'c Waits,
+    /// When the others would be where without it.
+    pub(super) base: &'c [Timeline],
+    pub(super) waits: &'c Waits<'w>,
+    /// Robots that are taken in any case, where not all are.
+    pub(super) taken: &'c [usize],
     pub(super) robot: usize,
     pub(super) way: &'c Way,
     pub(super) at: f64,
@@ -30,11 +39,12 @@ pub(super) struct Case<'c> {
     pub(super) budget: &'c Cell<usize>,
 }
 
-impl Case<'_> {
-    fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
+impl Case<'_, '_> {
+    pub(super) fn forecast(&self, regions: &[Region], departs: f64) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
-        Trial { robots, waits: self.waits, abilities, time, changed }.forecast()
+        let kept = self.scene.timetable.map(|timetable| (timetable, self.taken));
+        Trial { robots, waits: self.waits, abilities, time, changed, kept }.forecast()
     }
 
     /// Which of the two can go first at a region: the robot, the other one.
@@ -71,10 +81,11 @@ impl Case<'_> {
 
     /// Turns orders round where all are expected to arrive sooner by that.
     pub(super) fn improved(&self, mut regions: Vec<Region>, mut cost: f64) -> (Vec<Region>, f64) {
+        let least = if self.scene.timetable.is_some() { FEW_TURNS } else { LEAST_TURNS };
         let mut turns = 0;
         for k in 0..regions.len() {
             let (ahead, behind) = self.waits(&regions[k], 0.0);
-            if turns >= LEAST_TURNS && self.budget.get() == 0 {
+            if turns >= least && self.budget.get() == 0 {
                 break;
             }
             let free = if regions[k].first == 0 { ahead == 0.0 } else { behind == 0.0 };
@@ -95,25 +106,24 @@ impl Case<'_> {
     /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
     fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
         let now = self.way.time(self.at) - late;
-        let other = region.robots[1];
-        let (mut first, mut second) = (0.0_f64, 0.0_f64);
-        for timed in region.gates_of(1) {
-            let comes = self.base.from(other, timed.comes, timed.gate.at);
-            first = first.max(timed.opens - now - comes);
-        }
-        for timed in region.gates_of(0) {
-            let opens = self.base.from(other, timed.opens, timed.gate.needs);
-            second = second.max(opens - (timed.comes - now).max(late));
-        }
-        (first, second)
+        let (other, time) = (&self.base[region.robots[1]], self.scene.time);
+        let theirs = |timed: &Timed| other.from(timed.comes, timed.gate.at, time);
+        let own = |timed: &Timed| (timed.comes - now).max(late);
+        (
+            longest(region.gates_of(1), |timed| timed.opens - now, theirs),
+            longest(region.gates_of(0), |timed| other.from(timed.opens, timed.gate.needs, time), own),
+        )
     }
 
     /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
     fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
         let mut tried = vec![false; regions.len()];
         for _ in 0..REPAIRS {
-            if self.budget.get() == 0 {
-                return None;
+            match (self.budget.get(), self.scene.timetable) {
+                (0, None) => return None,
+                // That the others go first is tried in any case.
+                (0, Some(_)) => break,
+                _ => {}
             }
             self.budget.set(self.budget.get() - 1);
             let stuck = match self.forecast(regions, self.scene.time) {
@@ -156,4 +166,14 @@ impl Case<'_> {
         }
         None
     }
+}
+
+/// The longest wait at some gates that open, and that the second comes to, then.
+fn longest(gates: &[Timed], opens: impl Fn(&Timed) -> f64, comes: impl Fn(&Timed) -> f64) -> f64 {
+    // None where the last one is open before the second comes to the first one.
+    let (Some(head), Some(last)) = (gates.first(), gates.last()) else { return 0.0 };
+    if opens(last) <= comes(head) {
+        return 0.0;
+    }
+    gates.iter().map(|timed| opens(timed) - comes(timed)).fold(0.0, f64::max)
 }

@@ -1,11 +1,11 @@
 //! The state of a run: the fleet, its missions, and what has come of it so far.
 
-use super::Request;
 use super::abilities::Abilities;
 use super::book::Book;
 use super::dispatch::Admitted;
 use super::draws::{self, starts};
 use super::ends::Ends;
+use super::forecast::WHOLE;
 use super::locks::Locks;
 use super::outcome::{Outcome, Shares};
 use super::record::Certificate;
@@ -14,7 +14,9 @@ use super::routes::routes;
 use super::scene::Scene;
 use super::site::Site;
 use super::tasks::{Queue, Tasks};
+use super::timetable::Timetable;
 use super::way::Way;
+use super::{Method, Request};
 use pcr_formats::import::Imported;
 use std::time::Duration;
 
@@ -37,6 +39,8 @@ pub(super) struct Run {
     pub(super) request: Request,
     pub(super) robots: Vec<Robot>,
     pub(super) book: Book,
+    /// Of a large fleet.
+    pub(super) timetable: Timetable,
     pub(super) locks: Locks,
     /// How many robots stand for good in the way of an atom.
     pub(super) parked: Vec<u16>,
@@ -94,6 +98,7 @@ impl Run {
         Ok(Self {
             book: Book::new(&site, &robots),
             locks: Locks::new(count),
+            timetable: Timetable::new(count),
             site,
             ends,
             abilities,
@@ -164,6 +169,11 @@ impl Run {
         }
     }
 
+    /// Whether decisions look at some of the robots only.
+    pub(super) fn is_large(&self) -> bool {
+        self.request.method == Method::Orders && self.robots.len() > WHOLE
+    }
+
     pub(super) fn scene(&self, now: f64) -> Scene<'_> {
         Scene {
             site: &self.site,
@@ -175,12 +185,14 @@ impl Run {
             nodes: &self.ends.nodes,
             parked: &self.parked,
             time: now,
+            timetable: self.is_large().then_some(&self.timetable),
             method: self.request.method,
         }
     }
 
     pub(super) fn take(&mut self, robot: usize, admitted: Admitted) {
-        let Admitted { way, kept, before, regions, departs, .. } = admitted;
+        let Admitted { way, kept, before, regions, departs, lines, .. } = admitted;
+        self.timetable.change(lines);
         let it = &mut self.robots[robot];
         self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
         self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);

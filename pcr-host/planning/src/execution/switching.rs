@@ -1,0 +1,185 @@
+//! Orders that are turned round while robots are late: whoever has not come to a region yet may let the other one go first, if all can
+//! still finish and arrive sooner by that.
+//!
+//! Every order that counts is one of a region, so nobody touches; all can finish when they are switched, so nobody waits for ever
+//! (`docs/theory.md`, Theorem 6). What is forecast decides only which of them are better.
+
+use super::orders::Kept;
+use super::{Holds, LEAST, SPEED};
+use crate::lifelong::{Gate, gates};
+
+/// Holds follow the first robot in steps of \[m\], rounded down.
+const PITCH: f64 = 0.5;
+
+/// Orders that are tried each time that it is looked for better ones, and those that may be turned round with one.
+const TRIES: usize = 12;
+const WITH: usize = 4;
+
+/// By so much all have to arrive sooner in sum \[s\].
+const GAIN: f64 = 0.5;
+
+/// A gate of a region that a robot waits at if it is second there.
+#[derive(Clone, Copy, Debug)]
+struct Wait {
+    gate: Gate,
+    first: usize,
+    region: usize,
+    /// Which of the two of the region it is.
+    side: usize,
+}
+
+/// Orders that may be switched.
+pub(super) struct Switching<'a> {
+    kept: Kept<'a>,
+    /// Of each region the two robots, and the gates of each of them.
+    regions: Vec<([usize; 2], [Vec<Gate>; 2])>,
+    /// Which of the two is second; none if it is over.
+    second: Vec<usize>,
+    /// What each robot may still have to wait at, the nearest first.
+    rows: Vec<Vec<Wait>>,
+    ends: Vec<f64>,
+}
+
+/// When all would arrive, and the regions at which they would wait, with for how long.
+struct Forecast {
+    cost: f64,
+    waits: Vec<(usize, f64)>,
+}
+
+/// A robot in a forecast: it is late by so much beyond these lengths.
+struct Line {
+    /// When it would be at the length 0, without waits \[s\].
+    start: f64,
+    delays: Vec<[f64; 2]>,
+    next: usize,
+}
+
+impl Line {
+    fn time(&self, length: f64) -> f64 {
+        let late = self.delays.partition_point(|delay| delay[0] < length).checked_sub(1);
+        self.start + length / SPEED + late.map_or(0.0, |last| self.delays[last][1])
+    }
+}
+
+impl<'a> Switching<'a> {
+    pub(super) fn new(kept: Kept<'a>, ends: Vec<f64>) -> Self {
+        let mut rows: Vec<Vec<Wait>> = vec![Vec::new(); ends.len()];
+        let mut regions = Vec::new();
+        for (region, pair) in kept.pairs.iter().enumerate() {
+            let both = [0, 1].map(|side| gates(&[pair.seen(side)], PITCH));
+            for side in 0..2 {
+                let wait = |&gate: &Gate| Wait { gate, first: pair.robots[1 - side], region, side };
+                rows[pair.robots[side]].extend(both[side].iter().map(wait));
+            }
+            regions.push((pair.robots, both));
+        }
+        rows.iter_mut().for_each(|row| row.sort_by(|a, b| a.gate.at.total_cmp(&b.gate.at)));
+        let second = kept.pairs.iter().map(|pair| pair.second).collect();
+        Self { kept, regions, second, rows, ends }
+    }
+
+    /// When all are where if they go on as they can and stops last as long as is known; none if somebody waits for ever.
+    fn forecast(&self, at: &[f64], stopped: &[f64]) -> Result<Forecast, Vec<usize>> {
+        let count = at.len();
+        let line = |robot: usize| Line { start: stopped[robot] - at[robot] / SPEED, delays: Vec::new(), next: 0 };
+        let mut lines: Vec<Line> = (0..count).map(line).collect();
+        let mut known: Vec<f64> = vec![f64::NEG_INFINITY; count];
+        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); count];
+        let mut open: Vec<usize> = (0..count).rev().collect();
+        let (mut waits, mut done) = (Vec::new(), 0);
+        let mut held: Vec<Option<usize>> = vec![None; count];
+        while let Some(robot) = open.pop() {
+            held[robot] = None;
+            let before = known[robot];
+            known[robot] = self.ends[robot];
+            while let Some(&Wait { gate, first, region, side }) = self.rows[robot].get(lines[robot].next) {
+                if gate.at >= self.ends[robot] {
+                    break;
+                }
+                if self.second[region] == side && gate.needs > at[first] {
+                    if gate.needs > known[first] {
+                        known[robot] = gate.at - 2.0 * super::ROOM;
+                        held[robot] = Some(region);
+                        waiting[first].push(robot);
+                        break;
+                    }
+                    let opens = lines[first].time(gate.needs);
+                    let late = lines[robot].delays.last().map_or(0.0, |delay| delay[1]);
+                    let wait = opens - (lines[robot].start + gate.at / SPEED + late);
+                    if wait > LEAST {
+                        lines[robot].delays.push([gate.at, late + wait]);
+                        waits.push((region, wait));
+                    }
+                }
+                lines[robot].next += 1;
+            }
+            done += usize::from(known[robot] >= self.ends[robot] && before < self.ends[robot]);
+            if known[robot] > before {
+                open.append(&mut waiting[robot]);
+            }
+        }
+        if done < count {
+            return Err(held.into_iter().flatten().collect());
+        }
+        let cost = lines.iter().zip(&self.ends).map(|(line, &end)| line.time(end).max(0.0)).sum();
+        Ok(Forecast { cost, waits })
+    }
+
+    /// Whether the first of a region can be second from now on: it has not used its right.
+    fn can_switch(&self, region: usize, at: &[f64]) -> bool {
+        let (robots, gates) = &self.regions[region];
+        let first = 1 - self.second[region];
+        let passed = gates[first].partition_point(|gate| gate.needs <= at[robots[1 - first]]);
+        let hold = gates[first].get(passed).map_or(f64::INFINITY, |gate| gate.at);
+        at[robots[first]] <= hold - super::ROOM
+    }
+
+    /// Turns a region round, and those that keep somebody waiting for ever then; none if there is no such way.
+    fn turned(&mut self, region: usize, at: &[f64], stopped: &[f64]) -> (Vec<usize>, Option<Forecast>) {
+        let mut turned = vec![region];
+        self.second[region] = 1 - self.second[region];
+        loop {
+            let stuck = match self.forecast(at, stopped) {
+                Ok(forecast) => return (turned, Some(forecast)),
+                Err(stuck) => stuck,
+            };
+            let other = stuck.into_iter().find(|other| !turned.contains(other) && self.can_switch(*other, at));
+            match other.filter(|_| turned.len() <= WITH) {
+                Some(other) => {
+                    turned.push(other);
+                    self.second[other] = 1 - self.second[other];
+                }
+                None => return (turned, None),
+            }
+        }
+    }
+}
+
+impl Holds for Switching<'_> {
+    fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64 {
+        self.kept.hold(robot, at, wanted)
+    }
+
+    fn look(&mut self, at: &[f64], stopped: &[f64]) {
+        for (robot, row) in self.rows.iter_mut().enumerate() {
+            // Whoever is beyond a gate has used its right there.
+            let counts = |wait: &Wait| wait.gate.at >= at[robot] || self.second[wait.region] == wait.side;
+            row.retain(|wait| wait.gate.needs > at[wait.first] && counts(wait));
+        }
+        let Ok(mut forecast) = self.forecast(at, stopped) else { return };
+        let mut tried = Vec::new();
+        while tried.len() < TRIES {
+            let fresh = |wait: &&(usize, f64)| !tried.contains(&wait.0) && self.can_switch(wait.0, at);
+            let longest = forecast.waits.iter().filter(fresh).max_by(|a, b| a.1.total_cmp(&b.1));
+            let Some(&(region, _)) = longest else { return };
+            tried.push(region);
+            match self.turned(region, at, stopped) {
+                (turned, Some(other)) if other.cost + GAIN < forecast.cost => {
+                    forecast = other;
+                    turned.into_iter().for_each(|region| self.kept.switch(region));
+                }
+                (turned, _) => turned.into_iter().for_each(|region| self.second[region] = 1 - self.second[region]),
+            }
+        }
+    }
+}

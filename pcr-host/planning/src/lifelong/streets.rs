@@ -1,0 +1,82 @@
+//! A site of any size: one-way streets that cross, with bays on both sides of them.
+
+use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
+use pcr_formats::scenario::{PathSegment, Placed};
+
+/// Between two crossings \[m\].
+const BLOCK: f64 = 6.0;
+
+/// From the street to the end of a bay \[m\].
+const BAY: f64 = 1.8;
+
+/// As robots of a warehouse.
+const VEHICLE: Vehicle = Vehicle {
+    name: None,
+    radius: 0.4,
+    footprint: None,
+    margin: 0.0,
+    speed: 1.0,
+    acceleration: 0.5,
+    rotation: 1.0,
+    rotation_acceleration: 1.0,
+};
+
+/// So many streets each way, an even number of at least 2, which are one-way to and fro by turns; in the middle of each block a bay on
+/// either side. Each node can be reached from all others; robots stand in bays in nobody's way.
+pub fn streets(count: usize) -> Imported {
+    let count = count.next_multiple_of(2).max(2);
+    let mut plan = Plan::default();
+    let crossings: Vec<usize> =
+        (0..count * count).map(|k| plan.node([(k % count) as f64 * BLOCK, (k / count) as f64 * BLOCK])).collect();
+    for street in 0..count {
+        for block in 1..count {
+            // The four at the border make a ring.
+            let along = [crossings[street * count + block - 1], crossings[street * count + block]];
+            let across = [crossings[(block - 1) * count + street], crossings[block * count + street]];
+            for (mut ends, turned) in [(along, street % 2 == 1), (across, street % 2 == 0)] {
+                if turned {
+                    ends.reverse();
+                }
+                plan.block(ends);
+            }
+        }
+    }
+    let name = format!("{count} streets each way");
+    let layout =
+        Layout { name, levels: vec![String::new()], nodes: plan.nodes, edges: plan.edges, ..Layout::default() };
+    Imported { layout, vehicle: VEHICLE }
+}
+
+#[derive(Default)]
+struct Plan {
+    nodes: Vec<Node>,
+    edges: Vec<Edge>,
+}
+
+impl Plan {
+    fn node(&mut self, at: [f64; 2]) -> usize {
+        self.nodes.push(Node { id: Id::Number(self.nodes.len() as u64), name: None, level: 0, at });
+        self.nodes.len() - 1
+    }
+
+    fn edge(&mut self, ends: [usize; 2], two_way: bool) {
+        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].at);
+        let shape = PathSegment::Line { length: (u - x).hypot(v - y) };
+        let curve = vec![Placed { at: [x, y], heading: (v - y).atan2(u - x), shape }];
+        let id = Id::Number(self.edges.len() as u64);
+        self.edges.push(Edge { id, ends, curve, two_way, speed: None, rotation: None, deviation: 0.0 });
+    }
+
+    /// From crossing to crossing, with its bays.
+    fn block(&mut self, ends: [usize; 2]) {
+        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].at);
+        let (middle, side) = ([0.5 * (x + u), 0.5 * (y + v)], [(v - y) / BLOCK * BAY, (x - u) / BLOCK * BAY]);
+        let node = self.node(middle);
+        self.edge([ends[0], node], false);
+        self.edge([node, ends[1]], false);
+        for sign in [1.0, -1.0] {
+            let bay = self.node([middle[0] + sign * side[0], middle[1] + sign * side[1]]);
+            self.edge([node, bay], true);
+        }
+    }
+}
