@@ -53,8 +53,8 @@
 //! assert!(proved.refuted.is_empty() && proved.undecided.is_empty());
 //! let short = verdict(0.499)?;
 //! assert!(short.refuted[0].clearance < 0.0); // a contact outside of the piece
-//! let long = verdict(0.503)?;
-//! assert!(long.refuted[0].clearance > 1e-3); // told, but farther than 2 ε from any contact
+//! let long = verdict(0.502)?;
+//! assert!(long.refuted[0].clearance > 1e-3); // told, but farther than ε from any contact
 //! # Ok::<(), String>(())
 //! ```
 #![forbid(unsafe_code)]

@@ -14,7 +14,8 @@ pub enum Promise {
     Covered,
     /// The piece that holds it stands for the interval that holds it (C-share).
     Shared,
-    /// No length is told that is farther than R + 2 ε from all lengths of the other path told with it (C4).
+    /// No length is told that is farther than R + ε from all lengths of the other path told with it, or R + 2 ε beside an arc that is as
+    /// large as the disc (C4).
     Near,
     /// Whenever an agent is at a contact of a region, that is within the time told of the region (E_t).
     Timed,
@@ -73,8 +74,10 @@ pub struct Radii {
     pub radius: Ball<Twofold>,
     /// What all contacts are within: R + δ \[m\].
     pub covered: Ball<Twofold>,
-    /// What everything told is within: R + 2 ε \[m\].
+    /// What everything told is within: R + ε \[m\].
     pub told: Ball<Twofold>,
+    /// The same beside an arc that is as large as the disc: R + 2 ε \[m\].
+    pub beside: Ball<Twofold>,
 }
 
 /// Two segments and the pieces about them.
@@ -180,11 +183,13 @@ impl Segments<'_> {
         if self.pieces.iter().any(|(_, share)| *share != Share::Only) {
             shares::check(self, pair, radii, findings);
         }
+        let is_beside = |stretch: &&Stretch| stretch.turns_within(radii.radius, radii.beside);
+        let told = if self.stretches.iter().any(is_beside) { radii.beside } else { radii.told };
         for (lengths, _) in self.pieces.clone().into_iter().filter(|_| tells) {
             let mut parts = [0, 1].map(|k| self.stretches[k].placed.part(lengths[k]));
             for of in [0, 1] {
                 let cell = parts[of].clone();
-                let outcome = Claim::Within(radii.told).decide(&cell, &mut parts[1 - of], &mut findings.steps);
+                let outcome = Claim::Within(told).decide(&cell, &mut parts[1 - of], &mut findings.steps);
                 self.note(outcome, Promise::Near, pair, radii, of, &mut parts[1 - of], findings);
             }
         }

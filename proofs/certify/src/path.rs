@@ -63,6 +63,14 @@ impl Stretch {
         }
     }
 
+    /// Whether it is an arc whose radius is a number, or differs from it by no more than another one does.
+    pub fn turns_within(&self, number: Number, other: Number) -> bool {
+        match self.placed.exact {
+            Carrier::Line { .. } => false,
+            Carrier::Circle { radius, .. } => (radius - number).abs().mid <= (other - number).abs().mid,
+        }
+    }
+
     /// The part of the segment between lengths along the path. Both ends of a segment that is too short for them to differ are
     /// the same number: then it is all of it.
     pub fn range(&self, [lo, hi]: [f64; 2]) -> [Twofold; 2] {

@@ -12,9 +12,9 @@ use crate::twofold::Twofold;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
-/// What is told of a length lies within R and so much of ε: ends of ranges are right within R + 3/2 ε, and what lies between pieces that
-/// are joined about the centre of an arc as large as the disc has been seen within 1.8 ε (docs/errors.md).
-const TOLD: f64 = 2.0;
+/// Beside an arc whose radius is R within 2 ε, what is told of a length lies within R and so much of ε: pieces are joined there, and what
+/// lies between has been seen within 1.8 ε (docs/errors.md).
+const TOLD_BESIDE: f64 = 2.0;
 
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,7 +166,12 @@ impl<'a> Checker<'a> {
         };
         let number = Ball::<Twofold>::from;
         let radius = number(first.radius) + number(second.radius);
-        Radii { radius, covered: radius + number(more), told: radius + number(TOLD * pair.excess) }
+        Radii {
+            radius,
+            covered: radius + number(more),
+            told: radius + number(pair.excess),
+            beside: radius + number(TOLD_BESIDE * pair.excess),
+        }
     }
 
     fn pair(&self, pair: &Pair, wholes: &[Vec<Both<'a>>], radii: Radii, tells: bool) -> Result<Findings, String>
