@@ -36,7 +36,7 @@ figure() {
   figure certify paper12 "proof of the table"
   figure motions paper12 "proof of the motions, or a contact of each pair"
   figure certify table6-100 "proof of the table"
-} | tee /dev/stderr >instructions.new
+} | tee -a /dev/stderr >instructions.new
 
 if [ "${UPDATE:-}" = 1 ]; then
   mv instructions.new instructions.txt

@@ -82,7 +82,7 @@ fn more_robots_than_safe_ends_go_on_all_the_same() {
 /// More robots than are taken whole: decisions keep a timetable of all others.
 #[test]
 fn large_fleets_never_touch_and_all_arrive() {
-    let (agents, minutes) = if cfg!(optimized) { (120, 6.0) } else { (70, 1.0) };
+    let (agents, minutes) = if cfg!(optimized) { (100, 4.0) } else { (70, 1.0) };
     let outcome = driven(&streets(10), agents, minutes, 0.05, Method::Orders);
     assert!(outcome.robots == agents && outcome.missions > agents / 4, "{outcome:?}");
 }

@@ -460,7 +460,7 @@ fn attacked<S: Format>(pairs: u64) -> [Tried; 2] {
 
 #[test]
 fn verdicts_are_those_of_points() {
-    let pairs = count(600, 60);
+    let pairs = count(300, 60);
     attacked::<f64>(pairs);
     attacked::<f32>(pairs);
     attacked::<Micro>(pairs / 2);
