@@ -65,7 +65,7 @@ pub use ecm::{Ecm, Region};
 pub use error::{Full, Invalid, Mismatch, Unchanged};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
-pub use motion::{LENGTH_TOLERANCE, Motion};
+pub use motion::{LENGTH_TOLERANCE_LOG2, Motion};
 pub use orders::{Brakes, Decision, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
 pub use overlaps::overlaps;
 pub use pair::footprint::Share;

@@ -8,10 +8,10 @@ use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
 use crate::segment::Curve;
 
-/// A profile may miss the end of its path by this share of the path's length, as a power of two: by 2⁻²⁰ of it, 1 mm in a kilometre.
-/// That is what profiles miss that people write with seven digits, and files are read with the same number. Where rounding may be
-/// more, [`Scalar::slack`] of the extent, it may miss it by that.
-pub const LENGTH_TOLERANCE: i32 = -20;
+/// Logarithm to the base 2 of the part of a path's length by which a profile may miss the end of the path: 2⁻²⁰, 1 mm in a kilometre.
+/// Profiles that people write with seven digits miss it by as much, and files are read with the same number. Where rounding may be more,
+/// [`Scalar::slack`] of the extent, a profile may miss it by that.
+pub const LENGTH_TOLERANCE_LOG2: i32 = -20;
 
 /// A disc on a path with a speed profile. It stands at the start of the path before it sets off, and at the
 /// end of it after its arrival.
@@ -38,7 +38,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius) and
-    /// [`Invalid::LengthMismatch`] where the profile does not travel the length of the path, by more than [`LENGTH_TOLERANCE`] or
+    /// [`Invalid::LengthMismatch`] where the profile does not travel the length of the path, by more than [`LENGTH_TOLERANCE_LOG2`] or
     /// rounding. What it misses counts: [`Motion::lag`] is larger by it, and so is ε, by twice as much
     /// ([`excess`](crate::excess)).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
@@ -47,7 +47,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius.double();
         let gap = (profile.length() - path.length()).abs();
-        let share = (LENGTH_TOLERANCE..0).fold(path.length(), |length, _| length.half());
+        let share = (LENGTH_TOLERANCE_LOG2..0).fold(path.length(), |length, _| length.half());
         if gap > S::slack(extent).max(share) {
             let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
             return Err(Invalid::LengthMismatch { path, profile });

@@ -68,32 +68,6 @@ fn tables_of_random_pairs_are_proved_in_q12() {
     holds::<Q12>(0.5);
 }
 
-fn is_proved_of<S: Format>(seeds: &[u64]) {
-    for &seed in seeds {
-        let proofs = run::<S>(seed, 1);
-        assert_eq!(proofs.proved, 1, "{} of {}: {proofs:?}", seed, S::NAME);
-    }
-}
-
-/// A disc as large as the circle but for rounding, arcs of half a turn, paths of hundreds of segments, and points opposite to the middle
-/// of an arc, in a direction whose part across is a negative zero. From 10 million pairs a format: circles that are covered from both sides,
-/// an agent that creeps, and pieces that are joined beside the centre of an arc as large as the disc.
-#[test]
-fn tables_that_were_not_proved_once_are() {
-    is_proved_of::<f64>(&[6, 1362, 451_139, 692_692, 2_843_574, 7_793_789, 9_130_518, 9_625_657]);
-    is_proved_of::<f32>(&[
-        6, 16, 53, 68, 188, 6825, 12872, 25920, 2_152_914, 2_244_704, 3_507_630, 4_163_925, 5_905_206, 8_817_141,
-        9_369_245, 9_625_657, 9_734_389,
-    ]);
-    is_proved_of::<Micro>(&[
-        1_671_629, 2_152_914, 4_163_925, 4_836_374, 5_905_206, 6_383_398, 7_501_974, 7_719_494, 9_369_245, 9_625_657,
-        9_863_701,
-    ]);
-    is_proved_of::<Q20>(&[16, 68, 188, 4698, 59166]);
-    is_proved_of::<Q16>(&[35497, 65178, 86630]);
-    is_proved_of::<Q12>(&[3285, 13525, 27854, 52685, 66637, 89197, 134_448]);
-}
-
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
 }

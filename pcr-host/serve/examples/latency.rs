@@ -1,6 +1,6 @@
-//! How long it takes from a position to everything that follows from it, with a journal on the disc: the robots of `load`, which say where
-//! they are so many times a second of the clock, whatever the answers do. With a rate of 0 they say it as fast as answers come, 256
-//! at once.
+//! How long it takes from a position to everything that follows from it, with a journal on the disc. Robots go to and fro on crossing lanes,
+//! 25 one way and 25 the other in a hall, as many halls as it takes, and say where they are so many times a second, whether they were
+//! answered or not. With a rate of 0 they say it as fast as answers come, 256 at once.
 //!
 //! `cargo run --release -p pcr-serve --example latency -- ROBOTS RATE MESSAGES`
 

@@ -14,7 +14,7 @@ use std::fmt;
 const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 
 /// Relative difference between the travelled length and the length of the path that is still scaled away: what the library takes, 2⁻²⁰.
-pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE) as f64;
+pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE_LOG2) as f64;
 
 /// Speed below zero that a profile may reach by the rounding of its numbers, relative to its largest speed (or to
 /// 1 m/s if that is more): nine digits, which is what files carry.

@@ -70,7 +70,8 @@ impl Scene<'_> {
         let mut found: Vec<Route> = Vec::new();
         let mut good: Option<Vec<usize>> = None;
         // In a large fleet the quickest way has to do, if there is any: decisions cost what they are about.
-        let (is_large, ends) = (self.timetable.is_some(), if self.timetable.is_some() { 1 } else { ENDS });
+        let is_large = self.timetable.is_some();
+        let ends = if is_large { 1 } else { ENDS };
         for tolls in TOLLS {
             if is_large && !found.is_empty() {
                 break;

@@ -1,0 +1,79 @@
+//! Tables of random pairs that the checker has not proved once, by their seeds: those of the long command of `certify.rs`.
+
+use pcr_certify::pair::{Promise, Witness};
+use pcr_certify::table::{Checker, Margin};
+use pcr_core::scalar::Micro;
+use pcr_fixed::{Q12, Q16, Q20};
+use pcr_planning::fleet::Format;
+use pcr_tests::certified::{run, table};
+use pcr_tests::generators::certifiable;
+
+fn is_proved_of<S: Format>(seeds: &[u64]) {
+    for &seed in seeds {
+        let proofs = run::<S>(seed, 1);
+        assert_eq!(proofs.proved, 1, "{} of {}: {proofs:?}", seed, S::NAME);
+    }
+}
+
+/// A disc as large as the circle but for rounding, arcs of half a turn, paths of hundreds of segments, and points opposite to the middle
+/// of an arc, in a direction whose part across is a negative zero. From 10 million pairs a format: circles that are covered from both sides,
+/// an agent that creeps, and pieces that are joined beside the centre of an arc as large as the disc.
+#[test]
+fn tables_that_were_not_proved_once_are() {
+    is_proved_of::<f64>(&[6, 1362, 451_139, 692_692, 2_843_574, 7_793_789, 9_130_518, 9_625_657]);
+    is_proved_of::<f32>(&[
+        6, 16, 53, 68, 188, 6825, 12872, 25920, 2_152_914, 2_244_704, 3_507_630, 4_163_925, 5_905_206, 8_817_141,
+        9_369_245, 9_625_657, 9_734_389,
+    ]);
+    is_proved_of::<Micro>(&[
+        1_671_629, 2_152_914, 4_163_925, 4_836_374, 5_905_206, 6_383_398, 7_501_974, 7_719_494, 9_369_245, 9_625_657,
+        9_863_701,
+    ]);
+    is_proved_of::<Q20>(&[16, 68, 188, 4698, 59166]);
+    is_proved_of::<Q16>(&[35497, 65178, 86630]);
+    is_proved_of::<Q12>(&[3285, 13525, 27854, 52685, 66637, 89197, 134_448]);
+}
+
+fn lie_between_two_lengths<S: Format>(digits: i32, seeds: &[u64]) {
+    let is_a_length = |length: f64| (length * 2.0_f64.powi(digits)).fract() == 0.0;
+    for &seed in seeds {
+        let (pair, drives) = certifiable::<S>(seed);
+        let table = table::<S>(&pair, &drives).expect("it fits");
+        let found = Checker::new(&table).and_then(|checker| checker.check(Margin::Needed)).expect("a table");
+        assert!(!found.refuted.is_empty() && found.undecided.is_empty(), "{seed} of {}", S::NAME);
+        for Witness { promise, lengths, .. } in found.refuted {
+            assert_eq!(promise, Promise::Shared, "{seed} of {}", S::NAME);
+            let ends = table.pairs[0].pieces.iter().flat_map(|piece| piece.lengths[1]);
+            let nearest =
+                ends.min_by(|a, b| (a - lengths[1]).abs().total_cmp(&(b - lengths[1]).abs())).expect("a piece");
+            let away = (nearest - lengths[1]).abs() * 2.0_f64.powi(digits);
+            assert!(is_a_length(nearest) && 0.0 < away && away < 1.0, "{seed} of {}: {away} digits", S::NAME);
+        }
+    }
+}
+
+/// A foot may pass the middle of an arc between two lengths of the format, where no query looks; all that was found of ten million pairs.
+#[test]
+fn what_is_refuted_in_fixed_point_lies_between_two_lengths() {
+    lie_between_two_lengths::<Q20>(
+        20,
+        &[
+            1_666_949, 1_753_926, 2_467_158, 3_348_909, 3_928_645, 4_601_742, 5_268_973, 5_825_238, 5_998_477,
+            6_600_061, 6_656_222, 7_531_501, 8_864_782,
+        ],
+    );
+    lie_between_two_lengths::<Q16>(
+        16,
+        &[
+            478_853, 1_488_606, 2_381_446, 2_568_590, 2_632_837, 3_170_253, 3_239_158, 3_484_469, 3_948_765, 6_289_013,
+            7_064_677, 7_801_957, 8_760_413, 9_433_014, 9_484_141,
+        ],
+    );
+    lie_between_two_lengths::<Q12>(
+        12,
+        &[
+            436_727, 1_003_637, 1_770_406, 2_071_694, 4_265_045, 4_424_645, 5_672_077, 7_163_030, 7_164_773, 7_244_885,
+            7_747_614, 8_906_877, 9_338_278,
+        ],
+    );
+}
