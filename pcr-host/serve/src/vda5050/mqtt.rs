@@ -246,9 +246,7 @@ fn qos(assured: bool) -> QoS {
 #[cfg(feature = "tls")]
 fn secure(options: &mut MqttOptions, broker: &Broker) -> Result<(), String> {
     if let Some(file) = &broker.authority {
-        let ca = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
-        let tls = rumqttc::TlsConfiguration::Simple { ca, alpn: None, client_auth: None };
-        options.set_transport(rumqttc::Transport::Tls(tls));
+        options.set_transport(super::tls::transport(file)?);
     }
     Ok(())
 }
