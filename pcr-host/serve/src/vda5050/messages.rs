@@ -102,3 +102,24 @@ message! {
         physical_parameters: Value,
     }
 }
+
+message! {
+    /// What the manager says to what a vehicle has asked for, since 3.0.
+    Responses {
+        /// One for each request.
+        responses: Vec<Response>,
+    }
+}
+
+/// An answer to a request of a vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Response {
+    /// Which request.
+    pub request_id: String,
+    /// `GRANTED`, `QUEUED`, `REVOKED`, `REJECTED`.
+    pub grant_type: String,
+    /// All else.
+    #[serde(flatten)]
+    pub rest: Map<String, Value>,
+}

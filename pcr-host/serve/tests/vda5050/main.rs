@@ -12,3 +12,4 @@ mod standing;
 #[cfg(feature = "tls")]
 mod tls;
 mod yard;
+mod zones;
