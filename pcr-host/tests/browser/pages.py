@@ -82,7 +82,7 @@ class Browser:
         features = [{"name": "prefers-color-scheme", "value": scheme}, {"name": "prefers-reduced-motion", "value": motion}]
         self.call("Emulation.setEmulatedMedia", features=features)
         # By way of an empty page: the same address again would not be loaded anew.
-        for url in ("about:blank", path.as_uri()):
+        for url in ("about:blank", path if isinstance(path, str) else path.as_uri()):
             self.events.clear()
             self.call("Page.navigate", url=url)
             while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
@@ -94,11 +94,11 @@ class Browser:
             raise SystemExit(f"pages: {expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def key(self, key, code=None):
+    def key(self, key, modifiers=0):
         text = {"Enter": "\r"}.get(key, key if len(key) == 1 else "")
         codes = {"Tab": 9, "Enter": 13, "ArrowDown": 40, "Escape": 27}
         for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, text=text if kind == "keyDown" else "",
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers, text=text if kind == "keyDown" else "",
                       windowsVirtualKeyCode=codes.get(key, ord(key[0]) if len(key) == 1 else 0))
 
     def screenshot(self, path):
