@@ -7,6 +7,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# How tests are built, the same everywhere so that nothing is built twice. These two have no tests of their own here, but much that they
+# depend on.
+options=(--workspace --exclude pcr-benches --exclude pcr-py --profile checked --features pcr-tests/peers --locked)
+
 # A part, and how long it took: in all, and of the cores' time by programs and by the system.
 timed() {
   local TIMEFORMAT="-- $1 took %0R s; of the cores' time %0U s and %0S s"
@@ -60,7 +64,6 @@ docs() {
 tests() {
   step "tests: optimized, overflow checks and assertions on, methods of other libraries in comparisons"
   peer_libraries
-  local options=(--workspace --profile checked --features pcr-tests/peers --locked)
   # Not the examples: the lints have checked that they compile, and those that are run are named.
   cargo test "${options[@]}" --lib --bins --tests
   cargo test "${options[@]}" --doc
@@ -87,8 +90,7 @@ schemas() {
     echo "installing libxml2-utils"
     apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends libxml2-utils >/dev/null
   fi
-  # As the tests build it.
-  cargo test --workspace --profile checked --features pcr-tests/peers --locked --test tool -- --ignored plant_models
+  cargo test "${options[@]}" --test tool -- --ignored plant_models
 }
 
 # Vehicles, their manager and the supervisor at a real broker. Faults one after the other, some minutes each round: PCR_FAULTS=1
@@ -96,11 +98,9 @@ schemas() {
 serve() {
   step "VDA 5050 over mosquitto, messages by the published schemas"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
-  # As the tests build it.
-  local options=(--workspace --profile checked --features pcr-tests/peers --locked --test vda5050)
-  cargo test "${options[@]}" -- --ignored runs::
+  cargo test "${options[@]}" --test vda5050 -- --ignored runs::
   if [ -n "${PCR_FAULTS:-}" ]; then
-    cargo test "${options[@]}" -- --ignored --exact faults::faults_one_after_the_other
+    cargo test "${options[@]}" --test vda5050 -- --ignored --exact faults::faults_one_after_the_other
   fi
 }
 
@@ -110,25 +110,27 @@ browser() {
   .ci/install.sh chromium
 }
 
+# The tool as the tests have built it: `cargo build` would build much of it again, without what the tests ask of libraries.
+tool() { cargo test -q "${options[@]}" --test tool --no-run; }
+
 pages() {
   step "pages, in a real browser"
   browser
-  # As the tests build it.
-  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  tool
   pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
 }
 
 web() {
   step "the module for WebAssembly, in node and in a browser"
   browser
-  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  tool
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
   .ci/readme.py "In the browser"
 }
 
 python() {
   step "the Python package"
-  cargo build --workspace --profile checked --features pcr-tests/peers --locked
+  tool
   bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
   .ci/readme.py "In Python"
 }
@@ -269,16 +271,16 @@ fuzz() {
 }
 
 # Everything, in two lanes: much of the second one waits for one thing at a time (a link, an emulator), and nothing that it
-# builds is in a folder that the first one builds in. What it prints comes when it is done, or when it fails.
+# builds is in a folder that the first one builds in; the tool for Python is built by the time that it is asked for. What it prints comes when it is done, or when it fails.
 everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions packages release >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions packages release python >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
-  for part in style docs features tests serve pages web schemas python proofs; do
+  for part in style docs features tests serve pages web schemas proofs; do
     kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
     timed "$part"
   done

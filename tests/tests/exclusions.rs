@@ -109,7 +109,7 @@ fn vehicles_without_rules_touch() {
 fn touch(radius: f64, points: [[f64; 2]; 2]) -> bool {
     let mover = |(k, start): (usize, [f64; 2])| {
         let segment = Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 };
-        let path = Path { start, heading: Angle::Radians(0.0), segments: vec![segment], rounding: 0.0 };
+        let path = Path { start, heading: Angle::Radians(0.0), segments: vec![segment], rounding: 0.0, step: 0.0 };
         let travel = Travel { start: 0.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
         Mover::new(&Agent { id: k as u64, radius, path, travel: Some(travel) }, [0.0, 1.0]).unwrap()
     };
