@@ -48,6 +48,7 @@ mod micro;
 mod motions;
 mod near_misses;
 mod no_numbers;
+mod orders_admit;
 mod orders_check;
 mod orders_fleet;
 mod orders_hold;
