@@ -2,8 +2,8 @@
 //! ever, and what stays where nothing fits.
 
 use pcr_core::{
-    Ecm, Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances,
-    Unchanged,
+    Ecm, Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
+    Tolerances, Unchanged,
 };
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::execution::Table;
@@ -37,7 +37,7 @@ fn moving(at: f64, stop: f64) -> Progress<f64> {
     Progress { stop, ..Progress::at_rest(at) }
 }
 
-/// A fleet whose first agent asks for its path again, the numbers of the others given by `numbers`.
+/// A fleet whose first agent asks for a path.
 struct Scene<'a> {
     agents: &'a [(&'a Course<f64>, Progress<f64>)],
     /// Who goes first of the others: agent and other.
@@ -65,9 +65,16 @@ impl Scene<'_> {
         let agents = || (0..numbers.len()).map(|number| self.agents[agent_of(number)]);
         let mut fleet: Vec<Motion<'_, f64>> = agents().map(|(course, _)| course.motion()).collect();
         let mut progress: Vec<Progress<f64>> = agents().map(|(_, progress)| progress).collect();
+        let mission = Mission { agent: numbers[0], motion: fleet[numbers[0]], progress: progress[numbers[0]] };
+        // Another path before, with orders of its own.
+        let old = way([-4.0, 0.1], [3.9, 0.1]);
+        (fleet[numbers[0]], progress[numbers[0]]) = (old.motion(), Progress::at_rest(0.25));
         let mut orders = table(&fleet);
         for &[agent, other] in self.first {
             orders.decide(&fleet, numbers[agent], numbers[other], Pass::First, 0.0).expect("its fleet");
+        }
+        for other in (1..numbers.len()).step_by(2) {
+            orders.decide(&fleet, numbers[0], numbers[other], Pass::First, 0.0).expect("its fleet");
         }
         let row = |orders: &Table<f64>, fleet: &[Motion<'_, f64>], agent: usize| {
             let row = orders.row(fleet, numbers[agent]).expect("its fleet");
@@ -75,17 +82,17 @@ impl Scene<'_> {
             passes.sort_by_key(|&(other, _)| other);
             passes
         };
-        let all = |orders: &Table<f64>, fleet: &[Motion<'_, f64>]| -> Vec<_> {
-            (0..numbers.len()).map(|agent| row(orders, fleet, agent)).collect()
+        let all = |orders: &Table<f64>, fleet: &[Motion<'_, f64>], progress: &[Progress<f64>]| {
+            let rows: Vec<_> = (0..numbers.len()).map(|agent| row(orders, fleet, agent)).collect();
+            (rows, fleet[numbers[0]].path().length(), progress.to_vec())
         };
-        let before = all(&orders, &fleet);
+        let before = all(&orders, &fleet, &progress);
         let mut reaches = vec![Reach::EMPTY; numbers.len()];
-        let mission = Mission { agent: numbers[0], motion: fleet[numbers[0]], progress: progress[numbers[0]] };
         let found = orders.admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut reaches, |region| {
             let other = agent_of(region.other());
             self.wanted.iter().find(|wanted| wanted.0 == other).expect("both ways are possible").1
         });
-        let after = all(&orders, &fleet);
+        let after = all(&orders, &fleet, &progress);
         let found = found.map_err(|refused| {
             assert_eq!(after, before, "{refused} leaves traces");
             match refused {
@@ -171,11 +178,7 @@ fn an_order_that_keeps_somebody_stuck_is_turned_round() {
     let (east, north, down) = (east(), north(), down());
     // East waits for down on the crossing with north, north for east, down for north.
     let stuck = [(1, Pass::First), (2, Pass::Second)];
-    let scene = Scene {
-        agents: &[(&east, REST), (&north, REST), (&down, REST)],
-        first: &[[1, 2]],
-        wanted: &stuck,
-    };
+    let scene = Scene { agents: &[(&east, REST), (&north, REST), (&down, REST)], first: &[[1, 2]], wanted: &stuck };
     assert_eq!(scene.admitted(), (Ok(()), vec![(1, Pass::Second), (2, Pass::Second)]));
     // The same where east cannot stop before north any more: its other order is turned round.
     let scene = Scene {
@@ -184,17 +187,23 @@ fn an_order_that_keeps_somebody_stuck_is_turned_round() {
         wanted: &stuck[1..],
     };
     assert_eq!(scene.admitted(), (Ok(()), vec![(1, Pass::First), (2, Pass::First)]));
+    // Before one that waits for others it stays first.
+    let (east, across) = (way([-8.0, 0.0], [4.0, 0.0]), way([-2.4, -4.0], [4.8, 2.0]));
+    let scene = Scene {
+        agents: &[(&east, REST), (&north, REST), (&down, REST), (&across, REST)],
+        first: &[[1, 2], [1, 3], [2, 3]],
+        wanted: &[stuck[0], stuck[1], (3, Pass::First)],
+    };
+    let passes = vec![(1, Pass::Second), (2, Pass::Second), (3, Pass::First)];
+    assert_eq!(scene.admitted(), (Ok(()), passes));
 }
 
 #[test]
 fn orders_without_a_choice_are_not_turned_round() {
     let (east, north, parks) = (east(), north(), parks());
     // East has to go first where parks ends; north, which waits for parks, cannot stop before east.
-    let scene = Scene {
-        agents: &[(&east, REST), (&north, moving(3.0, 3.5)), (&parks, REST)],
-        first: &[[2, 1]],
-        wanted: &[],
-    };
+    let scene =
+        Scene { agents: &[(&east, REST), (&north, moving(3.0, 3.5)), (&parks, REST)], first: &[[2, 1]], wanted: &[] };
     assert_eq!(scene.admitted().0, Err("stuck"));
     // Had it a choice, it would go before north.
     let scene = Scene {
@@ -234,7 +243,9 @@ fn a_hold_counts_from_where_the_one_that_waits_is() {
             (progress[own], progress[their]) = (Progress::at_rest(at), Progress::at_rest(other_at));
             let mut orders = table(&fleet);
             let mission = Mission { agent: own, motion: fleet[own], progress: progress[own] };
-            orders.admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut [Reach::EMPTY; 2], |_| pass).expect("a way");
+            orders
+                .admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut [Reach::EMPTY; 2], |_| pass)
+                .expect("a way");
             let since: Vec<f64> = orders.decisions().map(|decision| decision.since).collect();
             let waits = if pass == Pass::First { their } else { own };
             assert_eq!(since, [progress[waits].at.lo]);
@@ -245,44 +256,56 @@ fn a_hold_counts_from_where_the_one_that_waits_is() {
     }
 }
 
-/// A fleet of three, and a way round that meets both others twice.
+/// Along x = 0, to the west along y = 2.5, along x = -1.5, and a way that crosses the first and the last one twice.
 fn crossed() -> ([Course<f64>; 3], Course<f64>) {
     let legs = vec![Leg::Line(6.0), Leg::arc(1.0, FRAC_PI_2), Leg::arc(1.0, FRAC_PI_2), Leg::Line(6.0)];
     let disc = Disc { radius: 0.3, start: [-3.0, -2.0, 0.0], legs };
-    let ways = [way([-3.0, -3.0], [-3.0, 3.0]), way([0.0, -3.0], [0.0, 3.0]), way([-1.5, 3.0], [-1.5, -3.0])];
+    let ways = [way([0.0, -3.0], [0.0, 4.0]), way([2.0, 2.5], [-3.0, 2.5]), way([-1.5, 4.0], [-1.5, -3.0])];
     (ways, Course::new(&disc).expect("a valid disc"))
 }
 
 #[test]
 fn a_path_for_which_there_is_no_room_changes_nothing() {
     let (ways, round) = crossed();
-    // (places for regions, pieces and orders, what is full): of four regions in as many pieces two are there already.
+    let (start, longer) = (way([3.0, -2.0], [-2.5, -2.0]), way([3.0, -2.0], [-2.6, -2.0]));
+    // (places for regions, pieces and orders, the new path, its regions or what is full): of four regions in as many pieces
+    // two are those of the old path, which are kept meanwhile.
     let cases = [
-        (6, 40, 40, None),
-        (1, 40, 40, Some(Full::Regions)),
-        (40, 1, 40, Some(Full::Pieces)),
-        (40, 40, 3, Some(Full::Orders)),
-        (40, 40, 4, Some(Full::Orders)),
+        (6, 6, 8, &round, Ok(4)),
+        (5, 6, 8, &round, Err(Full::Regions)),
+        (6, 5, 8, &round, Err(Full::Pieces)),
+        (6, 6, 7, &round, Err(Full::Orders)),
+        (6, 6, 5, &round, Err(Full::Orders)),
+        (4, 4, 6, &longer, Ok(2)),
     ];
-    let start = way([3.0, -2.0], [-0.5, -2.0]);
-    for (regions, pieces, orders, full) in cases {
-        let mut fleet = [ways[1].motion(), ways[2].motion(), start.motion()];
+    for (regions, pieces, orders, path, expected) in cases {
+        let mut fleet = [ways[0].motion(), start.motion(), ways[1].motion(), ways[2].motion()];
         let (regions, pieces) = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
         let mut table = Orders::build(regions, pieces, vec![Order::EMPTY; orders], &fleet).expect("room for one");
-        table.decide(&fleet, 2, 0, Pass::First, 0.0).expect("its fleet");
-        let passes = |table: &Table<f64>, fleet: &[Motion<'_, f64>]| -> Vec<_> {
-            table.row(fleet, 2).expect("its fleet").map(|(place, region, pass)| (place, region.length(), pass)).collect()
-        };
-        let before = passes(&table, &fleet);
-        assert_eq!(before.len(), 1);
-        let found = table.replace(&mut fleet, 2, round.motion());
-        assert_eq!(found, full.map_or(Ok(()), |full| Err(Unchanged::Full(full))));
-        let after = passes(&table, &fleet);
-        match full {
-            Some(_) => assert_eq!(after, before),
-            None => assert!(after.len() == 4 && after.iter().all(|(.., pass)| *pass == Pass::Undecided), "{after:?}"),
+        for ([agent, other], pass) in [([0, 1], Pass::First), ([0, 2], Pass::Second), ([2, 3], Pass::First)] {
+            table.decide(&fleet, agent, other, pass, 0.0).expect("its fleet");
         }
-        assert_eq!(fleet[2].path().length(), if full.is_some() { 3.5 } else { round.motion().path().length() });
+        let passes = |table: &Table<f64>, fleet: &[Motion<'_, f64>], agent: usize| -> Vec<_> {
+            let row = table.row(fleet, agent).expect("its fleet");
+            row.map(|(place, region, pass)| (place, region.other(), region.length(), pass)).collect()
+        };
+        let before = [1, 2].map(|agent| passes(&table, &fleet, agent));
+        assert_eq!(before.each_ref().map(Vec::len), [2, 2]);
+        let found = table.replace(&mut fleet, 1, path.motion());
+        assert_eq!(found, expected.map(drop).map_err(Unchanged::Full));
+        let after = [1, 2].map(|agent| passes(&table, &fleet, agent));
+        match expected {
+            Err(_) => assert_eq!(after, before),
+            Ok(count) => {
+                assert!(after[0].len() == count && after[0].iter().all(|(.., pass)| *pass == Pass::Undecided));
+                let others = |row: &Vec<(usize, usize, _, Pass)>| -> Vec<_> {
+                    row.iter().map(|&(_, other, _, pass)| (other, pass)).collect()
+                };
+                assert_eq!(others(&after[1]), others(&before[1]));
+            }
+        }
+        let path = if expected.is_ok() { path } else { &start };
+        assert_eq!(fleet[1].path().length(), path.motion().path().length());
     }
 }
 
