@@ -13,7 +13,7 @@ use heapless::Vec;
 /// What a byte from the line comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event<S: Number> {
-    /// The next answer to the request; more follow.
+    /// The next answer to the request; more follow. Those to a [`Request::Report`] come as they are heard, in any order, and again.
     Answer(Answer<S>),
     /// The last answer to the request: it is done.
     Last(Answer<S>),
@@ -121,6 +121,11 @@ impl Client {
         if matches!(answer, Answer::Refused(Refusal::Sequence { .. })) {
             self.waiting = false;
             return Some(Event::OutOfStep);
+        }
+        // Each tells all by itself, and on a bad line the rest of a report's answer may never come in one piece.
+        if matches!(answer, Answer::Place { .. } | Answer::Go { .. }) {
+            self.waiting = answer.goes_on();
+            return Some(if self.waiting { Event::Answer(answer) } else { Event::Last(answer) });
         }
         // Again, or behind one that is missing.
         match tag.place.cmp(&self.heard) {
