@@ -1,7 +1,7 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
 use pcr_core::{
-    Brakes, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn,
+    Brakes, Encounter, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn,
 };
 use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
 use pcr_planning::fleet::{Fleet, Format};
@@ -163,6 +163,10 @@ fn motions<S: Format>() {
     let motion = make(one, S::ZERO).expect("a motion");
     each::<S, _>(refused_if_negative::<S>(), "margin", |margin| motion.with_margin(margin));
     assert_eq!(motion.with_margin(S::LIMIT).err(), Some(Invalid::OutOfRange("radius with its margin")));
+    // For plans it is larger by its margin and the tolerance of contacts.
+    let planned = motion.with_margin(one).and_then(Motion::for_plan).expect("a margin");
+    let tolerance = Encounter::new(&motion, &motion).tolerance();
+    assert_eq!((planned.radius(), planned.margin()), (one + (one + tolerance), S::ZERO));
     each::<S, _>(refused_if_negative::<S>(), "lateness", |lateness| motion.with_lateness(lateness));
     each::<S, _>(refused_anywhere::<S>(), "delay", |delay| motion.delayed(delay));
     assert_eq!(motion.delayed(S::LIMIT).err(), Some(Invalid::OutOfRange("end time")));
