@@ -109,6 +109,15 @@ fn chains<S: Format>() {
     assert_eq!(PathRef::new(&[second]).err(), Some(Invalid::Disconnected("path")), "does not begin at length 0");
     assert_eq!(PathRef::new(&[first, first]).err(), Some(Invalid::Disconnected("segment")));
     assert!(PathRef::new(&[first, second]).is_ok());
+    // One begins where the other ends, or after as long a way; not both.
+    let after = |x: f64, y: f64, length: f64| {
+        let start = Segment::standing(at::<S>(x, y, 0.0)).and_then(|start| start.then_line(S::from_f64(length)));
+        start.and_then(|line| line.then_line(one)).expect("a line")
+    };
+    assert!(PathRef::new(&[first, after(0.0, 0.0, 1.0)]).is_ok());
+    for next in [after(-1.0, 0.0, 2.0), after(0.0, 5.0, 1.0)] {
+        assert_eq!(PathRef::new(&[first, next]).err(), Some(Invalid::Disconnected("segment")));
+    }
     let turned = Segment::standing(at::<S>(0.0, 0.0, 1.0)).and_then(|turned| turned.then_line(one)).expect("a line");
     assert_eq!(PathRef::new(&[turned, second]).err(), Some(Invalid::Disconnected("segment")));
 

@@ -44,10 +44,10 @@ fn starts_are_those_outside_of_what_is_forbidden() {
             let found = earliest_departure(ecm.row(&fleet, 0).expect("its fleet"), 1.0, from.max(0.0));
             let found = found.expect("a wait");
             // What the ranges allow counts where somebody may be late, without a look for contacts.
-            let ranges = if own + their > 0.0 { 2.5 + their } else { hi };
-            let at_most = if from < lo || from > ranges { from.max(0.0) } else { ranges };
+            let ranges = if own + their > 0.0 { [0.5 - own, 2.5 + their] } else { [lo, hi] };
+            let at_most = if from < ranges[0] || from > ranges[1] { from.max(0.0) } else { ranges[1] };
             let least = if from < lo || from > hi { from.max(0.0) } else { hi };
-            assert!(least - 1e-6 <= found && found <= at_most.max(from) + 1e-6, "{own} {their}, from {from}: {found}");
+            assert!(least - 1e-6 <= found && found <= at_most + 1e-6, "{own} {their}, from {from}: {found}");
         }
     }
 }

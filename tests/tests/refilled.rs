@@ -3,7 +3,7 @@
 use pcr_core::{Ecm, Full, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged};
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::execution::Table;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// So many ways north, 2 m apart, after one that crosses them all on its way east.
 fn ways(count: usize) -> Vec<Course<f64>> {
@@ -99,4 +99,17 @@ fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
     assert_eq!(orders.erase(&fleet, 2), Err(Mismatch::OnlyRow(0)));
     assert_eq!(orders.remove(&fleet, 2), Err(Mismatch::OnlyRow(0)));
     assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Undecided)]);
+}
+
+#[test]
+fn a_circle_to_the_other_side_is_another_path() {
+    // The same start, end, length and radius.
+    let circle = |sweep: f64| {
+        let disc = Disc { radius: 0.3, start: [0.0, 0.0, 0.0], legs: vec![Leg::arc(1.0, sweep)] };
+        Course::<f64>::new(&disc).expect("a valid disc")
+    };
+    let (left, right, courses) = (circle(TAU), circle(-TAU), ways(1));
+    let table = Ecm::grown(&[left.motion(), courses[0].motion()]).expect("memory");
+    assert_eq!(table.row(&[left.motion(), courses[0].motion()], 0).map(drop), Ok(()));
+    assert_eq!(table.row(&[right.motion(), courses[0].motion()], 0).map(drop), Err(Mismatch::OtherFleet));
 }
