@@ -33,10 +33,14 @@ fn what_is_filled_again_has_nothing_of_before() {
         orders.fill(&fleet).expect("room for one table");
         assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, Pass::Undecided)));
         assert_eq!((orders.ecm().len(), orders.ecm().pieces()), (3, 3));
-        (1..4).for_each(|other| orders.decide(&fleet, 0, other, Pass::First, 0.0).expect("its fleet"));
+        for other in 1..=3 {
+            orders.decide(&fleet, 0, other, Pass::First, 0.0).expect("its fleet");
+        }
         orders.fill_row(&fleet, 0).expect("room for one row");
         assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, Pass::Undecided)));
-        (1..4).for_each(|other| orders.decide(&fleet, 0, other, Pass::Second, 0.0).expect("its row"));
+        for other in 1..=3 {
+            orders.decide(&fleet, 0, other, Pass::Second, 0.0).expect("its row");
+        }
     }
 }
 

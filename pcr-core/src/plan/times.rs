@@ -28,11 +28,6 @@ impl<S: Scalar> Times<S> {
         self.intervals.clear();
     }
 
-    /// The earliest of the times.
-    pub(super) fn first(&self) -> Option<S> {
-        self.intervals.first().map(|first| first.lo)
-    }
-
     /// Adds an interval. Without room the last interval but one is lost: the earliest times are the best, and the last ones
     /// are those at which everybody else has arrived.
     pub(super) fn add(&mut self, interval: Interval<S>) {
