@@ -87,6 +87,20 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
 }
 
 #[test]
+fn a_table_that_is_not_filled_is_empty() {
+    let courses = ways(4);
+    let fleet = motions(&courses);
+    for (regions, pieces, full) in [(3, 8, Full::Regions), (8, 3, Full::Pieces)] {
+        let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+        assert_eq!(ecm.fill(&fleet), Err(full));
+        assert_eq!((ecm.len(), ecm.pieces(), ecm.is_empty()), (0, 0, true));
+        // Nothing of it is found by those who come one after the other.
+        (0..2).for_each(|agent| ecm.insert(&fleet[..=agent], agent).expect("room for the first region"));
+        assert_eq!((ecm.len(), ecm.pieces()), (1, 1));
+    }
+}
+
+#[test]
 fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
     let (courses, others) = (ways(3), ways(4));
     let (mut fleet, mut stranger) = (motions(&courses), motions(&others[..4]));
