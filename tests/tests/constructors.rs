@@ -1,7 +1,7 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
 use pcr_core::{
-    Brakes, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn,
+    Brakes, Encounter, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn,
 };
 use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
 use pcr_planning::fleet::{Fleet, Format};
@@ -109,6 +109,15 @@ fn chains<S: Format>() {
     assert_eq!(PathRef::new(&[second]).err(), Some(Invalid::Disconnected("path")), "does not begin at length 0");
     assert_eq!(PathRef::new(&[first, first]).err(), Some(Invalid::Disconnected("segment")));
     assert!(PathRef::new(&[first, second]).is_ok());
+    // One begins where the other ends, or after as long a way; not both.
+    let after = |x: f64, y: f64, length: f64| {
+        let start = Segment::standing(at::<S>(x, y, 0.0)).and_then(|start| start.then_line(S::from_f64(length)));
+        start.and_then(|line| line.then_line(one)).expect("a line")
+    };
+    assert!(PathRef::new(&[first, after(0.0, 0.0, 1.0)]).is_ok());
+    for next in [after(-1.0, 0.0, 2.0), after(0.0, 5.0, 1.0)] {
+        assert_eq!(PathRef::new(&[first, next]).err(), Some(Invalid::Disconnected("segment")));
+    }
     let turned = Segment::standing(at::<S>(0.0, 0.0, 1.0)).and_then(|turned| turned.then_line(one)).expect("a line");
     assert_eq!(PathRef::new(&[turned, second]).err(), Some(Invalid::Disconnected("segment")));
 
@@ -163,6 +172,10 @@ fn motions<S: Format>() {
     let motion = make(one, S::ZERO).expect("a motion");
     each::<S, _>(refused_if_negative::<S>(), "margin", |margin| motion.with_margin(margin));
     assert_eq!(motion.with_margin(S::LIMIT).err(), Some(Invalid::OutOfRange("radius with its margin")));
+    // For plans it is larger by its margin and the tolerance of contacts.
+    let planned = motion.with_margin(one).and_then(Motion::for_plan).expect("a margin");
+    let tolerance = Encounter::new(&motion, &motion).tolerance();
+    assert_eq!((planned.radius(), planned.margin()), (one + (one + tolerance), S::ZERO));
     each::<S, _>(refused_if_negative::<S>(), "lateness", |lateness| motion.with_lateness(lateness));
     each::<S, _>(refused_anywhere::<S>(), "delay", |delay| motion.delayed(delay));
     assert_eq!(motion.delayed(S::LIMIT).err(), Some(Invalid::OutOfRange("end time")));

@@ -163,6 +163,21 @@ fn nobody_waits_for_who_ends_within_the_width_behind_a_region() {
     }
 }
 
+#[test]
+fn a_check_counts_places_and_the_width() {
+    let (east, north) = (east(), way([0.0, -4.0], [0.0, 0.605]));
+    let fleet = [east.motion(), north.motion()];
+    let mut orders = table(&fleet);
+    orders.decide(&fleet, 0, 1, Pass::Second, 0.0).expect("its fleet");
+    let mut check = |at: f64, width: f64| {
+        let progress = [Progress::at_rest(at), Progress::at_rest(0.0)];
+        orders.check(&fleet, &progress, Tolerances { width, ..TOLERANCES }, &mut [Reach::EMPTY; 2])
+    };
+    assert_eq!(check(0.0, 0.001), Ok(()));
+    assert!(matches!(check(0.0, 0.01), Err(Refused::Stuck { agent: 0, by: 1, .. })), "it may stop short of its end");
+    assert!(matches!(check(3.6, 0.001), Err(Refused::Late { agent: 0, by: 1, .. })));
+}
+
 /// Crosses the way north at y = 2 and the way east at x = 0.8, in this order.
 fn down() -> Course<f64> {
     way([-0.8, 4.0], [1.6, -2.0])

@@ -3,7 +3,7 @@
 use pcr_core::{Ecm, Full, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged};
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::execution::Table;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// So many ways north, 2 m apart, after one that crosses them all on its way east.
 fn ways(count: usize) -> Vec<Course<f64>> {
@@ -87,6 +87,20 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
 }
 
 #[test]
+fn a_table_that_is_not_filled_is_empty() {
+    let courses = ways(4);
+    let fleet = motions(&courses);
+    for (regions, pieces, full) in [(3, 8, Full::Regions), (8, 3, Full::Pieces)] {
+        let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+        assert_eq!(ecm.fill(&fleet), Err(full));
+        assert_eq!((ecm.len(), ecm.pieces(), ecm.is_empty()), (0, 0, true));
+        // Nothing of it is found by those who come one after the other.
+        (0..2).for_each(|agent| ecm.insert(&fleet[..=agent], agent).expect("room for the first region"));
+        assert_eq!((ecm.len(), ecm.pieces()), (1, 1));
+    }
+}
+
+#[test]
 fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
     let (courses, others) = (ways(3), ways(4));
     let (mut fleet, mut stranger) = (motions(&courses), motions(&others[..4]));
@@ -103,4 +117,17 @@ fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
     assert_eq!(orders.erase(&fleet, 2), Err(Mismatch::OnlyRow(0)));
     assert_eq!(orders.remove(&fleet, 2), Err(Mismatch::OnlyRow(0)));
     assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Undecided)]);
+}
+
+#[test]
+fn a_circle_to_the_other_side_is_another_path() {
+    // The same start, end, length and radius.
+    let circle = |sweep: f64| {
+        let disc = Disc { radius: 0.3, start: [0.0, 0.0, 0.0], legs: vec![Leg::arc(1.0, sweep)] };
+        Course::<f64>::new(&disc).expect("a valid disc")
+    };
+    let (left, right, courses) = (circle(TAU), circle(-TAU), ways(1));
+    let table = Ecm::grown(&[left.motion(), courses[0].motion()]).expect("memory");
+    assert_eq!(table.row(&[left.motion(), courses[0].motion()], 0).map(drop), Ok(()));
+    assert_eq!(table.row(&[right.motion(), courses[0].motion()], 0).map(drop), Err(Mismatch::OtherFleet));
 }

@@ -1,6 +1,6 @@
 //! Boxes, intervals and paths by hand: what they hold, to each side.
 
-use pcr_core::{Bounds, Interval, Invalid, Path, Point, Pose, Profile, gaps, union};
+use pcr_core::{Bounds, Interval, Invalid, Path, Point, Pose, Profile, Turn, gaps, union};
 use pcr_fixed::Q16;
 use pcr_planning::fleet::Format;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -66,6 +66,9 @@ fn sweeps<S: Format>() {
     }
     let none = start::<S>().arc_by(number(2.0), S::ZERO).expect("no arc");
     assert_eq!(none.as_path().length(), S::ZERO);
+    // A diameter is a number of the format, too.
+    let wide = start::<S>().arc(S::LIMIT.half() + S::LIMIT.half().half(), Turn::Left, number(1.0));
+    assert!(matches!(wide, Err(Invalid::OutOfRange("diameter of the arc"))));
     let beyond = start::<S>().arc_by(number(2.0), S::LIMIT.double());
     assert!(matches!(beyond, Err(Invalid::OutOfRange("sweep"))));
     // A turn in place between two lines, and one before the first.

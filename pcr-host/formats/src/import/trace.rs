@@ -176,6 +176,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_out_is_told() {
+        let deviation = |from: [f64; 2], to: [f64; 2]| {
+            let mut tracer = Tracer::default();
+            tracer.line([0.0, 0.0], [1.0, 0.0]);
+            tracer.line(from, to);
+            tracer.finish([0.0, 0.0]).deviation
+        };
+        // A line that begins, or ends, elsewhere than where the path is, and is no part of it.
+        assert_eq!(deviation([1.0, 0.003], [1.0, 0.0]), 0.003);
+        assert_eq!(deviation([1.0, 0.0], [1.0, NEAR / 2.0]), NEAR / 2.0);
+        assert!((deviation([1.0, 0.003], [2.0, 0.0]) - 0.003).abs() < 1e-9);
+        assert_eq!(deviation([1.0, 0.0], [2.0, 0.0]), 0.0);
+    }
+
+    #[test]
     fn turning_back_is_half_a_turn() {
         let mut tracer = Tracer::default();
         tracer.line([0.0, 0.0], [1.0, 0.0]);
