@@ -268,7 +268,7 @@ impl Supervisor {
         Ok(())
     }
 
-    fn place(&self, name: &str) -> Result<usize, Fault> {
+    pub(crate) fn place(&self, name: &str) -> Result<usize, Fault> {
         self.names.get(name).copied().ok_or(Fault::NoSuchRobot)
     }
 

@@ -86,6 +86,8 @@ pub struct Lane {
     pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
+    /// Something has come for it since it was looked at last.
+    pub(super) is_touched: bool,
 }
 
 impl Lane {
@@ -109,6 +111,7 @@ impl Lane {
             pause: None,
             sent,
             posts,
+            is_touched: true,
         }
     }
 

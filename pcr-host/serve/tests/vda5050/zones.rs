@@ -25,20 +25,15 @@ fn zones_may_be_entered_and_no_way_may_be_left() {
     let mut vehicle = Vehicle::new(key(), Version::V3_0, "map", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }, 1);
     let (_, state) = vehicle.out().into_iter().find(|(kind, _)| *kind == Kind::State).unwrap();
     let mut state: Value = serde_json::from_slice(&state).unwrap();
-    let zone = |id: &str, asks: &str| {
-        json!({ "requestId": id, "requestType": asks, "zoneId": "z", "zoneSetId": "s", "requestStatus": "REQUESTED" })
-    };
+    let zone = |id: &str, asks: &str| json!({ "requestId": id, "requestType": asks, "zoneId": "z", "zoneSetId": "s", "requestStatus": "REQUESTED" });
     state["zoneRequests"] = json!([zone("enters", "ACCESS"), zone("plans", "REPLANNING"), zone("both", "ACCESS")]);
-    let edge = |id: &str| {
-        json!({ "requestId": id, "requestType": "CORRIDOR", "edgeId": "e", "sequenceId": 1, "requestStatus": "REQUESTED" })
-    };
+    let edge = |id: &str| json!({ "requestId": id, "requestType": "CORRIDOR", "edgeId": "e", "sequenceId": 1, "requestStatus": "REQUESTED" });
     state["edgeRequests"] = json!([edge("swerves"), edge("both")]);
     assert!(schema("3.0.0", Kind::State).is_valid(&state), "{state}");
     bridge.receive(&mut supervisor, &topic(Kind::State), state.to_string().as_bytes(), 1.0);
     let names = ["enters", "plans", "swerves", "both", "unknown"];
-    let granted = |id: &&str| {
-        json!({ "requestId": id, "grantType": "GRANTED", "leaseExpiry": "2030-01-01T00:00:00.000Z" })
-    };
+    let granted =
+        |id: &&str| json!({ "requestId": id, "grantType": "GRANTED", "leaseExpiry": "2030-01-01T00:00:00.000Z" });
     let mut responses: Vec<Value> = names.iter().map(granted).collect();
     responses.push(json!({ "requestId": "plans", "grantType": "QUEUED" }));
     let message = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "3.0.0", "manufacturer": "sim",
@@ -51,7 +46,8 @@ fn zones_may_be_entered_and_no_way_may_be_left() {
     let told = out.iter().find(|message| message.topic == topic(Kind::Responses)).unwrap();
     let told: Value = serde_json::from_slice(&told.payload).unwrap();
     assert!(schema("3.0.0", Kind::Responses).is_valid(&told), "{told}");
-    let kinds: Vec<_> = told["responses"].as_array().unwrap().iter().map(|it| it["grantType"].as_str().unwrap()).collect();
+    let kinds: Vec<_> =
+        told["responses"].as_array().unwrap().iter().map(|it| it["grantType"].as_str().unwrap()).collect();
     assert_eq!(kinds, ["GRANTED", "REJECTED", "REJECTED", "REJECTED", "REJECTED", "QUEUED"]);
     assert_eq!(told["responses"][0], granted(&names[0]));
     let log = bridge.log();

@@ -24,6 +24,7 @@ const AHEAD: usize = 60;
 impl Lane {
     /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
+        self.is_touched = false;
         let Some(version) = self.version else { return };
         self.follow_cancel(now);
         let Some(allowed) = self.allowed(supervisor) else { return };
@@ -92,7 +93,7 @@ impl Lane {
     /// How far the vehicle may go \[m\]. After a restart the supervisor counts more as told than it has told, so that nobody else gets it;
     /// it is allowed only as far as the orders go.
     fn allowed(&mut self, supervisor: &Supervisor) -> Option<f64> {
-        let place = supervisor.robots().iter().position(|robot| robot.name == self.name)?;
+        let place = supervisor.place(&self.name).ok()?;
         let robot = supervisor.robots().get(place)?;
         if self.confirmed == Some((robot.path, robot.told)) {
             return Some(robot.told);
