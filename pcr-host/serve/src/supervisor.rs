@@ -268,7 +268,7 @@ impl Supervisor {
         Ok(())
     }
 
-    pub(crate) fn place(&self, name: &str) -> Result<usize, Fault> {
+    fn place(&self, name: &str) -> Result<usize, Fault> {
         self.names.get(name).copied().ok_or(Fault::NoSuchRobot)
     }
 
