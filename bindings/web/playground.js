@@ -383,6 +383,8 @@ function listen() {
     plane.setPointerCapture(event.pointerId);
     later();
   });
+  // A finger that has hold of nothing scrolls the page.
+  plane.addEventListener("touchstart", (event) => { if (grabbed) event.preventDefault(); }, { passive: false });
   plane.addEventListener("pointermove", (event) => {
     const agent = scenario.agents[chosen];
     if (!grabbed || !agent) return;
@@ -451,8 +453,11 @@ function listen() {
     link.href = URL.createObjectURL(new Blob([JSON.stringify(scenario, null, 1)], { type: "application/json" }));
     link.download = `${scenario.name}.json`;
     link.click();
-    URL.revokeObjectURL(link.href);
+    // Not at once: some browsers have not begun to read it.
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   });
+  // The same file again is a change, too.
+  $("load").addEventListener("click", () => { $("load").value = ""; });
   $("load").addEventListener("change", async () => {
     try {
       open(JSON.parse(await $("load").files[0].text()));
@@ -461,13 +466,18 @@ function listen() {
     }
   });
   $("share").addEventListener("click", async () => {
-    location.hash = toLink(scenario);
+    history.replaceState(null, "", `#${toLink(scenario)}`);
     try {
       await navigator.clipboard.writeText(location.href);
       say("The link is in the clipboard and in the address.");
     } catch {
       say("The link is in the address.");
     }
+  });
+  // A link that is pasted where the page is open already.
+  addEventListener("hashchange", () => {
+    const wrong = address();
+    if (wrong) say(wrong, true);
   });
   addEventListener("resize", () => later(draw));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => later(draw));
@@ -485,16 +495,24 @@ function open(found) {
   update();
 }
 
+/** Opens what the address holds; says why it cannot be opened. */
+function address() {
+  if (location.hash.length < 2) return "";
+  try {
+    open(fromLink(location.hash.slice(1)));
+    return "";
+  } catch (error) {
+    return `The link is not a scenario: ${error.message}`;
+  }
+}
+
 async function begin() {
   const packed = Uint8Array.from(atob(PACKED), (sign) => sign.charCodeAt(0));
   const module = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
   pcr = (await WebAssembly.instantiate(module)).instance.exports;
-  let start = START, wrong = "";
-  if (location.hash.length > 1) {
-    try { start = read(fromLink(location.hash.slice(1))); } catch (error) { wrong = `The link is not a scenario: ${error.message}`; }
-  }
   listen();
-  open(start);
+  open(START);
+  const wrong = address();
   if (wrong) say(wrong, true);
   document.body.dataset.ready = "yes";
 }

@@ -4,6 +4,7 @@
 //! order       agents one after the other, and who moves up       Unsolved
 //! delays      who starts when, moving as before                  plan_delays
 //! times       sets of times of fixed capacity                    (internal)
+//! constraint  where an agent must not be when                    Constraint
 //! lattice     the motions among which a speed plan is chosen     Drive
 //! station     what is remembered of a place along the path       Station
 //! outcome     a speed plan, or why there is none                 SpeedPlan
@@ -13,6 +14,7 @@
 //! speeds      a fleet of them                                    plan_speeds
 //! ```
 
+mod constraint;
 mod delays;
 mod lattice;
 mod order;
@@ -24,6 +26,7 @@ mod station;
 mod tighten;
 mod times;
 
+pub use constraint::Constraint;
 pub use delays::plan_delays;
 pub use lattice::Drive;
 pub use order::Unsolved;

@@ -419,7 +419,8 @@ fn agent(vehicle: &Vehicle, radius: f64) -> Agent {
         heading = Some(piece.heading_at_end());
     }
     let first = vehicle.curve[0];
-    let path = Path { start: first.at, heading: Angle::Radians(first.heading), segments, rounding: 1e-15 * total };
+    let path =
+        Path { start: first.at, heading: Angle::Radians(first.heading), segments, rounding: 1e-15 * total, step: 0.0 };
     let travel = Travel { start: vehicle.since, phases: vehicle.phases.clone(), lag: 0.0, time_excess: 0.0 };
     Agent { id: vehicle.id, radius, path, travel: Some(travel) }
 }

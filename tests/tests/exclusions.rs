@@ -75,6 +75,9 @@ fn vehicles_that_obey_blocks_or_envelopes_never_touch() {
     suffices("blocks", Format::OpenTcs, DEMO, 0.9, &settings(Target::OpenTcs));
     let envelopes = Settings { envelopes: Some("pcr".into()), ..settings(Target::OpenTcs) };
     suffices("envelopes", Format::OpenTcs, DEMO, 0.9, &envelopes);
+    for settings in [settings(Target::OpenTcs), envelopes] {
+        suffices("cut", Format::OpenTcs, DEMO, 0.9, &Settings { split: Some(2.0), ..settings });
+    }
 }
 
 #[test]
@@ -106,7 +109,7 @@ fn vehicles_without_rules_touch() {
 fn touch(radius: f64, points: [[f64; 2]; 2]) -> bool {
     let mover = |(k, start): (usize, [f64; 2])| {
         let segment = Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 };
-        let path = Path { start, heading: Angle::Radians(0.0), segments: vec![segment], rounding: 0.0 };
+        let path = Path { start, heading: Angle::Radians(0.0), segments: vec![segment], rounding: 0.0, step: 0.0 };
         let travel = Travel { start: 0.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
         Mover::new(&Agent { id: k as u64, radius, path, travel: Some(travel) }, [0.0, 1.0]).unwrap()
     };
@@ -203,6 +206,85 @@ fn all_else_is_kept_byte_for_byte() {
     assert_eq!(other(&groups), other(OFFICE));
 }
 
+/// Two ways beside each other, one of them in both directions, each with what may be in a model.
+const PLANT: &str = r#"<model version="7.0.0" name="plant">
+    <point name="a" positionX="0" positionY="0" positionZ="0" type="HALT_POSITION"><maxVehicleBoundingBox length="1000" width="1000" height="1000" referenceOffsetX="0" referenceOffsetY="0"/><outgoingPath name="a'b"/></point>
+    <point name="b" positionX="5001" positionY="3" positionZ="500" type="PARK_POSITION"><maxVehicleBoundingBox length="1200" width="900" height="1000" referenceOffsetX="0" referenceOffsetY="0"/><outgoingPath name="back"/></point>
+    <point name="c" positionX="0" positionY="-4000" positionZ="0" type="HALT_POSITION"><maxVehicleBoundingBox length="1000" width="1000" height="1000" referenceOffsetX="0" referenceOffsetY="0"/><outgoingPath name="c-d"/></point>
+    <point name="d" positionX="5000" positionY="-4000" positionZ="0" type="HALT_POSITION"><maxVehicleBoundingBox length="1000" width="1000" height="1000" referenceOffsetX="0" referenceOffsetY="0"/></point>
+    <path name='a&apos;b' sourcePoint="a" destinationPoint="b" length="5001" maxVelocity="1000" maxReverseVelocity="500" locked="false"><pathLayout connectionType="DIRECT" layerId="3"/></path>
+    <path name="back" sourcePoint="b" destinationPoint="a" length="5001" maxVelocity="1000" maxReverseVelocity="0" locked="false"/>
+    <path name="c-d" sourcePoint="c" destinationPoint="d" length="5000" maxVelocity="1000" maxReverseVelocity="0" locked="false">CONTENT</path>
+    <block name="kept" type="SINGLE_VEHICLE_ONLY">
+        <member name="a'b"/>
+        <member name="d"/>
+    </block>MORE
+</model>"#;
+
+#[test]
+fn paths_of_a_plant_are_cut_where_nothing_belongs_to_all_of_them() {
+    let plant = |content: &str, more: &str| PLANT.replace("CONTENT", content).replace("MORE", more);
+    let cut = |text: &str, split| {
+        let settings = Settings { split: Some(split), ..settings(Target::OpenTcs) };
+        write(Format::OpenTcs, text, &options(0.5), "site", &settings).unwrap()
+    };
+    let (text, report, _) = cut(&plant("", ""), 2.0);
+    // Each path has points of its own; the first part keeps the name.
+    assert_eq!((report.edges, report.nodes), (9, 10), "{text}");
+    for expected in [
+        "<path name='a&apos;b' sourcePoint=\"a\" destinationPoint=\"a&apos;b+1.667\" length=\"1667\" maxVelocity=\"1000\" maxReverseVelocity=\"500\"",
+        "<path name='a&apos;b part 3' sourcePoint=\"a&apos;b+3.334\" destinationPoint=\"b\" length=\"1667\"",
+        "<path name=\"back part 2\" sourcePoint=\"back+1.667\" destinationPoint=\"back+3.334\"",
+        "<point name=\"a&apos;b+3.334\" positionX=\"3334\" positionY=\"2\" positionZ=\"333\" vehicleOrientationAngle=\"NaN\" type=\"HALT_POSITION\">
+        <maxVehicleBoundingBox length=\"1200\" width=\"900\" height=\"1000\" referenceOffsetX=\"0\" referenceOffsetY=\"0\"/>
+        <outgoingPath name=\"a&apos;b part 3\"/>
+        <pointLayout labelOffsetX=\"-10\" labelOffsetY=\"-20\" layerId=\"3\"/>
+    </point>",
+        // A block that holds a path holds all that it has become.
+        "<member name=\"a'b\"/>
+        <member name=\"a&apos;b part 2\"/>
+        <member name=\"a&apos;b part 3\"/>
+        <member name=\"a&apos;b+1.667\"/>
+        <member name=\"a&apos;b+3.334\"/>
+        <member name=\"d\"/>",
+    ] {
+        assert!(text.contains(expected), "{expected}\n{text}");
+    }
+    // Cut again nothing changes, and less is excluded than without.
+    assert_eq!(cut(&text, 2.0).0, text);
+    assert!(report.excluded < 0.7 * report.uncut.unwrap(), "{report:?}");
+    for (content, more, reason) in [
+        (
+            r#"<peripheralOperation name="open" locationName="door" executionTrigger="AFTER_MOVEMENT" completionRequired="true"/>"#,
+            "",
+            "operations",
+        ),
+        (r#"<property name="tcs:routingCostForward" value="9"/>"#, "", "properties"),
+        (r#"<vehicleEnvelope key="k"><vertex x="0" y="0"/></vehicleEnvelope>"#, "", "envelopes"),
+        (
+            r#"<pathLayout connectionType="POLYPATH" layerId="0"><controlPoint x="50" y="85"/></pathLayout>"#,
+            "",
+            "control points",
+        ),
+        (
+            "",
+            r#"<block name="lane" type="SAME_DIRECTION_ONLY"><member name="c-d"/></block>"#,
+            "which path vehicles come in",
+        ),
+    ] {
+        let (text, report, _) = cut(&plant(content, more), 2.0);
+        assert!(
+            report.warnings.iter().any(|said| said.contains(reason) && said.ends_with(": c-d")),
+            "{:?}",
+            report.warnings
+        );
+        assert!(
+            text.contains(r#"name="c-d" sourcePoint="c" destinationPoint="d" length="5000""#)
+                && text.contains("a&apos;b part 3")
+        );
+    }
+}
+
 #[test]
 fn audits_name_what_is_left_out_and_what_is_in_vain() {
     let (radius, target) = (0.3, Target::Nav2);
@@ -261,8 +343,8 @@ fn what_cannot_be_written_is_refused() {
     assert!(refused(Format::Nav2, WAREHOUSE, &nav2, true).contains("--partial"));
     let large = WAREHOUSE.replace("10000", "70000");
     assert!(refused(Format::Nav2, &large, &nav2, false).contains("edge 70000"), "ids of 16 bits");
-    let split = Settings { split: Some(1.0), ..settings(Target::OpenTcs) };
-    assert!(refused(Format::OpenTcs, DEMO, &split, false).contains("--split"));
+    let split = Settings { split: Some(0.2), ..settings(Target::OpenTcs) };
+    assert!(refused(Format::OpenTcs, DEMO, &split, false).contains("whole millimetres"));
     let unknown = WAREHOUSE.replacen("\"id\": 0  }", "\"id\": 0, \"metadata\": { \"closed_edges\": [7] } }", 1);
     let imported = imported(Format::Nav2, WAREHOUSE, 0.4);
     assert!(read(Target::Nav2, &unknown, &imported).unwrap_err().to_string().contains("there is no edge 7"));

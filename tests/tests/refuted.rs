@@ -428,6 +428,14 @@ fn is_right(table: &Table, routes: &[Route; 2], what: &str, dice: &mut Dice, tri
     }
 }
 
+/// Ends that the format has.
+fn round(pair: &mut Pair, step: f64) {
+    if step > 0.0 {
+        let ends = pair.pieces.iter_mut().flat_map(|piece| piece.lengths.iter_mut().flatten());
+        ends.for_each(|end| *end = (*end / step).round() * step);
+    }
+}
+
 fn attacked<S: Format>(pairs: u64) -> [Tried; 2] {
     let [mut right, mut wrong] = [Tried::default(), Tried::default()];
     for seed in 0..pairs {
@@ -448,13 +456,14 @@ fn attacked<S: Format>(pairs: u64) -> [Tried; 2] {
         for change in 1..=8 {
             let mut other = table.clone();
             changed(&mut other.pairs[0], ends, &mut Dice::seeded(seed * 8 + change));
+            round(&mut other.pairs[0], other.agents[0].path.step);
             tell(&mut other.pairs[0]);
             is_right(&other, &routes, &what(change), &mut dice, &mut wrong);
         }
     }
     println!("{}: as computed {right:?}, changed {wrong:?}", S::NAME);
     assert_eq!(right.refuted + right.refused, 0, "{}: {right:?}", S::NAME);
-    assert!(wrong.refuted * 3 > wrong.tables && wrong.proved * 50 > wrong.tables, "{}: {wrong:?}", S::NAME);
+    assert!(wrong.refuted * 4 > wrong.tables && wrong.proved * 50 > wrong.tables, "{}: {wrong:?}", S::NAME);
     [right, wrong]
 }
 

@@ -1,6 +1,8 @@
 //! Speed plans: against a fine dynamic program and the definition, in every format, and known answers.
 
-use pcr_core::{Drive as Speeds, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed};
+use pcr_core::{
+    Constraint, Drive as Speeds, Interval, Invalid, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed,
+};
 use pcr_fixed::Q16;
 use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
@@ -14,10 +16,19 @@ const GRID: Grid = Grid { step: 0.05, acceleration: 1.0, speeds: 20, lengths: 32
 
 /// The plan of the first of the courses against the others.
 fn planned<S: Format>(courses: &[Course<S>], drive: Speeds<S>) -> Result<SpeedPlan<S, 48>, NoSpeedPlan<S>> {
+    constrained(courses, drive, &[])
+}
+
+/// The same under constraints.
+fn constrained<S: Format>(
+    courses: &[Course<S>],
+    drive: Speeds<S>,
+    constraints: &[Constraint<S>],
+) -> Result<SpeedPlan<S, 48>, NoSpeedPlan<S>> {
     let fleet: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
     let mut stations = vec![Station::EMPTY; 40];
-    plan_speed(&fleet[0], drive, ecm.row(&fleet, 0).expect("the table of the fleet"), &mut stations)
+    plan_speed(&fleet[0], drive, ecm.row(&fleet, 0).expect("the table of the fleet"), constraints, &mut stations)
 }
 
 fn limits<S: Format>() -> Limits<S> {
@@ -178,8 +189,43 @@ fn speeds_at_the_ends_are_kept() {
     // Up to 1 m/s and down, at 1 m/s over the rest.
     let ramps = (1.0 - 0.36 + 1.0 - 0.09) / 2.0;
     assert!((phases.duration() - (0.4 + 0.7 + (4.0 - ramps))).abs() < 0.1, "{}", phases.duration());
-    let too_fast = Speeds { limits: limits(), start: 1.5, goal: 0.0 };
-    assert!(matches!(planned(&[ego()], too_fast), Err(NoSpeedPlan::Invalid(_))));
+}
+
+#[test]
+fn limits_and_speeds_out_of_range_are_refused() {
+    let with = |speed, acceleration, start, goal| {
+        planned(&[ego()], Speeds { limits: Limits { speed, acceleration }, start, goal }).map(drop)
+    };
+    let refused = |invalid| Err(NoSpeedPlan::Invalid(invalid));
+    assert_eq!(with(1.0, 1.0, 1.0, 1.0), Ok(()));
+    assert_eq!(with(1.0, 1.0, 1.5, 0.0), refused(Invalid::OutOfRange("speed at the start")));
+    assert_eq!(with(1.0, 1.0, 0.0, 1.5), refused(Invalid::OutOfRange("speed at the goal")));
+    assert_eq!(with(1.0, 1.0, -0.1, 0.0), refused(Invalid::Negative("speed at the start")));
+    assert_eq!(with(0.0, 1.0, 0.0, 0.0), refused(Invalid::NonPositive("largest speed")));
+    assert_eq!(with(1.0, 0.0, 0.0, 0.0), refused(Invalid::NonPositive("largest acceleration")));
+}
+
+#[test]
+fn who_stands_all_the_time_is_in_the_way_at_any_time() {
+    let stands = || {
+        let disc = Disc { radius: 0.25, start: [0.0, 0.0, 0.0], legs: vec![] };
+        Course::<f64>::driven(&disc, &Drive::Unit, 0.0).expect("a valid disc")
+    };
+    // It passes 9 s before, or after.
+    for at in [-9.0, 9.0] {
+        let passes = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), at);
+        assert_eq!(arrival(&[stands(), passes]), Err(NoSpeedPlan::AtStart(1)));
+    }
+    let elsewhere = line([2.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), 0.0);
+    assert_eq!(arrival(&[stands(), elsewhere]), Ok(0.0));
+}
+
+#[test]
+fn a_plan_ends_its_duration_after_its_start() {
+    let other = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), 0.0);
+    let plan = planned(&[ego(), other], Speeds::rest_to_rest(limits())).expect("a plan");
+    assert!(plan.start > 0.1);
+    assert_eq!(plan.end(), plan.start + plan.profile.as_profile().duration());
 }
 
 #[test]
@@ -192,4 +238,106 @@ fn an_agent_in_motion_slows_down_for_one_that_crosses() {
     let least = 4.5 + 0.5 * 2.0_f64.sqrt();
     let found = plan.profile.as_profile().duration();
     assert!((least - 1e-6..least + 0.5).contains(&found), "{found}");
+}
+
+/// Random constraints on the ego: they are kept by the profile, at times of its own phases, and cost time only.
+fn constrained_in<S: Format>(slip: f64) {
+    let (mut kept, mut later) = (0, 0);
+    for seed in 0..CASES / 4 {
+        let dice = &mut Dice::seeded(seed);
+        let (ego, others) = scene(dice);
+        let all = [(ego, Drive::Limits(1.0, 1.0), 0.0)].into_iter().chain(others);
+        let rounded = all.map(|driven| Course::<S>::rounded(&driven).expect("a valid disc"));
+        let (courses, driven): (Vec<_>, Vec<_>) = rounded.unzip();
+        let mut part = |most: f64, longest: f64| {
+            let lo = dice.range(0.0, most);
+            Interval::new(S::from_f64(lo), S::from_f64(lo + dice.range(0.0, longest)))
+        };
+        let constraints: Vec<_> = (0..3).map(|_| Constraint { length: part(4.0, 0.6), time: part(8.0, 3.0) }).collect();
+        let speeds = Speeds::rest_to_rest(limits::<S>());
+        let Ok(plan) = constrained(&courses, speeds, &constraints) else { continue };
+        audited(&driven[0].0, &driven[1..], &plan, slip);
+        let motion = courses[0].motion().with_profile(plan.profile.as_profile(), plan.start).expect("it fits");
+        for tick in 0..4000 {
+            let time = 0.01 * f64::from(tick);
+            let length = motion.length_at(S::from_f64(time)).to_f64();
+            let [from, to] = [motion.time().lo.to_f64(), f64::INFINITY];
+            let inside = |all: Interval<S>, at: f64| all.lo.to_f64() + slip < at && at < all.hi.to_f64() - slip;
+            let is_broken = |it: &&Constraint<S>| inside(it.time, time) && inside(it.length, length);
+            let broken = constraints.iter().find(is_broken);
+            assert!(!(from..to).contains(&time) || broken.is_none(), "{seed}: at {time} s, {length} m: {broken:?}");
+        }
+        kept += 1;
+        let free = planned(&courses, speeds).expect("with less in the way");
+        later += u64::from(plan.end() > free.end() + S::from_f64(0.01));
+    }
+    assert!(kept * 2 > CASES / 4 && later * 4 > kept, "{kept} kept, {later} later");
+}
+
+#[test]
+fn constraints_are_kept_in_every_format() {
+    constrained_in::<f64>(1e-8);
+    constrained_in::<f32>(5e-4);
+    constrained_in::<Q16>(5e-3);
+}
+
+/// One agent that drives 4 m at 1 m/s and 1 m/s² at most, and is not to be on \[2 m, 3 m\] for some time.
+#[test]
+fn a_constraint_is_passed_behind_or_before() {
+    let ego = Disc { radius: 0.2, start: [0.0; 3], legs: vec![Leg::Line(4.0)] };
+    let course = [Course::<f64>::driven(&ego, &Drive::Limits(1.0, 1.0), 0.0).expect("a valid disc")];
+    let speeds = Speeds::rest_to_rest(limits());
+    let plan = |length: [f64; 2], time: [f64; 2]| {
+        let [length, time] = [length, time].map(|[lo, hi]| Interval::new(lo, hi));
+        constrained(&course, speeds, &[Constraint { length, time }])
+    };
+    let end = |length, time| plan(length, time).expect("a plan").end();
+    // Alone it takes 5 s and is on [2, 3] from 2.5 s to 3.5 s.
+    assert!((end([2.0, 3.0], [3.5, 9.0]) - 5.0).abs() < 1e-9);
+    assert!((end([2.0, 3.0], [-9.0, 2.5]) - 5.0).abs() < 1e-9);
+    // At full speed at 2 m after 6 s.
+    assert!((end([2.0, 3.0], [1.0, 6.0]) - 8.5).abs() < 1e-6);
+    // What is over when it sets off does not count, at its start neither.
+    assert!((end([0.0, 1.0], [-9.0, 0.0]) - 5.0).abs() < 1e-9);
+    assert!((end([0.0, 0.0], [0.5, 0.6]) - 5.0).abs() < 1e-9);
+    assert_eq!(plan([0.0, 1.0], [-1.0, 0.5]).err(), Some(NoSpeedPlan::Constrained { length: 0.0 }));
+    assert_eq!(plan([3.5, 5.0], [0.0, f64::MAX]).err(), Some(NoSpeedPlan::Constrained { length: 4.0 }));
+    assert!(matches!(plan([1.0, 2.0], [0.0, f64::MAX]), Err(NoSpeedPlan::Constrained { length }) if length <= 1.0));
+    for wrong in [[2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::NAN]] {
+        assert!(matches!(plan(wrong, [0.0, 1.0]), Err(NoSpeedPlan::Invalid(_))));
+        assert!(matches!(plan([0.0, 1.0], wrong), Err(NoSpeedPlan::Invalid(_))));
+    }
+}
+
+/// With each order of passing the ego is on the right side of the region, and one of the two is the plan without orders.
+#[test]
+fn an_order_of_passing_is_kept() {
+    let mut both = 0;
+    for seed in 0..200 {
+        let (ego, others) = scene(&mut Dice::seeded(seed));
+        let course = |driven: &Driven| Course::<f64>::driven(&driven.0, &driven.1, driven.2).expect("a valid disc");
+        let courses: Vec<_> = [(ego, Drive::Limits(1.0, 1.0), 0.0)].iter().chain(others.first()).map(course).collect();
+        let fleet: Vec<Motion<'_, f64>> = courses.iter().map(Course::motion).collect();
+        let ecm = build_ecm(&fleet).expect("a small table");
+        let regions: Vec<_> = ecm.row(&fleet, 0).expect("the table of the fleet").collect();
+        let [region] = &regions[..] else { continue };
+        let speeds = Speeds::rest_to_rest(limits());
+        let plans =
+            [Constraint::before(region), Constraint::after(region)].map(|it| constrained(&courses, speeds, &[it]));
+        for (plan, is_before) in plans.iter().zip([true, false]) {
+            let Ok(plan) = plan else { continue };
+            let motion = fleet[0].with_profile(plan.profile.as_profile(), plan.start).expect("it fits");
+            let own = motion.time_in(region.length());
+            let theirs = region.time();
+            assert!(
+                if is_before { own.hi < theirs.lo + 1e-6 } else { theirs.hi < own.lo + 1e-6 },
+                "{seed}: {own:?} {theirs:?}"
+            );
+        }
+        if let [Ok(before), Ok(after)] = &plans {
+            both += 1;
+            assert!(before.end() <= after.end(), "{seed}: who goes first is there first");
+        }
+    }
+    assert!(both > 10, "{both}");
 }

@@ -223,6 +223,7 @@ fn plans_with_lateness_hold_for_all_delays_in_it() {
             &fleet[0],
             pcr_core::Drive::of(&fleet[0]),
             ecm.row(&fleet, 0).expect("the table of the fleet"),
+            &[],
             &mut stations,
         );
         let by_speed = speeds.ok().map(|plan| {

@@ -38,7 +38,12 @@ pub enum NoSpeedPlan<S> {
         /// Index of the other agent in the fleet.
         other: usize,
     },
-    /// The drive is not valid, the speeds at the ends are too far apart for the path, there are too few stations, the
+    /// No motion leads further than about this length \[m\], because of a constraint.
+    Constrained {
+        /// Length along the path \[m\].
+        length: S,
+    },
+    /// The drive is not valid, a constraint is none, the speeds at the ends are too far apart for the path, there are too few stations, the
     /// profile has too few phases, or it takes longer than the format can tell.
     Invalid(Invalid),
 }
@@ -56,6 +61,7 @@ impl<S> core::fmt::Display for NoSpeedPlan<S> {
             Self::AtStart(other) => write!(f, "agent {other} of the fleet is met at the start"),
             Self::AtGoal(other) => write!(f, "agent {other} of the fleet blocks the goal for good"),
             Self::Beyond { other, .. } => write!(f, "agent {other} of the fleet blocks the way on"),
+            Self::Constrained { .. } => f.write_str("a constraint blocks the way on"),
             Self::Invalid(invalid) => write!(f, "{invalid}"),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
+use crate::plan::constraint::Constraint;
 use crate::plan::lattice::{LEVELS, Lattice, SLABS, borders};
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::station::Station;
@@ -11,9 +12,10 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 /// The regions that a path of this length has to keep out of, and the motions among which is chosen.
-pub(super) struct Search<S: Scalar, I> {
+pub(super) struct Search<'c, S: Scalar, I> {
     pub(super) lattice: Lattice<S>,
     pub(super) regions: I,
+    pub(super) constraints: &'c [Constraint<S>],
     /// Of the path \[m\].
     pub(super) length: S,
 }
@@ -24,7 +26,7 @@ struct Blocked<S> {
     end: Times<S>,
 }
 
-impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
+impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, I> {
     /// Sets up the stations, with the times at which the agent may set off from the first one.
     pub(super) fn begin(&self, from: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
         let cells = self.lattice.cells().map(|(cell, _)| cell);
@@ -44,7 +46,11 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
         stands(&self.regions, S::ZERO, before)?;
         let mut blocked = Times::NONE;
         self.cover(&mut blocked, Interval::new(S::ZERO, S::ZERO));
-        let until = blocked.first().unwrap_or(S::LIMIT);
+        // Nobody else is there before, and what a constraint says of the time before does not count.
+        let until = blocked.iter().find(|window| window.hi > from).map_or(S::LIMIT, |window| window.lo);
+        if until < from {
+            return Err(NoSpeedPlan::Constrained { length: S::ZERO });
+        }
         if let Some(times) = stations.first_mut().and_then(|station| station.reached_mut(start)) {
             times.add(Interval::new(from, if at_rest { until } else { from }));
         }
@@ -55,6 +61,12 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
     fn cover(&self, times: &mut Times<S>, part: Interval<S>) {
         let always = Interval::new(-S::LIMIT, S::LIMIT);
         self.near(part).flat_map(|region| region.blocked(part, always)).for_each(|window| times.cover(window));
+        self.constrained(part).for_each(|window| times.cover(window));
+    }
+
+    /// When constraints forbid a part of the path.
+    fn constrained(&self, part: Interval<S>) -> impl Iterator<Item = Interval<S>> {
+        self.constraints.iter().filter(move |it| it.length.meets(part)).map(|it| it.time)
     }
 
     /// The regions on a part of the path.
@@ -133,10 +145,13 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
     fn stopped(&self, cell: Interval<S>) -> NoSpeedPlan<S> {
         let until = |region: &RegionRef<'a, S>| if region.is_open_at_end() { S::LIMIT } else { region.time().hi };
         let later = |a: RegionRef<'a, S>, b: RegionRef<'a, S>| if until(&b) > until(&a) { b } else { a };
-        match self.near(cell).reduce(later) {
-            Some(region) => NoSpeedPlan::Beyond { length: cell.lo, other: region.other() },
+        let constrained = self.constrained(cell).map(|window| window.hi).reduce(S::max);
+        let most = self.near(cell).reduce(later).filter(|region| constrained.is_none_or(|hi| hi < until(region)));
+        match (most, constrained) {
+            (Some(region), _) => NoSpeedPlan::Beyond { length: cell.lo, other: region.other() },
+            (None, Some(_)) => NoSpeedPlan::Constrained { length: cell.lo },
             // Nothing is in the way: the speeds are too far apart, or the time is over.
-            None => NoSpeedPlan::Invalid(Invalid::OutOfRange("speed or time")),
+            (None, None) => NoSpeedPlan::Invalid(Invalid::OutOfRange("speed or time")),
         }
     }
 
@@ -152,7 +167,8 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
             }
             free = free.max(until);
         }
-        Ok(free)
+        let free = self.constrained(place).map(|window| window.hi).fold(free, S::max);
+        if free >= S::LIMIT { Err(NoSpeedPlan::Constrained { length: self.length }) } else { Ok(free) }
     }
 
     /// The earliest time at the goal, which is free from a time on.

@@ -14,6 +14,7 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::plan::constraint::Constraint;
 use crate::plan::lattice::{Drive, Lattice};
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::search::{Search, stands};
@@ -23,7 +24,7 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 /// The earliest arrival of an agent along its path that meets none of the regions: those of its row in the table, or of
-/// some of the others, each of whom moves as its motion says. Path, radius and earliest start are those of `ego`; its
+/// some of the others, each of whom moves as its motion says; and that keeps to the constraints. Path, radius and earliest start are those of `ego`; its
 /// profile does not matter. Before the start it stands, unless the drive says that it is in motion, and after
 /// the end it stands for good.
 ///
@@ -55,7 +56,7 @@ use crate::scalar::Scalar;
 ///
 /// let mut stations = [const { Station::EMPTY }; 32];
 /// let drive = Drive::rest_to_rest(limits);
-/// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0)?, &mut stations)?;
+/// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0)?, &[], &mut stations)?;
 /// let planned = Motion::new(paths[0].as_path(), plan.profile.as_profile(), 0.25, plan.start)?;
 /// // It passes behind the other one, R √2 / v later.
 /// assert!((planned.time().hi - fleet[0].time().hi - 0.5 * 2.0_f64.sqrt()).abs() < 1e-6);
@@ -65,15 +66,20 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     ego: &Motion<'_, S>,
     drive: Drive<S>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
+    constraints: &[Constraint<S>],
     stations: &mut [Station<S>],
 ) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
     let (from, length) = (ego.time().lo, ego.path().length());
+    constraints.iter().try_for_each(Constraint::checked)?;
     if length <= S::ZERO {
         stands(&regions, S::ZERO, Interval::new(-S::LIMIT, S::LIMIT))?;
+        if constraints.iter().any(|constraint| constraint.is_broken_by(ego)) {
+            return Err(NoSpeedPlan::Constrained { length: S::ZERO });
+        }
         return Ok(SpeedPlan { start: from, profile: Profile::standing() });
     }
     let lattice = Lattice::new(length, drive, stations.len().saturating_sub(1))?;
-    let search = Search { lattice, regions, length };
+    let search = Search { lattice, regions, constraints, length };
     let used = search.lattice.cells().fold(1_usize, |count, _| count.saturating_add(1));
     let stations = stations.get_mut(..used).ok_or(Invalid::Full("station"))?;
     search.begin(from, stations)?;

@@ -53,7 +53,7 @@ where
             let later = earliest(motion, regions.clone());
             // What is but a rounding earlier is not worth another profile.
             let earlier = |end: S| later.is_none_or(|later| end < later.time().hi - S::tolerance(end.abs()));
-            match plan_speed::<S, N>(&motion, Drive::of(&motion), regions.clone(), stations) {
+            match plan_speed::<S, N>(&motion, Drive::of(&motion), regions.clone(), &[], stations) {
                 Ok(speeds) if earlier(speeds.end()) => {
                     let full = || Blocked::Never(Unsolved::Full(agent));
                     let profile = profiles.next().ok_or_else(full)?;

@@ -3,26 +3,28 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::plan::constraint::Constraint;
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::search::Search;
 use crate::profile::{Phase, Profile};
-use crate::query::{Met, first_conflict};
+use crate::query::first_conflict;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 /// Halvings of a wait at most; fewer where the format has fewer digits.
 const HALVINGS: u32 = 32;
 
-impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
-    /// The first agent that is met from a time on.
-    fn met<const N: usize>(
-        &self,
-        ego: &Motion<'_, S>,
-        plan: &SpeedPlan<S, N>,
-        from: S,
-    ) -> Result<Option<Met<S>>, Invalid> {
+impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, I> {
+    /// Whether nobody is met from a time on and no constraint is broken.
+    fn is_free<const N: usize>(&self, ego: &Motion<'_, S>, plan: &SpeedPlan<S, N>, from: S) -> Result<bool, Invalid> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
-        Ok(first_conflict(&motion, self.regions.clone(), self.during(&motion, from)))
+        Ok(self.broken(&motion).is_none()
+            && first_conflict(&motion, self.regions.clone(), self.during(&motion, from)).is_none())
+    }
+
+    /// A constraint that a motion breaks.
+    fn broken(&self, motion: &Motion<'_, S>) -> Option<&Constraint<S>> {
+        self.constraints.iter().find(|constraint| constraint.is_broken_by(motion))
     }
 
     /// From a time on until everybody stands.
@@ -43,6 +45,9 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
         let from = if start == 0 { -S::LIMIT } else { plan.start };
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         let during = self.during(&motion, from);
+        if let Some(constraint) = self.broken(&motion) {
+            return Err(NoSpeedPlan::Constrained { length: constraint.length.lo });
+        }
         let mut overlaps =
             self.regions.clone().filter_map(|region| Some((region.other(), region.overlap(&motion, during)?)));
         overlaps
@@ -92,7 +97,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<S, I> {
             }
             let sooner = plan.sooner(place, tried)?;
             // What comes before stays as it is.
-            if self.met(ego, &sooner, leaves - wait)?.is_none() {
+            if self.is_free(ego, &sooner, leaves - wait)? {
                 free = tried;
             } else {
                 doubtful = tried;

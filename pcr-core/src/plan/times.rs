@@ -28,11 +28,6 @@ impl<S: Scalar> Times<S> {
         self.intervals.clear();
     }
 
-    /// The earliest of the times.
-    pub(super) fn first(&self) -> Option<S> {
-        self.intervals.first().map(|first| first.lo)
-    }
-
     /// Adds an interval. Without room the last interval but one is lost: the earliest times are the best, and the last ones
     /// are those at which everybody else has arrived.
     pub(super) fn add(&mut self, interval: Interval<S>) {
@@ -130,6 +125,20 @@ mod tests {
     #[test]
     fn intervals_that_meet_become_one() {
         assert!(is(&set(&[(5.0, 6.0), (1.0, 2.0), (2.0, 3.0), (5.5, 7.0)]), &[(1.0, 3.0), (5.0, 7.0)]));
+    }
+
+    #[test]
+    fn intervals_are_in_order_whatever_comes_first() {
+        let sorted = [(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (6.0, 7.0)];
+        for turn in 0..4 {
+            let mut turned = sorted;
+            turned.rotate_left(turn);
+            let mut covered = Times::NONE;
+            turned.iter().for_each(|&(lo, hi)| covered.cover(Interval::new(lo, hi)));
+            assert!(is(&set(&turned), &sorted) && is(&covered, &sorted), "{turned:?}");
+            turned.reverse();
+            assert!(is(&set(&turned), &sorted), "{turned:?}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! that ends there, and that edge touches whatever the node does; hence for a node and an edge it is enough that a vehicle
 //! at the node keeps others off the edge, and two nodes need nothing more.
 
+use crate::meetings::Meetings;
 use crate::{Group, Rules, Target, Way, nearest, stretch};
 use pcr_formats::import::{Id, Imported, Layout};
 use pcr_formats::scenario::Placed;
@@ -111,7 +112,7 @@ impl Audit {
         }
         audit.add_nodes(&auditor, locks, &places);
         for [a, b] in auditor.excluded_pairs() {
-            audit.excluded += auditor.area(a, b);
+            audit.excluded += auditor.area([a, b]);
             if !pairs.contains_key(&[a, b]) && !pairs.contains_key(&[b, a]) {
                 let id = |place: usize| imported.layout.edges[place].id.clone();
                 audit.needless.push(Needless { a: id(a), b: id(b) });
@@ -150,6 +151,7 @@ struct Auditor<'a> {
     rules: &'a Rules,
     rides: Rides<'a>,
     radius: f64,
+    meetings: Meetings,
 }
 
 /// The two ranges' common part.
@@ -162,7 +164,7 @@ impl<'a> Auditor<'a> {
     fn new(imported: &'a Imported, rules: &'a Rules) -> Self {
         let rides = Rides::new(imported);
         let radius = rides.vehicle().radius;
-        Self { imported, rules, rides, radius }
+        Self { imported, rules, rides, radius, meetings: Meetings::of(rules) }
     }
 
     fn layout(&self) -> &'a Layout {
@@ -186,7 +188,7 @@ impl<'a> Auditor<'a> {
         let mut worst: Option<Gap> = None;
         let mut seen = BTreeSet::new();
         for [own, other] in self.both_ways(pair) {
-            let [sections, others] = Way::between(own, other);
+            let [sections, others] = Way::between(own, other, self.meetings.tokens(pair));
             for own in &sections {
                 let Some(own_length) = common(own.length, a_length) else { continue };
                 for other in others.iter().filter(|other| !own.claim.excludes(&other.claim)) {
@@ -277,49 +279,27 @@ impl<'a> Auditor<'a> {
     }
 
     /// Pairs of different edges of which some sections exclude each other.
-    fn excluded_pairs(&self) -> BTreeSet<[usize; 2]> {
-        let edges = 0..self.layout().edges.len();
-        let having = |edge: usize, bars: bool| {
-            let marks = self.ways(edge).flat_map(Way::marks).filter(move |mark| mark.bars == bars);
-            marks.map(|mark| mark.token)
-        };
-        let mut taking: Vec<[usize; 2]> =
-            edges.clone().flat_map(|edge| having(edge, false).map(move |token| [token, edge])).collect();
-        taking.sort_unstable();
-        taking.dedup();
-        let takers = |token: usize| {
-            let begin = taking.partition_point(|taken| taken[0] < token);
-            taking[begin..].iter().take_while(move |taken| taken[0] == token).map(|taken| taken[1])
-        };
-        let mut pairs: BTreeSet<[usize; 2]> = BTreeSet::new();
-        for a in edges {
-            let mut tokens: Vec<usize> = having(a, true).collect();
-            tokens.sort_unstable();
-            tokens.dedup();
-            // What excludes each other shows from either side.
-            let others: BTreeSet<usize> = tokens.into_iter().flat_map(takers).filter(|b| *b > a).collect();
-            pairs.extend(others.into_iter().map(|b| [a, b]).filter(|&pair| self.excludes(pair)));
-        }
-        pairs
+    fn excluded_pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.meetings.pairs().filter(|&[a, b]| a != b && self.excludes([a, b]))
     }
 
     fn excludes(&self, pair: [usize; 2]) -> bool {
         self.both_ways(pair).any(|[own, other]| {
-            let [own, other] = Way::between(own, other);
+            let [own, other] = Way::between(own, other, self.meetings.tokens(pair));
             own.iter().any(|own| other.iter().any(|other| own.claim.excludes(&other.claim)))
         })
     }
 
     /// Lengths of two edges at which they exclude each other, in the directions in which most are left \[m²\].
-    fn area(&self, a: usize, b: usize) -> f64 {
+    fn area(&self, pair: [usize; 2]) -> f64 {
         let size = |length: [f64; 2]| length[1] - length[0];
         let area = |[own, other]: [&Way; 2]| {
-            let [own, other] = Way::between(own, other);
+            let [own, other] = Way::between(own, other, self.meetings.tokens(pair));
             let pairs = own.iter().flat_map(|own| other.iter().map(move |other| (own, other)));
             let excluded = pairs.filter(|(own, other)| own.claim.excludes(&other.claim));
             excluded.map(|(own, other)| size(own.length) * size(other.length)).sum::<f64>()
         };
-        self.both_ways([a, b]).map(area).fold(f64::INFINITY, f64::min)
+        self.both_ways(pair).map(area).fold(f64::INFINITY, f64::min)
     }
 }
 

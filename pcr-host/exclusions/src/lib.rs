@@ -14,6 +14,7 @@
 //! ```text
 //! way       an edge in one direction, with what a vehicle has on its stretches
 //! nearest   the least distance of two stretches
+//! meetings  tokens by which two edges can exclude each other
 //! audit     what can touch and is not excluded, and what is excluded and cannot touch   Audit
 //! cover     cliques that cover the pairs of a graph, and how many it takes at least
 //! edit      changes of a text at spans; the rest is kept byte for byte
@@ -29,6 +30,7 @@ mod audit;
 mod cover;
 mod edit;
 mod json;
+mod meetings;
 mod nav2;
 mod nearest;
 mod opentcs;

@@ -8,6 +8,10 @@
 //! come first, since a block of two points is one of all paths that end there.
 //! `SAME_DIRECTION_ONLY` keeps off nothing that can touch: it lets vehicles in that follow one another.
 
+mod cut;
+
+pub(crate) use cut::split;
+
 use crate::audit::groups;
 use crate::cover::cover;
 use crate::edit::{Edits, indent};
@@ -246,7 +250,8 @@ fn write_blocks(
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    text.replace('"', "&quot;").replace('\'', "&apos;")
 }
 
 fn write_envelopes(

@@ -27,9 +27,13 @@ fn vehicle(vehicle: &LockVehicle) -> String {
     }
 }
 
+fn times(excluded: f64, needed: f64) -> String {
+    if needed > 0.0 { format!(", {:.1} times that", excluded / needed) } else { String::new() }
+}
+
 /// How much is excluded beside what is needed.
 fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
-    let times = if needed > 0.0 { format!(", {:.1} times that", excluded / needed) } else { String::new() };
+    let times = times(excluded, needed);
     writeln!(out, "  lengths of two edges: {needed:.1} m² touch, {excluded:.1} m² are excluded{times}")?;
     writeln!(out, "  pairs of edges that cannot touch and are excluded: {needless}")
 }
@@ -52,6 +56,13 @@ pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> 
     writeln!(out, "  groups: {}{bound}", written.groups)?;
     writeln!(out, "  pairs that can touch: {}, all excluded by what stands in the file", written.can_touch)?;
     extent(out, written.excluded, written.needed, written.needless)?;
+    if let Some(uncut) = written.uncut {
+        writeln!(
+            out,
+            "  without cutting, of the same lengths: {uncut:.1} m² excluded{}",
+            times(uncut, written.needed)
+        )?;
+    }
     for warning in &written.warnings {
         writeln!(out, "  {}", printable(warning))?;
     }

@@ -1,7 +1,6 @@
 //! An edge in one direction, with what a vehicle has on its stretches.
 
 use crate::Claim;
-use std::iter::Peekable;
 use std::sync::Arc;
 
 /// A stretch of an edge on which a vehicle has a claim.
@@ -62,23 +61,25 @@ impl Way {
         self.cut(&self.marks)
     }
 
-    /// The sections of two ways as far as one of them excludes the other.
-    pub(crate) fn between(a: &Self, b: &Self) -> [Vec<Section>; 2] {
+    /// The sections of two ways as far as one of them excludes the other, by tokens that one of them takes and the other bars.
+    pub(crate) fn between(a: &Self, b: &Self, tokens: impl IntoIterator<Item = usize>) -> [Vec<Section>; 2] {
         let [mut of_a, mut of_b] = [Vec::new(), Vec::new()];
-        let (mut ahead_a, mut ahead_b) = (a.marks.iter().peekable(), b.marks.iter().peekable());
-        while let (Some(one), Some(other)) = (ahead_a.peek(), ahead_b.peek()) {
-            let token = one.token.min(other.token);
-            let from = [of_a.len(), of_b.len()];
-            take(&mut ahead_a, token, &mut of_a);
-            take(&mut ahead_b, token, &mut of_b);
-            let has = |marks: &[Mark], from: usize, bars: bool| marks[from..].iter().any(|mark| mark.bars == bars);
-            let meets = [false, true].iter().any(|&bars| has(&of_a, from[0], bars) && has(&of_b, from[1], !bars));
-            if !meets {
-                of_a.truncate(from[0]);
-                of_b.truncate(from[1]);
+        for token in tokens {
+            let [own, other] = [a, b].map(|way| way.of(token));
+            let has = |marks: &[Mark], bars: bool| marks.iter().any(|mark| mark.bars == bars);
+            if [false, true].iter().any(|&bars| has(own, bars) && has(other, !bars)) {
+                of_a.extend_from_slice(own);
+                of_b.extend_from_slice(other);
             }
         }
         [a.cut(&of_a), b.cut(&of_b)]
+    }
+
+    /// The marks of a token.
+    fn of(&self, token: usize) -> &[Mark] {
+        let from = self.marks.partition_point(|mark| mark.token < token);
+        let long = self.marks[from..].iter().take_while(|mark| mark.token == token).count();
+        &self.marks[from..from + long]
     }
 
     /// Its sections as far as somebody with this claim keeps others off them.
@@ -122,13 +123,6 @@ impl Way {
     }
 }
 
-/// The marks of a token, from marks that are ahead by token.
-fn take<'a>(ahead: &mut Peekable<impl Iterator<Item = &'a Mark>>, token: usize, into: &mut Vec<Mark>) {
-    while let Some(mark) = ahead.next_if(|mark| mark.token <= token) {
-        into.push(*mark);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -153,7 +147,7 @@ mod tests {
                 ahead
             };
             let (a, b) = (way(false), way(true));
-            let [of_a, of_b] = Way::between(&a, &b);
+            let [of_a, of_b] = Way::between(&a, &b, 0..5);
             assert!(of_a.len() <= a.sections().len());
             let at = |sections: &[Section], l: f64| {
                 let found = sections.iter().find(|section| section.length[0] <= l && l <= section.length[1]);

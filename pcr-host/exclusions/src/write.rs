@@ -34,6 +34,9 @@ pub struct Written {
     pub excluded: f64,
     /// Those at which the table of locks does \[m²\].
     pub needed: f64,
+    /// What would be excluded of the same lengths without cutting, where edges, lanes, paths or zones are cut \[m²\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncut: Option<f64>,
     /// What was left as it is, or replaced, and what was read otherwise than it was written.
     pub warnings: Vec<String>,
 }
@@ -59,15 +62,15 @@ pub fn write(
     if options.partial {
         return refused("--partial: what is left out of a layout would be free in the file".into());
     }
-    if settings.split.is_some() && matches!(target, Target::Pcr | Target::OpenTcs) {
-        return refused(match target {
-            Target::Pcr => "--split: a lock file has stretches already".into(),
-            _ => "--split: paths of a plant model are cut in its editor, as points have types, names and places".into(),
-        });
+    if settings.split.is_some() && target == Target::Pcr {
+        return refused("--split: a lock file has stretches already".into());
     }
     if settings.envelopes.is_some() && target != Target::OpenTcs {
         return refused(format!("--envelopes: {target} has none"));
     }
+    // What cutting is worth.
+    let uncut = Settings { split: None, ..settings.clone() };
+    let uncut = settings.split.map(|_| write(format, text, options, name, &uncut)).transpose()?;
     let mut notes = Notes::default();
     let read_layout = |text: &str| -> Result<Imported, ImportError> {
         let mut imported = import::layout(format, text, options, &mut Warnings::default())?;
@@ -85,6 +88,9 @@ pub fn write(
             let (text, whole) = nav2::split(text, most)?;
             notes.said.extend(whole);
             Some(text)
+        }
+        (Target::OpenTcs, Some(most)) => {
+            Some(opentcs::split(text, &imported, most, settings.envelopes.as_deref(), &mut notes)?)
         }
         (Target::Rmf, most) => Some(rmf::prepare(text, &imported, most, &mut notes)?),
         _ => None,
@@ -111,6 +117,14 @@ pub fn write(
         let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
         return refused(format!("{a:?} and {b:?} are not excluded by what would be written ({depth} m deep)"));
     }
+    // An edge excludes itself: two parts of one are lengths that it excludes without cutting, too.
+    let squares = |layout: &Imported| layout.layout.edges.iter().map(|edge| edge.length().powi(2)).sum::<f64>();
+    let uncut = match uncut {
+        Some((uncut, report, _)) if target.layout().is_some() => {
+            Some(report.excluded + (squares(&read_layout(&uncut)?) - squares(&again)) / 2.0)
+        }
+        uncut => uncut.map(|(_, report, _)| report.excluded),
+    };
     let report = Written {
         layout: locks.layout.clone(),
         vehicle: locks.vehicle.clone(),
@@ -123,6 +137,7 @@ pub fn write(
         needless: audit.needless.len(),
         excluded: audit.excluded,
         needed: audit.needed,
+        uncut,
         warnings: audit.warnings.iter().chain(&notes.said).cloned().collect(),
     };
     Ok((written, report, audit))

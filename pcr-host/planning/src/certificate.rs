@@ -36,6 +36,7 @@ pub fn agent<S: Format>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turn
             heading: S::held_angle(heading),
             segments: segments.collect(),
             rounding: S::EPSILON * path.length().to_f64(),
+            step: S::STEP,
         },
         travel: Some(Travel {
             start: motion.time().lo.to_f64(),

@@ -38,6 +38,8 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     }
     /// By how much of itself a sum may be rounded, twice: 0 in a format that adds exactly.
     const EPSILON: f64;
+    /// What all numbers are multiples of, in fixed point; 0 in floating point.
+    const STEP: f64 = 0.0;
 }
 
 impl Format for f64 {

@@ -222,7 +222,7 @@ fn path(pieces: &[Course], length: f64) -> data::Path {
     }
     assert!((from - length).abs() < 1e-6, "the record is {from} m long, the way {length} m");
     let rounding = 1e-9;
-    data::Path { start: [start.x, start.y], heading: Angle::Radians(start.heading), segments, rounding }
+    data::Path { start: [start.x, start.y], heading: Angle::Radians(start.heading), segments, rounding, step: 0.0 }
 }
 
 enum Mail {

@@ -20,7 +20,7 @@ pub(super) struct Asked {
     /// Write the layout to the file of --output, with what keeps its vehicles apart
     #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
     write: Option<Target>,
-    /// Cut edges (lanes, zones) into equal parts no longer than this before
+    /// Cut edges (lanes, straight paths, zones) into equal parts no longer than this before
     #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
     split: Option<f64>,
     /// Write envelopes with this key instead of blocks (openTCS)

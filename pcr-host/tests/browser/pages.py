@@ -101,11 +101,11 @@ class Browser:
             raise SystemExit(f"pages: {expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def key(self, key, code=None):
+    def key(self, key, modifiers=0):
         text = {"Enter": "\r"}.get(key, key if len(key) == 1 else "")
         codes = {"Tab": 9, "Enter": 13, "ArrowDown": 40, "Escape": 27}
         for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, text=text if kind == "keyDown" else "",
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers, text=text if kind == "keyDown" else "",
                       windowsVirtualKeyCode=codes.get(key, ord(key[0]) if len(key) == 1 else 0))
 
     def screenshot(self, path):

@@ -89,7 +89,10 @@ fn what_cannot_be_done_is_refused() {
 #[ignore = "needs xmllint (Debian's package libxml2-utils)"]
 fn plant_models_are_valid() {
     let layout = real("opentcs/Demo-01.xml");
-    for (name, more) in [("blocks.xml", &[][..]), ("envelopes.xml", &["--envelopes", "pcr"])] {
+    let cut = ["--split", "2", "--envelopes", "pcr"];
+    for (name, more) in
+        [("blocks.xml", &[][..]), ("envelopes.xml", &cut[2..]), ("cut.xml", &cut[..2]), ("cut-envelopes.xml", &cut)]
+    {
         let written = output(name);
         let write = ["locks", &layout, "--radius", "0.9", "--write", "opentcs", "-o", &written, "-q"];
         assert_eq!(run(&[&write[..], more].concat()).status, 0);

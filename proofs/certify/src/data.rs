@@ -49,6 +49,15 @@ pub struct Path {
     pub segments: Vec<Segment>,
     /// What a length along the path may be off by the rounding of sums \[m\].
     pub rounding: f64,
+    /// What all lengths of a fixed-point format are multiples of \[m\]; 0 in floating point.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_zero"))]
+    pub step: f64,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
+fn is_zero(step: &f64) -> bool {
+    *step == 0.0
 }
 
 /// Motion at constant acceleration through the times and lengths at both of its ends, with the speed at the slower one.

@@ -54,6 +54,14 @@ impl Format {
         }
     }
 
+    /// What all lengths are multiples of \[m\], if there is such a number.
+    fn step(self) -> f64 {
+        match self {
+            Self::Float => 0.0,
+            Self::Fixed(digits) => f64::powi(2.0, -digits),
+        }
+    }
+
     /// What a sum of lengths up to this one may be off \[m\].
     fn rounding(self, length: f64) -> f64 {
         match self {
@@ -150,7 +158,7 @@ impl<'a> Lines<'a> {
         let segments = (0..segments).map(|_| self.segment()).collect::<Result<Vec<_>, _>>()?;
         let phases = (0..phases).map(|_| self.phase()).collect::<Result<_, _>>()?;
         let rounding = self.format.rounding(segments.last().map_or(0.0, |last| last.to));
-        let path = Path { start, heading, segments, rounding };
+        let path = Path { start, heading, segments, rounding, step: self.format.step() };
         Ok(Agent { id, radius, path, travel: Some(Travel { start: from, phases, lag, time_excess }) })
     }
 

@@ -37,6 +37,7 @@
 //!         heading: Angle::Turns(heading),
 //!         segments: vec![Segment { length: 2.0, radius: None, turns: vec![], from: 0.0, to: 2.0 }],
 //!         rounding: 0.0,
+//!         step: 0.0,
 //!     },
 //!     travel: None,
 //! };

@@ -212,7 +212,7 @@ mod tests {
             Phase { time: [0.0, half], length: [0.0, 0.5 * from], speed: [0.0, top] },
             Phase { time: [half, 2.0 * half], length: [0.5 * from, from], speed: [top, 0.0] },
         ];
-        let path = Path { start, heading: Angle::Radians(heading), segments, rounding: 1e-14 };
+        let path = Path { start, heading: Angle::Radians(heading), segments, rounding: 1e-14, step: 0.0 };
         Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0, time_excess: 0.0 }) }
     }
 

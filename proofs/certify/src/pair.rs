@@ -242,6 +242,9 @@ pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Pla
             if !(stretch.holds(lo) && stretch.holds(hi) && lo <= hi) {
                 return Err(format!("a piece from {lo} to {hi} m is not on its segment"));
             }
+            if !(stretch.is_of_format(lo) && stretch.is_of_format(hi)) {
+                return Err(format!("a piece from {lo} to {hi} m has ends that its number format has not"));
+            }
             lengths[k] = stretch.range([lo, hi]);
         }
         if piece.share != Share::Only && stretches[0][piece.segments[0]].turns_left().is_none() {

@@ -22,9 +22,30 @@ pub struct Stretch {
     pub before: Twofold,
     from: f64,
     to: f64,
+    step: f64,
 }
 
 impl Stretch {
+    /// From the first to the last length of the number format in a part of the segment; none, if there is none.
+    pub fn of_format(&self, [lo, hi]: [Twofold; 2]) -> Option<[Twofold; 2]> {
+        if self.step == 0.0 {
+            return Some([lo, hi]);
+        }
+        // A power of two, and lengths below 2^50 digits: nothing of this is rounded but the number that is looked at first.
+        let steps = |length: Twofold| length * (1.0 / self.step);
+        let up = |steps: Twofold| {
+            let near = Twofold::from(steps.to_f64().round());
+            if near < steps { near + Twofold::from(1.0) } else { near }
+        };
+        let (lo, hi) = (up(steps(lo)), -up(-steps(hi)));
+        (lo <= hi).then(|| [lo, hi].map(|steps| steps * self.step))
+    }
+
+    /// Whether a length along the path is one of the number format.
+    pub fn is_of_format(&self, length: f64) -> bool {
+        is_multiple(length, self.step)
+    }
+
     /// The length along the segment at a length along the path. An end is one if it is the same number as that of the segment.
     pub fn along(&self, length: f64) -> Twofold {
         if length == self.from {
@@ -114,6 +135,11 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
     let [x, y] = path.start;
     fits(x, "x")?;
     fits(y, "y")?;
+    // A power of two has no bit set in its fraction.
+    let is_power = path.step.to_bits() << 12 == 0 && (2.0_f64.powi(-32)..=1.0).contains(&path.step);
+    if path.step != 0.0 && !is_power {
+        return Err(format!("the step {} is none of a fixed-point format", path.step));
+    }
     let (Angle::Radians(heading) | Angle::Turns(heading)) = path.heading;
     if heading.abs() > 6000.0 || heading.is_nan() {
         return Err(format!("heading {heading} is out of range"));
@@ -149,10 +175,18 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
                 return Err(wrong(format!("its lengths along the path are off by {off:e} m")));
             }
         }
-        stretches.push(Stretch { placed, before, from: segment.from, to: segment.to });
+        let step = path.step;
+        if ![segment.length, segment.from, segment.to].into_iter().all(|length| is_multiple(length, step)) {
+            return Err(wrong(format!("its lengths are no multiples of {step:e} m")));
+        }
+        stretches.push(Stretch { placed, before, from: segment.from, to: segment.to, step });
         (before, sum) = (before + length, segment.to);
     }
     if stretches.is_empty() { Err("no segments".into()) } else { Ok(stretches) }
+}
+
+fn is_multiple(length: f64, step: f64) -> bool {
+    step == 0.0 || (length / step).fract() == 0.0
 }
 
 fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
@@ -178,8 +212,14 @@ mod tests {
     fn arcs(count: u32, radius: f64, length: f64, sum: impl Fn(u32) -> f64) -> Vec<Stretch> {
         let segment = |k| Segment { length, radius: Some(radius), turns: vec![], from: sum(k), to: sum(k + 1) };
         let heading = Angle::Turns(0.1);
-        stretches(&Path { start: [0.0; 2], heading, segments: (0..count).map(segment).collect(), rounding: 1e-9 })
-            .unwrap()
+        stretches(&Path {
+            start: [0.0; 2],
+            heading,
+            segments: (0..count).map(segment).collect(),
+            rounding: 1e-9,
+            step: 0.0,
+        })
+        .unwrap()
     }
 
     #[test]
@@ -191,7 +231,8 @@ mod tests {
     #[test]
     fn what_is_no_number_is_no_path() {
         let segment = Segment { length: 1.0, radius: None, turns: vec![], from: 0.0, to: 1.0 };
-        let path = Path { start: [0.0; 2], heading: Angle::Turns(0.0), segments: vec![segment], rounding: 0.0 };
+        let path =
+            Path { start: [0.0; 2], heading: Angle::Turns(0.0), segments: vec![segment], rounding: 0.0, step: 0.0 };
         assert!(stretches(&path).is_ok());
         let wrong = |change: &dyn Fn(&mut Path)| {
             let mut other = path.clone();
@@ -207,6 +248,7 @@ mod tests {
             assert!(wrong(&|path| path.segments[0].to = nothing));
         }
         assert!(wrong(&|path| path.rounding = f64::NAN));
+        assert!(wrong(&|path| path.step = f64::NAN));
     }
 
     #[test]

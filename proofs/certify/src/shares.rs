@@ -3,7 +3,8 @@
 //! Let α be the length of the arc opposite to the foot, on the lap nearest to the middle of the arc. A piece that stands for
 //! the interval at the start selects it wherever l <= α, one for that at the end wherever l >= α (docs/certificates.md, lemma 4).
 //! So for every cell the contacts with l <= α must lie in rectangles of pieces `Only` or `Start`, those with l >= α in such of `Only` or
-//! `End`. On a cell α has a range; where that is too wide the cell is cut in half.
+//! `End`. On a cell α has a range; where that is too wide the cell is cut in half. A query is at a length of the number format, so that
+//! of a cell in fixed point what lies between the first and the last one of these counts, down to a single one.
 
 use crate::ball::{Ball, Tri};
 use crate::cell::{Both, Claim};
@@ -47,9 +48,11 @@ pub fn check(segments: &Segments<'_>, pair: &Pair, radii: &Radii, findings: &mut
     let [first, second] = segments.stretches;
     let mut arc = first.placed.whole();
     let claim = Claim::Above(radii.covered);
-    let mut rest: Vec<_> = segments.cells().into_iter().map(|range| (range, second.placed.part(range))).collect();
+    let of_format = |cell: Both<'_>| second.of_format(cell.range).map(|range| second.placed.part(range));
+    let mut rest: Vec<_> = segments.cells().into_iter().map(|range| second.placed.part(range)).collect();
+    rest = rest.into_iter().filter_map(of_format).collect();
     let mut taken = 0;
-    while let Some((range, mut cell)) = rest.pop() {
+    while let Some(mut cell) = rest.pop() {
         (taken, findings.steps) = (taken + 1, findings.steps + 1);
         let sides = |cell: &mut Both<'_>, arc: &mut Both<'_>, certain: bool| {
             let ranges = opposite(cell.exact(), arc.exact());
@@ -62,7 +65,7 @@ pub fn check(segments: &Segments<'_>, pair: &Pair, radii: &Radii, findings: &mut
                 let there = [to >= Twofold::ZERO, from <= length];
                 for (k, shares) in [[Share::Only, Share::Start], [Share::Only, Share::End]].iter().enumerate() {
                     if there[k] {
-                        sides.extend(gaps(segments.held(range, shares), ends[k]));
+                        sides.extend(gaps(segments.held(cell.range, shares), ends[k]));
                     }
                 }
             }
@@ -74,7 +77,8 @@ pub fn check(segments: &Segments<'_>, pair: &Pair, radii: &Radii, findings: &mut
         if proved {
             continue;
         }
-        let middle = cell.middle();
+        // One that a query can have.
+        let [_, middle] = second.of_format([cell.range[0], cell.middle()]).unwrap_or(cell.range);
         let mut point = second.placed.part([middle, middle]);
         for gap in sides(&mut point, &mut arc, true) {
             let mut near = first.placed.part(gap);
@@ -88,7 +92,7 @@ pub fn check(segments: &Segments<'_>, pair: &Pair, radii: &Radii, findings: &mut
             findings.undecided.push(segments.witness(Promise::Shared, pair, radii, middle, 1, &mut arc));
             return;
         }
-        rest.extend(cell.halves().map(|half| (range, half)));
+        rest.extend(cell.halves().into_iter().filter_map(of_format));
     }
 }
 

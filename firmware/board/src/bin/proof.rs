@@ -12,7 +12,7 @@ use core::ops::{Add, Neg, Sub};
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Contacts, Crossing, Curve, Decision, Direction, Drive, Ecm,
+    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Constraint, Contacts, Crossing, Curve, Decision, Direction, Drive, Ecm,
     Encounter, Full, Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders,
     Pass, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused,
     Region, RegionRef, Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector,
@@ -279,7 +279,9 @@ fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_
     let drive = Drive { start: number(), goal: number(), ..Drive::rest_to_rest(limits) };
     any((drive, Drive::of(motion)));
     let stations: &mut [Station<S>] = any(&mut [][..]);
-    if let Ok(plan) = any(plan_speed::<S, 8>(motion, any(drive), row, stations)) {
+    let constraints: &[Constraint<S>] = any(&[][..]);
+    any(row.clone().map(|region| [Constraint::before(&region), Constraint::after(&region)]).next());
+    if let Ok(plan) = any(plan_speed::<S, 8>(motion, any(drive), row, constraints, stations)) {
         any((SpeedPlan::end(&plan), plan));
     }
     any(plan_delays(ecm, fleet, any(&mut [][..]), any(&mut [][..])).is_ok());

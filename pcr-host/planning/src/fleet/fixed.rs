@@ -9,6 +9,7 @@ macro_rules! impl_format {
         impl Format for $t {
             const NAME: &'static str = $name;
             const EPSILON: f64 = 0.0;
+            const STEP: f64 = 1.0 / Self::ONE.to_bits() as f64;
             /// Saturates: what is beyond the format is above its limit, too, and refused by name.
             fn from_f64(value: f64) -> Self {
                 let largest = if value < 0.0 { i32::MIN } else { i32::MAX };

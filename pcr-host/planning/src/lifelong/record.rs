@@ -178,5 +178,5 @@ fn path(shapes: &[Placed], at: [f64; 2], length: f64) -> data::Path {
     if segments.is_empty() {
         segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
     }
-    data::Path { start, heading: path_heading, segments, rounding: f64::EPSILON * length.max(1.0) * 16.0 }
+    data::Path { start, heading: path_heading, segments, rounding: f64::EPSILON * length.max(1.0) * 16.0, step: 0.0 }
 }

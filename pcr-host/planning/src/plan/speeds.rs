@@ -121,7 +121,9 @@ fn again<'m>(
         for agent in order {
             let motion = planner.motions[agent];
             let regions = ecm.row(plan, agent).expect("the table of the fleet");
-            let Ok(found) = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, stations) else { continue };
+            let Ok(found) = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, &[], stations) else {
+                continue;
+            };
             if found.end() >= plan[agent].time().hi - SOONER {
                 continue;
             }

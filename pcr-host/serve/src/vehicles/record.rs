@@ -235,7 +235,7 @@ fn agent(id: u64, radius: f64, points: &[[f64; 3]]) -> Agent {
     // Rounding of directions and sums of some hundred short legs.
     let rounding = f64::EPSILON * length.max(1.0) * 64.0;
     let start = [first[1], first[2]];
-    let path = Path { start, heading: Angle::Radians(initial.unwrap_or(0.0)), segments, rounding };
+    let path = Path { start, heading: Angle::Radians(initial.unwrap_or(0.0)), segments, rounding, step: 0.0 };
     Agent { id, radius, path, travel: Some(Travel { start: first[0], phases, lag: 0.0, time_excess: 0.0 }) }
 }
 

@@ -121,7 +121,7 @@ fn plan_again<'m>(
     let motion = planner.motions[agent];
     let regions = ecm.row(&node.plan, agent).expect("the table of the fleet");
     let regions = regions.filter(|region| above.contains(&region.other()));
-    let found = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, stations).ok()?;
+    let found = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, &[], stations).ok()?;
     let profile = room.next()?;
     *profile = found.profile;
     node.plan[agent] = motion.with_profile(profile.as_profile(), found.start).ok()?;
