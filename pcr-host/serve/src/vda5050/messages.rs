@@ -133,7 +133,8 @@ mod tests {
     /// A client of 2.0 that others wrote refused every instant action of ours: it reads them under the other name only.
     #[test]
     fn instant_actions_of_2_0_have_both_names() {
-        let header = |version| Header::new(&Key::new("KIT", "1").unwrap(), version, 1, "2030-01-01T00:00:00.000Z".into());
+        let header =
+            |version| Header::new(&Key::new("KIT", "1").unwrap(), version, 1, "2030-01-01T00:00:00.000Z".into());
         let message = InstantActions::one(header(Version::V2_0), "stateRequest", "1".into());
         let value = serde_json::to_value(&message).unwrap();
         assert_eq!(value["actions"], value["instantActions"]);
