@@ -61,6 +61,8 @@ struct Member {
     /// How far along the lane it was when it said its last one \[m\].
     said: f64,
     orders: u32,
+    /// When the last of its orders came: until it has said that it has it, there is no other.
+    came: Option<Instant>,
 }
 
 impl Member {
@@ -128,8 +130,9 @@ impl Load {
             let Some(k) = place(&key) else { return };
             self.members[k].vehicle.receive(kind, payload);
             if kind == Kind::Order {
-                self.members[k].orders += 1;
                 self.release(at, k, payload);
+                self.members[k].orders += 1;
+                self.members[k].came = Some(at);
             }
         }
     }
@@ -141,7 +144,14 @@ impl Load {
         };
         let Ok(order) = serde_json::from_slice::<Order>(payload) else { return };
         let end = order.nodes.iter().rev().find(|node| node.released).and_then(|node| node.node_position.as_ref());
-        let Some((end, sent)) = end.zip(front.sent.last()).filter(|_| self.counts) else { return };
+        // What follows from its own state, as it has the order before only then, is none of these.
+        let own = &self.members[k];
+        let is_ready = |sent: &Instant| {
+            own.sent.last().is_some_and(|said| said < sent && own.came.is_none_or(|came| came < *said))
+        };
+        let Some((end, sent)) = end.zip(front.sent.last()).filter(|(_, sent)| self.counts && is_ready(sent)) else {
+            return;
+        };
         self.releases.push((front.said - front.length([end.x, end.y]), (at - *sent).as_secs_f64()));
     }
 
@@ -177,7 +187,7 @@ fn members(count: usize) -> Result<Vec<Member>, String> {
         let key = Key::new("sim", &k.to_string())?;
         let stands = Start { x: start[0], y: start[1], heading };
         let vehicle = Vehicle::new(key, Version::V2_1, "map", CAN, stands, k as u64);
-        Ok(Member { vehicle, start, along, sent: Vec::new(), said: 0.0, orders: 0 })
+        Ok(Member { vehicle, start, along, sent: Vec::new(), said: 0.0, orders: 0, came: None })
     };
     (0..count).map(member).collect()
 }

@@ -55,10 +55,15 @@ pub struct Bridge {
     log: Vec<String>,
     /// When it was said last for whom everybody waits \[s\].
     said: f64,
+    /// When all lanes were looked at last \[s\].
+    looked: f64,
 }
 
 /// Between two reminders of who is missing \[s\].
 const REMINDER: f64 = 30.0;
+
+/// Between two looks at lanes for which nothing has come: what was lost is sent again \[s\].
+const LOOK: f64 = 0.1;
 
 impl Bridge {
     /// Of these vehicles, with what the supervisor remembers of them.
@@ -71,6 +76,7 @@ impl Bridge {
             counts: Counts::default(),
             log: Vec::new(),
             said: 0.0,
+            looked: f64::NEG_INFINITY,
         }
     }
 
@@ -121,6 +127,7 @@ impl Bridge {
             return;
         };
         self.counts.read += 1;
+        lane.is_touched = true;
         let limits = settings.limits;
         let result = match kind {
             Kind::State => lane.state(supervisor, payload, limits, is_third, now),
@@ -151,12 +158,18 @@ impl Bridge {
     /// Takes what the supervisor has settled, and sends vehicles what they may do.
     pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[Event], now: f64) {
         self.told(events);
-        self.lanes.values_mut().for_each(|lane| lane.pause(supervisor, now));
+        let all = now >= self.looked + LOOK;
+        if all {
+            self.looked = now;
+        }
+        let touched = self.lanes.values_mut().filter(|lane| all || lane.is_touched);
+        touched.for_each(|lane| lane.pause(supervisor, now));
         // A vehicle that has never said where it stands may stand anywhere.
         let is_unknown = |lane: &&Lane| supervisor.robot(lane.name()).is_err();
         let unknown: Vec<&str> = self.lanes.values().filter(is_unknown).map(Lane::name).collect();
         if unknown.is_empty() {
-            self.lanes.values_mut().for_each(|lane| lane.release(supervisor, now));
+            let touched = self.lanes.values_mut().filter(|lane| all || lane.is_touched);
+            touched.for_each(|lane| lane.release(supervisor, now));
         } else if now >= self.said + REMINDER {
             self.said = now;
             let names = unknown.join(", ");
@@ -168,7 +181,12 @@ impl Bridge {
     /// Takes what the supervisor has settled, and sends nobody anything for it yet.
     pub fn told(&mut self, events: &[Event]) {
         for event in events {
-            if let Some(lane) = self.lanes.values_mut().find(|lane| lane.name() == event.robot()) {
+            let key = event.robot().split_once('/').map(|(manufacturer, serial_number)| Key {
+                manufacturer: manufacturer.into(),
+                serial_number: serial_number.into(),
+            });
+            if let Some(lane) = key.and_then(|key| self.lanes.get_mut(&key)) {
+                lane.is_touched = true;
                 lane.told(event);
             }
         }

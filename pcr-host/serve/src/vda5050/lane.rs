@@ -80,12 +80,12 @@ pub struct Lane {
     errors: Vec<StateError>,
     /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
     astray: Option<(u32, f64)>,
-    /// The supervisor's path and how far the vehicle may go on it \[m\], once that is certain.
-    confirmed: Option<(u64, f64)>,
     /// Whether it was asked to pause or to go on, and when \[s\], until it does.
     pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
+    /// Something has come for it since it was looked at last.
+    pub(super) is_touched: bool,
 }
 
 impl Lane {
@@ -105,10 +105,10 @@ impl Lane {
             job,
             errors,
             astray: None,
-            confirmed: None,
             pause: None,
             sent,
             posts,
+            is_touched: true,
         }
     }
 

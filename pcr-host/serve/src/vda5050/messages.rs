@@ -123,3 +123,31 @@ pub struct Response {
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::door::{Limits, read};
+    use super::super::topics::Key;
+    use super::*;
+
+    /// A client of 2.0 that others wrote refused every instant action of ours: it reads them under the other name only.
+    #[test]
+    fn instant_actions_of_2_0_have_both_names() {
+        let header =
+            |version| Header::new(&Key::new("KIT", "1").unwrap(), version, 1, "2030-01-01T00:00:00.000Z".into());
+        let message = InstantActions::one(header(Version::V2_0), "stateRequest", "1".into());
+        let value = serde_json::to_value(&message).unwrap();
+        assert_eq!(value["actions"], value["instantActions"]);
+        assert_eq!(value["actions"][0]["actionName"], "stateRequest");
+        for name in ["actions", "instantActions"] {
+            let mut one = value.clone();
+            one.as_object_mut().unwrap().remove(name);
+            let read: InstantActions = read(one.to_string().as_bytes(), Limits::default()).unwrap();
+            assert_eq!(read.list(), message.list());
+        }
+        let none: InstantActions = read(br#"{"headerId": 1}"#, Limits::default()).unwrap();
+        assert_eq!(none.list().unwrap_err().field, "actions");
+        let newer = InstantActions::one(header(Version::V2_1), "stateRequest", "1".into());
+        assert!(serde_json::to_value(&newer).unwrap().get("instantActions").is_none());
+    }
+}

@@ -2,8 +2,8 @@
 
 use super::bridge::Publish;
 use rumqttc::{
-    AsyncClient, ConnectionError, Event, EventLoop, LastWill, MqttOptions, Packet, QoS, SubscribeFilter,
-    SubscribeReasonCode,
+    AsyncClient, ConnectionError, Event, EventLoop, LastWill, MqttOptions, NetworkOptions, Packet, QoS,
+    SubscribeFilter, SubscribeReasonCode,
 };
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -95,7 +95,11 @@ impl Link {
             options.set_last_will(LastWill::new(&will.topic, will.payload, qos(will.assured), will.retain));
         }
         secure(&mut options, broker)?;
-        let (client, events) = AsyncClient::new(options, QUEUE);
+        let (client, mut events) = AsyncClient::new(options, QUEUE);
+        // Else a message waits for the acknowledgement of the one before it, 40 ms and more.
+        let mut network = NetworkOptions::new();
+        network.set_tcp_nodelay(true);
+        events.set_network_options(network);
         let (stop, up) = (Arc::new(Notify::new()), Arc::new(AtomicBool::new(false)));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| error.to_string())?;

@@ -1,9 +1,10 @@
 //! Instant actions: those of the manager, and our own.
 
 use super::super::door::{self, Limits, Refusal};
+use super::super::held::Rejected;
 use super::super::messages::InstantActions;
 use super::super::topics::Kind;
-use super::super::version::Version;
+use super::super::version::{Error, Version};
 use super::release::AGAIN;
 use super::{Lane, To};
 use crate::event::Event;
@@ -94,20 +95,13 @@ impl Lane {
 
     /// Takes what the supervisor says of the vehicle.
     pub fn told(&mut self, event: &Event) {
-        match event {
-            Event::Hold { path, hold, .. } => self.confirmed = Some((*path, *hold)),
-            Event::Dropped { mission, why, .. } => {
-                use super::super::held::Rejected;
-                use super::super::version::Error;
-                let order = mission.rsplit_once('#').map_or(mission.as_str(), |(order, _)| order);
-                let update = self.job.as_ref().map_or(0, |job| job.held.update_id);
-                // One that was replaced by a longer one of the same order is not lost.
-                if !why.contains("takes its place") {
-                    self.reject(&Rejected::new(Error::Order, "nodes", why), order, update);
-                    self.mirror();
-                }
-            }
-            _ => {}
+        let Event::Dropped { mission, why, .. } = event else { return };
+        let order = mission.rsplit_once('#').map_or(mission.as_str(), |(order, _)| order);
+        let update = self.job.as_ref().map_or(0, |job| job.held.update_id);
+        // One that was replaced by a longer one of the same order is not lost.
+        if !why.contains("takes its place") {
+            self.reject(&Rejected::new(Error::Order, "nodes", why), order, update);
+            self.mirror();
         }
     }
 }

@@ -24,11 +24,13 @@ const AHEAD: usize = 60;
 impl Lane {
     /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
+        self.is_touched = false;
         let Some(version) = self.version else { return };
         self.follow_cancel(now);
-        let Some(allowed) = self.allowed(supervisor) else { return };
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };
+        // After a restart `told` is more, so that nobody else gets it, and is not known to be right now.
+        let allowed = robot.granted;
         if job.cancel.is_some() || robot.stopped.is_some() {
             return;
         }
@@ -87,23 +89,6 @@ impl Lane {
         };
         let last = all.rfind(is_pause);
         last.is_some_and(|action| action.action_id.starts_with("pcr-startPause-"))
-    }
-
-    /// How far the vehicle may go \[m\]. After a restart the supervisor counts more as told than it has told, so that nobody else gets it;
-    /// it is allowed only as far as the orders go.
-    fn allowed(&mut self, supervisor: &Supervisor) -> Option<f64> {
-        let place = supervisor.robots().iter().position(|robot| robot.name == self.name)?;
-        let robot = supervisor.robots().get(place)?;
-        if self.confirmed == Some((robot.path, robot.told)) {
-            return Some(robot.told);
-        }
-        let progress: Vec<_> = supervisor.robots().iter().map(Robot::progress).collect();
-        let (hold, _) = supervisor.orders().wait(&supervisor.fleet(), place, &progress).ok()?;
-        let allowed = hold.length(robot.course.length()).map_or(robot.at, |hold| hold.min(robot.told));
-        if allowed >= robot.told {
-            self.confirmed = Some((robot.path, robot.told));
-        }
-        Some(allowed)
     }
 
     pub(super) fn send(&mut self, version: Version) {
