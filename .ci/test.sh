@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
-#   .ci/test.sh            everything but benches and fuzz
+#   .ci/test.sh            everything but benches, fuzz, tls and others
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve pages web schemas python packages release instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve tls others pages web schemas python packages release instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
-
-# How tests are built, the same everywhere so that nothing is built twice. These two have no tests of their own here, but much that they
-# depend on.
-options=(--workspace --exclude pcr-benches --exclude pcr-py --profile checked --features pcr-tests/peers --locked)
 
 # A part, and how long it took: in all, and of the cores' time by programs and by the system.
 timed() {
   local TIMEFORMAT="-- $1 took %0R s; of the cores' time %0U s and %0S s"
   time "$1"
 }
+
+# Everything is built alike, so that it is built once: with methods of other libraries in comparisons, and the supervisor in the tool.
+everything_in=(--workspace --features pcr-tests/peers,pcr-host/serve --locked)
+# These two have no tests of their own here, but much that they depend on.
+checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile checked)
 
 step() { printf '\n== %s\n' "$*"; }
 
@@ -35,7 +36,7 @@ style() {
   step "format and lints"
   cargo fmt --all --check
   peer_libraries
-  cargo clippy --workspace --all-targets --features pcr-tests/peers --locked -- -D warnings
+  cargo clippy "${everything_in[@]}" --all-targets -- -D warnings
   if git grep -lE 'allow\(.*unsafe_code' -- '*.rs' | grep -vx pcr-core/src/scalar/vsqrt.rs; then
     echo "unsafe code outside pcr-core/src/scalar/vsqrt.rs" >&2
     return 1
@@ -56,7 +57,7 @@ quick() {
 docs() {
   step "documentation"
   peer_libraries
-  RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features pcr-tests/peers --locked
+  RUSTDOCFLAGS="-D warnings" cargo doc "${everything_in[@]}" --no-deps
   step "the public interface of pcr-core, as it was reviewed"
   .ci/api.py "${CARGO_TARGET_DIR:-target}/doc"
 }
@@ -65,12 +66,12 @@ tests() {
   step "tests: optimized, overflow checks and assertions on, methods of other libraries in comparisons"
   peer_libraries
   # Not the examples: the lints have checked that they compile, and those that are run are named.
-  cargo test "${options[@]}" --lib --bins --tests
-  cargo test "${options[@]}" --doc
+  cargo test "${checked[@]}" --lib --bins --tests
+  cargo test "${checked[@]}" --doc
   step "plans of 20000 random fleets by either method, checked by the oracle"
   local example examples=(fleet_server late_robots no_fpu)
   # Not `cargo run`, which would build what it depends on with other features.
-  cargo build "${options[@]}" "${examples[@]/#/--example=}" --example=fleets
+  cargo build "${checked[@]}" "${examples[@]/#/--example=}" --example=fleets
   "${CARGO_TARGET_DIR:-target}/checked/examples/fleets" 0 20000
   step "the examples of the libraries"
   for example in "${examples[@]}"; do "${CARGO_TARGET_DIR:-target}/checked/examples/$example"; done
@@ -80,7 +81,7 @@ tests() {
 benches() {
   step "benchmarks, one pass each, as the tests are built"
   peer_libraries
-  cargo bench --workspace --profile checked --features pcr-tests/peers --locked --bench '*' -- --test
+  cargo bench "${everything_in[@]}" --profile checked --bench '*' -- --test
 }
 
 # Files that are written for openTCS, against its schema.
@@ -90,7 +91,7 @@ schemas() {
     echo "installing libxml2-utils"
     apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends libxml2-utils >/dev/null
   fi
-  cargo test "${options[@]}" --test tool -- --ignored plant_models
+  cargo test "${checked[@]}" --test tool -- --ignored plant_models
 }
 
 # Vehicles, their manager and the supervisor at a real broker. Faults one after the other, some minutes each round: PCR_FAULTS=1
@@ -98,10 +99,28 @@ schemas() {
 serve() {
   step "VDA 5050 over mosquitto, messages by the published schemas"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
-  cargo test "${options[@]}" --test vda5050 -- --ignored runs::
+  cargo test "${checked[@]}" --test vda5050 -- --ignored runs::
   if [ -n "${PCR_FAULTS:-}" ]; then
-    cargo test "${options[@]}" --test vda5050 -- --ignored --exact faults::faults_one_after_the_other
+    cargo test "${checked[@]}" --test vda5050 -- --ignored --exact faults::faults_one_after_the_other
   fi
+}
+
+# Not part of everything: a minute of building what TLS needs. The supervisor at brokers over TLS, with certificates made for it.
+tls() {
+  step "brokers over TLS"
+  command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
+  command -v openssl >/dev/null || .ci/install.sh openssl
+  cargo clippy -p pcr-serve -p pcr-host --features pcr-host/tls --all-targets --locked -- -D warnings
+  cargo test -p pcr-serve --features tls --locked --test vda5050 -- --include-ignored tls::
+}
+
+# Not part of everything, as it needs npm and a registry: vehicles and a manager that others wrote.
+others() {
+  step "vda-5050-lib of npm: two vehicles and their manager"
+  command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
+  command -v npm >/dev/null || .ci/install.sh nodejs npm
+  tool
+  pcr-host/serve/tests/others/others.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
 }
 
 # A browser for the pages; a package of Debian, where there is none.
@@ -111,7 +130,7 @@ browser() {
 }
 
 # The tool as the tests have built it: `cargo build` would build much of it again, without what the tests ask of libraries.
-tool() { cargo test -q "${options[@]}" --test tool --no-run; }
+tool() { cargo test -q "${checked[@]}" --test tool --no-run; }
 
 pages() {
   step "pages, in a real browser"

@@ -1,6 +1,8 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
-use pcr_core::{Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
+use pcr_core::{
+    Brakes, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn,
+};
 use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
 use pcr_planning::fleet::{Fleet, Format};
 
@@ -142,6 +144,12 @@ fn profiles<S: Format>() {
     assert_eq!(wait.then(large, S::ZERO).err(), Some(Invalid::OutOfRange("duration of the profile")));
     let crawl = Limits { speed: S::from_f64(1e-3), acceleration: one };
     assert_eq!(Profile::rest_to_rest(large, crawl).err(), Some(Invalid::OutOfRange("duration of the profile")));
+    let profile = Profile::rest_to_rest(one, limits).expect("a profile");
+    each::<S, _>(refused_unless_positive::<S>(), "duration", |duration| {
+        Profile::<S, 3>::stretched(profile.as_profile(), duration)
+    });
+    each::<S, _>(refused_unless_positive::<S>(), "deceleration", |deceleration| Brakes::new(deceleration, one));
+    each::<S, _>(refused_if_negative::<S>(), "reaction time", |reaction| Brakes::new(one, reaction));
 }
 
 fn motions<S: Format>() {
@@ -153,6 +161,9 @@ fn motions<S: Format>() {
     each::<S, _>(refused_anywhere::<S>(), "start time", |start| make(one, start));
     assert_eq!(make(one, S::LIMIT).err(), Some(Invalid::OutOfRange("end time")));
     let motion = make(one, S::ZERO).expect("a motion");
+    each::<S, _>(refused_if_negative::<S>(), "margin", |margin| motion.with_margin(margin));
+    assert_eq!(motion.with_margin(S::LIMIT).err(), Some(Invalid::OutOfRange("radius with its margin")));
+    each::<S, _>(refused_if_negative::<S>(), "lateness", |lateness| motion.with_lateness(lateness));
     each::<S, _>(refused_anywhere::<S>(), "delay", |delay| motion.delayed(delay));
     assert_eq!(motion.delayed(S::LIMIT).err(), Some(Invalid::OutOfRange("end time")));
     for length in [0.0, 0.5, 0.999, 1.001, 2.0] {

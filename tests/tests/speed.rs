@@ -1,6 +1,8 @@
 //! Speed plans: against a fine dynamic program and the definition, in every format, and known answers.
 
-use pcr_core::{Constraint, Drive as Speeds, Interval, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed};
+use pcr_core::{
+    Constraint, Drive as Speeds, Interval, Invalid, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed,
+};
 use pcr_fixed::Q16;
 use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
@@ -187,8 +189,43 @@ fn speeds_at_the_ends_are_kept() {
     // Up to 1 m/s and down, at 1 m/s over the rest.
     let ramps = (1.0 - 0.36 + 1.0 - 0.09) / 2.0;
     assert!((phases.duration() - (0.4 + 0.7 + (4.0 - ramps))).abs() < 0.1, "{}", phases.duration());
-    let too_fast = Speeds { limits: limits(), start: 1.5, goal: 0.0 };
-    assert!(matches!(planned(&[ego()], too_fast), Err(NoSpeedPlan::Invalid(_))));
+}
+
+#[test]
+fn limits_and_speeds_out_of_range_are_refused() {
+    let with = |speed, acceleration, start, goal| {
+        planned(&[ego()], Speeds { limits: Limits { speed, acceleration }, start, goal }).map(drop)
+    };
+    let refused = |invalid| Err(NoSpeedPlan::Invalid(invalid));
+    assert_eq!(with(1.0, 1.0, 1.0, 1.0), Ok(()));
+    assert_eq!(with(1.0, 1.0, 1.5, 0.0), refused(Invalid::OutOfRange("speed at the start")));
+    assert_eq!(with(1.0, 1.0, 0.0, 1.5), refused(Invalid::OutOfRange("speed at the goal")));
+    assert_eq!(with(1.0, 1.0, -0.1, 0.0), refused(Invalid::Negative("speed at the start")));
+    assert_eq!(with(0.0, 1.0, 0.0, 0.0), refused(Invalid::NonPositive("largest speed")));
+    assert_eq!(with(1.0, 0.0, 0.0, 0.0), refused(Invalid::NonPositive("largest acceleration")));
+}
+
+#[test]
+fn who_stands_all_the_time_is_in_the_way_at_any_time() {
+    let stands = || {
+        let disc = Disc { radius: 0.25, start: [0.0, 0.0, 0.0], legs: vec![] };
+        Course::<f64>::driven(&disc, &Drive::Unit, 0.0).expect("a valid disc")
+    };
+    // It passes 9 s before, or after.
+    for at in [-9.0, 9.0] {
+        let passes = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), at);
+        assert_eq!(arrival(&[stands(), passes]), Err(NoSpeedPlan::AtStart(1)));
+    }
+    let elsewhere = line([2.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), 0.0);
+    assert_eq!(arrival(&[stands(), elsewhere]), Ok(0.0));
+}
+
+#[test]
+fn a_plan_ends_its_duration_after_its_start() {
+    let other = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), 0.0);
+    let plan = planned(&[ego(), other], Speeds::rest_to_rest(limits())).expect("a plan");
+    assert!(plan.start > 0.1);
+    assert_eq!(plan.end(), plan.start + plan.profile.as_profile().duration());
 }
 
 #[test]

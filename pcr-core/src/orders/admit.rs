@@ -1,9 +1,8 @@
 //! Orders for a new path, so that everybody can still finish.
 //!
 //! Who goes first is asked of the caller for each region of the new path, as far as both ways are possible. If somebody would
-//! then wait for ever, orders that hold a stuck agent are turned round, one after the other, each once at most; last of all the new
-//! path lets everybody else go first. Choosing orders is NP-hard in general: what is refused may be possible, what is
-//! admitted is safe and free of deadlock.
+//! then wait for ever, orders that hold a stuck agent are turned round, one after the other, each once at most. Choosing orders is
+//! NP-hard in general: what is refused may be possible, what is admitted is safe and free of deadlock.
 
 use crate::ecm::Region;
 use crate::error::{Full, Mismatch, Unchanged};
@@ -46,7 +45,7 @@ where
     /// the right to go on.
     ///
     /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds a region of the row, and at most as many
-    /// checks as the row has regions, and two.
+    /// checks as the row has regions, and one.
     ///
     /// # Errors
     /// [`Refused`], with who is in the way; everything is then as it was. Another path, or the same one later, may be admitted.
@@ -236,14 +235,9 @@ where
             if !matches!(found, Err(Refused::Stuck { .. })) {
                 return found;
             }
-            let Some(place) = self.culprit(agent, tolerances.gain, reaches) else { break };
+            let Some(place) = self.culprit(agent, tolerances.gain, reaches) else { return found };
             self.turn(fleet, progress, agent, place);
         }
-        let yielding = self.places(agent).any(|(_, agents, order)| order.pass_of(agent, agents) == Pass::First);
-        if yielding {
-            self.choose(fleet, progress, agent, tolerances.width, |_| Pass::Second)?;
-        }
-        self.check(fleet, progress, tolerances, reaches)
     }
 
     /// An order of the agent that keeps somebody stuck, and can be turned round: one where it is first, else one where it is
@@ -290,6 +284,5 @@ fn can_wait<S: Scalar>(region: &RegionRef<'_, S>, own: &Progress<S>, their: &Pro
     }
     let other_end = region.other_motion().path().length();
     let last = (other_end - width).max(their.at.lo).min(other_end);
-    let end = region.ego_motion().path().length();
-    region.other_length().hi < last || region.hold(own.at.lo, last).allows(end)
+    region.hold(own.at.lo, last).allows(region.ego_motion().path().length())
 }

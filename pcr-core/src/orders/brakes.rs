@@ -39,7 +39,8 @@ impl<S: Scalar> Brakes<S> {
         let speed = speed.max(S::ZERO);
         let ramp = speed.times(speed.quotient(self.deceleration)).narrow().half();
         let way = speed.times(self.reaction).narrow() + ramp;
-        if way > S::ZERO { way + S::slack(way + speed) } else { way }
+        // Not of ways above 0: those of the slowest round to 0.
+        if speed > S::ZERO { way + S::slack(way + speed) } else { way }
     }
 
     /// The speed from which this way \[m\] is enough to stop, rounded down \[m/s\]: its [`Brakes::distance`] is at most that,

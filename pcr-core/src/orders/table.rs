@@ -234,9 +234,7 @@ where
     /// [`Mismatch`]; the table is then as it was.
     pub fn remove(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
         self.ecm.holds_all(fleet)?;
-        if agent < fleet.len() {
-            self.gather(agent, |_, _| {});
-        }
+        self.gather(agent, |_, _| {});
         self.ecm.remove(fleet, agent)
     }
 
@@ -247,9 +245,7 @@ where
     /// [`Mismatch`]; the table is then as it was.
     pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
         self.ecm.holds_all(fleet)?;
-        if agent < fleet.len() {
-            self.gather(agent, |_, _| {});
-        }
+        self.gather(agent, |_, _| {});
         self.ecm.erase(fleet, agent)
     }
 

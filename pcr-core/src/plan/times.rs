@@ -128,6 +128,20 @@ mod tests {
     }
 
     #[test]
+    fn intervals_are_in_order_whatever_comes_first() {
+        let sorted = [(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (6.0, 7.0)];
+        for turn in 0..4 {
+            let mut turned = sorted;
+            turned.rotate_left(turn);
+            let mut covered = Times::NONE;
+            turned.iter().for_each(|&(lo, hi)| covered.cover(Interval::new(lo, hi)));
+            assert!(is(&set(&turned), &sorted) && is(&covered, &sorted), "{turned:?}");
+            turned.reverse();
+            assert!(is(&set(&turned), &sorted), "{turned:?}");
+        }
+    }
+
+    #[test]
     fn the_ends_of_what_is_removed_stay() {
         let mut times = set(&[(0.0, 4.0), (6.0, 8.0)]);
         times.remove(Interval::new(3.0, 6.0));

@@ -104,6 +104,8 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
     let ended = || plain("503 Service Unavailable", "the supervisor has ended");
     match path {
         "/" => ("200 OK", "text/html", site.page.clone()),
+        // Browsers ask for it with every page.
+        "/favicon.ico" => ("204 No Content", "text/plain", String::new()),
         "/metrics" => match handle.ask(|supervisor, board, _| metrics::text(supervisor, &board.latency)) {
             Some(text) => ("200 OK", "text/plain; version=0.0.4", text),
             None => ended(),
@@ -128,7 +130,9 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
 fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str, String) {
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let Some(draw) = site.draw else { return plain("404 Not Found", "there are no pictures") };
-    let Some(name) = query.strip_prefix("robot=").map(decoded) else { return plain("400 Bad Request", "robot=NAME") };
+    // What else is asked, as when, keeps browsers from showing an old one.
+    let name = query.split('&').find_map(|part| part.strip_prefix("robot=")).map(decoded);
+    let Some(name) = name else { return plain("400 Bad Request", "robot=NAME") };
     let fleet = handle.ask(move |supervisor, _, _| {
         let place = supervisor.robots().iter().position(|robot| robot.name == name)?;
         let drawn = supervisor.robots().iter().map(|robot| {

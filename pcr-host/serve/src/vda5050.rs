@@ -13,6 +13,7 @@
 //! way        the path of an order, lengths of its nodes             Way
 //! lane       one vehicle between its manager and the supervisor     Lane
 //! bridge     the lanes of a fleet, no input or output of its own    Bridge
+//! tls        certificates of brokers
 //! mqtt       a connection to a broker                               Link
 //! station    the bridge at its broker, one at a time                Station
 //! ```
@@ -30,6 +31,8 @@ pub mod stamp;
 pub mod state;
 #[cfg(feature = "mqtt")]
 pub mod station;
+#[cfg(feature = "tls")]
+mod tls;
 pub mod topics;
 pub mod version;
 pub mod way;

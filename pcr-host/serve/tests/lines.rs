@@ -165,7 +165,8 @@ fn clients_over_tcp_and_the_page() {
     let (handle, inputs) = queue();
     let (lines, page) = (TcpListener::bind("127.0.0.1:0").unwrap(), TcpListener::bind("127.0.0.1:0").unwrap());
     let (at, shown) = (lines.local_addr().unwrap(), page.local_addr().unwrap());
-    let site = http::Site { page: "<p>here</p>".into(), draw: None, hosts: vec![shown.to_string()] };
+    let draw: http::Draw = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
+    let site = http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()] };
     let own = handle.clone();
     thread::spawn(move || clients::listen(&own, &lines));
     let own = handle.clone();
@@ -206,6 +207,10 @@ fn clients_over_tcp_and_the_page() {
     let state = ask("/state");
     let state: Value = serde_json::from_str(state.split("\r\n\r\n").nth(1).unwrap()).unwrap();
     assert_eq!(state["robots"].as_array().unwrap().len(), 2);
+    // The page asks with the time, so that no old picture is shown: that was taken for a part of the name.
+    assert!(ask("/map?robot=b&1795457224920").ends_with("<svg>b</svg>"));
+    assert!(ask("/map?robot=nobody").starts_with("HTTP/1.1 404") && ask("/map").starts_with("HTTP/1.1 400"));
+    assert!(ask("/favicon.ico").starts_with("HTTP/1.1 204"));
     assert!(ask("/etc/passwd").starts_with("HTTP/1.1 404"));
     assert!(get(&format!("POST / HTTP/1.1\r\nHost: {shown}\r\n\r\n")).starts_with("HTTP/1.1 405"));
     // A page of somebody else whose name leads here.

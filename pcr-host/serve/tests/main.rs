@@ -3,6 +3,7 @@
 mod alarms;
 mod kills;
 mod lines;
+mod overtaken;
 mod runs;
 mod world;
 mod writer;

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""pages.py PCR FOLDER: writes the pages of the tool PCR into FOLDER, opens each in headless Chromium, and fails unless
+"""pages.py PCR FOLDER [PAGE]...: writes the pages of the tool PCR into FOLDER, opens each, or those that are named, in headless Chromium, and fails unless
 
 - nothing is written to the console, and nothing is asked of the network;
 - nothing reaches beyond the right edge of a window of 390, 900 and 1400 px, light and dark;
 - the Tab key reaches every control;
+- the live page of a fleet that runs tells what every robot does, and shows the map of one that is chosen with the keyboard;
 - on the page of locks every edge can be chosen with the keyboard, by its list and by the search, and it is printed at scale;
 - at 1400 by 900 px both pictures of a page are inside the window while it plays, and time goes on;
 - nothing moves by itself for who asked for less motion.
@@ -19,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from fleet import ROBOTS, Fleet
 
 DATA = Path(__file__).resolve().parents[3] / "tests/data"
 GRAPH = DATA / "real/nav2/warehouse_graph.geojson"
@@ -47,6 +50,8 @@ class Browser:
         os.close(to_read)
         os.close(to_write)
         self.buffer, self.last, self.events, self.session = b"", 0, [], None
+        # From where the page is that is open: it may ask there.
+        self.origin = "file:"
         target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
@@ -77,12 +82,14 @@ class Browser:
                 return answer["result"]
             self.events.append(answer)
 
-    def open(self, path, width, scheme, motion="no-preference"):
+    def open(self, page, width, scheme, motion="no-preference"):
+        """A file, or an address."""
+        self.origin = page if isinstance(page, str) else "file:"
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
         features = [{"name": "prefers-color-scheme", "value": scheme}, {"name": "prefers-reduced-motion", "value": motion}]
         self.call("Emulation.setEmulatedMedia", features=features)
         # By way of an empty page: the same address again would not be loaded anew.
-        for url in ("about:blank", path if isinstance(path, str) else path.as_uri()):
+        for url in ("about:blank", page if isinstance(page, str) else page.as_uri()):
             self.events.clear()
             self.call("Page.navigate", url=url)
             while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
@@ -111,7 +118,7 @@ class Browser:
             method, params = event.get("method"), event.get("params", {})
             if method in ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"):
                 said.append(json.dumps(params)[:300])
-            if method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file:", "about:")):
+            if method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file:", "about:", self.origin)):
                 said.append(f"request of {params['request']['url']}")
         return said
 
@@ -227,6 +234,48 @@ def check_audit(browser):
     return wrong
 
 
+def until(browser, expression, seconds=20):
+    """The first value that is true, or the last one."""
+    for _ in range(5 * seconds):
+        value = browser.value(expression)
+        if value:
+            break
+        browser.value(SLEEP.format(200))
+    return value
+
+
+def check_live(browser):
+    """Every robot has its row, what it does is told, and the map of one that is chosen with the keyboard is there."""
+    rows = "[...document.querySelectorAll('#robots tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))"
+    names = [row[0] for row in until(browser, f"({rows}).length && {rows}")]
+    wrong = [] if names == list(ROBOTS) else [f"rows of {names}"]
+    for said in ("goes", "waits for east-1", "there", "off its path"):
+        if not until(browser, f"{rows}.some((row) => row[1].includes('{said}'))"):
+            wrong.append(f"nobody {said}: {browser.value(rows)}")
+    for event in ("is not where it may be", "north-2 has order 0"):
+        if not until(browser, f"document.getElementById('events').textContent.includes('{event}')"):
+            wrong.append(f"no event about {event}")
+    place = browser.value(f"{rows}[3][3]")
+    if not until(browser, f"{rows}[3][3] !== '{place}'"):
+        wrong.append("a robot that goes is not seen to go")
+    browser.value("document.getElementById('ego').focus()")
+    for _ in range(3):
+        browser.key("ArrowDown")
+    if browser.value("document.getElementById('ego').value") != "bend-3":
+        wrong.append("no robot can be chosen with the keyboard")
+    if not until(browser, "document.getElementById('map').naturalWidth > 300"):
+        wrong.append("the map of a robot is not there")
+    browser.value("document.getElementById('pause').focus()")
+    browser.key("Enter")
+    # What was asked before has been answered by then.
+    browser.value(SLEEP.format(600))
+    before = browser.value("document.getElementById('clock').textContent")
+    browser.value(SLEEP.format(1200))
+    if browser.value("document.getElementById('clock').textContent") != before:
+        wrong.append("it goes on though it pauses")
+    return wrong
+
+
 def check_time(browser, name):
     """Both pictures are seen whole while time goes on."""
     wrong = []
@@ -248,28 +297,35 @@ def check(browser, name, page, folder):
         for width in WIDTHS:
             browser.open(page, width, scheme)
             browser.value(SLEEP.format(100))
+            if name == "live":
+                until(browser, "document.getElementById('ego').length > 3")
+                browser.value("document.getElementById('ego').value = 'bend-3'; document.getElementById('ego').onchange()")
+                until(browser, "document.getElementById('map').naturalWidth")
             wide = browser.value("document.documentElement.scrollWidth")
             if wide > width:
                 wrong.append(f"{width} px, {scheme}: {wide} px wide")
             browser.screenshot(folder / f"{name}-{width}-{scheme}.png")
             wrong += [f"{width} px, {scheme}: {said}" for said in browser.noise()]
     browser.open(page, 1400, "light", "reduce")
+    if name == "live":
+        until(browser, "document.getElementById('ego').length > 3")
     before = browser.value("document.getElementById('clock')?.textContent")
     browser.value(SLEEP.format(300))
-    if browser.value("document.getElementById('clock')?.textContent") != before:
+    # What a live page tells is news, no motion.
+    if name != "live" and browser.value("document.getElementById('clock')?.textContent") != before:
         wrong.append("it moves by itself under reduced motion")
     count, missed = reached_by_tab(browser)
     wrong += [f"Tab does not reach {control}" for control in missed]
-    if count < 4:
+    if count < (3 if name == "live" else 4):
         wrong.append(f"{count} controls only")
     browser.open(page, 1400, "light")
-    kinds = {"locks": check_locks, "audit": check_audit, "large": check_large}
+    kinds = {"locks": check_locks, "audit": check_audit, "large": check_large, "live": check_live}
     wrong += kinds[name](browser) if name in kinds else check_time(browser, name)
     wrong += browser.noise()
     return wrong, count
 
 
-def main(tool, folder):
+def main(tool, folder, *names):
     folder = Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     run = lambda *arguments: subprocess.run([tool, *map(str, arguments)], check=True, capture_output=True, cwd=folder, stdin=subprocess.DEVNULL)
@@ -282,25 +338,32 @@ def main(tool, folder):
     run("locks", "large.xml", "--radius", 0.4, "-q", "-o", "large")
     run("simulate", "--foraging", "-o", "replay.html")
     pages = {"map": "map/index.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "audit": "audit/audit.html", "large": "large/locks.html", "replay": "replay.html"}
+    pages = {name: folder / page for name, page in pages.items()}
+    fleet = Fleet(tool)
+    pages["live"] = fleet.address
     program = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
     if not program:
         raise SystemExit("pages: no Chromium (Debian's package chromium)")
     browser = Browser(program)
     failed = 0
     try:
-        for name, page in pages.items():
-            wrong, count = check(browser, name, folder / page, folder)
+        for name in names or pages:
+            wrong, count = check(browser, name, pages[name], folder)
             failed += len(wrong)
             print(f"{name}: {len(WIDTHS) * 2} windows, {count} controls: {'ok' if not wrong else ''}")
             for line in wrong:
                 print(f"  {line}")
     finally:
         browser.close()
+        refused = fleet.close()
+    for line in refused:
+        failed += 1
+        print(f"  live: {line}")
     if failed:
         raise SystemExit(1)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
+    if len(sys.argv) < 3:
         raise SystemExit(__doc__)
-    main(os.path.abspath(sys.argv[1]), sys.argv[2])
+    main(os.path.abspath(sys.argv[1]), *sys.argv[2:])

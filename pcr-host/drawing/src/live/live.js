@@ -84,7 +84,9 @@ function draw() {
     c.globalAlpha = 1;
     c.fillStyle = theme.ink;
     c.font = "12px system-ui";
-    c.fillText(robot.robot, x(px) + Math.max(3, robot.radius * scale) + 2, y(py) - 2);
+    const beside = Math.max(3, robot.radius * scale) + 2, fits = x(px) + beside + c.measureText(robot.robot).width < width;
+    c.textAlign = fits ? "left" : "right";
+    c.fillText(robot.robot, x(px) + (fits ? beside : -beside), y(py) - 2);
   });
   c.strokeStyle = theme.dim;
   c.lineWidth = 1;
@@ -117,7 +119,7 @@ function show() {
   const body = $("robots").tBodies[0], ego = $("ego").value;
   state.robots.forEach((robot, k) => {
     const row = body.rows[k] ?? body.insertRow(), at = robot.at;
-    cells(row, [robot.robot, robot.mission ?? "", `${at[0].toFixed(1)} – ${at[1].toFixed(1)}`, robot.hold.toFixed(1), robot.length.toFixed(1), says(robot)]);
+    cells(row, [robot.robot, says(robot), robot.mission ?? "", `${at[0].toFixed(1)} – ${at[1].toFixed(1)}`, robot.hold.toFixed(1), robot.length.toFixed(1)]);
     row.className = (robot.alarm || robot.stopped_for || robot.silent ? "bad " : "") + (robot.robot === ego ? "chosen" : "");
   });
   while (body.rows.length > state.robots.length) body.deleteRow(-1);
@@ -130,7 +132,7 @@ function show() {
   if (events.firstChild?.textContent !== texts[0]) events.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   since ??= { now: state.now, admitted: state.counts.admitted };
   const hours = (state.now - since.now) / 3600, rate = hours > 0.002 ? `, ${((state.counts.admitted - since.admitted) / hours).toFixed(0)} missions an hour` : "";
-  $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${names.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} alarms`;
+  $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${names.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} ${state.counts.alarms === 1 ? "alarm" : "alarms"}`;
   $("clock").textContent = `${state.now.toFixed(1)} s`;
   draw();
 }

@@ -3,12 +3,11 @@
 //! A region is a set of pairs of atoms of two ways at which the robots touch and that hang together. Whoever is second at
 //! it waits at its gates.
 
-use super::gates::{Gate, Timed, hold, pruned};
+use super::gates::{Contact, Gate, Timed, hold, pruned};
 use super::robot::Robot;
 use super::site::Site;
 use super::way::Way;
 use pcr_core::Interval;
-use std::collections::HashMap;
 use std::rc::Rc;
 
 /// A region of two ways, and who goes first.
@@ -55,11 +54,14 @@ impl Region {
     }
 }
 
-/// A pair of atoms of two ways, by their places on them.
-struct Tie {
+/// A pair of atoms of two ways that touch.
+struct Tie<'s> {
+    /// Whose the other way is.
+    other: usize,
+    /// Places on the ways.
     places: [usize; 2],
     hull: [Interval<f64>; 2],
-    gates: [Vec<Gate>; 2],
+    contact: &'s Contact,
     group: usize,
 }
 
@@ -158,41 +160,25 @@ impl Book {
 
     /// The regions of a way of a robot that is at `at` on it; it is first in none.
     pub(super) fn regions(&self, site: &Site, robots: &[Robot], robot: usize, way: &Way, at: f64) -> Vec<Region> {
-        let mut ties: HashMap<usize, Vec<Tie>> = HashMap::new();
+        let mut ties: Vec<Tie<'_>> = Vec::new();
         for (place, &atom) in way.atoms.iter().enumerate() {
             for (near, contact) in site.contacts(atom) {
                 for (other, their) in self.others_on(near, robot, robots) {
-                    let ways = [way, &robots[other].way];
-                    let places = [place, their];
-                    let offset = |side: usize| ways[side].offsets[places[side]];
+                    let offsets = [way.offsets[place], robots[other].way.offsets[their]];
                     let shifted = |side: usize| {
-                        let hull = contact.hull[side];
-                        Interval::new(hull.lo + offset(side), hull.hi + offset(side))
+                        let Interval { lo, hi } = contact.hull[side];
+                        Interval::new(lo + offsets[side], hi + offsets[side])
                     };
                     let hull = [shifted(0), shifted(1)];
-                    if hull[0].hi < at || hull[1].hi < robots[other].at {
-                        continue;
+                    if hull[0].hi >= at && hull[1].hi >= robots[other].at {
+                        ties.push(Tie { other, places: [place, their], hull, contact, group: 0 });
                     }
-                    let gates = [0, 1].map(|side| {
-                        let gates = contact.gates[side].iter();
-                        let global = gates.map(|gate| Gate {
-                            at: held(gate.at, offset(side), places[side]),
-                            needs: needed(gate.needs, ways[1 - side], places[1 - side]),
-                        });
-                        global.collect()
-                    });
-                    ties.entry(other).or_default().push(Tie { places, hull, gates, group: 0 });
                 }
             }
         }
-        let mut others: Vec<usize> = ties.keys().copied().collect();
-        others.sort_unstable();
-        others
-            .into_iter()
-            .flat_map(|other| {
-                joined(ties.remove(&other).unwrap_or_default(), [robot, other], [way, &robots[other].way])
-            })
-            .collect()
+        ties.sort_unstable_by_key(|tie| (tie.other, tie.places));
+        let pairs = ties.chunk_by_mut(|a, b| a.other == b.other);
+        pairs.flat_map(|ties| joined(ties, robot, [way, &robots[ties[0].other].way])).collect()
     }
 }
 
@@ -221,11 +207,10 @@ fn timed(gate: Gate, first: &Way, second: &Way) -> Timed {
     Timed { gate, comes: second.time(gate.at.clamp(0.0, second.length())), opens }
 }
 
-/// The regions that ties of two robots make: those of atoms that follow one another belong together where they meet.
-fn joined(mut ties: Vec<Tie>, robots: [usize; 2], ways: [&Way; 2]) -> Vec<Region> {
+/// The regions that ties of two robots make, sorted by places: those of atoms that follow one another belong together where they meet.
+fn joined(ties: &mut [Tie<'_>], robot: usize, ways: [&Way; 2]) -> Vec<Region> {
     /// Lengths as near are the same \[m\].
     const NEAR: f64 = 1e-5;
-    let places: HashMap<[usize; 2], usize> = ties.iter().enumerate().map(|(k, tie)| (tie.places, k)).collect();
     let mut parents: Vec<usize> = (0..ties.len()).collect();
     fn root(parents: &mut [usize], mut k: usize) -> usize {
         while parents[k] != k {
@@ -238,7 +223,7 @@ fn joined(mut ties: Vec<Tie>, robots: [usize; 2], ways: [&Way; 2]) -> Vec<Region
         for side in 0..2 {
             let mut next = tie.places;
             next[side] += 1;
-            let Some(&next) = places.get(&next) else { continue };
+            let Ok(next) = ties.binary_search_by_key(&next, |tie| tie.places) else { continue };
             let across = 1 - side;
             let [a, b] = [tie.hull, ties[next].hull];
             if a[side].hi + NEAR >= b[side].lo && a[across].widened(NEAR).meets(b[across]) {
@@ -251,16 +236,21 @@ fn joined(mut ties: Vec<Tie>, robots: [usize; 2], ways: [&Way; 2]) -> Vec<Region
         tie.group = root(&mut parents, k);
     }
     ties.sort_by_key(|tie| tie.group);
-    let groups = ties.chunk_by(|a, b| a.group == b.group);
-    let region = |group: &[Tie]| {
+    let region = |group: &[Tie<'_>]| {
         let hull = [0, 1].map(|side| group.iter().map(|tie| tie.hull[side]).reduce(Interval::hull).unwrap_or_default());
         let gates = [0, 1].map(|side| {
-            let all = group.iter().flat_map(|tie| tie.gates[side].iter().copied()).collect();
-            pruned(all).into_iter().map(|gate| timed(gate, ways[1 - side], ways[side])).collect()
+            let all = group.iter().flat_map(|tie| {
+                let [own, other] = [side, 1 - side].map(|side| (ways[side], tie.places[side]));
+                tie.contact.gates[side].iter().map(move |gate| Gate {
+                    at: held(gate.at, own.0.offsets[own.1], own.1),
+                    needs: needed(gate.needs, other.0, other.1),
+                })
+            });
+            pruned(all.collect()).into_iter().map(|gate| timed(gate, ways[1 - side], ways[side])).collect()
         });
-        Region { robots, hull, gates, first: 1 }
+        Region { robots: [robot, group[0].other], hull, gates, first: 1 }
     };
-    groups.map(region).collect()
+    ties.chunk_by(|a, b| a.group == b.group).map(region).collect()
 }
 
 trait Widened {

@@ -6,7 +6,7 @@ use super::draws;
 use super::forecast::Trial;
 use super::state::{Mission, Run};
 use super::waits::Waits;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Between two tries for the same mission \[s\].
 const AGAIN: f64 = 1.0;
@@ -128,7 +128,8 @@ impl Run {
         let Some(mission) = self.missions[robot] else { return };
         let begin = Instant::now();
         let found = self.scene(now).dispatch(robot, &[mission.goal]);
-        self.decisions.push(begin.elapsed());
+        self.decisions.push(mission.prepared + begin.elapsed());
+        let mission = Mission { prepared: Duration::ZERO, ..mission };
         match found {
             Some(admitted) => {
                 self.take(robot, admitted);

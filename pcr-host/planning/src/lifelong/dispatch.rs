@@ -3,7 +3,7 @@
 
 use super::Method;
 use super::book::Region;
-use super::forecast::{MOST, Trial};
+use super::forecast::{Forecast, MOST, Trial};
 use super::scene::{Scene, TOLLS};
 use super::search::Case;
 use super::site::From;
@@ -137,16 +137,19 @@ impl Scene<'_> {
             let regions = self.book.regions(self.site, self.robots, robot, &way, at);
             let case = Case { scene: self, base, waits, taken, robot, way: &way, at, stop, budget };
             let solved = match self.method {
-                Method::RouteLocks => regions.is_empty().then(|| (Vec::new(), self.time, way.time(way.length()))),
+                Method::RouteLocks => {
+                    let alone = || Forecast { cost: way.time(way.length()), ..Forecast::default() };
+                    regions.is_empty().then(|| (Vec::new(), self.time, alone()))
+                }
                 Method::StartDelays => case.delayed(regions.clone()),
-                _ => case.ordered(regions.clone(), 0.0).map(|(regions, cost)| (regions, self.time, cost)),
+                _ => case.ordered(regions.clone(), 0.0).map(|(regions, forecast)| (regions, self.time, forecast)),
             };
-            if let Some((regions, departs, cost)) = solved {
-                found.push(Found { place: tried.len(), regions, departs, cost });
+            if let Some((regions, departs, forecast)) = solved {
+                found.push(Found { place: tried.len(), regions, departs, forecast });
             }
             tried.push((way, regions));
         }
-        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        found.sort_by(|a, b| a.forecast.cost.total_cmp(&b.forecast.cost));
         if self.method == Method::Orders {
             // Earlier or later among the others.
             let mut places: Vec<usize> = found.iter().map(|found| found.place).collect();
@@ -159,24 +162,21 @@ impl Scene<'_> {
                     if budget.get() == 0 {
                         break;
                     }
-                    if let Some((regions, cost)) = case.ordered(regions.clone(), shift) {
-                        found.push(Found { place, regions, departs: self.time, cost });
+                    if let Some((regions, forecast)) = case.ordered(regions.clone(), shift) {
+                        found.push(Found { place, regions, departs: self.time, forecast });
                     }
                 }
             }
         }
-        let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-        let Found { place, mut regions, departs, mut cost } = best;
+        let best = found.into_iter().min_by(|a, b| a.forecast.cost.total_cmp(&b.forecast.cost))?;
+        let Found { place, mut regions, departs, mut forecast } = best;
         let way = tried.swap_remove(place).0;
-        let mut lines = Vec::new();
         if self.method == Method::Orders {
             let case = Case { scene: self, base, waits, taken, robot, way: &way, at, stop, budget };
-            (regions, cost) = case.improved(regions, cost);
-            if self.timetable.is_some() {
-                let forecast = case.forecast(&regions, departs).ok()?;
-                lines = forecast.robots.into_iter().zip(forecast.lines).collect();
-            }
+            (regions, forecast) = case.improved(regions, forecast);
         }
+        let Forecast { robots, lines, cost } = forecast;
+        let lines = if self.timetable.is_some() { robots.into_iter().zip(lines).collect() } else { Vec::new() };
         Some(Admitted { way, kept: kept.atoms.len(), before: kept.before, regions, departs, cost, lines })
     }
 }
@@ -231,5 +231,5 @@ struct Found {
     place: usize,
     regions: Vec<Region>,
     departs: f64,
-    cost: f64,
+    forecast: Forecast,
 }

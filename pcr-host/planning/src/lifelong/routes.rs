@@ -1,9 +1,17 @@
 //! Quickest routes over a layout, with the turns at its nodes, and what else an atom is made to cost.
+//!
+//! A* over atoms. What is left to a goal is exact but for tolls: the least times to it from everywhere are computed once for a goal, and
+//! kept for the goals that were asked for last.
 
 use super::abilities::Abilities;
 use super::site::{From, Site, wrapped};
+use std::cell::RefCell;
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};
+use std::rc::Rc;
+
+/// Bytes that the times to goals may take, about.
+const ROOM: usize = 256 << 20;
 
 /// An atom that can be left after this time \[s\], with what is left at least.
 #[derive(PartialEq)]
@@ -27,73 +35,183 @@ impl PartialOrd for Reached {
     }
 }
 
-/// The quickest routes from a node to different nodes that are asked for, the quickest first, at most `count`. `toll` is what an atom
-/// costs beside its time \[s\]; `towards` the only node that is asked for.
-pub(super) fn routes(
-    (site, abilities): (&Site, &Abilities),
-    From { node: from, heading }: From,
-    toll: impl Fn(usize) -> f64,
-    asked: impl Fn(usize) -> bool,
-    towards: Option<usize>,
-    count: usize,
-) -> Vec<Vec<usize>> {
-    let mut found = Vec::new();
-    let mut met = HashSet::new();
-    if asked(from) {
-        found.push(Vec::new());
-        met.insert(from);
-    }
-    let left = |node: usize| match towards {
-        Some(to) => {
-            let (a, b) = (site.points[node], site.points[to]);
-            (a[0] - b[0]).hypot(a[1] - b[1]) / abilities.speed
-        }
-        None => 0.0,
-    };
-    // The least cost of each atom, and the one before it.
-    let mut best: Vec<(f64, usize)> = vec![(f64::INFINITY, usize::MAX); site.atoms.len()];
-    let mut done = vec![false; site.atoms.len()];
-    let mut heap = BinaryHeap::new();
-    let relax = |heap: &mut BinaryHeap<Reached>,
-                 best: &mut [(f64, usize)],
-                 atom: usize,
-                 before: Option<usize>,
-                 cost: f64,
-                 heading: Option<f64>| {
-        let it = &site.atoms[atom];
-        let turn = heading.zip(it.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
-        let corner = if turn.abs() > 1e-6 { abilities.turn(turn) + abilities.stop() } else { 0.0 };
-        let cost = cost + corner + it.length / it.speed + toll(atom);
-        if cost < best[atom].0 {
-            best[atom] = (cost, before.unwrap_or(usize::MAX));
-            heap.push(Reached { bound: cost + left(it.ends[1]), cost, atom });
-        }
-    };
-    for &atom in &site.leaving[from] {
-        relax(&mut heap, &mut best, atom, None, 0.0, heading);
-    }
-    while found.len() < count {
-        let Some(Reached { cost, atom, .. }) = heap.pop() else { break };
-        if std::mem::replace(&mut done[atom], true) {
-            continue;
-        }
-        let node = site.atoms[atom].ends[1];
-        if asked(node) && met.insert(node) {
-            let mut route = vec![atom];
-            let mut before = best[atom].1;
-            while before != usize::MAX {
-                route.push(before);
-                before = best[before].1;
-            }
-            route.reverse();
-            found.push(route);
-        }
-        let heading = site.atoms[atom].headings.map(|headings| headings[1]);
-        for &next in &site.leaving[node] {
-            if !done[next] {
-                relax(&mut heap, &mut best, next, Some(atom), cost, heading);
+/// What has been found of an atom in the search of this number.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    search: u32,
+    done: bool,
+    cost: f64,
+    before: Option<usize>,
+}
+
+/// A layout as robots drive over it: how long each atom takes, and each corner.
+pub(super) struct Routes {
+    abilities: Abilities,
+    /// Of each atom \[s\].
+    times: Vec<f64>,
+    /// Atoms that can follow one, and what the corner between them costs \[s\].
+    after: Vec<Vec<(usize, f64)>>,
+    /// Those that it can follow.
+    before: Vec<Vec<(usize, f64)>>,
+    /// The least times to goals from the ends of all atoms \[s\].
+    left: RefCell<HashMap<usize, Rc<[f32]>>>,
+    /// These goals, the oldest first.
+    goals: RefCell<VecDeque<usize>>,
+    found: RefCell<(u32, Vec<Found>)>,
+}
+
+impl Routes {
+    pub(super) fn new(site: &Site, abilities: Abilities) -> Self {
+        let edges = site.atoms.len() - site.points.len();
+        let (mut after, mut before) = (vec![Vec::new(); edges], vec![Vec::new(); edges]);
+        for (atom, it) in site.atoms[..edges].iter().enumerate() {
+            let last = it.headings.map(|headings| headings[1]);
+            for &next in &site.leaving[it.ends[1]] {
+                let corner = corner(&abilities, last, site.atoms[next].headings);
+                after[atom].push((next, corner));
+                before[next].push((atom, corner));
             }
         }
+        let times = site.atoms[..edges].iter().map(|atom| atom.length / atom.speed).collect();
+        let found = RefCell::new((0, vec![Found::default(); edges]));
+        Self { abilities, times, after, before, left: RefCell::default(), goals: RefCell::default(), found }
     }
-    found
+
+    /// The least times to a goal from the ends of all atoms, without tolls, rounded down \[s\].
+    fn left(&self, site: &Site, goal: usize) -> Rc<[f32]> {
+        if let Some(known) = self.left.borrow().get(&goal) {
+            return known.clone();
+        }
+        let mut left = vec![f64::INFINITY; self.times.len()];
+        let mut heap = BinaryHeap::new();
+        for &atom in &site.coming[goal] {
+            left[atom] = 0.0;
+            heap.push(Reached { bound: 0.0, cost: 0.0, atom });
+        }
+        while let Some(Reached { cost, atom, .. }) = heap.pop() {
+            if cost > left[atom] {
+                continue;
+            }
+            for &(last, corner) in &self.before[atom] {
+                let cost = cost + self.times[atom] + corner;
+                if cost < left[last] {
+                    left[last] = cost;
+                    heap.push(Reached { bound: cost, cost, atom: last });
+                }
+            }
+        }
+        let below = |time: f64| if time < f64::INFINITY { (time as f32).next_down() } else { f32::INFINITY };
+        let left: Rc<[f32]> = left.into_iter().map(below).collect();
+        let (mut known, mut goals) = (self.left.borrow_mut(), self.goals.borrow_mut());
+        if known.len() * left.len() * size_of::<f32>() > ROOM {
+            goals.pop_front().map(|oldest| known.remove(&oldest));
+        }
+        goals.push_back(goal);
+        known.insert(goal, left.clone());
+        left
+    }
+
+    /// Whether few atoms lead to a goal and none of them from a node: found from the side of the goal, where a search from the other side would
+    /// go through all of the layout.
+    fn is_shut(&self, site: &Site, goal: usize, from: usize, toll: impl Fn(usize) -> f64) -> bool {
+        /// Atoms that are looked at, at most.
+        const FEW: usize = 64;
+        let is_open = |&atom: &usize| toll(atom) < f64::INFINITY;
+        let mut met: Vec<usize> = site.coming[goal].iter().copied().filter(is_open).collect();
+        let mut next = 0;
+        while let Some(&atom) = met.get(next) {
+            if site.atoms[atom].ends[0] == from || met.len() > FEW {
+                return false;
+            }
+            for (before, _) in &self.before[atom] {
+                if !met.contains(before) && is_open(before) {
+                    met.push(*before);
+                }
+            }
+            next += 1;
+        }
+        true
+    }
+
+    /// The quickest routes from a node to different nodes that are asked for, the quickest first, at most `count`. `toll` is what an atom
+    /// costs beside its time \[s\]; `towards` the only node that is asked for.
+    pub(super) fn quickest(
+        &self,
+        site: &Site,
+        From { node: from, heading }: From,
+        toll: impl Fn(usize) -> f64,
+        asked: impl Fn(usize) -> bool,
+        towards: Option<usize>,
+        count: usize,
+    ) -> Vec<Vec<usize>> {
+        let mut routes = Vec::new();
+        let mut met = HashSet::new();
+        if asked(from) {
+            routes.push(Vec::new());
+            met.insert(from);
+        }
+        // A toll that nobody gets round.
+        let last = |goal: usize| site.coming[goal].iter().map(|&atom| toll(atom)).fold(f64::INFINITY, f64::min);
+        let last = towards.map_or(0.0, last);
+        let is_shut = |goal: usize| self.is_shut(site, goal, from, &toll);
+        if routes.len() == count || towards.is_some_and(is_shut) {
+            return routes;
+        }
+        let left = towards.map(|goal| self.left(site, goal));
+        let left = |atom: usize| match &left {
+            Some(left) if towards != Some(site.atoms[atom].ends[1]) => last + f64::from(left[atom]),
+            _ => 0.0,
+        };
+        let (search, all) = &mut *self.found.borrow_mut();
+        *search = search.wrapping_add(1);
+        if *search == 0 {
+            all.fill(Found::default());
+            *search = 1;
+        }
+        let search = *search;
+        let mut heap = BinaryHeap::new();
+        let relax =
+            |all: &mut [Found], heap: &mut BinaryHeap<Reached>, atom: usize, before: Option<usize>, cost: f64| {
+                let known = all[atom].search == search;
+                if known && all[atom].done {
+                    return;
+                }
+                let bound = left(atom);
+                let cost = cost + self.times[atom];
+                if bound == f64::INFINITY || (known && all[atom].cost <= cost) {
+                    return;
+                }
+                let cost = cost + toll(atom);
+                if cost < f64::INFINITY && (!known || cost < all[atom].cost) {
+                    all[atom] = Found { search, done: false, cost, before };
+                    heap.push(Reached { bound: cost + bound, cost, atom });
+                }
+            };
+        for &atom in &site.leaving[from] {
+            relax(all, &mut heap, atom, None, corner(&self.abilities, heading, site.atoms[atom].headings));
+        }
+        while routes.len() < count {
+            let Some(Reached { cost, atom, .. }) = heap.pop() else { break };
+            if std::mem::replace(&mut all[atom].done, true) {
+                continue;
+            }
+            let node = site.atoms[atom].ends[1];
+            if asked(node) && met.insert(node) {
+                let before = |&atom: &usize| all[atom].before;
+                let mut route: Vec<usize> = std::iter::successors(Some(atom), before).collect();
+                route.reverse();
+                routes.push(route);
+            }
+            for &(next, corner) in &self.after[atom] {
+                relax(all, &mut heap, next, Some(atom), cost + corner);
+            }
+        }
+        routes
+    }
+}
+
+/// What a corner costs from one direction to the first one of an atom \[s\].
+fn corner(abilities: &Abilities, last: Option<f64>, next: Option<[f64; 2]>) -> f64 {
+    let turn = last.zip(next).map_or(0.0, |(last, [next, _])| wrapped(next - last));
+    if turn.abs() > 1e-6 { abilities.turn(turn) + abilities.stop() } else { 0.0 }
 }

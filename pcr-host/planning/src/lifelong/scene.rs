@@ -7,7 +7,7 @@ use super::ends::cut_off;
 use super::forecast::{Forecast, Stuck, Trial};
 use super::locks::Locks;
 use super::robot::Robot;
-use super::routes::routes;
+use super::routes::Routes;
 use super::site::{From, Site};
 use super::timetable::Timetable;
 use super::waits::Waits;
@@ -25,6 +25,7 @@ pub(super) struct Scene<'s> {
     pub(super) book: &'s Book,
     pub(super) locks: &'s Locks,
     pub(super) abilities: &'s Abilities,
+    pub(super) network: &'s Routes,
     /// Whether robots may stand at a node for good.
     pub(super) ends: &'s [bool],
     /// Nodes that can all be reached from one another.
@@ -79,10 +80,12 @@ impl Scene<'_> {
         towards: Option<usize>,
         count: usize,
     ) -> Vec<Vec<usize>> {
-        let end = self.robots[robot].way.end();
+        let own = self.site.covers(self.robots[robot].way.end());
         let toll = |atom: usize| {
-            let own = u16::from(self.site.covers(end).contains(&atom));
-            let parked = self.parked[atom].saturating_sub(own);
+            let mut parked = self.parked[atom];
+            if parked > 0 && own.contains(&atom) {
+                parked -= 1;
+            }
             let mut toll = if parked > 0 { standing * f64::from(parked) } else { 0.0 };
             if coming > 0.0
                 && let Some(back) = self.site.back[atom]
@@ -91,7 +94,7 @@ impl Scene<'_> {
             }
             toll
         };
-        routes((self.site, self.abilities), from, toll, asked, towards, count)
+        self.network.quickest(self.site, from, toll, asked, towards, count)
     }
 
     /// The nodes at which a robot would cut off fewest others, of some.

@@ -57,7 +57,7 @@ impl Case<'_, '_> {
     }
 
     /// Orders by what is forecast, mended, and turned round where that is better.
-    pub(super) fn ordered(&self, mut regions: Vec<Region>, shift: f64) -> Option<(Vec<Region>, f64)> {
+    pub(super) fn ordered(&self, mut regions: Vec<Region>, shift: f64) -> Option<(Vec<Region>, Forecast)> {
         regions.sort_by(|a, b| a.hull[0].lo.total_cmp(&b.hull[0].lo));
         let mut open = Vec::with_capacity(regions.len());
         let mut late = shift;
@@ -76,11 +76,11 @@ impl Case<'_, '_> {
             open.push(sides == [true, true]);
         }
         let forecast = self.repaired(&mut regions, &open)?;
-        Some((regions, forecast.cost))
+        Some((regions, forecast))
     }
 
     /// Turns orders round where all are expected to arrive sooner by that.
-    pub(super) fn improved(&self, mut regions: Vec<Region>, mut cost: f64) -> (Vec<Region>, f64) {
+    pub(super) fn improved(&self, mut regions: Vec<Region>, mut forecast: Forecast) -> (Vec<Region>, Forecast) {
         let least = if self.scene.timetable.is_some() { FEW_TURNS } else { LEAST_TURNS };
         let mut turns = 0;
         for k in 0..regions.len() {
@@ -96,11 +96,11 @@ impl Case<'_, '_> {
             self.budget.set(self.budget.get().saturating_sub(1));
             regions[k].first = 1 - regions[k].first;
             match self.forecast(&regions, self.scene.time) {
-                Ok(other) if other.cost < cost => cost = other.cost,
+                Ok(other) if other.cost < forecast.cost => forecast = other,
                 _ => regions[k].first = 1 - regions[k].first,
             }
         }
-        (regions, cost)
+        (regions, forecast)
     }
 
     /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
@@ -147,7 +147,7 @@ impl Case<'_, '_> {
     }
 
     /// The least start delay with which the robot waits for nobody and nobody for it, as all are expected to be.
-    pub(super) fn delayed(&self, mut regions: Vec<Region>) -> Option<(Vec<Region>, f64, f64)> {
+    pub(super) fn delayed(&self, mut regions: Vec<Region>) -> Option<(Vec<Region>, f64, Forecast)> {
         'delays: for k in 0..DELAYS.1 {
             let late = DELAYS.0 * f64::from(k);
             for region in &mut regions {
@@ -161,7 +161,7 @@ impl Case<'_, '_> {
             }
             let departs = self.scene.time + late;
             if let Ok(forecast) = self.forecast(&regions, departs) {
-                return Some((regions, departs, forecast.cost));
+                return Some((regions, departs, forecast));
             }
         }
         None

@@ -10,7 +10,7 @@ use super::locks::Locks;
 use super::outcome::{Outcome, Shares};
 use super::record::Certificate;
 use super::robot::Robot;
-use super::routes::routes;
+use super::routes::Routes;
 use super::scene::Scene;
 use super::site::Site;
 use super::tasks::{Queue, Tasks};
@@ -18,7 +18,7 @@ use super::timetable::Timetable;
 use super::way::Way;
 use super::{Method, Request};
 use pcr_formats::import::Imported;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A mission that a robot has.
 #[derive(Clone, Copy, Debug)]
@@ -30,12 +30,15 @@ pub(super) struct Mission {
     /// Whether it has a way.
     pub(super) admitted: bool,
     pub(super) next_try: f64,
+    /// What it took to find the quickest way before the first decision.
+    pub(super) prepared: Duration,
 }
 
 pub(super) struct Run {
     pub(super) site: Site,
     pub(super) ends: Ends,
     pub(super) abilities: Abilities,
+    pub(super) network: Routes,
     pub(super) request: Request,
     pub(super) robots: Vec<Robot>,
     pub(super) book: Book,
@@ -98,6 +101,7 @@ impl Run {
         Ok(Self {
             book: Book::new(&site, &robots),
             locks: Locks::new(count),
+            network: Routes::new(&site, abilities),
             timetable: Timetable::new(count),
             site,
             ends,
@@ -139,7 +143,8 @@ impl Run {
                 self.last_arrival = now;
                 continue;
             }
-            self.missions[robot] = Some(Mission { goal, since, alone: 0.0, admitted: false, next_try: now });
+            let prepared = Duration::ZERO;
+            self.missions[robot] = Some(Mission { goal, since, alone: 0.0, admitted: false, next_try: now, prepared });
         }
         tasks
     }
@@ -159,13 +164,15 @@ impl Run {
             let place = from.node;
             let goal = draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], place);
             self.given[robot] += 1;
-            let way = routes((&self.site, &self.abilities), from, |_| 0.0, |node| node == goal, Some(goal), 1);
+            let begin = Instant::now();
+            let way = self.network.quickest(&self.site, from, |_| 0.0, |node| node == goal, Some(goal), 1);
             let alone = way.first().map_or(0.0, |atoms| {
                 let way = Way::new(&self.site, from, atoms, &[], &self.abilities);
                 way.time(way.length()) + self.abilities.stop()
             });
             let admitted = !it.way.goals.is_empty();
-            self.missions[robot] = Some(Mission { goal, since: now, alone, admitted, next_try: now });
+            let prepared = begin.elapsed();
+            self.missions[robot] = Some(Mission { goal, since: now, alone, admitted, next_try: now, prepared });
         }
     }
 
@@ -181,6 +188,7 @@ impl Run {
             book: &self.book,
             locks: &self.locks,
             abilities: &self.abilities,
+            network: &self.network,
             ends: &self.ends.is_safe,
             nodes: &self.ends.nodes,
             parked: &self.parked,

@@ -103,7 +103,7 @@ impl Supervisor {
         if let Some(before) = &before {
             Robot::outlives(&mut robot.past, before.mission.clone());
         }
-        let refused = match self.attempt(place, &waiting) {
+        let refused = match self.attempt(place, &waiting, now) {
             Ok(refused) => refused,
             Err(fault) => {
                 let robot = &mut self.robots[place];
@@ -147,7 +147,7 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault`] for what will never be possible.
-    fn attempt(&mut self, place: usize, mission: &Waiting) -> Result<Option<Verdict>, Fault> {
+    fn attempt(&mut self, place: usize, mission: &Waiting, now: f64) -> Result<Option<Verdict>, Fault> {
         let robot = &self.robots[place];
         if robot.alarm.is_some() {
             let why = "it is not where it may be".into();
@@ -163,8 +163,11 @@ impl Supervisor {
         self.orders.passed(&progress);
         let mut fleet = fleet(&self.robots);
         let speeds: Vec<f64> = self.robots.iter().map(|robot| robot.abilities.speed).collect();
-        let known = progress.clone();
-        let prefer = |region: &RegionRef<'_, f64>| preferred(region, own.at.lo, &known, &speeds);
+        let (known, is_last) = (progress.clone(), self.is_overtaken(now));
+        let prefer = |region: &RegionRef<'_, f64>| match is_last {
+            true => Pass::Second,
+            false => preferred(region, own.at.lo, &known, &speeds),
+        };
         let admission = loop {
             let mission = Mission { agent: place, motion, progress: own };
             let found = self.orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut self.reaches, prefer);
@@ -284,7 +287,7 @@ impl Supervisor {
         let robot = &self.robots[place];
         let name = robot.name.clone();
         let possible = match waiting.path == robot.path {
-            true => self.joins(robot, waiting.after, None).and_then(|()| self.attempt(place, &waiting)),
+            true => self.joins(robot, waiting.after, None).and_then(|()| self.attempt(place, &waiting, now)),
             false => Err(Fault::NoSuchPath { path: robot.path }),
         };
         match possible {

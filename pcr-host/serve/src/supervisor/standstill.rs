@@ -60,6 +60,17 @@ impl Supervisor {
         }
     }
 
+    /// Whether somebody has got nowhere for long, but the one that it waits for has: perhaps those that come after it go before it, again
+    /// and again. New missions are admitted behind everybody then, so that those before it become fewer until it goes on.
+    pub(super) fn is_overtaken(&self, now: f64) -> bool {
+        let patience = self.settings.patience;
+        let is_overtaken = |place: usize| {
+            let by = self.kept_by(place).filter(|_| !self.robots[place].has_arrived(self.settings.width));
+            self.since(place, now) > patience && by.is_some_and(|by| self.since(by, now) <= patience)
+        };
+        (0..self.robots.len()).any(is_overtaken)
+    }
+
     fn since(&self, place: usize, now: f64) -> f64 {
         self.robots[place].moved.map_or(0.0, |moved| now - moved)
     }

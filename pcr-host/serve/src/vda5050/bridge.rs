@@ -138,8 +138,9 @@ impl Bridge {
                 lane.order(supervisor, payload, limits, is_third, now);
                 Ok(())
             }
-            // Zones are the manager's: what it grants is passed on as it is.
-            Kind::Responses | Kind::ZoneSet => lane.untouched(kind, payload, limits, is_third),
+            Kind::Responses => lane.responses(payload, limits, is_third),
+            // Zones are the manager's.
+            Kind::ZoneSet => lane.untouched(kind, payload, limits, is_third),
         };
         if let Err(refusal) = result {
             self.counts.refused += 1;

@@ -1,5 +1,6 @@
 //! The messages that are not orders or states. What is not named here is kept as it came, in `rest`.
 
+use super::door::Refusal;
 use super::header::{Header, message};
 use super::state::{Pose, Velocity};
 use super::version::Version;
@@ -40,8 +41,11 @@ message! {
     /// What a vehicle is to do at once.
     InstantActions {
         /// What.
-        #[serde(alias = "instantActions")]
-        actions: Vec<Action>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        actions: Option<Vec<Action>>,
+        /// The same, as edition 1 and some clients of 2.0 call it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        instant_actions: Option<Vec<Action>>,
     }
 }
 
@@ -62,16 +66,32 @@ pub struct Action {
 }
 
 impl InstantActions {
+    /// These actions; in 2.0 with all names that its readers ask for.
+    pub fn new(header: Header, mut actions: Vec<Action>) -> Self {
+        let is_first = Version::of(&header.version) == Some(Version::V2_0);
+        if is_first {
+            for action in &mut actions {
+                action.rest.insert("actionName".into(), action.action_type.clone().into());
+            }
+        }
+        let instant_actions = is_first.then(|| actions.clone());
+        Self { header, actions: Some(actions), instant_actions, rest: Map::new() }
+    }
+
     /// One action, of no parameters.
     pub fn one(header: Header, action_type: &str, action_id: String) -> Self {
-        let mut rest = Map::new();
-        if Version::of(&header.version) == Some(Version::V2_0) {
-            rest.insert("actionName".into(), action_type.into());
-        }
         // In 3.0 instant actions block nothing.
-        let blocking_type = "NONE".into();
-        let action = Action { action_type: action_type.into(), action_id, blocking_type, rest };
-        Self { header, actions: vec![action], rest: Map::new() }
+        let (action_type, blocking_type) = (action_type.into(), "NONE".into());
+        Self::new(header, vec![Action { action_type, action_id, blocking_type, rest: Map::new() }])
+    }
+
+    /// What is to be done.
+    ///
+    /// # Errors
+    /// [`Refusal`] where nothing is said of that.
+    pub fn list(&self) -> Result<&[Action], Refusal> {
+        let list = self.actions.as_deref().or(self.instant_actions.as_deref());
+        list.ok_or_else(|| Refusal::new("actions", "missing"))
     }
 }
 
@@ -81,4 +101,25 @@ message! {
         /// Speeds, accelerations and size.
         physical_parameters: Value,
     }
+}
+
+message! {
+    /// What the manager says to what a vehicle has asked for, since 3.0.
+    Responses {
+        /// One for each request.
+        responses: Vec<Response>,
+    }
+}
+
+/// An answer to a request of a vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Response {
+    /// Which request.
+    pub request_id: String,
+    /// `GRANTED`, `QUEUED`, `REVOKED`, `REJECTED`.
+    pub grant_type: String,
+    /// All else.
+    #[serde(flatten)]
+    pub rest: Map<String, Value>,
 }

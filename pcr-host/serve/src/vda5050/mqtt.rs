@@ -246,9 +246,7 @@ fn qos(assured: bool) -> QoS {
 #[cfg(feature = "tls")]
 fn secure(options: &mut MqttOptions, broker: &Broker) -> Result<(), String> {
     if let Some(file) = &broker.authority {
-        let ca = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
-        let tls = rumqttc::TlsConfiguration::Simple { ca, alpn: None, client_auth: None };
-        options.set_transport(rumqttc::Transport::Tls(tls));
+        options.set_transport(super::tls::transport(file)?);
     }
     Ok(())
 }
@@ -266,7 +264,7 @@ mod tests {
     use super::*;
     use std::io::{Read, Write};
     use std::net::{TcpListener, TcpStream};
-    use std::sync::mpsc::channel;
+    use std::sync::mpsc::{Receiver, channel};
 
     /// Reads one packet of less than 128 bytes: its kind.
     fn packet(stream: &mut TcpStream) -> std::io::Result<u8> {
@@ -276,52 +274,49 @@ mod tests {
         Ok(head[0])
     }
 
-    /// Connections were given up after 50 ms and begun anew: behind a slow line, or on a busy machine, for ever.
-    #[test]
-    fn a_broker_that_takes_its_time_is_waited_for() {
+    /// A link with two topics, and a broker that says this; its first connection is the one that it keeps.
+    fn linked(says: fn(&mut TcpStream)) -> (Link, JoinHandle<TcpStream>, Receiver<News>) {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let broker = std::thread::spawn(move || {
             let (mut stream, _) = listener.accept().unwrap();
-            assert_eq!(packet(&mut stream).unwrap(), 0x10);
-            std::thread::sleep(Duration::from_millis(300));
-            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
-            assert_eq!(packet(&mut stream).unwrap(), 0x82);
-            std::thread::sleep(Duration::from_millis(300));
-            stream.write_all(&[0x90, 4, 0, 1, 1, 1]).unwrap();
-            stream
-        });
-        let (sender, news) = channel();
-        let filters = ["a/b", "c/d"].map(String::from).to_vec();
-        let link = Link::open(&Broker::new("127.0.0.1", port), "slow", None, filters, move |it| drop(sender.send(it)));
-        let link = link.unwrap();
-        let stream = broker.join().expect("its first connection is the one that it keeps");
-        assert_eq!(news.recv().unwrap(), News::Up);
-        assert!(link.is_up());
-        drop(link);
-        drop(stream);
-    }
-
-    #[test]
-    fn what_may_not_be_read_is_said() {
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        let port = listener.local_addr().unwrap().port();
-        let broker = std::thread::spawn(move || {
-            let (mut stream, _) = listener.accept().unwrap();
-            packet(&mut stream).unwrap();
-            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
-            packet(&mut stream).unwrap();
-            stream.write_all(&[0x90, 4, 0, 1, 1, 0x80]).unwrap();
+            says(&mut stream);
             stream
         });
         let (sender, news) = channel();
         let filters = ["a/b", "c/d"].map(String::from).to_vec();
         let link = Link::open(&Broker::new("127.0.0.1", port), "id", None, filters, move |it| drop(sender.send(it)));
-        let link = link.unwrap();
+        (link.unwrap(), broker, news)
+    }
+
+    /// Connections were given up after 50 ms and begun anew: behind a slow line, or on a busy machine, for ever.
+    #[test]
+    fn a_broker_that_takes_its_time_is_waited_for() {
+        let (link, broker, news) = linked(|stream| {
+            assert_eq!(packet(stream).unwrap(), 0x10);
+            std::thread::sleep(Duration::from_millis(300));
+            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
+            assert_eq!(packet(stream).unwrap(), 0x82);
+            std::thread::sleep(Duration::from_millis(300));
+            stream.write_all(&[0x90, 4, 0, 1, 1, 1]).unwrap();
+        });
+        let stream = broker.join().unwrap();
+        assert_eq!(news.recv().unwrap(), News::Up);
+        assert!(link.is_up());
+        drop((link, stream));
+    }
+
+    #[test]
+    fn what_may_not_be_read_is_said() {
+        let (link, broker, news) = linked(|stream| {
+            packet(stream).unwrap();
+            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
+            packet(stream).unwrap();
+            stream.write_all(&[0x90, 4, 0, 1, 1, 0x80]).unwrap();
+        });
         let stream = broker.join().unwrap();
         assert_eq!(news.recv().unwrap(), News::Down("the broker does not let us read c/d".into()));
         assert!(!link.is_up());
-        drop(link);
-        drop(stream);
+        drop((link, stream));
     }
 }

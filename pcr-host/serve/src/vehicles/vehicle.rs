@@ -165,8 +165,9 @@ impl Vehicle {
             Kind::InstantActions => {
                 if let Ok(message) = door::read::<InstantActions>(payload, Limits::default())
                     && self.is_ours(&message.header)
+                    && let Ok(actions) = message.list()
                 {
-                    message.actions.iter().for_each(|action| self.act(action));
+                    actions.iter().for_each(|action| self.act(action));
                 }
             }
             _ => {}

@@ -11,6 +11,8 @@ pub(crate) struct Mosquitto {
     child: Child,
     folder: PathBuf,
     port: u16,
+    login: Option<(String, String)>,
+    authority: Option<PathBuf>,
 }
 
 /// A folder of this name that is empty, of this process.
@@ -29,13 +31,33 @@ impl Mosquitto {
     /// Which lets in a user with a password only.
     pub(crate) fn guarded(name: &str, user: &str, password: &str) -> Self {
         let folder = folder(&format!("broker-{name}"));
+        let access = Self::passwords(&folder, user, password);
+        let mut broker = Self::with(folder, &access);
+        broker.login = Some((user.into(), password.into()));
+        broker
+    }
+
+    /// The same over TLS, with a certificate for this address that was made for it.
+    #[cfg(feature = "tls")]
+    pub(crate) fn secured(name: &str, user: &str, password: &str) -> Self {
+        let folder = folder(&format!("broker-{name}"));
+        let access = Self::passwords(&folder, user, password);
+        let authority = crate::tls::authority(&folder, "authority");
+        let made = crate::tls::certificate(&folder, "authority");
+        let [certificate, key] = made.each_ref().map(|file| file.display());
+        let mut broker = Self::with(folder, &format!("{access}\ncertfile {certificate}\nkeyfile {key}"));
+        (broker.login, broker.authority) = (Some((user.into(), password.into())), Some(authority));
+        broker
+    }
+
+    fn passwords(folder: &Path, user: &str, password: &str) -> String {
         let file = folder.join("passwords");
         let made = Command::new("mosquitto_passwd").args(["-b", "-c"]).arg(&file).args([user, password]).status();
         assert!(made.is_ok_and(|status| status.success()), "mosquitto_passwd comes with mosquitto");
         // It gives up the rights of root, which has written the file.
         let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o644);
         std::fs::set_permissions(&file, permissions).unwrap();
-        Self::with(folder, &format!("allow_anonymous false\npassword_file {}", file.display()))
+        format!("allow_anonymous false\npassword_file {}", file.display())
     }
 
     fn with(folder: PathBuf, access: &str) -> Self {
@@ -43,7 +65,7 @@ impl Mosquitto {
         let config = format!("listener {port} 127.0.0.1\nset_tcp_nodelay true\nlog_dest none\n{access}\n");
         std::fs::write(folder.join("mosquitto.conf"), config).unwrap();
         let child = Self::spawn(&folder);
-        let broker = Self { child, folder, port };
+        let broker = Self { child, folder, port, login: None, authority: None };
         broker.wait();
         broker
     }
@@ -81,8 +103,10 @@ impl Mosquitto {
         self.wait();
     }
 
+    /// How to reach it, with all that it asks for.
     pub(crate) fn address(&self) -> Broker {
-        Broker::new("127.0.0.1", self.port)
+        let (login, authority) = (self.login.clone(), self.authority.clone());
+        Broker { login, authority, ..Broker::new("127.0.0.1", self.port) }
     }
 }
 

@@ -15,7 +15,7 @@ use pcr_serve::vehicles::vehicle::Vehicle;
 use pcr_serve::vehicles::world::profile;
 use serde_json::{Value, json};
 
-const CAN: Abilities = Abilities {
+pub(crate) const CAN: Abilities = Abilities {
     radius: 0.4,
     speed: 1.0,
     acceleration: 0.5,
@@ -40,7 +40,7 @@ struct Pair {
     header: u64,
 }
 
-fn key() -> Key {
+pub(crate) fn key() -> Key {
     Key::new("sim", "001").unwrap()
 }
 

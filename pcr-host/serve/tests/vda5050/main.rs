@@ -9,4 +9,7 @@ mod samples;
 mod schemas;
 mod site;
 mod standing;
+#[cfg(feature = "tls")]
+mod tls;
 mod yard;
+mod zones;

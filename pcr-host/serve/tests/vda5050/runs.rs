@@ -73,22 +73,24 @@ fn a_fleet_of_all_editions_keeps_apart() {
     }
 }
 
+/// What a broker says first to who comes.
+pub(crate) fn first(broker: &Broker) -> News {
+    let (sender, news) = channel();
+    let link = Link::open(broker, "who", None, vec!["a/b".into()], move |it| drop(sender.send(it))).unwrap();
+    let first = news.recv().unwrap();
+    link.close();
+    first
+}
+
 /// Whoever had no right to the broker tried again for ever, and said nothing.
 #[test]
 #[ignore = "needs a broker: .ci/test.sh serve"]
 fn a_broker_with_passwords_lets_in_who_has_one() {
-    let broker = Mosquitto::guarded("guarded", "pcr", "secret");
-    let first = |password: Option<&str>| {
-        let login = password.map(|password| ("pcr".into(), password.into()));
-        let (sender, news) = channel();
-        let broker = Broker { login, ..broker.address() };
-        let link = Link::open(&broker, "who", None, vec!["a/b".into()], move |it| drop(sender.send(it))).unwrap();
-        let first = news.recv().unwrap();
-        link.close();
-        first
-    };
-    for refused in [first(None), first(Some("guess"))] {
+    let mosquitto = Mosquitto::guarded("guarded", "pcr", "secret");
+    let broker = mosquitto.address();
+    let with = |password: &str| Broker { login: Some(("pcr".into(), password.into())), ..broker.clone() };
+    for refused in [first(&Broker { login: None, ..broker.clone() }), first(&with("guess"))] {
         assert!(matches!(&refused, News::Down(why) if why.contains("NotAuthorized")), "{refused:?}");
     }
-    assert_eq!(first(Some("secret")), News::Up);
+    assert_eq!(first(&with("secret")), News::Up);
 }

@@ -22,13 +22,14 @@ impl Lane {
         is_third: bool,
         now: f64,
     ) -> Result<(), Refusal> {
-        let mut message: InstantActions = door::read(bytes, limits)?;
+        let message: InstantActions = door::read(bytes, limits)?;
+        let actions = message.list()?;
         // The schema 2.0 does not ask for a header.
         let version = match (message.header.version.as_str(), self.version) {
             ("", Some(version)) => version,
             _ => message.header.check(&self.profile.key, is_third)?,
         };
-        let cancel = message.actions.iter().find(|action| action.action_type == "cancelOrder");
+        let cancel = actions.iter().find(|action| action.action_type == "cancelOrder");
         if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
             (job.cancel, job.cancelled_at) = (Some(cancel.action_id.clone()), now);
             let given = job.given();
@@ -41,12 +42,9 @@ impl Lane {
                 let _ = supervisor.mission(&nothing, now);
             }
         }
-        if version == Version::V2_0 {
-            for action in &mut message.actions {
-                action.rest.insert("actionName".into(), action.action_type.clone().into());
-            }
-        }
-        message.header = self.header(Kind::InstantActions, version);
+        let actions = actions.to_vec();
+        let header = self.header(Kind::InstantActions, version);
+        let message = InstantActions { rest: message.rest, ..InstantActions::new(header, actions) };
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
         Ok(())
     }

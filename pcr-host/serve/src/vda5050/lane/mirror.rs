@@ -2,7 +2,7 @@
 
 use super::super::door::{self, Limits, Refusal};
 use super::super::header::Header;
-use super::super::messages::{Connection, Factsheet};
+use super::super::messages::{Connection, Factsheet, Responses};
 use super::super::order::{Edge, Node};
 use super::super::state::{EdgeState, NodeState, State};
 use super::super::topics::Kind;
@@ -39,6 +39,40 @@ impl Lane {
         header.check(&self.profile.key, is_third)?;
         self.forward(To::Vehicle, kind, is_third, payload);
         Ok(())
+    }
+
+    /// Passes on what the manager says to requests of the vehicle. To enter a zone is granted as the manager wants: the vehicle goes no
+    /// further than its base there either. To leave its way, in a zone where it may plan for itself or in a corridor, is rejected instead:
+    /// nobody knows where it would be.
+    ///
+    /// # Errors
+    /// [`Refusal`] for what is no such message, and for what was rejected.
+    pub fn responses(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
+        let mut message: Responses = door::read(payload, limits)?;
+        let version = message.header.check(&self.profile.key, is_third)?;
+        let mut rejected = None;
+        for (k, response) in message.responses.iter_mut().enumerate() {
+            if response.grant_type == "GRANTED" && !self.asks_to_enter(&response.request_id) {
+                response.grant_type = "REJECTED".into();
+                response.rest.remove("leaseExpiry");
+                let why = format!("{}: no request to enter a zone", response.request_id);
+                rejected.get_or_insert(Refusal::new(format!("responses[{k}].grantType"), why));
+            }
+        }
+        self.post(To::Vehicle, Kind::Responses, version, &message);
+        rejected.map_or(Ok(()), Err)
+    }
+
+    /// Whether the vehicle has asked under this name to enter a zone, and for nothing else.
+    fn asks_to_enter(&self, id: &str) -> bool {
+        let requests = |list: &str| {
+            let list = self.state.as_ref().and_then(|state| state.rest.get(list)?.as_array());
+            list.into_iter().flatten().filter(|request| request["requestId"] == id)
+        };
+        let mut zones = requests("zoneRequests").peekable();
+        zones.peek().is_some()
+            && zones.all(|request| request["requestType"] == "ACCESS")
+            && requests("edgeRequests").next().is_none()
     }
 
     /// Takes whether the vehicle is connected, which nothing depends on: it may go where it was allowed to.

@@ -1,0 +1,338 @@
+//! What an admission decides: who goes first where only one way is possible, what is turned round where somebody would wait for
+//! ever, and what stays where nothing fits.
+
+use pcr_core::{
+    Ecm, Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
+    Tolerances, Unchanged,
+};
+use pcr_tests::disc::{Course, Disc, Leg};
+use pcr_tests::execution::Table;
+use std::f64::consts::FRAC_PI_2;
+
+const TOLERANCES: Tolerances<f64> = Tolerances { width: 0.01, gain: 1e-4 };
+
+/// A straight way of a disc of 0.3 m from one point to another.
+fn way([x, y]: [f64; 2], to: [f64; 2]) -> Course<f64> {
+    let (dx, dy) = (to[0] - x, to[1] - y);
+    let disc = Disc { radius: 0.3, start: [x, y, dy.atan2(dx)], legs: vec![Leg::Line(dx.hypot(dy))] };
+    Course::new(&disc).expect("a valid disc")
+}
+
+/// Along the x axis, with x = -4 at length 0.
+fn east() -> Course<f64> {
+    way([-4.0, 0.0], [4.0, 0.0])
+}
+
+/// Along the y axis, with y = -4 at length 0: within 0.6 m of the way east from 3.4 m to 4.6 m, for both.
+fn north() -> Course<f64> {
+    way([0.0, -4.0], [0.0, 4.0])
+}
+
+fn table(fleet: &[Motion<'_, f64>]) -> Table<f64> {
+    Orders::build(vec![Region::EMPTY; 12], vec![Piece::EMPTY; 40], vec![Order::EMPTY; 24], fleet).expect("room")
+}
+
+/// Goes on to where it can stop, from some place on.
+fn moving(at: f64, stop: f64) -> Progress<f64> {
+    Progress { stop, ..Progress::at_rest(at) }
+}
+
+/// A fleet whose first agent asks for a path.
+struct Scene<'a> {
+    agents: &'a [(&'a Course<f64>, Progress<f64>)],
+    /// Who goes first of the others: agent and other.
+    first: &'a [[usize; 2]],
+    /// What the new path would have: the other, and whether it goes first. Nobody else may be asked about.
+    wanted: &'a [(usize, Pass)],
+}
+
+impl Scene<'_> {
+    /// The answer, and who passes whom by the new path, by agents in order; for each way to number the agents the same.
+    fn admitted(&self) -> (Result<(), &'static str>, Vec<(usize, Pass)>) {
+        let count = self.agents.len();
+        let numberings = (0..count).flat_map(|turn| {
+            let turned = (0..count).map(move |agent| (agent + turn) % count);
+            [turned.clone().collect::<Vec<_>>(), turned.map(|agent| count - 1 - agent).collect()]
+        });
+        let mut answers: Vec<_> = numberings.map(|numbers| self.numbered(&numbers)).collect();
+        let last = answers.pop().expect("a numbering");
+        answers.iter().for_each(|answer| assert_eq!(answer, &last));
+        last
+    }
+
+    fn numbered(&self, numbers: &[usize]) -> (Result<(), &'static str>, Vec<(usize, Pass)>) {
+        let agent_of = |number: usize| numbers.iter().position(|&other| other == number).expect("a number");
+        let agents = || (0..numbers.len()).map(|number| self.agents[agent_of(number)]);
+        let mut fleet: Vec<Motion<'_, f64>> = agents().map(|(course, _)| course.motion()).collect();
+        let mut progress: Vec<Progress<f64>> = agents().map(|(_, progress)| progress).collect();
+        let mission = Mission { agent: numbers[0], motion: fleet[numbers[0]], progress: progress[numbers[0]] };
+        // Another path before, with orders of its own.
+        let old = way([-4.0, 0.1], [3.9, 0.1]);
+        (fleet[numbers[0]], progress[numbers[0]]) = (old.motion(), Progress::at_rest(0.25));
+        let mut orders = table(&fleet);
+        for &[agent, other] in self.first {
+            orders.decide(&fleet, numbers[agent], numbers[other], Pass::First, 0.0).expect("its fleet");
+        }
+        for other in (1..numbers.len()).step_by(2) {
+            orders.decide(&fleet, numbers[0], numbers[other], Pass::First, 0.0).expect("its fleet");
+        }
+        let row = |orders: &Table<f64>, fleet: &[Motion<'_, f64>], agent: usize| {
+            let row = orders.row(fleet, numbers[agent]).expect("its fleet");
+            let mut passes: Vec<_> = row.map(|(_, region, pass)| (agent_of(region.other()), pass)).collect();
+            passes.sort_by_key(|&(other, _)| other);
+            passes
+        };
+        let all = |orders: &Table<f64>, fleet: &[Motion<'_, f64>], progress: &[Progress<f64>]| {
+            let rows: Vec<_> = (0..numbers.len()).map(|agent| row(orders, fleet, agent)).collect();
+            (rows, fleet[numbers[0]].path().length(), progress.to_vec())
+        };
+        let before = all(&orders, &fleet, &progress);
+        let mut reaches = vec![Reach::EMPTY; numbers.len()];
+        let found = orders.admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut reaches, |region| {
+            let other = agent_of(region.other());
+            self.wanted.iter().find(|wanted| wanted.0 == other).expect("both ways are possible").1
+        });
+        let after = all(&orders, &fleet, &progress);
+        let found = found.map_err(|refused| {
+            assert_eq!(after, before, "{refused} leaves traces");
+            match refused {
+                Refused::Stuck { .. } => "stuck",
+                Refused::Blocked { .. } => "blocked",
+                Refused::Late { .. } => "late",
+                _ => "other",
+            }
+        });
+        if found.is_ok() {
+            assert_eq!(orders.check(&fleet, &progress, TOLERANCES, &mut reaches), Ok(()));
+        }
+        (found, row(&orders, &fleet, 0))
+    }
+}
+
+const REST: Progress<f64> = Progress { at: pcr_core::Interval { lo: 0.0, hi: 0.0 }, stop: 0.0 };
+
+#[test]
+fn the_caller_is_asked_where_both_ways_are_possible() {
+    let (east, north) = (east(), north());
+    for pass in [Pass::First, Pass::Second] {
+        let scene = Scene { agents: &[(&east, REST), (&north, REST)], first: &[], wanted: &[(1, pass)] };
+        assert_eq!(scene.admitted(), (Ok(()), vec![(1, pass)]));
+    }
+    // Any other answer lets the other one go first.
+    let scene = Scene { agents: &[(&east, REST), (&north, REST)], first: &[], wanted: &[(1, Pass::Over)] };
+    assert_eq!(scene.admitted(), (Ok(()), vec![(1, Pass::Second)]));
+}
+
+#[test]
+fn who_cannot_stop_before_a_region_goes_first_and_nobody_is_asked() {
+    let (east, north) = (east(), north());
+    // (its own progress, that of the other, who goes first)
+    let cases = [
+        (moving(3.0, 3.5), REST, Ok(Pass::First)),
+        (REST, moving(3.0, 3.5), Ok(Pass::Second)),
+        (moving(3.0, 3.5), moving(3.0, 3.5), Err("blocked")),
+        // One that is through leaves nothing to decide, whatever the other one does.
+        (moving(4.7, 4.7), moving(3.0, 3.5), Ok(Pass::Over)),
+        (moving(3.0, 3.5), moving(4.7, 4.7), Ok(Pass::Over)),
+        (REST, moving(4.7, 4.7), Ok(Pass::Over)),
+        (moving(4.7, 4.7), REST, Ok(Pass::Over)),
+    ];
+    for (own, their, expected) in cases {
+        let scene = Scene { agents: &[(&east, own), (&north, their)], first: &[], wanted: &[] };
+        let (found, passes) = scene.admitted();
+        let pass = passes[0].1;
+        assert_eq!(found.map(|()| pass), expected, "{own:?} {their:?}");
+    }
+}
+
+#[test]
+fn nobody_waits_for_who_ends_within_the_width_behind_a_region() {
+    // The region of the other one ends at 4.6 m of its path, which goes on for so long.
+    for (beyond, asked) in [(0.005, false), (0.02, true)] {
+        let (east, north) = (east(), way([0.0, -4.0], [0.0, 0.6 + beyond]));
+        let wanted: &[_] = if asked { &[(1, Pass::Second)] } else { &[] };
+        let scene = Scene { agents: &[(&east, REST), (&north, REST)], first: &[], wanted };
+        let pass = if asked { Pass::Second } else { Pass::First };
+        assert_eq!(scene.admitted(), (Ok(()), vec![(1, pass)]), "{beyond} m beyond it");
+        // One that is there already, and stays in reach: there is no way past it.
+        let (end, stays) = (4.0 + 0.6 + beyond, way([0.0, -4.0], [0.0, 0.3]));
+        let there = Scene { agents: &[(&east, REST), (&north, moving(end, end))], first: &[], wanted: &[] };
+        assert_eq!(there.admitted(), (Ok(()), vec![(1, Pass::Over)]), "{beyond} m beyond it");
+        let there = Scene { agents: &[(&east, REST), (&stays, moving(4.3, 4.3))], first: &[], wanted: &[] };
+        assert_eq!(there.admitted().0, Err("blocked"));
+    }
+}
+
+/// Crosses the way north at y = 2 and the way east at x = 0.8, in this order.
+fn down() -> Course<f64> {
+    way([-0.8, 4.0], [1.6, -2.0])
+}
+
+/// Crosses the way north at y = 2 and ends on the way east at x = -0.8.
+fn parks() -> Course<f64> {
+    way([0.8, 4.0], [-0.8, 0.0])
+}
+
+#[test]
+fn an_order_that_keeps_somebody_stuck_is_turned_round() {
+    let (east, north, down) = (east(), north(), down());
+    // East waits for down on the crossing with north, north for east, down for north.
+    let stuck = [(1, Pass::First), (2, Pass::Second)];
+    let scene = Scene { agents: &[(&east, REST), (&north, REST), (&down, REST)], first: &[[1, 2]], wanted: &stuck };
+    assert_eq!(scene.admitted(), (Ok(()), vec![(1, Pass::Second), (2, Pass::Second)]));
+    // The same where east cannot stop before north any more: its other order is turned round.
+    let scene = Scene {
+        agents: &[(&east, moving(3.0, 3.5)), (&north, REST), (&down, REST)],
+        first: &[[1, 2]],
+        wanted: &stuck[1..],
+    };
+    assert_eq!(scene.admitted(), (Ok(()), vec![(1, Pass::First), (2, Pass::First)]));
+    // Before one that waits for others it stays first.
+    let (east, across) = (way([-8.0, 0.0], [4.0, 0.0]), way([-2.4, -4.0], [4.8, 2.0]));
+    let scene = Scene {
+        agents: &[(&east, REST), (&north, REST), (&down, REST), (&across, REST)],
+        first: &[[1, 2], [1, 3], [2, 3]],
+        wanted: &[stuck[0], stuck[1], (3, Pass::First)],
+    };
+    let passes = vec![(1, Pass::Second), (2, Pass::Second), (3, Pass::First)];
+    assert_eq!(scene.admitted(), (Ok(()), passes));
+}
+
+#[test]
+fn orders_without_a_choice_are_not_turned_round() {
+    let (east, north, parks) = (east(), north(), parks());
+    // East has to go first where parks ends; north, which waits for parks, cannot stop before east.
+    let scene =
+        Scene { agents: &[(&east, REST), (&north, moving(3.0, 3.5)), (&parks, REST)], first: &[[2, 1]], wanted: &[] };
+    assert_eq!(scene.admitted().0, Err("stuck"));
+    // Had it a choice, it would go before north.
+    let scene = Scene {
+        agents: &[(&east, REST), (&north, REST), (&parks, REST)],
+        first: &[[2, 1]],
+        wanted: &[(1, Pass::Second)],
+    };
+    assert_eq!(scene.admitted(), (Ok(()), vec![(1, Pass::First), (2, Pass::First)]));
+}
+
+#[test]
+fn an_order_is_turned_round_once() {
+    let (east, north, parks) = (east(), north(), parks());
+    // Either way somebody waits for ever: for parks if north goes first, for up if east does.
+    let up = way([-0.8, -4.0], [1.6, 2.0]);
+    for pass in [Pass::First, Pass::Second] {
+        let scene = Scene {
+            agents: &[(&east, REST), (&north, REST), (&parks, REST), (&up, moving(0.0, 3.9))],
+            first: &[[2, 1], [1, 3]],
+            wanted: &[(1, pass)],
+        };
+        assert_eq!(scene.admitted().0, Err("stuck"));
+    }
+}
+
+#[test]
+fn a_hold_counts_from_where_the_one_that_waits_is() {
+    // North begins 2.5 m before east, at less than where that one is on its own path.
+    let (east, north) = (east(), way([0.0, -2.5], [0.0, 4.0]));
+    let cases = [(Pass::First, 3.0, 0.0, 1.9), (Pass::Second, 0.0, 1.5, 3.4)];
+    for (pass, at, other_at, hold) in cases {
+        for first in [true, false] {
+            let (own, their) = if first { (0, 1) } else { (1, 0) };
+            let mut fleet = [east.motion(); 2];
+            fleet[their] = north.motion();
+            let mut progress = [Progress::at_rest(0.0); 2];
+            (progress[own], progress[their]) = (Progress::at_rest(at), Progress::at_rest(other_at));
+            let mut orders = table(&fleet);
+            let mission = Mission { agent: own, motion: fleet[own], progress: progress[own] };
+            orders
+                .admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut [Reach::EMPTY; 2], |_| pass)
+                .expect("a way");
+            let since: Vec<f64> = orders.decisions().map(|decision| decision.since).collect();
+            let waits = if pass == Pass::First { their } else { own };
+            assert_eq!(since, [progress[waits].at.lo]);
+            let (found, by) = orders.wait(&fleet, waits, &progress).expect("its fleet");
+            assert!(matches!(found, Hold::At(length) if (length - hold).abs() < 1e-9), "{found:?}");
+            assert_eq!(by, Some(1 - waits));
+        }
+    }
+}
+
+/// Along x = 0, to the west along y = 2.5, along x = -1.5, and a way that crosses the first and the last one twice.
+fn crossed() -> ([Course<f64>; 3], Course<f64>) {
+    let legs = vec![Leg::Line(6.0), Leg::arc(1.0, FRAC_PI_2), Leg::arc(1.0, FRAC_PI_2), Leg::Line(6.0)];
+    let disc = Disc { radius: 0.3, start: [-3.0, -2.0, 0.0], legs };
+    let ways = [way([0.0, -3.0], [0.0, 4.0]), way([2.0, 2.5], [-3.0, 2.5]), way([-1.5, 4.0], [-1.5, -3.0])];
+    (ways, Course::new(&disc).expect("a valid disc"))
+}
+
+#[test]
+fn a_path_for_which_there_is_no_room_changes_nothing() {
+    let (ways, round) = crossed();
+    let (start, longer) = (way([3.0, -2.0], [-2.5, -2.0]), way([3.0, -2.0], [-2.6, -2.0]));
+    // (places for regions, pieces and orders, the new path, its regions or what is full): of four regions in as many pieces
+    // two are those of the old path, which are kept meanwhile.
+    let cases = [
+        (6, 6, 8, &round, Ok(4)),
+        (5, 6, 8, &round, Err(Full::Regions)),
+        (6, 5, 8, &round, Err(Full::Pieces)),
+        (6, 6, 7, &round, Err(Full::Orders)),
+        (6, 6, 5, &round, Err(Full::Orders)),
+        (4, 4, 6, &longer, Ok(2)),
+    ];
+    for (regions, pieces, orders, path, expected) in cases {
+        let mut fleet = [ways[0].motion(), start.motion(), ways[1].motion(), ways[2].motion()];
+        let (regions, pieces) = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+        let mut table = Orders::build(regions, pieces, vec![Order::EMPTY; orders], &fleet).expect("room for one");
+        for ([agent, other], pass) in [([0, 1], Pass::First), ([0, 2], Pass::Second), ([2, 3], Pass::First)] {
+            table.decide(&fleet, agent, other, pass, 0.0).expect("its fleet");
+        }
+        let passes = |table: &Table<f64>, fleet: &[Motion<'_, f64>], agent: usize| -> Vec<_> {
+            let row = table.row(fleet, agent).expect("its fleet");
+            row.map(|(place, region, pass)| (place, region.other(), region.length(), pass)).collect()
+        };
+        let before = [1, 2].map(|agent| passes(&table, &fleet, agent));
+        assert_eq!(before.each_ref().map(Vec::len), [2, 2]);
+        let found = table.replace(&mut fleet, 1, path.motion());
+        assert_eq!(found, expected.map(drop).map_err(Unchanged::Full));
+        let after = [1, 2].map(|agent| passes(&table, &fleet, agent));
+        match expected {
+            Err(_) => assert_eq!(after, before),
+            Ok(count) => {
+                assert!(after[0].len() == count && after[0].iter().all(|(.., pass)| *pass == Pass::Undecided));
+                let others = |row: &Vec<(usize, usize, _, Pass)>| -> Vec<_> {
+                    row.iter().map(|&(_, other, _, pass)| (other, pass)).collect()
+                };
+                assert_eq!(others(&after[1]), others(&before[1]));
+            }
+        }
+        let path = if expected.is_ok() { path } else { &start };
+        assert_eq!(fleet[1].path().length(), path.motion().path().length());
+    }
+}
+
+#[test]
+fn the_row_of_an_agent_has_no_path_exchanged() {
+    let (ways, _) = crossed();
+    let mut fleet = [ways[1].motion(), ways[2].motion(), ways[0].motion()];
+    let mut orders = table(&fleet);
+    orders.fill_row(&fleet, 1).expect("room");
+    assert_eq!(orders.replace(&mut fleet, 1, ways[0].motion()), Err(Mismatch::OnlyRow(1).into()));
+    assert!(orders.hold(&fleet, 1, &[REST; 3]).is_ok());
+}
+
+#[test]
+fn storage_grows_where_it_is_full_and_nowhere_else() {
+    let (ways, round) = crossed();
+    let fleet = [ways[1].motion(), ways[2].motion(), round.motion()];
+    let mut orders = Table::<f64>::new(vec![], vec![], vec![]);
+    let mut grown = Vec::new();
+    while let Err(full) = orders.fill(&fleet) {
+        orders.grow(full).expect("memory");
+        grown.push(full);
+        assert!(grown.len() < 20, "{grown:?}");
+    }
+    for full in [Full::Regions, Full::Pieces, Full::Orders] {
+        assert!(grown.contains(&full), "{grown:?}");
+    }
+    assert_eq!(orders.ecm().len(), Ecm::grown(&fleet).expect("memory").len());
+    assert_eq!(orders.grow(Full::Reaches), Err(Full::Reaches));
+}

@@ -1,0 +1,106 @@
+//! Tables that are filled again, exchanged, or full: nothing of before stays, and nothing of what does not fit.
+
+use pcr_core::{Ecm, Full, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged};
+use pcr_tests::disc::{Course, Disc, Leg};
+use pcr_tests::execution::Table;
+use std::f64::consts::FRAC_PI_2;
+
+/// So many ways north, 2 m apart, after one that crosses them all on its way east.
+fn ways(count: usize) -> Vec<Course<f64>> {
+    let line = |start, length| Disc { radius: 0.3, start, legs: vec![Leg::Line(length)] };
+    let north = (0..count).map(|k| line([2.0 * k as f64, -3.0, FRAC_PI_2], 6.0));
+    let discs = std::iter::once(line([-3.0, 0.0, 0.0], 2.0 * count as f64 + 4.0)).chain(north);
+    discs.map(|disc| Course::new(&disc).expect("a valid disc")).collect()
+}
+
+fn motions(courses: &[Course<f64>]) -> Vec<Motion<'_, f64>> {
+    courses.iter().map(Course::motion).collect()
+}
+
+fn passes(orders: &Table<f64>, fleet: &[Motion<'_, f64>]) -> Vec<(usize, Pass)> {
+    orders.row(fleet, 0).expect("its fleet").map(|(_, region, pass)| (region.other(), pass)).collect()
+}
+
+fn empty(regions: usize, pieces: usize) -> Table<f64> {
+    Orders::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; 2 * regions])
+}
+
+#[test]
+fn what_is_filled_again_has_nothing_of_before() {
+    let (courses, mut orders) = (ways(3), empty(3, 3));
+    let fleet = motions(&courses);
+    for _ in 0..3 {
+        orders.fill(&fleet).expect("room for one table");
+        assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, Pass::Undecided)));
+        assert_eq!((orders.ecm().len(), orders.ecm().pieces()), (3, 3));
+        for other in 1..=3 {
+            orders.decide(&fleet, 0, other, Pass::First, 0.0).expect("its fleet");
+        }
+        orders.fill_row(&fleet, 0).expect("room for one row");
+        assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, Pass::Undecided)));
+        for other in 1..=3 {
+            orders.decide(&fleet, 0, other, Pass::Second, 0.0).expect("its row");
+        }
+    }
+}
+
+#[test]
+fn what_is_decided_stays_so_and_decides_nothing_else() {
+    let (courses, mut orders) = (ways(3), empty(3, 3));
+    let fleet = motions(&courses);
+    orders.fill(&fleet).expect("room");
+    orders.decide(&fleet, 0, 2, Pass::First, 0.0).expect("its fleet");
+    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Undecided)]);
+    orders.decide(&fleet, 2, 0, Pass::First, 0.0).expect("its fleet");
+    orders.decide(&fleet, 0, 3, Pass::Second, 0.0).expect("its fleet");
+    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Second)]);
+    // Who goes first is through: 5 m and 0.6 m of its path for the first, 3.6 m of that of agent 3.
+    let mut progress = vec![Progress::at_rest(0.0); 4];
+    (progress[0], progress[3]) = (Progress::at_rest(5.5), Progress::at_rest(3.5));
+    orders.passed(&progress);
+    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Second)]);
+    (progress[0], progress[3]) = (Progress::at_rest(5.7), Progress::at_rest(3.5));
+    orders.passed(&progress);
+    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::Over), (3, Pass::Second)]);
+    progress[3] = Progress::at_rest(3.7);
+    orders.passed(&progress);
+    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::Over), (3, Pass::Over)]);
+}
+
+#[test]
+fn an_agent_that_does_not_fit_leaves_no_pieces() {
+    let courses = ways(4);
+    let fleet = motions(&courses);
+    let without = motions(&courses[1..]);
+    // The last agent of this fleet crosses four others: room for three regions.
+    let fleet = [&without[..], &fleet[..1]].concat();
+    let mut ecm = Ecm::new(vec![Region::EMPTY; 3], vec![Piece::EMPTY; 8]);
+    ecm.fill(&without).expect("no regions");
+    for _ in 0..5 {
+        assert_eq!(ecm.insert(&fleet, 4), Err(Unchanged::Full(Full::Regions)));
+        assert_eq!((ecm.len(), ecm.pieces()), (0, 0));
+    }
+    let mut ecm = Ecm::new(vec![Region::EMPTY; 4], vec![Piece::EMPTY; 4]);
+    ecm.fill(&without).expect("no regions");
+    ecm.insert(&fleet, 4).expect("room");
+    assert_eq!((ecm.len(), ecm.pieces()), (4, 4));
+}
+
+#[test]
+fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
+    let (courses, others) = (ways(3), ways(4));
+    let (mut fleet, mut stranger) = (motions(&courses), motions(&others[..4]));
+    stranger[3] = others[0].motion();
+    let mut ecm = Ecm::grown(&fleet).expect("memory");
+    let motion = fleet[1];
+    assert_eq!(ecm.replace(&mut stranger, 1, motion), Err(Mismatch::OtherFleet.into()));
+    assert_eq!(ecm.replace(&mut fleet, 4, motion), Err(Mismatch::NoSuchAgent(4).into()));
+    assert_eq!(ecm.row(&fleet, 0).expect("its fleet").count(), 3);
+    let mut orders = empty(6, 6);
+    orders.fill_row(&fleet, 0).expect("room");
+    orders.decide(&fleet, 0, 2, Pass::First, 0.0).expect("its row");
+    assert_eq!(orders.replace(&mut fleet, 0, motion), Err(Mismatch::OnlyRow(0).into()));
+    assert_eq!(orders.erase(&fleet, 2), Err(Mismatch::OnlyRow(0)));
+    assert_eq!(orders.remove(&fleet, 2), Err(Mismatch::OnlyRow(0)));
+    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Undecided)]);
+}
