@@ -76,7 +76,7 @@ fn every_output_fits_its_schema() {
         &["locks", &lif, "--radius", "0.3"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--edge", "26"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--delays", "--speed", "1"],
-        &["locks", &plant, "--radius", "0.9", "--write", "opentcs", "-o", &blocks],
+        &["locks", &plant, "--radius", "0.9", "--write", "opentcs", "--split", "2", "-o", &blocks],
         &["locks", &plant, "--radius", "0.9", "--audit"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "3", "--hours", "0.01", "--compare"],
