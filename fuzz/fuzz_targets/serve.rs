@@ -17,7 +17,8 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let lines = FLEET.iter().map(|line| line.as_bytes()).chain(bytes.split(|byte| *byte == b'\n').take(64));
     for (line, tick) in lines.zip(0_u32..) {
         let now = f64::from(tick) * 0.1;
-        let told: Vec<_> = supervisor.robots().iter().map(|robot| (robot.name.clone(), robot.path, robot.granted)).collect();
+        let told: Vec<_> =
+            supervisor.robots().iter().map(|robot| (robot.name.clone(), robot.path, robot.granted)).collect();
         let reply = handle(&mut supervisor, line, now);
         assert!(reply.answer.get("ok").is_some() != reply.answer.get("error").is_some());
         supervisor.settle(now).expect("a journal that is nowhere");

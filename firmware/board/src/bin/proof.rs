@@ -12,8 +12,8 @@ use core::ops::{Add, Neg, Sub};
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 use pcr_core::{
-    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Constraint, Contacts, Crossing, Curve, Decision, Direction, Drive, Ecm,
-    Encounter, Full, Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders,
+    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Constraint, Contacts, Crossing, Curve, Decision, Direction, Drive,
+    Ecm, Encounter, Full, Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders,
     Pass, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused,
     Region, RegionRef, Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector,
     crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration,
