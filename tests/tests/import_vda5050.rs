@@ -265,6 +265,10 @@ fn what_is_wrong_is_named() {
         broken("/nodes/0/nodePosition/x", json!(1e300)),
         "order square, node n3, nodePosition, x: 1e300 is out of range; allowed is up to 1e10"
     );
+    assert_eq!(
+        broken("/nodes/0/nodePosition/x", json!(-1e300)),
+        "order square, node n3, nodePosition, x: -1e300 is out of range; allowed is up to 1e10"
+    );
     assert_eq!(broken("/nodes", json!(null)), "message 1, nodes or nodeStates: missing");
 }
 

@@ -277,3 +277,33 @@ fn lateness_makes_windows_and_delays_longer_by_itself() {
     let (exact, wide) = (forbidden(&fleet), forbidden(&late));
     assert!((wide.lo - exact.lo + 0.25).abs() < 1e-12 && (wide.hi - exact.hi - 0.5).abs() < 1e-12);
 }
+
+/// All that is asked of a pair of agents is the same if both come 8 s later.
+#[test]
+fn the_origin_of_time_does_not_matter() {
+    let (mut waited, mut stretched) = (0, 0);
+    for seed in 0..CASES {
+        let Some((pair, _)) = scene::<f64>(seed) else { continue };
+        let answers = |later: f64| {
+            let courses = pair
+                .each_ref()
+                .map(|(disc, drive, start)| Course::<f64>::driven(disc, drive, start + later).expect("a valid disc"));
+            let fleet = courses.each_ref().map(Course::motion);
+            let ecm = build_ecm(&fleet).expect("a small table");
+            let row = || ecm.row(&fleet, 0).expect("the table of the fleet");
+            let at = 0.4 * fleet[0].path().length();
+            let own = fleet[0].profile().duration();
+            let least = least_duration::<f64, PHASES>(row(), own).expect("room");
+            [earliest_start(row(), 0.0), earliest_departure(row(), at, 0.0), least.map(|least| least - own)]
+        };
+        let [now, then] = [answers(0.0), answers(8.0)];
+        let alike = |(a, b): (&Option<f64>, &Option<f64>)| match (a, b) {
+            (Some(a), Some(b)) => (a - b).abs() < 1e-6,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        assert!(now.iter().zip(&then).all(alike), "seed {seed}: {now:?}, 8 s later {then:?}");
+        waited += u32::from(now[1].is_some_and(|wait| wait > 0.0));
+        stretched += u32::from(now[2].is_some_and(|more| more > 1e-3));
+    }
+    assert!(waited > 0 && stretched > 0, "{waited}, {stretched}");
+}

@@ -125,6 +125,7 @@ mod tests {
         let expected = [([0.0, 0.0], 0.0), ([2.0, 0.0], 2.0), ([2.0, 0.0], 4.0), ([2.0, 1.0], 5.0)];
         assert_eq!(stops(&plan.cells()[0]), expected);
         assert_eq!(stops(&[[3, 3], [3, 3]]), [([3.0, 3.0], 0.0)]);
+        assert_eq!(stops(&[[3, 3], [3, 4], [3, 5]]), [([3.0, 3.0], 0.0), ([3.0, 5.0], 2.0)]);
     }
 
     #[test]
@@ -140,6 +141,8 @@ mod tests {
             "line 1: cell 1: two whole numbers up to 1000000 are expected"
         );
         assert_eq!(message("0"), "there is no agent in it");
+        assert_eq!(message("2\n3\nAgent 0: (0,0)->"), "line 2: `Agent 0:` and its cells are expected");
+        assert!(!is_plan("Agent Smith: here") && !is_plan("Agent (1,2)"));
         assert!(is_plan("3\n\nAgent 0: (1,2)") && !is_plan("Agent") && !is_plan("1 2\n3 4"));
     }
 }

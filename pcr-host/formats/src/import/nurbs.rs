@@ -157,6 +157,12 @@ mod tests {
     }
 
     #[test]
+    fn knots_that_are_not_given_are_clamped_and_even() {
+        assert_eq!(uniform(2, 5), [0.0, 0.0, 0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0, 1.0, 1.0]);
+        assert_eq!(uniform(1, 2), [0.0, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
     fn spans_are_the_textbook_curve() {
         let points = [[0.0, 0.0], [1.0, 3.0], [2.5, -1.0], [4.0, 0.5], [5.0, 4.0], [7.0, 3.0]];
         let weights = [1.0, 0.5, 2.0, 1.0, 3.0, 1.0];

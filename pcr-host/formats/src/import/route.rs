@@ -280,7 +280,7 @@ pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Format, layout};
+    use super::super::{Format, Id, Node, layout};
     use super::*;
     use std::collections::HashSet;
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -316,6 +316,55 @@ mod tests {
         assert_eq!(corner_arc([-2.0, 0.0], corner, [-1.0, 0.0], 0.1), None, "back");
         assert_eq!(corner_arc([-2.0, 0.0], corner, [1.0, 0.0], 0.1), None, "straight on");
         assert_eq!(corner_arc(corner, corner, [1.0, 0.0], 0.1), None, "an edge of length 0");
+    }
+
+    /// A quarter of a circle and two lines beyond it; the last node on this level.
+    fn bend(level: usize) -> Layout {
+        let node = |id: u64, at: [f64; 2], level: usize| Node { id: Id::Number(id), name: None, level, at };
+        let edge = |id: u64, ends: [usize; 2], curve: Vec<Placed>| Edge {
+            id: Id::Number(id),
+            ends,
+            curve,
+            two_way: false,
+            speed: None,
+            rotation: None,
+            deviation: 0.0,
+        };
+        let arc = PathSegment::Arc { radius: 1.0, sweep: FRAC_PI_2 };
+        let curve = vec![Placed { at: [0.0, 0.0], heading: 0.0, shape: arc }];
+        let nodes = [([0.0, 0.0], 0), ([1.0, 1.0], 0), ([1.0, 3.0], 0), ([4.0, 3.0], level), ([5.0, 3.0], level)];
+        Layout {
+            nodes: (0..).zip(nodes).map(|(id, (at, level))| node(id, at, level)).collect(),
+            edges: vec![
+                edge(0, [0, 1], curve),
+                edge(1, [1, 2], vec![]),
+                edge(2, [2, 3], vec![]),
+                edge(3, [3, 4], vec![]),
+            ],
+            ..Layout::default()
+        }
+    }
+
+    #[test]
+    fn a_way_goes_on_where_the_edge_before_ends() {
+        let layout = bend(0);
+        let steps = shortest(&layout, [0, 4]).expect("a way");
+        let trace = trace(&layout, 0, &steps).expect("a path");
+        assert!(trace.deviation < 1e-5, "{}", trace.deviation);
+        let length: f64 = trace.stretches.iter().map(|stretch| stretch.shape.length()).sum();
+        assert!((length - (FRAC_PI_2 + 2.0 + 3.0 + 1.0)).abs() < 1e-5, "{length}");
+    }
+
+    #[test]
+    fn routes_on_different_levels_are_told() {
+        let told = |level: usize| {
+            let routes = vec!["0:2".to_owned(), "3:4".to_owned()];
+            let (options, mut warnings) = (Options { routes, ..Options::default() }, Warnings::default());
+            let vehicle = layout(Format::Nav2, GRAPHS[0], &Options::default(), &mut Warnings::default());
+            scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, &mut warnings).expect("two routes");
+            warnings.lines().iter().any(|line| line.contains("they are on different levels"))
+        };
+        assert_eq!([told(0), told(1)], [false, true]);
     }
 
     /// Corners of ways from node to node to node that do not turn back, and how many of them have an arc.

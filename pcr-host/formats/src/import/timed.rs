@@ -98,6 +98,8 @@ mod tests {
         assert_eq!(seconds("1970-01-01T00:00:00Z"), Some(0.0));
         assert_eq!(seconds("2000-02-29T12:00:00.500Z"), Some(951_825_600.5));
         assert_eq!(seconds("2026-11-21T08:30:00+01:00"), seconds("2026-11-21T07:30:00Z"));
+        assert_eq!(seconds("2026-11-21T08:45:10-00:30"), Some(1_795_252_510.0));
+        assert_eq!(seconds("2101-03-01T00:00:00Z"), Some(4_139_078_400.0));
         for wrong in ["", "T", "2026-13-01T00:00:00Z", "2026-01-01", "x-1-1T1", "2026-01-01T-:00"] {
             assert_eq!(seconds(wrong), None, "{wrong}");
         }
