@@ -51,10 +51,9 @@ message! {
 
 /// Something to be done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[serde(rename_all = "camelCase", try_from = "Named")]
 pub struct Action {
     /// What; in schema 2.0 of instant actions `actionName`, in its text `actionType`: one is enough.
-    #[serde(alias = "actionName")]
     pub action_type: String,
     /// Which.
     pub action_id: String,
@@ -63,6 +62,31 @@ pub struct Action {
     /// All else.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
+}
+
+/// An action as it is read: under one name or both.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Named {
+    action_type: Option<String>,
+    action_name: Option<String>,
+    action_id: String,
+    blocking_type: String,
+    #[serde(flatten)]
+    rest: Map<String, Value>,
+}
+
+impl TryFrom<Named> for Action {
+    type Error = &'static str;
+
+    fn try_from(read: Named) -> Result<Self, Self::Error> {
+        let Named { action_type, action_name, action_id, blocking_type, mut rest } = read;
+        if let Some(name) = &action_name {
+            rest.insert("actionName".into(), name.clone().into());
+        }
+        let action_type = action_type.or(action_name).ok_or("missing field `actionType`")?;
+        Ok(Self { action_type, action_id, blocking_type, rest })
+    }
 }
 
 impl InstantActions {
