@@ -90,7 +90,7 @@ fn a_plant_is_read_whole_or_refused() {
     assert_eq!(read(&lost, false).unwrap_err(), expected);
     assert_eq!(read(&lost, true).unwrap().layout.edges.len(), 0);
     let far = "<point name=\"far\" positionX=\"-1e300\" positionY=\"0\"/>";
-    let expected = "point far, positionX: \"-1e300\" where a number up to 1e10 is expected";
+    let expected = "point far, positionX: \"-1e300\" where a number up to 1e10 is expected; --partial leaves that out";
     assert_eq!(read(far, false).unwrap_err(), expected);
     let named = read("<vehicle name=\"\"/><vehicle name=\"v\"/>", false).unwrap().layout.vehicles;
     assert_eq!(named.iter().map(ToString::to_string).collect::<Vec<_>>(), ["v"]);
