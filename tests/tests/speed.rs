@@ -297,6 +297,13 @@ fn a_constraint_is_passed_behind_or_before() {
     assert!((end([2.0, 3.0], [-9.0, 2.5]) - 5.0).abs() < 1e-9);
     // At full speed at 2 m after 6 s.
     assert!((end([2.0, 3.0], [1.0, 6.0]) - 8.5).abs() < 1e-6);
+    // However short the lengths are: one place, in the middle and at the goal, on both borders of a cell and between.
+    for at in [0.5, 1.0, 1.7, 2.0, 3.0] {
+        let (passes, late) = (end([at; 2], [-9.0, 9.0]), end([0.0; 2], [-9.0, -8.0]));
+        assert!(passes > late + 1.0, "at {at} m: {passes} s");
+    }
+    assert!((end([2.0; 2], [1.0, 6.0]) - 8.5).abs() < 1e-6);
+    assert!((end([4.0; 2], [1.0, 7.0]) - 7.0).abs() < 1e-6);
     // What is over when it sets off does not count, at its start neither.
     assert!((end([0.0, 1.0], [-9.0, 0.0]) - 5.0).abs() < 1e-9);
     assert!((end([0.0, 0.0], [0.5, 0.6]) - 5.0).abs() < 1e-9);

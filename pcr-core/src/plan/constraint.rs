@@ -7,8 +7,9 @@ use crate::query::times;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Lengths of its path at which an agent must not be in an interval of time; on the border of both it may. What conflict-based search
-/// adds to an agent to resolve a conflict (Sharon et al. 2015), with intervals in place of vertices and time steps (Andreychuk et al. 2022).
+/// Lengths of its path, ends included, at which an agent must not be in an interval of time; at the ends of the time it may, so that an
+/// interval without length forbids nothing. What conflict-based search adds to an agent to resolve a conflict (Sharon et al. 2015), with
+/// intervals in place of vertices and time steps (Andreychuk et al. 2022).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -38,12 +39,11 @@ impl<S: Scalar> Constraint<S> {
         if is_one(self.length) && is_one(self.time) { Ok(()) } else { Err(Invalid::OutOfRange("constraint")) }
     }
 
-    /// Whether a motion is on these lengths at such times, from its start on, by more than rounding.
-    pub(super) fn is_broken_by(&self, motion: &Motion<'_, S>) -> bool {
-        let latest = motion.time().lo.abs().max(motion.time().hi.abs());
-        let [length, time] = [motion.path().length(), latest].map(|extent| S::tolerance(extent).double());
-        let inside = Interval::new(self.length.lo + length, self.length.hi - length);
-        let during = Interval::new(self.time.lo.max(motion.time().lo) + time, self.time.hi - time);
-        inside.lo <= inside.hi && during.lo <= during.hi && times(motion, inside, during).is_some()
+    /// Whether an agent that stands at its start from a time on \[s\], and then moves so, is on these lengths at such times, by more than two
+    /// [`Scalar::tolerance`] of time.
+    pub(super) fn is_broken_by(&self, motion: &Motion<'_, S>, from: S) -> bool {
+        let rounding = S::tolerance(from.abs().max(motion.time().hi.abs())).double();
+        let during = Interval::new(self.time.lo.max(from) + rounding, self.time.hi - rounding);
+        during.lo <= during.hi && times(motion, self.length, during).is_some()
     }
 }

@@ -73,7 +73,7 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     constraints.iter().try_for_each(Constraint::checked)?;
     if length <= S::ZERO {
         stands(&regions, S::ZERO, Interval::new(-S::LIMIT, S::LIMIT))?;
-        if constraints.iter().any(|constraint| constraint.is_broken_by(ego)) {
+        if constraints.iter().any(|constraint| constraint.is_broken_by(ego, from)) {
             return Err(NoSpeedPlan::Constrained { length: S::ZERO });
         }
         return Ok(SpeedPlan { start: from, profile: Profile::standing() });

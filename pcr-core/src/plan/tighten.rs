@@ -18,13 +18,13 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
     /// Whether nobody is met from a time on and no constraint is broken.
     fn is_free<const N: usize>(&self, ego: &Motion<'_, S>, plan: &SpeedPlan<S, N>, from: S) -> Result<bool, Invalid> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
-        Ok(self.broken(&motion).is_none()
+        Ok(self.broken(&motion, ego.time().lo).is_none()
             && first_conflict(&motion, self.regions.clone(), self.during(&motion, from)).is_none())
     }
 
-    /// A constraint that a motion breaks.
-    fn broken(&self, motion: &Motion<'_, S>) -> Option<&Constraint<S>> {
-        self.constraints.iter().find(|constraint| constraint.is_broken_by(motion))
+    /// A constraint that a motion breaks, for which the agent stands ready from a time on \[s\].
+    fn broken(&self, motion: &Motion<'_, S>, from: S) -> Option<&Constraint<S>> {
+        self.constraints.iter().find(|constraint| constraint.is_broken_by(motion, from))
     }
 
     /// From a time on until everybody stands.
@@ -45,7 +45,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         let from = if start == 0 { -S::LIMIT } else { plan.start };
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         let during = self.during(&motion, from);
-        if let Some(constraint) = self.broken(&motion) {
+        if let Some(constraint) = self.broken(&motion, ego.time().lo) {
             return Err(NoSpeedPlan::Constrained { length: constraint.length.lo });
         }
         let mut overlaps =

@@ -38,7 +38,7 @@ pub(crate) fn certificate(folder: &Path, authority: &str) -> [PathBuf; 2] {
 }
 
 #[test]
-#[ignore = "needs a broker: .ci/test.sh serve"]
+#[ignore = "needs a broker and openssl: .ci/test.sh tls"]
 fn a_broker_is_believed_only_with_the_certificate_of_its_authority() {
     let mosquitto = Mosquitto::secured("secured", "pcr", "secret");
     let broker = mosquitto.address();
@@ -74,7 +74,7 @@ fn a_file_without_a_certificate_is_refused_before_anything_is_sent() {
 }
 
 #[test]
-#[ignore = "needs a broker: .ci/test.sh serve"]
+#[ignore = "needs a broker and openssl: .ci/test.sh tls"]
 fn a_vehicle_does_its_missions_over_tls() {
     let broker = Mosquitto::secured("secured-one", "pcr", "secret");
     let (mut site, profiles) = Site::open(&broker, FAIR);

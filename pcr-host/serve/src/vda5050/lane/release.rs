@@ -29,7 +29,7 @@ impl Lane {
         self.follow_cancel(now);
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };
-        // After a restart `told` is more, so that nobody else gets it, and is not known to be right now.
+        // Not `told`: after a restart that is how far the vehicle may have been allowed to go, which is kept free for it but may not be granted.
         let allowed = robot.granted;
         if job.cancel.is_some() || robot.stopped.is_some() {
             return;
