@@ -10,7 +10,7 @@ mod tangencies;
 pub use cases::{Case, case};
 pub use dice::{Dice, FACES};
 pub use relations::{RELATIONS, Relation};
-pub use tangencies::inner_tangent;
+pub use tangencies::{behind, inner_tangent};
 
 use crate::disc::{Disc, Drive, Leg};
 use crate::outward::neighbour;

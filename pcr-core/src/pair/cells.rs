@@ -79,11 +79,10 @@ impl<S: Scalar> SegmentPair<'_, S> {
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
-        let reach = self.reach();
-        if Runs(any).rest() != 0 && !wraps(self.first, reach) {
+        if Runs(any).rest() != 0 && !wraps(self.first, self.far()) {
             // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece. About the
             // centre of an arc as large as the disc it is where one end is left for the other: what lies between is far.
-            let near = self.slabs(in_order, reach).any;
+            let near = self.slabs(in_order, self.reach()).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
             for gap in Runs(between & !any) {
                 any |= if gap & !near == 0 { gap } else { 0 };
@@ -105,6 +104,12 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// As far as rounding may take a contact: half a slack more, so that what is off by as much is still within R + ε.
     fn reach(&self) -> S {
         self.radius + self.slack.half()
+    }
+
+    /// Further out than any place of a gap whose middle is within reach: between two events the distance from an end of the first
+    /// segment grows with the square of the way at most, to four times what it has grown in the middle.
+    fn far(&self) -> S {
+        self.radius + self.slack.double().double().double().double()
     }
 
     /// What a disc of this radius covers in the middle of each slab.

@@ -61,6 +61,34 @@ pub fn inner_tangent(size: f64, slack: f64, dice: &mut Dice) -> Pair {
     if dice.chance(0.5) { (own, other) } else { (other, own) }
 }
 
+/// A disc on an arc of about half a turn, of about a `size` \[m\] and up to 20 `slack` \[m\] larger than the disc, and one that passes
+/// the centre on the other side: there the arc's ends are nearest, one after the other, and its middle is far.
+pub fn behind(size: f64, slack: f64, dice: &mut Dice) -> Pair {
+    let bend = size * dice.range(0.3, 3.0);
+    let over = slack * [dice.range(0.0, 1.0), dice.range(0.0, 4.0), dice.range(0.0, 20.0)][dice.below(3)];
+    let combined = bend - slack - over;
+    let share = dice.range(0.1, 0.9);
+    let sweep = PI + if dice.chance(0.8) { -dice.magnitude(1e-9, 1.0) } else { dice.magnitude(1e-9, 1.0) };
+    let (sin, cos) = (-0.5 * sweep).sin_cos();
+    let start = [bend * cos, bend * sin, 0.5 * (PI - sweep)];
+    let own = Disc { radius: share * combined, start, legs: vec![Leg::arc(bend, sweep)] };
+    // The ends are as near as the disc where |y| = over + x² / 2 bend: the other path is drawn at that scale.
+    let scale = [(2.0 * bend * over.max(0.1 * slack)).sqrt(), over.max(slack), bend][dice.below(3)];
+    let mut place = || [scale * dice.range(-5.0, 3.0), over.max(slack) * dice.range(-8.0, 8.0)];
+    let [from, to] = [place(), place()];
+    let (length, heading) = ((to[0] - from[0]).hypot(to[1] - from[1]), (to[1] - from[1]).atan2(to[0] - from[0]));
+    let bent = if dice.chance(0.3) { dice.sign() * dice.magnitude(1e-6, 3.0) } else { 0.0 };
+    let (legs, heading) = if bent == 0.0 {
+        (vec![Leg::Line(length)], heading)
+    } else {
+        (vec![Leg::arc(0.5 * length / (0.5 * bent).sin().abs(), bent)], heading - 0.5 * bent)
+    };
+    let other = Disc { radius: combined - share * combined, start: [from[0], from[1], heading], legs };
+    let away = [[0.0; 3], [dice.range(-3.0, 3.0), dice.range(-3.0, 3.0), dice.range(-PI, PI)]][dice.below(2)];
+    let (own, other) = (moved(&own, away), moved(&other, away));
+    if dice.chance(0.5) { (own, other) } else { (other, own) }
+}
+
 /// A disc on an arc of radius `bend` about the origin, and one whose path comes as near to the origin, or as far, as their radii
 /// together differ from that, and by `off` more \[m\].
 fn touching([bend, combined]: [f64; 2], off: f64, dice: &mut Dice) -> Pair {
