@@ -24,6 +24,7 @@ use crate::supervisor::Supervisor;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What is known of a vehicle before it says anything.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +75,7 @@ pub struct Lane {
     name: String,
     version: Option<Version>,
     newest: BTreeMap<Kind, Newest>,
-    state: Option<State>,
+    state: Option<Arc<State>>,
     job: Option<Job>,
     /// What the manager is told is wrong with its orders, until one is taken.
     errors: Vec<StateError>,
@@ -114,7 +115,7 @@ impl Lane {
 
     /// What it has said last.
     pub fn state_of(&self) -> Option<&State> {
-        self.state.as_ref()
+        self.state.as_deref()
     }
 
     /// The messages to be sent.
@@ -141,8 +142,13 @@ impl Lane {
     }
 
     fn post(&mut self, to: To, kind: Kind, version: Version, message: &impl Serialize) {
+        /// Most messages are no longer \[bytes\].
+        const USUAL: usize = 8192;
+        let mut payload = Vec::with_capacity(USUAL);
         // Maps of texts and finite numbers: there is no message that cannot be written.
-        let payload = serde_json::to_vec(message).unwrap_or_default();
+        if serde_json::to_writer(&mut payload, message).is_err() {
+            payload.clear();
+        }
         self.posts.push(Post { to, key: self.profile.key.clone(), version, kind, payload });
     }
 

@@ -10,9 +10,10 @@ use super::mqtt::{Broker, Link, News};
 use super::stamp;
 use super::topics::{Interface, Key, Kind};
 use super::version::Version;
+use crate::board::Board;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::server::{Handle, Input};
+use crate::server::{Handle, Then};
 use crate::supervisor::Supervisor;
 use serde_json::{Map, Value};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -126,15 +127,14 @@ impl Station {
         let messages = self.messages()?;
         let (own, flags) = (bridge.clone(), [std::mem::take(&mut self.greets), self.works()]);
         let told: Vec<Event> = events.try_iter().collect();
-        let out = handle
-            .ask(move |supervisor, _, now| answered(supervisor, &mut locked(&own), &messages, flags, &told, now))
-            .ok_or_else(|| Stopped("the supervisor has ended".into()))?;
-        if !out.is_empty() {
-            let mouth = self.link.mouth();
+        let mouth = self.link.mouth();
+        let answer = move |supervisor: &mut Supervisor, _: &Board, now: f64| {
+            let out = answered(supervisor, &mut locked(&own), &messages, flags, &told, now);
             // What is not sent then is sent again.
             let send = move || out.into_iter().for_each(|message| _ = mouth.publish(message));
-            handle.send(Input::Then(Box::new(send)));
-        }
+            ((), Some(Box::new(send) as Then))
+        };
+        handle.ask_then(answer).ok_or_else(|| Stopped("the supervisor has ended".into()))?;
         let mut log = std::mem::take(&mut self.log);
         log.extend(locked(bridge).log());
         Ok(log)
