@@ -13,7 +13,7 @@ tool=$PWD/tests/mutants/target/release/mutants
 
 sorted() { LC_ALL=C sort; }
 kernels() { find pcr-core/src -name '*.rs' | grep -vE 'src/(lib|scalar|recorded|internals)\.rs|src/scalar/' | sorted; }
-floats() { find pcr-core/src/scalar.rs pcr-core/src/scalar -name '*.rs' | grep -v vsqrt | sorted; }
+floats() { find pcr-core/src/scalar.rs pcr-core/src/scalar -name '*.rs' | grep -vE 'vsqrt|tests' | sorted; }
 fixed() { find pcr-fixed/src -name '*.rs' | grep -v 'src/lib\.rs' | sorted; }
 importers() { find pcr-host/formats/src/import pcr-host/formats/src/import.rs -name '*.rs' | sorted; }
 
