@@ -166,6 +166,12 @@ mod tests {
         );
         assert_eq!([0.5, 1.5, 2.5].map(turn), [Ok(1), Ok(2), Ok(3)]);
         assert_eq!([-0.5, -1.5, -2.5].map(turn), [Ok(-1), Ok(-2), Ok(-3)]);
+        // As far as an `f64` knows an angle.
+        for k in 1..1000 {
+            let radians = TAU * (1_048_576.0 + f64::from(k) / 4_294_967_296.0);
+            let digits = ((radians / TAU).fract() * 4_294_967_296.0).round() as i32;
+            assert_eq!(Turns::from_radians(radians).map(Turns::to_bits), Ok(digits));
+        }
         for turns in [1e9, -1e9, 2e9, f64::INFINITY, f64::NAN] {
             assert_eq!(Turns::from_radians(turns * TAU), Err(OutOfRange), "{turns}");
         }

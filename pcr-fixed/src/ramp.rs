@@ -79,9 +79,11 @@ mod tests {
 
     #[test]
     fn nothing_is_before_a_ramp() {
-        let ramp = ramp(0.5, 2.0, 4.0);
-        for metres in [0.0, -1.0] {
-            assert_eq!([super::length(ramp, q(metres)), time(ramp, q(metres))], [q(0.0); 2]);
+        for slow in [0.0, 0.5] {
+            let ramp = ramp(slow, 2.0, 4.0);
+            for metres in [0.0, -1.0] {
+                assert_eq!([super::length(ramp, q(metres)), time(ramp, q(metres))], [q(0.0); 2]);
+            }
         }
     }
 

@@ -87,6 +87,36 @@ mod tests {
         }
     }
 
+    /// (τ - 1)(τ + 2); and equations that are real by doubt alone, of which the larger coefficient tells the root.
+    #[test]
+    fn roots_are_those_of_the_equation() {
+        let one = f64::from(1 << 30);
+        let roots = |equation: [f64; 4], from: [Sine; 2]| {
+            let mut roots = Vec::new();
+            half_tangent([equation.map(|x| (x * one) as i64)].into_iter(), Sector::all(from), |root| roots.push(root));
+            roots
+        };
+        let (east, north) = ([Sine::ONE, Sine::ZERO], [Sine::ZERO, Sine::ONE]);
+        let near = |found: Vec<Turns>, tangents: &[f64]| {
+            let exact = tangents.iter().map(|tangent| Turns::from_radians(2.0 * tangent.atan()).expect("an angle"));
+            let close = |(found, exact): (&Turns, Turns)| (*found - exact).to_bits().abs() <= 4;
+            assert!(found.len() == tangents.len() && found.iter().zip(exact).all(close), "{found:?} {tangents:?}");
+        };
+        for scale in [1.0, -1.0, 1.0 / 1024.0] {
+            let equation = |[a, b, g, doubt]: [f64; 4]| [scale * a, scale * b, scale * g, scale.abs() * doubt];
+            near(roots(equation([1.0, 0.5, -2.0, 0.0]), east), &[-2.0, 1.0]);
+            near(roots(equation([1.0, -0.5, -2.0, 0.0]), east), &[2.0, -1.0]);
+            near(roots(equation([0.0, 1.0, 2.0, 0.0]), east), &[f64::NEG_INFINITY, -1.0]);
+            near(roots(equation([1.0, 1.0, 3.0, 0.51]), east), &[-3.0]);
+            near(roots(equation([1.0, -1.0, 3.0, 0.51]), east), &[3.0]);
+            near(roots(equation([3.0, 1.0, 1.0, 0.51]), east), &[-1.0 / 3.0]);
+            near(roots(equation([1.0, 0.5, 1.0, 0.376]), east), &[-0.5]);
+            near(roots(equation([1.0, 1.0, 3.0, 0.49]), east), &[]);
+        }
+        let turned = roots([1.0, 0.5, -2.0, 0.0], north).into_iter().map(|root| root - Turns::QUARTER).collect();
+        near(turned, &[-2.0, 1.0]);
+    }
+
     /// Whatever is left out lies outside: an angle a little inside of the sector never is.
     #[test]
     fn sectors_leave_out_what_lies_outside_and_nothing_else() {

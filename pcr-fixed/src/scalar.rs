@@ -219,6 +219,10 @@ mod tests {
             [q(2), q(-3), q(5), q(-5), q(5)]
         );
         assert!(Scalar::is_finite(q(5)));
+        assert_eq!((Scalar::sum(q(5), q(3)), q(5).sum_up(q(3)), q(5).double()), ((q(8), q(0)), q(8), q(10)));
+        assert_eq!([1, 3, 9].map(|x| Scalar::clamp(q(x), q(2), q(4))), [2, 3, 4].map(q));
+        let (angle, rest) = Angle::<Q16>::sum(Turns::QUARTER, Turns::QUARTER);
+        assert_eq!((angle, rest), (Turns::HALF, Turns::ZERO));
     }
 
     #[test]

@@ -28,7 +28,7 @@ fn scaled<const SHIFT: u32>(a: i32, z: u32) -> i32 {
 pub(crate) fn sin_cos(angle: i32) -> (i32, i32) {
     // The nearest quarter turn, and what is left: u = ±1 is an eighth of a turn.
     let quarter = angle.wrapping_add(1 << 29) >> 30;
-    let u = angle.wrapping_sub(quarter << 30) << 2;
+    let u = angle << 2;
     let z = ((i64::from(u) * i64::from(u)) >> 31) as u32;
 
     let inner = SINE[2] + scaled::<31>(SINE[3] + scaled::<31>(SINE[4], z), z);

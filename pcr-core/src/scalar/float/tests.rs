@@ -112,13 +112,20 @@ macro_rules! exact {
                 assert_eq!([1.0, 0.0].map(|x: $t| x.quotient_unit(0.0)), [None; 2]);
                 assert_eq!((6.0 as $t).portion(3.0, 4.0), 4.5);
                 assert_eq!(<$t as Scalar>::unit_vector(3.0, -4.0, 8.0), [0.375, -0.5]);
-                assert_eq!(<$t as Scalar>::difference(5.0, 3.0, 16.0), 2.0);
+                let difference = <$t as Scalar>::difference;
+                assert_eq!(
+                    [difference(5.0, 3.0, 16.0), difference(3.0, 5.0, -16.0), difference(0.0, 0.0, 0.0)],
+                    [2.0, -2.0, 0.0]
+                );
             }
 
             #[test]
             fn numbers_are_told_by_their_bits_and_millimetres() {
                 let millimetres = [1.5, 0.000_9, -2.0, 1e12, $t::NAN].map(|x: $t| x.millimetres());
                 assert_eq!(millimetres, [1500, 0, 0, u32::MAX, 0]);
+                assert_eq!((1.0 as $t).advance(0.5, 3.0, 0.25), (2.25, 0.0));
+                assert_eq!((1.0 as $t).advance(E / 8.0, E / 2.0, 0.25), (1.0, E / 4.0));
+                assert_eq!([1.0, 3.0, 9.0].map(|x: $t| Scalar::clamp(x, 2.0, 4.0)), [2.0, 3.0, 4.0]);
                 for x in [0.0, 2.5, -2.5] as [$t; 3] {
                     assert_eq!(
                         [x.negate_if(false), x.negate_if(true), Scalar::half(x), Scalar::abs(x)],
@@ -175,9 +182,14 @@ macro_rules! exact {
                 let all = Sector::<$t>::all([1.0, 0.0]);
                 near(roots(&[[1.0, 1.0, 3.0, 0.5]], all), &[-2.0 * 3.0_f64.atan()]);
                 near(roots(&[[-3.0, 1.0, -1.0, 0.5]], all), &[2.0 * (1.0_f64 / 3.0).atan()]);
+                near(roots(&[[-1.0, 1.0, -3.0, 0.5]], all), &[2.0 * 3.0_f64.atan()]);
                 near(roots(&[[1.0, 0.5, 1.0, 0.375]], all), &[-steep]);
                 near(roots(&[[1.0, 1.0, 3.0, 0.4], [3.0, 1.0, 1.0, 0.4]], all), &[]);
                 near(roots(&[[1.0, 1.0, 1.0, 0.0]], all), &[-FRAC_PI_2; 2]);
+                // The small root does not cancel.
+                let small = 2.0 * (1.0 / (1e4 + 99_999_999.0_f64.sqrt())).atan();
+                near(roots(&[[1.0, -1e4, 1.0, 0.0]], all), &[PI - small, small]);
+                near(roots(&[[1.0, 1e4, 1.0, 0.0]], all), &[small - PI, -small]);
             }
 
             #[test]

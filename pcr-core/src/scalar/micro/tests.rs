@@ -29,6 +29,19 @@ fn arctangents_are_right_to_a_few_last_digits() {
         assert!((atan2(y, x) - angle).abs() < 5e-7, "atan2({y}, {x})");
     }
     assert!((atan2(1e-9, 1.0) - 1e-9).abs() < 1e-15);
+    for r in [1e-37, 1e-30, 1e-12, 1.0, 1e12, 1e30, 3e38] {
+        let found = [(r, r), (r, -r), (-r, r), (-r, -r)]
+            .map(|(y, x)| (atan2(y, x) / core::f32::consts::FRAC_PI_4 * 1e5).round());
+        assert_eq!(found, [1e5, 3e5, -1e5, -3e5], "{r}");
+        let found =
+            [(r, 0.0), (0.0, -r), (-r, 0.0)].map(|(y, x)| (atan2(y, x) / core::f32::consts::FRAC_PI_2 * 1e5).round());
+        assert_eq!(found, [1e5, 2e5, -1e5], "{r}");
+    }
+    // Not beyond half a turn, whose negative is another angle.
+    for step in 0..100_000_u32 {
+        let angle = atan2(step as f32 * 1e-11, -1.0);
+        assert!(angle <= core::f32::consts::PI && atan2(-(step as f32) * 1e-11, -1.0) >= -core::f32::consts::PI);
+    }
 }
 
 #[test]
@@ -104,11 +117,17 @@ fn half_tangents_are_found_in_their_sector() {
     assert_eq!(roots(equation, [0.0, 1.0], None), [-0.6435, 3.1416]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([0.6, 0.8], 0.79))), [1.5708, 9.0]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.6, -0.8], 0.99))), [-2.2143, 9.0]);
+    assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.79))), [-2.2143, 9.0]);
+    assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.81))), [9.0; 2]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([1.0, 0.0], 0.01))), [9.0; 2]);
     // Real by doubt alone: one, by the larger of two coefficients.
     assert_eq!(roots([1.0, 1.0, 3.0, 0.5], [1.0, 0.0], None), [-2.4981, 9.0]);
     assert_eq!(roots([-3.0, 1.0, -1.0, 0.5], [1.0, 0.0], None), [0.6435, 9.0]);
+    assert_eq!(roots([-1.0, 1.0, -3.0, 0.5], [1.0, 0.0], None), [2.4981, 9.0]);
+    assert_eq!(roots([3.0, 1.0, 1.0, 0.5], [1.0, 0.0], None), [-0.6435, 9.0]);
     assert_eq!(roots([1.0, 0.5, 1.0, 0.375], [1.0, 0.0], None), [-2.2143, 9.0]);
+    // The small root does not cancel.
+    assert_eq!(roots([1.0, -1e4, 1.0, 0.0], [1.0, 0.0], None), [3.1415, 1e-4]);
     assert_eq!(roots([1.0, 1.0, 3.0, 0.4], [1.0, 0.0], None), [9.0; 2]);
     assert_eq!(roots([1.0, 1.0, 1.0, 0.0], [1.0, 0.0], None), [-1.5708; 2]);
 }
