@@ -4,7 +4,6 @@
 #                                                    SECONDS of tests (4). Again: goes on where it stopped. FOLDER/results
 #                                                    has a line a mutant, `mutants table FOLDER` counts them.
 #   ONLY='scalar|pcr-fixed' tests/mutants/run.sh FOLDER    those whose line in FOLDER/all matches; one ONLY a folder
-#   MANY=1 tests/mutants/run.sh FOLDER 60                  with more cases a test, for what no test noticed
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=$(realpath -m "$1") seconds=${2:-4} jobs=${3:-2}
@@ -35,8 +34,8 @@ if [ ! -e "$copy" ]; then
 fi
 cd "$copy"
 if [ ! -e "$folder/binaries" ]; then
-  # As many cases as in a debug run, though optimized; with MANY those of an optimized run.
-  [ -n "${MANY-}" ] || sed -i '/cfg=optimized/d' tests/build.rs
+  # As many cases as in a debug run, though optimized.
+  sed -i '/cfg=optimized/d' tests/build.rs
   SKIP="" put >"$folder/all"
   SKIP=$(grep -vE "${ONLY:-.}" "$folder/all" | cut -f1 | tr '\n' ' ') || true
   export SKIP
