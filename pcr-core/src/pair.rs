@@ -110,7 +110,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return false;
         }
         // Where one interval at most is covered both pieces hold it.
-        if !wraps(own, self.radius) {
+        if !wraps(own, self.radius, self.slack) {
             return true;
         }
         let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
@@ -139,7 +139,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return false;
         }
         // One interval at most of the second segment is within reach of the joint: both pieces hold it.
-        if !wraps(other, self.radius) {
+        if !wraps(other, self.radius, self.slack) {
             return true;
         }
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
@@ -194,7 +194,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         // first segment may be covered, the next part of it may be that of the other lap: then each piece has its own part.
         covered.map(|slice| {
             let slice = Some(along_path(slice?, other)).filter(|slice| slice.meets(piece.second))?;
-            if !wraps(own, self.radius) {
+            if !wraps(own, self.radius, self.slack) {
                 return Some(slice);
             }
             let part = slice.common(piece.second);

@@ -84,7 +84,7 @@ fn normals<S: Format>() {
         let [_, turns] = found(&arc, &line, RADIUS);
         assert_eq!(has(&turns, PI), there, "turning point of an arc, {missed} slacks: {turns:?}");
         // A line that passes an arc of 2 m about the origin outside, and a smaller one.
-        for (bend, turn) in [(2.0, Turn::Left), (2.0, Turn::Right), (1.25, Turn::Left), (1.25, Turn::Right)] {
+        for (bend, turn) in [(2.0, Turn::Left), (2.0, Turn::Right), (1.75, Turn::Left), (1.75, Turn::Right)] {
             let own = upper::<S>(bend, turn);
             let passing = segment::<S>([-3.0, bend + RADIUS + missed * SLACK, 0.0], 6.0, None);
             let [events, _] = found(&own, &passing, RADIUS);
@@ -106,7 +106,7 @@ fn normals<S: Format>() {
 /// From inside an arc: P1 about the centre below twice the radius, right to a slack; P3 beyond, which takes (ϱ + R) / (ϱ - R) times
 /// half a slack for touching.
 fn inside<S: Format>() {
-    let cases = [(1.5, 0.9, true), (1.5, 1.2, false), (4.0, 0.7, true), (4.0, 1.0, false)];
+    let cases = [(1.75, 0.9, true), (1.75, 1.2, false), (4.0, 0.7, true), (4.0, 1.0, false)];
     for ((bend, missed, there), turn) in cases.into_iter().flat_map(|case| [(case, Turn::Left), (case, Turn::Right)]) {
         let own = upper::<S>(bend, turn);
         // A line through the circle that stays off the ring inside which nothing is in contact.

@@ -86,9 +86,11 @@ impl<X: Shadowed<S = X> + Format> Placed<X> {
         ends.into_iter().chain(normal).map(|residual| residual.farthest(0.0)).fold(f64::INFINITY, f64::min)
     }
 
-    fn wraps(&self, radius: f64) -> bool {
+    /// With a margin for the rounding of what is compared.
+    fn wraps(&self, radius: f64, sigma: f64) -> bool {
         let length = X::number(self.segment.length().value);
-        self.bend.is_some_and(|bend| bend.farthest(0.0) <= 1.001 * radius || length >= 0.999 * PI * bend.farthest(0.0))
+        let far = 1.001 * radius + 16.0 * sigma;
+        self.bend.is_some_and(|bend| bend.farthest(0.0) <= far || length >= 0.999 * PI * bend.farthest(0.0))
     }
 }
 
@@ -178,7 +180,7 @@ fn measure<X: Shadowed<S = X> + Format>(pair: &Pair, dice: &mut Dice, errors: &m
     let (mut events, mut turns) = (Vec::new(), Vec::new());
     internals::events(&first.segment, &second.segment, [radius, slack], |s| events.push(s), |l| turns.push(l));
     // Where two laps may be covered there are events at which nothing touches: the far side of a circle, a change of lap.
-    let plain = ![&first, &second].iter().any(|placed| placed.wraps(X::number(radius.value)));
+    let plain = ![&first, &second].iter().any(|placed| placed.wraps(X::number(radius.value), sigma));
     let inside = |u: &Number<X>, placed: &Placed<X>| *u > Number::ZERO && *u < placed.segment.length();
     for s in events.iter().filter(|s| plain && inside(s, &second)) {
         errors.count_event(s, first.residual(second.at(*s), radius.exact) / sigma);

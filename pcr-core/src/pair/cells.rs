@@ -52,7 +52,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         events.sort();
         let in_order = events.as_slice();
         let begin = pieces.last_pending();
-        if wraps(self.first, self.radius) {
+        if wraps(self.first, self.radius, self.slack) {
             self.find_laps(in_order, pieces)?;
         } else {
             self.find_one_lap(in_order, pieces)?;
@@ -79,9 +79,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
-        if Runs(any).rest() != 0 && !wraps(self.first, self.far()) {
-            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece. About the
-            // centre of an arc as large as the disc it is where one end is left for the other: what lies between is far.
+        if Runs(any).rest() != 0 {
+            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece.
             let near = self.slabs(in_order, self.reach()).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
             for gap in Runs(between & !any) {
@@ -104,12 +103,6 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// As far as rounding may take a contact: half a slack more, so that what is off by as much is still within R + ε.
     fn reach(&self) -> S {
         self.radius + self.slack.half()
-    }
-
-    /// Further out than any place of a gap whose middle is within reach: between two events the distance from an end of the first
-    /// segment grows with the square of the way at most, to four times what it has grown in the middle.
-    fn far(&self) -> S {
-        self.radius + self.slack.double().double().double().double()
     }
 
     /// What a disc of this radius covers in the middle of each slab.
@@ -159,7 +152,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
             return;
         }
         let reach = self.reach();
-        let by_laps = wraps(self.first, reach);
+        let by_laps = wraps(self.first, self.radius, self.slack);
         let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
         let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
         let mut index = pieces.pending_after(begin);

@@ -36,7 +36,7 @@ pub(crate) fn add_events<S: Scalar>(
         add_ends(&end, second, radius, slack, events);
     }
     add_normals(first, &start, second, radius, slack, events);
-    if let (Curve::Arc { radius: own, .. }, true) = (first.curve, wraps(first, radius)) {
+    if let (Curve::Arc { radius: own, .. }, true) = (first.curve, wraps(first, radius, slack)) {
         let diameter = middle_diameter(first, own);
         let centre = Footprint::of(diameter.start, second);
         Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
@@ -103,14 +103,16 @@ fn add_ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S
     }
 }
 
-/// Whether both ends of an arc can be covered while its middle is not: two laps at once.
-pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S) -> bool {
+/// Whether both ends of an arc can be covered while its middle is not: two laps at once, or where rounding may show them so; or one
+/// after the other, behind the centre of an arc that is hardly larger than the disc, with a gap between them that may be narrower
+/// than a last digit.
+pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S, slack: S) -> bool {
     match segment.curve {
         Curve::Line => false,
-        // One that is as large but for what a distance is off whatever the extent counts, too: the gap beyond the centre may be
-        // narrower than a last digit.
         Curve::Arc { radius: own, .. } => {
-            own <= radius + S::slack(S::ZERO) || segment.length.double() >= segment.circumference
+            // Sixteen: docs/equations.md#laps.
+            let far = radius + slack.double().double().double().double();
+            own <= far || segment.length.double() >= segment.circumference
         }
     }
 }

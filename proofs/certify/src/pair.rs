@@ -14,7 +14,7 @@ pub enum Promise {
     Covered,
     /// The piece that holds it stands for the interval that holds it (C-share).
     Shared,
-    /// No length is told that is farther than R + ε from all lengths of the other path told with it, or R + 2 ε beside an arc that is as
+    /// No length is told that is farther than R + ε from all lengths of the other path told with it, or R + 3/2 ε beside an arc that is as
     /// large as the disc (C4).
     Near,
     /// Whenever an agent is at a contact of a region, that is within the time told of the region (E_t).
@@ -76,7 +76,7 @@ pub struct Radii {
     pub covered: Ball<Twofold>,
     /// What everything told is within: R + ε \[m\].
     pub told: Ball<Twofold>,
-    /// The same beside an arc that is as large as the disc: R + 2 ε \[m\].
+    /// The same beside an arc that is as large as the disc: R + 3/2 ε \[m\].
     pub beside: Ball<Twofold>,
 }
 

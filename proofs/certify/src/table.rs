@@ -12,9 +12,9 @@ use crate::twofold::Twofold;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
-/// Beside an arc whose radius is R within 2 ε, what is told of a length lies within R and so much of ε: pieces are joined there, and what
-/// lies between has been seen within 1.8 ε (docs/errors.md).
-const TOLD_BESIDE: f64 = 2.0;
+/// Beside an arc whose radius is R within 2 ε, what is told of a length lies within R and so much of ε. That is the bound of every end of a
+/// range in docs/errors.md; elsewhere a whole ε is asked, which is less than what is derived.
+const TOLD_BESIDE: f64 = 1.5;
 
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]

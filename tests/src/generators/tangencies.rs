@@ -65,7 +65,7 @@ pub fn inner_tangent(size: f64, slack: f64, dice: &mut Dice) -> Pair {
 /// the centre on the other side: there the arc's ends are nearest, one after the other, and its middle is far.
 pub fn behind(size: f64, slack: f64, dice: &mut Dice) -> Pair {
     let bend = size * dice.range(0.3, 3.0);
-    let over = slack * [dice.range(0.0, 1.0), dice.range(0.0, 4.0), dice.range(0.0, 20.0)][dice.below(3)];
+    let over = slack * [dice.magnitude(1e-4, 1.0), dice.range(0.0, 4.0), dice.range(0.0, 20.0)][dice.below(3)];
     let combined = bend - slack - over;
     let share = dice.range(0.1, 0.9);
     let sweep = PI + if dice.chance(0.8) { -dice.magnitude(1e-9, 1.0) } else { dice.magnitude(1e-9, 1.0) };
@@ -73,7 +73,7 @@ pub fn behind(size: f64, slack: f64, dice: &mut Dice) -> Pair {
     let start = [bend * cos, bend * sin, 0.5 * (PI - sweep)];
     let own = Disc { radius: share * combined, start, legs: vec![Leg::arc(bend, sweep)] };
     // The ends are as near as the disc where |y| = over + x² / 2 bend: the other path is drawn at that scale.
-    let scale = [(2.0 * bend * over.max(0.1 * slack)).sqrt(), over.max(slack), bend][dice.below(3)];
+    let scale = [(2.0 * bend * over.max(0.1 * slack)).sqrt(), dice.magnitude(slack, bend), bend][dice.below(3)];
     let mut place = || [scale * dice.range(-5.0, 3.0), over.max(slack) * dice.range(-8.0, 8.0)];
     let [from, to] = [place(), place()];
     let (length, heading) = ((to[0] - from[0]).hypot(to[1] - from[1]), (to[1] - from[1]).atan2(to[0] - from[0]));
