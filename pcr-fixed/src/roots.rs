@@ -117,6 +117,23 @@ mod tests {
         near(turned, &[-2.0, 1.0]);
     }
 
+    /// Both terms with 15 digits of 1 after the sign: negative, their squares would be 2³⁰ each, and the sum overflow.
+    #[test]
+    fn a_denominator_is_positive_so_that_squares_fit() {
+        let (a, b) = ((1 << 31) - 2, 1 - (1 << 30));
+        let mut roots = Vec::new();
+        half_tangent([[a, b, 0, 0]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| roots.push(root));
+        assert_eq!(roots, [Turns::QUARTER, Turns::ZERO]);
+    }
+
+    #[test]
+    fn the_ends_of_a_sector_are_in_it() {
+        let east = [Sine::ONE, Sine::ZERO];
+        let half_circle = Sector { least: Sine::ZERO, ..Sector::all(east) };
+        assert!(may_lie_in(half_circle, 1 << 30, 1 << 30) && may_lie_in(half_circle, -1 << 30, 1 << 30));
+        assert!(!may_lie_in(half_circle, (1 << 30) + (1 << 22), 1 << 30));
+    }
+
     /// Whatever is left out lies outside: an angle a little inside of the sector never is.
     #[test]
     fn sectors_leave_out_what_lies_outside_and_nothing_else() {

@@ -138,6 +138,9 @@ macro_rules! exact {
                     );
                 }
                 assert_eq!([4.0, 0.0, -4.0].map(|x: $t| Wide::<$t>::sqrt(x)), [2.0, 0.0, 0.0]);
+                assert!(Wide::<$t>::sqrt(-0.0 as $t).is_sign_positive());
+                // Of two equal numbers the first.
+                assert!(Scalar::min(0.0 as $t, -0.0).is_sign_positive() && Scalar::max(-0.0 as $t, 0.0).is_sign_negative());
                 let finite =
                     [1.0, $t::INFINITY, $t::NAN].map(|x| (Scalar::is_finite(x), Angle::<$t>::is_finite(Radians(x))));
                 assert_eq!(finite, [(true, true), (false, false), (false, false)]);
@@ -186,6 +189,8 @@ macro_rules! exact {
                 near(roots(&[[1.0, 0.5, 1.0, 0.375]], all), &[-steep]);
                 near(roots(&[[1.0, 1.0, 3.0, 0.4], [3.0, 1.0, 1.0, 0.4]], all), &[]);
                 near(roots(&[[1.0, 1.0, 1.0, 0.0]], all), &[-FRAC_PI_2; 2]);
+                // At the very ends of half a circle.
+                near(roots(&[[1.0, 0.0, -1.0, 0.0]], Sector { least: 0.0, ..all }), &[-FRAC_PI_2, FRAC_PI_2]);
                 // The small root does not cancel.
                 let small = 2.0 * (1.0 / (1e4 + 99_999_999.0_f64.sqrt())).atan();
                 near(roots(&[[1.0, -1e4, 1.0, 0.0]], all), &[PI - small, small]);

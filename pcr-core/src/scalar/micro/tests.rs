@@ -120,6 +120,8 @@ fn half_tangents_are_found_in_their_sector() {
     assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.79))), [-2.2143, 9.0]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.81))), [9.0; 2]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([1.0, 0.0], 0.01))), [9.0; 2]);
+    // At the very ends of half a circle.
+    assert_eq!(roots([1.0, 0.0, -1.0, 0.0], [1.0, 0.0], Some(([1.0, 0.0], 0.0))), [-1.5708, 1.5708]);
     // Real by doubt alone: one, by the larger of two coefficients.
     assert_eq!(roots([1.0, 1.0, 3.0, 0.5], [1.0, 0.0], None), [-2.4981, 9.0]);
     assert_eq!(roots([-3.0, 1.0, -1.0, 0.5], [1.0, 0.0], None), [0.6435, 9.0]);
