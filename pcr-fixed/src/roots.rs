@@ -20,6 +20,7 @@ pub(crate) fn half_tangent(
     let mut from = None;
     for equation in equations {
         for [n, m] in half_tangents(equation).into_iter().flatten() {
+            // Not both below 0, where the sum of their squares would not fit.
             let (n, m) = if m.is_negative() { (n.minus(), m.minus()) } else { (n, m) };
             let [n, m] = n.aligned(m);
             if may_lie_in(sector, n, m) {

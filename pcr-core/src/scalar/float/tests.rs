@@ -140,7 +140,9 @@ macro_rules! exact {
                 assert_eq!([4.0, 0.0, -4.0].map(|x: $t| Wide::<$t>::sqrt(x)), [2.0, 0.0, 0.0]);
                 assert!(Wide::<$t>::sqrt(-0.0 as $t).is_sign_positive());
                 // Of two equal numbers the first.
-                assert!(Scalar::min(0.0 as $t, -0.0).is_sign_positive() && Scalar::max(-0.0 as $t, 0.0).is_sign_negative());
+                assert!(
+                    Scalar::min(0.0 as $t, -0.0).is_sign_positive() && Scalar::max(-0.0 as $t, 0.0).is_sign_negative()
+                );
                 let finite =
                     [1.0, $t::INFINITY, $t::NAN].map(|x| (Scalar::is_finite(x), Angle::<$t>::is_finite(Radians(x))));
                 assert_eq!(finite, [(true, true), (false, false), (false, false)]);
