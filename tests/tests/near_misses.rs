@@ -204,6 +204,24 @@ in_format!(near_misses_are_events_up_to_the_slack_in_q20, Q20);
 in_format!(near_misses_are_events_up_to_the_slack_in_q16, Q16);
 in_format!(near_misses_are_events_up_to_the_slack_in_q12, Q12);
 
+/// A line that passes an arc, inside of it out of reach, from where it is but a third of a slack too far away to a third of a slack
+/// after: two pieces, and what lies before the first and after the last is part of neither.
+#[test]
+fn gaps_lie_between_two_contacts() {
+    for turn in [Turn::Left, Turn::Right] {
+        let own = upper::<f64>(4.0, turn);
+        let [outer, inner] = [5.0, 3.0].map(|distance: f64| (distance * distance - 2.8 * 2.8).sqrt());
+        let more = SLACK / 3.0;
+        let passing = segment::<f64>([-outer - more, 2.8, 0.0], 2.0 * (outer + more), None);
+        let mut found = Vec::new();
+        let add = |[_, second]: [pcr_core::Interval<f64>; 2]| found.extend([second.lo, second.hi]);
+        internals::pieces(&own, &passing, [RADIUS, SLACK], add).expect("room");
+        let exact = [-outer, -inner, inner, outer].map(|x| x + outer + more);
+        let near = found.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-12);
+        assert!(found.len() == 4 && near, "{found:?} {exact:?}");
+    }
+}
+
 /// As an arc is that is half a turn or longer, whatever its radius.
 #[test]
 fn half_a_turn_is_followed_lap_by_lap() {
