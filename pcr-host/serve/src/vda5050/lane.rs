@@ -84,8 +84,6 @@ pub struct Lane {
     pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
-    /// Something has come for it since it was looked at last.
-    pub(super) is_touched: bool,
 }
 
 impl Lane {
@@ -96,20 +94,7 @@ impl Lane {
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        Self {
-            profile,
-            name,
-            version,
-            newest,
-            state: None,
-            job,
-            errors,
-            astray: None,
-            pause: None,
-            sent,
-            posts,
-            is_touched: true,
-        }
+        Self { profile, name, version, newest, state: None, job, errors, astray: None, pause: None, sent, posts }
     }
 
     /// What the supervisor calls it.

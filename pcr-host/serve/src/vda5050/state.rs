@@ -1,8 +1,11 @@
 //! States of vehicles.
 
 use super::header::message;
-use serde::{Deserialize, Serialize};
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
+use std::ops::Deref;
 
 message! {
     /// What a vehicle says of itself.
@@ -16,9 +19,9 @@ message! {
         /// Which of that name.
         last_node_sequence_id: u64,
         /// Nodes that it has still to pass.
-        node_states: Vec<NodeState>,
+        node_states: Listed<NodeState>,
         /// Edges that it has still to travel.
-        edge_states: Vec<EdgeState>,
+        edge_states: Listed<EdgeState>,
         /// Whether it moves.
         driving: bool,
         /// Whether it asks for more base.
@@ -45,6 +48,50 @@ message! {
     }
 }
 
+/// A list of which a few fields are read, and all is kept as it was written: it is long, and most of it is passed on or left out.
+#[derive(Clone, Debug)]
+pub struct Listed<T> {
+    text: Box<RawValue>,
+    items: Vec<T>,
+}
+
+impl<T> Listed<T> {
+    /// What counts, and all of it.
+    pub fn new(items: Vec<T>, all: &impl Serialize) -> Self {
+        // Lists of numbers and texts: there is none that cannot be written.
+        let text = to_raw_value(all).unwrap_or_default();
+        Self { text, items }
+    }
+}
+
+impl<T> Deref for Listed<T> {
+    type Target = [T];
+
+    fn deref(&self) -> &[T] {
+        &self.items
+    }
+}
+
+impl<T> PartialEq for Listed<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.text.get() == other.text.get()
+    }
+}
+
+impl<T> Serialize for Listed<T> {
+    fn serialize<S: Serializer>(&self, writer: S) -> Result<S::Ok, S::Error> {
+        self.text.serialize(writer)
+    }
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Listed<T> {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
+        let text = Box::<RawValue>::deserialize(reader)?;
+        let items = serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text.get()));
+        Ok(Self { items: items.map_err(Error::custom)?, text })
+    }
+}
+
 /// A node still to be passed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -55,9 +102,6 @@ pub struct NodeState {
     pub sequence_id: u64,
     /// Part of the base.
     pub released: bool,
-    /// All else.
-    #[serde(flatten)]
-    pub rest: Map<String, Value>,
 }
 
 /// An edge still to be travelled.
@@ -70,9 +114,6 @@ pub struct EdgeState {
     pub sequence_id: u64,
     /// Part of the base.
     pub released: bool,
-    /// All else.
-    #[serde(flatten)]
-    pub rest: Map<String, Value>,
 }
 
 /// Where a vehicle is.

@@ -4,7 +4,7 @@ use super::vehicle::{Task, Vehicle};
 use crate::vda5050::header::Header;
 use crate::vda5050::messages::{Connection, Visualization};
 use crate::vda5050::stamp;
-use crate::vda5050::state::{EdgeState, NodeState, Pose, State, Velocity};
+use crate::vda5050::state::{EdgeState, Listed, NodeState, Pose, State, Velocity};
 use crate::vda5050::topics::Kind;
 use crate::vda5050::version::Version;
 use serde::Serialize;
@@ -84,8 +84,8 @@ impl Vehicle {
             order_update_id: task.map_or(0, |task| task.held.update_id),
             last_node_id: last.map_or_else(String::new, |node| node.node_id.clone()),
             last_node_sequence_id: last.map_or(0, |node| node.sequence_id),
-            node_states: open.map_or_else(Vec::new, nodes),
-            edge_states: open.map_or_else(Vec::new, edges),
+            node_states: listed(open.map_or_else(Vec::new, nodes)),
+            edge_states: listed(open.map_or_else(Vec::new, edges)),
             driving: task.is_some_and(|task| task.drive.is_driving()),
             new_base_request: Some(false),
             agv_position: agv,
@@ -180,26 +180,20 @@ fn third() -> Value {
     })
 }
 
+fn listed<T: Serialize + Clone>(items: Vec<T>) -> Listed<T> {
+    Listed::new(items.clone(), &items)
+}
+
 fn nodes(task: &Task) -> Vec<NodeState> {
     let ahead = task.held.nodes.iter().skip(task.done + 1);
     ahead
-        .map(|node| NodeState {
-            node_id: node.node_id.clone(),
-            sequence_id: node.sequence_id,
-            released: node.released,
-            rest: Map::new(),
-        })
+        .map(|node| NodeState { node_id: node.node_id.clone(), sequence_id: node.sequence_id, released: node.released })
         .collect()
 }
 
 fn edges(task: &Task) -> Vec<EdgeState> {
     let ahead = task.held.edges.iter().skip(task.done);
     ahead
-        .map(|edge| EdgeState {
-            edge_id: edge.edge_id.clone(),
-            sequence_id: edge.sequence_id,
-            released: edge.released,
-            rest: Map::new(),
-        })
+        .map(|edge| EdgeState { edge_id: edge.edge_id.clone(), sequence_id: edge.sequence_id, released: edge.released })
         .collect()
 }

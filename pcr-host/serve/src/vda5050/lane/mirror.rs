@@ -3,13 +3,14 @@
 use super::super::door::{self, Limits, Refusal};
 use super::super::header::Header;
 use super::super::messages::{Connection, Factsheet, Responses};
-use super::super::order::{Edge, Node};
-use super::super::state::{EdgeState, NodeState, State};
+use super::super::order::{Edge, Node, NodePosition};
+use super::super::state::{Listed, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::{Lane, Post, To};
 use pcr_formats::import::{self, Options, Warnings};
-use serde_json::{Map, Value};
+use serde::Serialize;
+use serde_json::Value;
 
 impl Lane {
     /// Tells the manager the newest state.
@@ -129,10 +130,12 @@ impl Lane {
             return state;
         }
         let waits = state.node_states.iter().any(|node| node.released);
-        state.node_states = job.held.nodes.iter().skip(stop.node + 1).map(node_state).collect();
-        state.edge_states = job.held.edges.iter().skip(stop.node).map(edge_state).collect();
+        let nodes: Vec<NodeAhead<'_>> = job.held.nodes.iter().skip(stop.node + 1).map(NodeAhead::of).collect();
+        let edges: Vec<EdgeAhead<'_>> = job.held.edges.iter().skip(stop.node).map(EdgeAhead::of).collect();
         // Whether more base is needed depends on what the manager has released, not on what the vehicle has of that.
-        let has_base = state.node_states.iter().any(|node| node.released);
+        let has_base = nodes.iter().any(|node| node.released);
+        // It is written next, and nothing of it is read again.
+        (state.node_states, state.edge_states) = (Listed::new(Vec::new(), &nodes), Listed::new(Vec::new(), &edges));
         if let Some(request) = &mut state.new_base_request {
             *request &= waits || !has_base;
         }
@@ -140,27 +143,51 @@ impl Lane {
     }
 }
 
-fn node_state(node: &Node) -> NodeState {
-    let mut rest = Map::new();
-    if let Some(position) = &node.node_position {
-        let mut place = Map::from_iter([
-            ("x".to_owned(), position.x.into()),
-            ("y".to_owned(), position.y.into()),
-            ("mapId".to_owned(), position.map_id.clone().into()),
-        ]);
-        // Schema 2.0 asks for one.
-        let theta = position.rest.get("theta").cloned().unwrap_or_else(|| 0.0.into());
-        place.insert("theta".into(), theta);
-        rest.insert("nodePosition".into(), place.into());
-    }
-    NodeState { node_id: node.node_id.clone(), sequence_id: node.sequence_id, released: node.released, rest }
+/// A node ahead, as the manager is told of it.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct NodeAhead<'a> {
+    node_id: &'a str,
+    sequence_id: u64,
+    released: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    node_position: Option<Place<'a>>,
 }
 
-fn edge_state(edge: &Edge) -> EdgeState {
-    EdgeState {
-        edge_id: edge.edge_id.clone(),
-        sequence_id: edge.sequence_id,
-        released: edge.released,
-        rest: Map::new(),
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Place<'a> {
+    x: f64,
+    y: f64,
+    /// Schema 2.0 asks for one.
+    theta: f64,
+    map_id: &'a str,
+}
+
+impl<'a> NodeAhead<'a> {
+    fn of(node: &'a Node) -> Self {
+        let place = |position: &'a NodePosition| Place {
+            x: position.x,
+            y: position.y,
+            theta: position.rest.get("theta").and_then(Value::as_f64).unwrap_or(0.0),
+            map_id: &position.map_id,
+        };
+        let node_position = node.node_position.as_ref().map(place);
+        Self { node_id: &node.node_id, sequence_id: node.sequence_id, released: node.released, node_position }
+    }
+}
+
+/// An edge ahead, as the manager is told of it.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct EdgeAhead<'a> {
+    edge_id: &'a str,
+    sequence_id: u64,
+    released: bool,
+}
+
+impl<'a> EdgeAhead<'a> {
+    fn of(edge: &'a Edge) -> Self {
+        Self { edge_id: &edge.edge_id, sequence_id: edge.sequence_id, released: edge.released }
     }
 }
