@@ -106,32 +106,33 @@ fn half_tangents_are_found_in_their_sector() {
         let mut found = [9.0; 2];
         let mut count = 0;
         Micro::half_tangent_roots([equation.map(Micro)].into_iter(), sector, |angle| {
-            found[count] = (1e4 * angle.0.0).round() / 1e4;
+            // In 10⁻⁴ rad.
+            found[count] = (1e4 * angle.0.0).round();
             count += 1;
         });
         found
     };
     // (τ - 1)(τ + 2), counted from 0 and from a quarter turn, and in sectors.
     let equation = [1.0, 0.5, -2.0, 0.0];
-    assert_eq!(roots(equation, [1.0, 0.0], None), [-2.2143, 1.5708]);
-    assert_eq!(roots(equation, [0.0, 1.0], None), [-0.6435, 3.1416]);
-    assert_eq!(roots(equation, [1.0, 0.0], Some(([0.6, 0.8], 0.79))), [1.5708, 9.0]);
-    assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.6, -0.8], 0.99))), [-2.2143, 9.0]);
-    assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.79))), [-2.2143, 9.0]);
+    assert_eq!(roots(equation, [1.0, 0.0], None), [-22_143.0, 15_708.0]);
+    assert_eq!(roots(equation, [0.0, 1.0], None), [-6_435.0, 31_416.0]);
+    assert_eq!(roots(equation, [1.0, 0.0], Some(([0.6, 0.8], 0.79))), [15_708.0, 9.0]);
+    assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.6, -0.8], 0.99))), [-22_143.0, 9.0]);
+    assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.79))), [-22_143.0, 9.0]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([-0.96, -0.28], 0.81))), [9.0; 2]);
     assert_eq!(roots(equation, [1.0, 0.0], Some(([1.0, 0.0], 0.01))), [9.0; 2]);
     // At the very ends of half a circle.
-    assert_eq!(roots([1.0, 0.0, -1.0, 0.0], [1.0, 0.0], Some(([1.0, 0.0], 0.0))), [-1.5708, 1.5708]);
+    assert_eq!(roots([1.0, 0.0, -1.0, 0.0], [1.0, 0.0], Some(([1.0, 0.0], 0.0))), [-15_708.0, 15_708.0]);
     // Real by doubt alone: one, by the larger of two coefficients.
-    assert_eq!(roots([1.0, 1.0, 3.0, 0.5], [1.0, 0.0], None), [-2.4981, 9.0]);
-    assert_eq!(roots([-3.0, 1.0, -1.0, 0.5], [1.0, 0.0], None), [0.6435, 9.0]);
-    assert_eq!(roots([-1.0, 1.0, -3.0, 0.5], [1.0, 0.0], None), [2.4981, 9.0]);
-    assert_eq!(roots([3.0, 1.0, 1.0, 0.5], [1.0, 0.0], None), [-0.6435, 9.0]);
-    assert_eq!(roots([1.0, 0.5, 1.0, 0.375], [1.0, 0.0], None), [-2.2143, 9.0]);
+    assert_eq!(roots([1.0, 1.0, 3.0, 0.5], [1.0, 0.0], None), [-24_981.0, 9.0]);
+    assert_eq!(roots([-3.0, 1.0, -1.0, 0.5], [1.0, 0.0], None), [6_435.0, 9.0]);
+    assert_eq!(roots([-1.0, 1.0, -3.0, 0.5], [1.0, 0.0], None), [24_981.0, 9.0]);
+    assert_eq!(roots([3.0, 1.0, 1.0, 0.5], [1.0, 0.0], None), [-6_435.0, 9.0]);
+    assert_eq!(roots([1.0, 0.5, 1.0, 0.375], [1.0, 0.0], None), [-22_143.0, 9.0]);
     // The small root does not cancel.
-    assert_eq!(roots([1.0, -1e4, 1.0, 0.0], [1.0, 0.0], None), [3.1415, 1e-4]);
+    assert_eq!(roots([1.0, -1e4, 1.0, 0.0], [1.0, 0.0], None), [31_415.0, 1.0]);
     assert_eq!(roots([1.0, 1.0, 3.0, 0.4], [1.0, 0.0], None), [9.0; 2]);
-    assert_eq!(roots([1.0, 1.0, 1.0, 0.0], [1.0, 0.0], None), [-1.5708; 2]);
+    assert_eq!(roots([1.0, 1.0, 1.0, 0.0], [1.0, 0.0], None), [-15_708.0; 2]);
 }
 
 #[test]
