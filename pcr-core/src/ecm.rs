@@ -191,12 +191,6 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         entries.filter_map(move |region| self.view(fleet, region, ego))
     }
 
-    /// The places of an agent's regions in the table, with their pairs.
-    pub(crate) fn places(&self, ego: usize) -> impl Iterator<Item = (usize, [usize; 2])> {
-        let pairs = self.entries().iter().map(|region| region.agents()).enumerate();
-        pairs.filter(move |(_, agents)| agents.contains(&ego))
-    }
-
     /// The agents of the region in a place of the table.
     pub(crate) fn agents_at(&self, place: usize) -> Option<[usize; 2]> {
         self.entries().get(place).map(|region| region.agents())

@@ -77,7 +77,11 @@ where
 {
     /// The places of an agent's regions in the table, their pairs and orders.
     pub(super) fn places(&self, agent: usize) -> impl Iterator<Item = (usize, [usize; 2], Order<S>)> {
-        self.ecm.places(agent).map(|(place, agents)| (place, agents, self.order(place)))
+        // The pair alone is looked at first: most regions are those of others.
+        (0..self.ecm.len()).filter_map(move |place| {
+            let agents = self.ecm.agents_at(place).filter(|agents| agents.contains(&agent))?;
+            Some((place, agents, self.order(place)))
+        })
     }
 
     /// All places with their pairs and orders.
