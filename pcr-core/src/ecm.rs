@@ -29,6 +29,8 @@ impl Region {
     /// A free entry, to fill a storage with.
     pub const EMPTY: Self = Self { agents: [0; 2], head: NONE };
 
+    // Called for each region of a table that is searched.
+    #[inline]
     fn agents(self) -> [usize; 2] {
         self.agents.map(usize::from)
     }
@@ -187,6 +189,12 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         // In the order of the entries, those of lower partners come first and in order, then those of higher ones.
         let entries = self.entries().iter().filter(move |region| region.agents().contains(&ego));
         entries.filter_map(move |region| self.view(fleet, region, ego))
+    }
+
+    /// The places of an agent's regions in the table, with their pairs.
+    pub(crate) fn places(&self, ego: usize) -> impl Iterator<Item = (usize, [usize; 2])> {
+        let pairs = self.entries().iter().map(|region| region.agents()).enumerate();
+        pairs.filter(move |(_, agents)| agents.contains(&ego))
     }
 
     /// The agents of the region in a place of the table.

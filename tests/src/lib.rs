@@ -25,6 +25,7 @@ pub mod search;
 pub mod settings;
 pub mod shadow;
 pub mod velocity;
+pub mod written;
 
 /// The example of the README runs.
 #[cfg(doctest)]

@@ -7,16 +7,13 @@ use pcr_exclusions::{Audit, Rules, Settings, Spot, Target, read, stretch, write}
 use pcr_formats::import::{Format, Id, Imported, Options, Warnings, layout};
 use pcr_planning::locks::Locks;
 use pcr_tests::rules::run;
+use pcr_tests::written::{self, Written};
 use serde_json::Value;
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
-const AWS: &str = include_str!("../data/real/nav2/aws_graph.geojson");
 const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
 const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
 const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
-const TRIPLE_H: &str = include_str!("../data/real/rmf/triple_H.building.yaml");
-const BATTLE: &str = include_str!("../data/real/rmf/battle_royale.building.yaml");
-const HOTEL: &str = include_str!("../data/real/rmf/hotel.building.yaml");
 
 fn options(radius: f64) -> Options {
     Options { radius: Some(radius), ..Options::default() }
@@ -34,67 +31,38 @@ fn written(format: Format, text: &str, radius: f64, settings: &Settings) -> Stri
     write(format, text, &options(radius), "site", settings).unwrap().0
 }
 
-/// The layout that vehicles travel, and the rules that they keep to, both from what was written.
-fn reread(format: Format, layout: &str, text: &str, radius: f64, target: Target) -> (Imported, Rules) {
-    let geometry = if target.layout().is_some() { text } else { layout };
-    let mut imported = imported(format, geometry, radius);
-    if imported.layout.name.is_empty() {
-        imported.layout.name = "site".into();
+fn suffice(is_asked: impl Fn(&Written) -> bool) {
+    for file in written::ALL.into_iter().filter(is_asked) {
+        let (_, run) = file.obeyed(1000, 7).unwrap();
+        assert!(run.contacts.is_empty(), "{file}: {:?}", run.contacts);
+        assert_eq!(run.missions, 1000, "{file}: {run:?}");
+        assert!(run.pairs > 200 && run.refused > 100, "{file}: hardly anybody met: {run:?}");
     }
-    let rules = read(target, text, &imported).unwrap();
-    (imported, rules)
-}
-
-fn suffices(name: &str, format: Format, text: &str, radius: f64, settings: &Settings) {
-    let file = written(format, text, radius, settings);
-    let (imported, rules) = reread(format, text, &file, radius, settings.target);
-    let run = run(&imported, &rules, 1000, 7);
-    assert!(run.contacts.is_empty(), "{name}: {:?}", run.contacts);
-    assert_eq!(run.missions, 1000, "{name}: {run:?}");
-    assert!(run.pairs > 200 && run.refused > 100, "{name}: hardly anybody met: {run:?}");
 }
 
 #[test]
 fn vehicles_that_obey_nav2_lists_never_touch() {
-    for (name, text, radius) in [("warehouse", WAREHOUSE, 0.4), ("aws", AWS, 0.3), ("sample", SAMPLE, 0.3)] {
-        suffices(name, Format::Nav2, text, radius, &settings(Target::Nav2));
-    }
-    suffices("warehouse, cut", Format::Nav2, WAREHOUSE, 0.4, &Settings { split: Some(1.5), ..settings(Target::Nav2) });
+    suffice(|file| file.target == Target::Nav2);
 }
 
 #[test]
 fn vehicles_that_obey_mutex_groups_never_touch() {
-    for (name, text) in [("office", OFFICE), ("triple H", TRIPLE_H), ("battle royale", BATTLE), ("hotel", HOTEL)] {
-        suffices(name, Format::Rmf, text, 0.45, &settings(Target::Rmf));
-    }
-    suffices("office, cut", Format::Rmf, OFFICE, 0.3, &Settings { split: Some(1.0), ..settings(Target::Rmf) });
+    suffice(|file| file.target == Target::Rmf);
 }
 
 #[test]
 fn vehicles_that_obey_blocks_or_envelopes_never_touch() {
-    suffices("blocks", Format::OpenTcs, DEMO, 0.9, &settings(Target::OpenTcs));
-    let envelopes = Settings { envelopes: Some("pcr".into()), ..settings(Target::OpenTcs) };
-    suffices("envelopes", Format::OpenTcs, DEMO, 0.9, &envelopes);
-    for settings in [settings(Target::OpenTcs), envelopes] {
-        suffices("cut", Format::OpenTcs, DEMO, 0.9, &Settings { split: Some(2.0), ..settings });
-    }
+    suffice(|file| file.target == Target::OpenTcs);
 }
 
 #[test]
 fn vehicles_that_obey_release_zones_never_touch() {
-    for (name, text, radius) in [("warehouse", WAREHOUSE, 0.4), ("sample", SAMPLE, 0.3)] {
-        suffices(name, Format::Nav2, text, radius, &settings(Target::Vda5050));
-    }
-    suffices("sample, cut", Format::Nav2, SAMPLE, 0.3, &Settings { split: Some(0.8), ..settings(Target::Vda5050) });
-    suffices("office", Format::Rmf, OFFICE, 0.3, &settings(Target::Vda5050));
+    suffice(|file| file.target == Target::Vda5050);
 }
 
 #[test]
 fn vehicles_that_obey_lock_files_never_touch() {
-    for (name, text, radius) in [("warehouse", WAREHOUSE, 0.4), ("aws", AWS, 0.3), ("sample", SAMPLE, 0.3)] {
-        suffices(name, Format::Nav2, text, radius, &settings(Target::Pcr));
-    }
-    suffices("demo", Format::OpenTcs, DEMO, 0.9, &settings(Target::Pcr));
+    suffice(|file| file.target == Target::Pcr);
 }
 
 #[test]

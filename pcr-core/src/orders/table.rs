@@ -77,7 +77,7 @@ where
 {
     /// The places of an agent's regions in the table, their pairs and orders.
     pub(super) fn places(&self, agent: usize) -> impl Iterator<Item = (usize, [usize; 2], Order<S>)> {
-        self.all().filter(move |(_, agents, _)| agents.contains(&agent))
+        self.ecm.places(agent).map(|(place, agents)| (place, agents, self.order(place)))
     }
 
     /// All places with their pairs and orders.

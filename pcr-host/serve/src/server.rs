@@ -25,11 +25,11 @@ const BATCH: usize = 256;
 /// Even if nothing is asked, so often \[ms\].
 const TICK: u64 = 50;
 
-/// A call of something that is done with the supervisor.
-pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) + Send>;
-
 /// What is done once all that was decided before is in the journal.
 pub type Then = Box<dyn FnOnce() + Send>;
+
+/// A call of something that is done with the supervisor, and of what tells others of that.
+pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) -> Option<Then> + Send>;
 
 /// Something for the thread that owns the supervisor.
 pub enum Input {
@@ -43,8 +43,6 @@ pub enum Input {
     Closed(u64),
     /// Something else: a page that wants to know what is so, a bridge to robots.
     Call(Call),
-    /// Something that tells others of what was decided.
-    Then(Then),
     /// Everything that is told goes here, too. Who reads too slowly is let go, which it sees by the end of its queue.
     Tell(SyncSender<Event>),
     /// More of the journal is on the disc.
@@ -75,10 +73,20 @@ impl Handle {
         &self,
         question: impl FnOnce(&mut Supervisor, &Board, f64) -> T + Send + 'static,
     ) -> Option<T> {
+        self.ask_then(move |supervisor, board, now| (question(supervisor, board, now), None))
+    }
+
+    /// The same, and what is done once all that was decided then is in the journal, which is not waited for.
+    pub fn ask_then<T: Send + 'static>(
+        &self,
+        question: impl FnOnce(&mut Supervisor, &Board, f64) -> (T, Option<Then>) + Send + 'static,
+    ) -> Option<T> {
         let (sender, receiver) = sync_channel(1);
         let call: Call = Box::new(move |supervisor, board, now| {
+            let (answer, then) = question(supervisor, board, now);
             // Whoever has asked may have gone.
-            let _ = sender.send(question(supervisor, board, now));
+            let _ = sender.send(answer);
+            then
         });
         self.send(Input::Call(call)).then(|| receiver.recv().ok()).flatten()
     }
@@ -184,8 +192,7 @@ impl Desk {
                     told.answers.push((client, reply.answer));
                     told.times.push(came);
                 }
-                Input::Call(call) => call(supervisor, &self.board, now),
-                Input::Then(then) => told.thens.push(then),
+                Input::Call(call) => told.thens.extend(call(supervisor, &self.board, now)),
                 Input::Tell(listener) => self.listeners.push(listener),
                 Input::Kept => {}
                 Input::Stop => stops = true,

@@ -97,6 +97,8 @@ pub struct Supervisor {
     turn: u64,
     /// When waiting missions are tried again \[s\], how often they were, and what kept them.
     tries: HashMap<String, admission::Try>,
+    /// How often a robot was added or removed.
+    census: u64,
     /// When it was looked last who gets nowhere \[s\].
     looked: f64,
     /// Whether somebody may be in the way of somebody who has been allowed to go there.
@@ -127,6 +129,7 @@ impl Supervisor {
             unsaved: Vec::new(),
             turn: 0,
             tries: HashMap::new(),
+            census: 0,
             looked: f64::NEG_INFINITY,
             hazards: false,
             counts: Counts::default(),
@@ -155,6 +158,11 @@ impl Supervisor {
     /// [`Fault::NoSuchRobot`].
     pub fn robot(&self, name: &str) -> Result<&Robot, Fault> {
         self.place(name).map(|place| &self.robots[place])
+    }
+
+    /// Another number whenever a robot was added or removed.
+    pub fn census(&self) -> u64 {
+        self.census
     }
 
     /// For whom a robot has to wait where it may go to, if it is not the end of its path.
@@ -215,6 +223,7 @@ impl Supervisor {
             self.robots.pop();
             return Err(Fault::invalid(full));
         }
+        self.census += 1;
         self.names.insert(name.into(), place);
         self.unsaved.push(false);
         self.reaches.push(Reach::EMPTY);
@@ -245,6 +254,7 @@ impl Supervisor {
         self.works()?;
         let Ok(place) = self.place(name) else { return Ok(false) };
         self.orders.erase(&fleet(&self.robots), place).map_err(Fault::invalid)?;
+        self.census += 1;
         self.robots.remove(place);
         self.unsaved.remove(place);
         self.reaches.pop();
@@ -291,17 +301,25 @@ impl Supervisor {
     }
 
     /// Decides what follows from what was asked and heard: robots are allowed to go on, missions that waited are tried again.
-    /// What is returned may be told: it is in the journal.
-    ///
-    /// # Errors
-    /// [`Fault::Broken`]: the journal could not be written. Nothing is told then, now or later.
-    pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
-        self.works()?;
+    /// Nobody may be told of it before [`Supervisor::settle`].
+    pub fn decide(&mut self, now: f64) {
+        if self.broken.is_some() {
+            return;
+        }
         self.retry(now);
         self.note_silence(now);
         let limits = self.limits(now);
         self.release(&limits);
         self.note_standstill(now);
+    }
+
+    /// [Decides](Supervisor::decide), and writes the journal. What is returned may be told: it is in there.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`]: the journal could not be written. Nothing is told then, now or later.
+    pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
+        self.works()?;
+        self.decide(now);
         self.save()?;
         Ok(std::mem::take(&mut self.events))
     }

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! stamp      time stamps
-//! door       bytes to values: sizes, counts, numbers                Limits, Refusal
+//! bounds     sizes, counts and numbers of a message                 Limits
+//! door       bytes to values                                        Refusal
 //! version    which edition of the standard                          Version
 //! topics     names of topics                                        Interface, Key, Kind
 //! header     what every message begins with                         Header
@@ -18,6 +19,7 @@
 //! station    the bridge at its broker, one at a time                Station
 //! ```
 
+mod bounds;
 pub mod bridge;
 pub mod door;
 pub mod header;

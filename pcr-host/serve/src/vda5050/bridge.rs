@@ -4,9 +4,10 @@ use super::door::Limits;
 use super::lane::{Lane, Post, Profile, To};
 use super::topics::{Interface, Key, Kind};
 use crate::event::Event;
+use crate::robot::Robot;
 use crate::supervisor::Supervisor;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// What can be set.
 #[derive(Clone, Debug)]
@@ -45,11 +46,28 @@ pub struct Counts {
     pub sent: u64,
 }
 
+/// What of a robot decides what its vehicle may be told: its path, how far it may go, whether it is stopped.
+type Rights = (u64, f64, bool);
+
+/// What was seen of the supervisor last.
+#[derive(Debug, Default)]
+struct Seen {
+    census: Option<u64>,
+    /// Of each robot, with the place of its lane.
+    rights: Vec<(Option<usize>, Rights)>,
+    /// Places of vehicles that it does not know.
+    unknown: Vec<usize>,
+}
+
 /// The fleet.
 #[derive(Debug)]
 pub struct Bridge {
     settings: Settings,
-    lanes: BTreeMap<Key, Lane>,
+    lanes: Vec<Lane>,
+    places: HashMap<Key, usize>,
+    /// Places of those for which something has come since they were looked at last.
+    touched: BTreeSet<usize>,
+    seen: Seen,
     out: Vec<Publish>,
     counts: Counts,
     log: Vec<String>,
@@ -68,10 +86,14 @@ const LOOK: f64 = 0.1;
 impl Bridge {
     /// Of these vehicles, with what the supervisor remembers of them.
     pub fn new(settings: Settings, profiles: Vec<Profile>, supervisor: &Supervisor) -> Self {
-        let lanes = profiles.into_iter().map(|profile| (profile.key.clone(), Lane::new(profile, supervisor)));
+        let lanes: Vec<Lane> = profiles.into_iter().map(|profile| Lane::new(profile, supervisor)).collect();
+        let places = lanes.iter().enumerate().map(|(place, lane)| (lane.profile().key.clone(), place)).collect();
         Self {
             settings,
-            lanes: lanes.collect(),
+            touched: (0..lanes.len()).collect(),
+            lanes,
+            places,
+            seen: Seen::default(),
             out: Vec::new(),
             counts: Counts::default(),
             log: Vec::new(),
@@ -96,7 +118,7 @@ impl Bridge {
 
     /// The vehicles.
     pub fn lanes(&self) -> impl Iterator<Item = &Lane> {
-        self.lanes.values()
+        self.lanes.iter()
     }
 
     /// Why messages were refused, since this was asked last.
@@ -106,29 +128,30 @@ impl Bridge {
 
     /// Asks all vehicles for their states and factsheets: the supervisor was away.
     pub fn greet(&mut self) {
-        for lane in self.lanes.values_mut() {
+        for lane in &mut self.lanes {
             lane.ask_for("stateRequest");
             lane.ask_for("factsheetRequest");
         }
-        self.collect();
+        self.collect(&(0..self.lanes.len()).collect());
     }
 
     /// Takes a message. What it asks for takes effect when the supervisor has settled.
     pub fn receive(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
-        let Self { settings, lanes, .. } = self;
+        let settings = &self.settings;
         let from_vehicle = settings.vehicles.parse(topic).filter(|(.., kind)| Kind::OF_VEHICLES.contains(kind));
         let from_manager = settings.manager.parse(topic).filter(|(.., kind)| Kind::TO_VEHICLES.contains(kind));
         let Some((is_third, key, kind)) = from_vehicle.or(from_manager) else {
             self.counts.foreign += 1;
             return;
         };
-        let Some(lane) = lanes.get_mut(&key) else {
+        let limits = settings.limits;
+        let place = self.places.get(&key).copied();
+        let Some((place, lane)) = place.and_then(|place| Some((place, self.lanes.get_mut(place)?))) else {
             self.counts.foreign += 1;
             return;
         };
         self.counts.read += 1;
-        lane.is_touched = true;
-        let limits = settings.limits;
+        self.touched.insert(place);
         let result = match kind {
             Kind::State => lane.state(supervisor, payload, limits, is_third, now),
             Kind::Visualization => lane
@@ -155,46 +178,66 @@ impl Bridge {
         }
     }
 
-    /// Takes what the supervisor has settled, and sends vehicles what they may do.
+    /// Takes what the supervisor has decided, and what it has told since this was called last; what follows for vehicles may be sent once
+    /// that is settled.
     pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[Event], now: f64) {
         self.told(events);
-        let all = now >= self.looked + LOOK;
-        if all {
+        self.look(supervisor);
+        if now >= self.looked + LOOK {
             self.looked = now;
+            self.touched.extend(0..self.lanes.len());
         }
-        let touched = self.lanes.values_mut().filter(|lane| all || lane.is_touched);
-        touched.for_each(|lane| lane.pause(supervisor, now));
+        let touched = std::mem::take(&mut self.touched);
         // A vehicle that has never said where it stands may stand anywhere.
-        let is_unknown = |lane: &&Lane| supervisor.robot(lane.name()).is_err();
-        let unknown: Vec<&str> = self.lanes.values().filter(is_unknown).map(Lane::name).collect();
-        if unknown.is_empty() {
-            let touched = self.lanes.values_mut().filter(|lane| all || lane.is_touched);
-            touched.for_each(|lane| lane.release(supervisor, now));
-        } else if now >= self.said + REMINDER {
+        let is_known = self.seen.unknown.is_empty();
+        for &place in &touched {
+            let lane = &mut self.lanes[place];
+            lane.pause(supervisor, now);
+            if is_known {
+                lane.release(supervisor, now);
+            }
+        }
+        self.collect(&touched);
+        if !is_known && now >= self.said + REMINDER {
             self.said = now;
-            let names = unknown.join(", ");
+            let names: Vec<&str> = self.seen.unknown.iter().map(|&place| self.lanes[place].name()).collect();
+            let names = names.join(", ");
             self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
         }
-        self.collect();
+    }
+
+    /// Whose rights have changed, and who is not known.
+    fn look(&mut self, supervisor: &Supervisor) {
+        let Self { places, seen, touched, lanes, .. } = self;
+        let robots = supervisor.robots();
+        if seen.census != Some(supervisor.census()) {
+            seen.census = Some(supervisor.census());
+            let place = |robot: &Robot| places.get(&key(&robot.name)?).copied();
+            seen.rights = robots.iter().map(|robot| (place(robot), (0, 0.0, false))).collect();
+            seen.unknown = (0..lanes.len()).filter(|&k| supervisor.robot(lanes[k].name()).is_err()).collect();
+        }
+        for ((place, rights), robot) in seen.rights.iter_mut().zip(robots) {
+            let own = (robot.path, robot.granted, robot.stopped.is_some());
+            if std::mem::replace(rights, own) != own {
+                touched.extend(*place);
+            }
+        }
     }
 
     /// Takes what the supervisor has settled, and sends nobody anything for it yet.
     pub fn told(&mut self, events: &[Event]) {
         for event in events {
-            let key = event.robot().split_once('/').map(|(manufacturer, serial_number)| Key {
-                manufacturer: manufacturer.into(),
-                serial_number: serial_number.into(),
-            });
-            if let Some(lane) = key.and_then(|key| self.lanes.get_mut(&key)) {
-                lane.is_touched = true;
+            let place = key(event.robot()).and_then(|key| self.places.get(&key).copied());
+            if let Some((place, lane)) = place.and_then(|place| Some((place, self.lanes.get_mut(place)?))) {
+                self.touched.insert(place);
                 lane.told(event);
             }
         }
     }
 
-    fn collect(&mut self) {
+    fn collect(&mut self, places: &BTreeSet<usize>) {
         let Self { settings, lanes, out, .. } = self;
-        for Post { to, key, version, kind, payload } in lanes.values_mut().flat_map(Lane::posts) {
+        for Post { to, key, version, kind, payload } in places.iter().flat_map(|&place| lanes[place].posts()) {
             let interface = if to == To::Vehicle { &settings.vehicles } else { &settings.manager };
             let (assured, retain) = (kind.is_assured(), kind.is_retained());
             out.push(Publish { topic: interface.topic(version, &key, kind), payload, assured, retain });
@@ -206,4 +249,10 @@ impl Bridge {
         self.counts.sent += self.out.len() as u64;
         std::mem::take(&mut self.out)
     }
+}
+
+/// The vehicle that is called so.
+fn key(name: &str) -> Option<Key> {
+    let (manufacturer, serial_number) = name.split_once('/')?;
+    Some(Key { manufacturer: manufacturer.into(), serial_number: serial_number.into() })
 }

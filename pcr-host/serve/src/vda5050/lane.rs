@@ -24,6 +24,7 @@ use crate::supervisor::Supervisor;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What is known of a vehicle before it says anything.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +75,7 @@ pub struct Lane {
     name: String,
     version: Option<Version>,
     newest: BTreeMap<Kind, Newest>,
-    state: Option<State>,
+    state: Option<Arc<State>>,
     job: Option<Job>,
     /// What the manager is told is wrong with its orders, until one is taken.
     errors: Vec<StateError>,
@@ -84,8 +85,6 @@ pub struct Lane {
     pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
-    /// Something has come for it since it was looked at last.
-    pub(super) is_touched: bool,
 }
 
 impl Lane {
@@ -96,20 +95,7 @@ impl Lane {
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        Self {
-            profile,
-            name,
-            version,
-            newest,
-            state: None,
-            job,
-            errors,
-            astray: None,
-            pause: None,
-            sent,
-            posts,
-            is_touched: true,
-        }
+        Self { profile, name, version, newest, state: None, job, errors, astray: None, pause: None, sent, posts }
     }
 
     /// What the supervisor calls it.
@@ -129,7 +115,7 @@ impl Lane {
 
     /// What it has said last.
     pub fn state_of(&self) -> Option<&State> {
-        self.state.as_ref()
+        self.state.as_deref()
     }
 
     /// The messages to be sent.
@@ -156,8 +142,13 @@ impl Lane {
     }
 
     fn post(&mut self, to: To, kind: Kind, version: Version, message: &impl Serialize) {
+        /// Most messages are no longer \[bytes\].
+        const USUAL: usize = 8192;
+        let mut payload = Vec::with_capacity(USUAL);
         // Maps of texts and finite numbers: there is no message that cannot be written.
-        let payload = serde_json::to_vec(message).unwrap_or_default();
+        if serde_json::to_writer(&mut payload, message).is_err() {
+            payload.clear();
+        }
         self.posts.push(Post { to, key: self.profile.key.clone(), version, kind, payload });
     }
 

@@ -1,8 +1,14 @@
 //! States of vehicles.
 
 use super::header::message;
-use serde::{Deserialize, Serialize};
+use super::order::{Edge, Node, NodePosition};
+use serde::de::{DeserializeOwned, Error, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
+use std::fmt;
+use std::ops::Deref;
+use std::sync::Arc;
 
 message! {
     /// What a vehicle says of itself.
@@ -16,9 +22,9 @@ message! {
         /// Which of that name.
         last_node_sequence_id: u64,
         /// Nodes that it has still to pass.
-        node_states: Vec<NodeState>,
+        node_states: Listed<NodeState>,
         /// Edges that it has still to travel.
-        edge_states: Vec<EdgeState>,
+        edge_states: Listed<EdgeState>,
         /// Whether it moves.
         driving: bool,
         /// Whether it asks for more base.
@@ -45,34 +51,146 @@ message! {
     }
 }
 
-/// A node still to be passed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub struct NodeState {
-    /// Name.
-    pub node_id: String,
-    /// Which of that name.
-    pub sequence_id: u64,
-    /// Part of the base.
-    pub released: bool,
-    /// All else.
-    #[serde(flatten)]
-    pub rest: Map<String, Value>,
+/// A list of which a few fields are read, and all is kept as it was written: it is long, and most of it is passed on or left out.
+#[derive(Clone, Debug)]
+pub struct Listed<T> {
+    text: Arc<RawValue>,
+    items: Vec<T>,
 }
 
-/// An edge still to be travelled.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+impl<T> Listed<T> {
+    /// One to be written; nothing of it counts.
+    pub fn written(all: &[impl Serialize]) -> Self {
+        // Lists of numbers and texts: there is none that cannot be written.
+        Self { text: to_raw_value(all).unwrap_or_default().into(), items: Vec::new() }
+    }
+}
+
+impl<T> Deref for Listed<T> {
+    type Target = [T];
+
+    fn deref(&self) -> &[T] {
+        &self.items
+    }
+}
+
+impl<T> PartialEq for Listed<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.text.get() == other.text.get()
+    }
+}
+
+impl<T> Serialize for Listed<T> {
+    fn serialize<S: Serializer>(&self, writer: S) -> Result<S::Ok, S::Error> {
+        self.text.serialize(writer)
+    }
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Listed<T> {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
+        let text = Box::<RawValue>::deserialize(reader)?;
+        let items = serde_json::from_str(text.get()).or_else(|_| {
+            // Where it is wrong.
+            serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text.get()))
+        });
+        Ok(Self { items: items.map_err(Error::custom)?, text: text.into() })
+    }
+}
+
+/// What counts of a node still to be passed.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct EdgeState {
-    /// Name.
-    pub edge_id: String,
+pub struct NodeState {
+    /// It has a name.
+    node_id: Text,
     /// Which of that name.
     pub sequence_id: u64,
     /// Part of the base.
     pub released: bool,
-    /// All else.
-    #[serde(flatten)]
-    pub rest: Map<String, Value>,
+}
+
+/// What counts of an edge still to be travelled.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct EdgeState {
+    /// It has a name.
+    edge_id: Text,
+    /// Which of that name.
+    pub sequence_id: u64,
+    /// Part of the base.
+    pub released: bool,
+}
+
+/// A text that is not kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Text;
+
+impl<'de> Deserialize<'de> for Text {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
+        struct Any;
+        impl Visitor<'_> for Any {
+            type Value = Text;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a string")
+            }
+
+            fn visit_str<E: Error>(self, _: &str) -> Result<Text, E> {
+                Ok(Text)
+            }
+        }
+        reader.deserialize_str(Any)
+    }
+}
+
+/// A node still to be passed, to be written.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct NodeAhead<'a> {
+    node_id: &'a str,
+    sequence_id: u64,
+    /// Part of the base.
+    pub released: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    node_position: Option<Place<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Place<'a> {
+    x: f64,
+    y: f64,
+    /// Schema 2.0 asks for one.
+    theta: f64,
+    map_id: &'a str,
+}
+
+impl<'a> From<&'a Node> for NodeAhead<'a> {
+    fn from(node: &'a Node) -> Self {
+        let place = |position: &'a NodePosition| Place {
+            x: position.x,
+            y: position.y,
+            theta: position.rest.get("theta").and_then(Value::as_f64).unwrap_or(0.0),
+            map_id: &position.map_id,
+        };
+        let node_position = node.node_position.as_ref().map(place);
+        Self { node_id: &node.node_id, sequence_id: node.sequence_id, released: node.released, node_position }
+    }
+}
+
+/// An edge still to be travelled, to be written.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct EdgeAhead<'a> {
+    edge_id: &'a str,
+    sequence_id: u64,
+    released: bool,
+}
+
+impl<'a> From<&'a Edge> for EdgeAhead<'a> {
+    fn from(edge: &'a Edge) -> Self {
+        Self { edge_id: &edge.edge_id, sequence_id: edge.sequence_id, released: edge.released }
+    }
 }
 
 /// Where a vehicle is.

@@ -10,9 +10,10 @@ use super::mqtt::{Broker, Link, News};
 use super::stamp;
 use super::topics::{Interface, Key, Kind};
 use super::version::Version;
+use crate::board::Board;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::server::{Handle, Input};
+use crate::server::{Handle, Then};
 use crate::supervisor::Supervisor;
 use serde_json::{Map, Value};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -22,10 +23,7 @@ use std::time::{Duration, Instant};
 /// How long it is waited for the last will of one that may be gone: a little more than the broker does.
 const PATIENCE: Duration = Duration::from_secs(9);
 
-/// How long messages are collected before they are answered together, at most.
-const GATHER: Duration = Duration::from_micros(500);
-
-/// So many of them at most.
+/// So many messages are answered together at most.
 const MOST: usize = 1_000;
 
 /// Nothing happens for so long at most without a look at what waits.
@@ -100,20 +98,16 @@ impl Station {
     /// [`Stopped`]: another one supervises, or the journal is broken.
     pub fn turn(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge) -> Result<Vec<Event>, Stopped> {
         let messages = self.messages()?;
-        let now = self.now();
-        self.take(supervisor, bridge, &messages, now);
-        let broken = |fault: Fault| Stopped(fault.to_string());
-        let mut events = supervisor.settle(now).map_err(broken)?;
-        if self.works() {
-            bridge.settled(supervisor, &events, now);
-            // What lanes have to remember is in the journal before anybody is told.
-            let more = supervisor.settle(now).map_err(broken)?;
-            bridge.told(&more);
-            events.extend(more);
-            self.send(bridge);
-        } else {
-            bridge.told(&events);
+        let (now, works) = (self.now(), self.works());
+        let greets = std::mem::take(&mut self.greets);
+        let out = answered(supervisor, bridge, &messages, [greets, works], &[], now);
+        let events = supervisor.settle(now).map_err(|fault: Fault| Stopped(fault.to_string()))?;
+        // What lanes have to remember is in the journal before anybody is told.
+        for message in out {
+            // What is not sent now is sent again.
+            let _ = self.link.publish(message);
         }
+        bridge.told(&events);
         // Where nobody reads it.
         self.log.clear();
         Ok(events)
@@ -131,37 +125,16 @@ impl Station {
         events: &Receiver<Event>,
     ) -> Result<Vec<String>, Stopped> {
         let messages = self.messages()?;
-        let (own, greets) = (bridge.clone(), std::mem::take(&mut self.greets));
-        let ended = || Stopped("the supervisor has ended".into());
-        let taken = handle.ask(move |supervisor, _, now| {
-            let mut bridge = locked(&own);
-            if greets {
-                bridge.greet();
-            }
-            for (topic, payload) in &messages {
-                bridge.receive(supervisor, topic, payload, now);
-            }
-        });
-        taken.ok_or_else(ended)?;
-        // The next question is taken after what came before it is settled.
-        let (own, works) = (bridge.clone(), self.works());
+        let (own, flags) = (bridge.clone(), [std::mem::take(&mut self.greets), self.works()]);
         let told: Vec<Event> = events.try_iter().collect();
-        let released = handle.ask(move |supervisor, _, now| {
-            let mut bridge = locked(&own);
-            if works {
-                bridge.settled(supervisor, &told, now);
-                bridge.out()
-            } else {
-                bridge.told(&told);
-                Vec::new()
-            }
-        });
-        let (messages, mouth) = (released.ok_or_else(ended)?, self.link.mouth());
-        if !messages.is_empty() {
+        let mouth = self.link.mouth();
+        let answer = move |supervisor: &mut Supervisor, _: &Board, now: f64| {
+            let out = answered(supervisor, &mut locked(&own), &messages, flags, &told, now);
             // What is not sent then is sent again.
-            let send = move || messages.into_iter().for_each(|message| _ = mouth.publish(message));
-            handle.send(Input::Then(Box::new(send)));
-        }
+            let send = move || out.into_iter().for_each(|message| _ = mouth.publish(message));
+            ((), Some(Box::new(send) as Then))
+        };
+        handle.ask_then(answer).ok_or_else(|| Stopped("the supervisor has ended".into()))?;
         let mut log = std::mem::take(&mut self.log);
         log.extend(locked(bridge).log());
         Ok(log)
@@ -172,42 +145,19 @@ impl Station {
         self.is_ours() && self.link.is_up()
     }
 
-    fn send(&self, bridge: &mut Bridge) {
-        for message in bridge.out() {
-            // What is not sent now is sent again.
-            let _ = self.link.publish(message);
-        }
-    }
-
-    fn take(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge, messages: &[(String, Vec<u8>)], now: f64) {
-        if std::mem::take(&mut self.greets) {
-            bridge.greet();
-        }
-        for (topic, payload) in messages {
-            bridge.receive(supervisor, topic, payload, now);
-        }
-    }
-
-    /// What has come, after waiting for a little while.
+    /// What has come; waits for a little while if nothing has. While it is answered more comes, which is answered together then.
     fn messages(&mut self) -> Result<Vec<(String, Vec<u8>)>, Stopped> {
-        let mut messages = Vec::new();
-        let mut first = self.news.recv_timeout(TICK);
-        let until = Instant::now() + GATHER;
-        while let Ok(news) = first {
-            match news {
-                News::Up => self.claim = Claim::Asking(Instant::now()),
-                News::Down(why) => self.log.push(format!("no broker: {why}")),
-                News::Message { topic, payload } if topic == self.topic => self.heard(&payload)?,
-                News::Message { topic, payload } => messages.push((topic, payload)),
+        let (mut messages, mut patience) = (Vec::new(), TICK);
+        while messages.len() < MOST {
+            match self.news.recv_timeout(patience) {
+                Ok(News::Up) => self.claim = Claim::Asking(Instant::now()),
+                Ok(News::Down(why)) => self.log.push(format!("no broker: {why}")),
+                Ok(News::Message { topic, payload }) if topic == self.topic => self.heard(&payload)?,
+                Ok(News::Message { topic, payload }) => messages.push((topic, payload)),
+                Err(RecvTimeoutError::Timeout) => break,
+                Err(RecvTimeoutError::Disconnected) => return Err(Stopped("the connection has ended".into())),
             }
-            // What is there already is taken however late it is: on a busy machine it would become more and more.
-            first = match messages.len() < MOST {
-                true => self.news.recv_timeout(until.saturating_duration_since(Instant::now())),
-                false => Err(RecvTimeoutError::Timeout),
-            };
-        }
-        if first == Err(RecvTimeoutError::Disconnected) {
-            return Err(Stopped("the connection has ended".into()));
+            patience = Duration::ZERO;
         }
         self.ask()?;
         Ok(messages)
@@ -271,6 +221,30 @@ fn claim(key: &Key, topic: &str, session: &str, state: &str) -> Publish {
     let message = Connection { header, connection_state: state.into(), rest };
     let payload = serde_json::to_vec(&message).unwrap_or_default();
     Publish { topic: topic.into(), payload, assured: true, retain: true }
+}
+
+/// What is to be sent, once all of it is in the journal: for these messages, and for what the supervisor has told since.
+fn answered(
+    supervisor: &mut Supervisor,
+    bridge: &mut Bridge,
+    messages: &[(String, Vec<u8>)],
+    [greets, works]: [bool; 2],
+    told: &[Event],
+    now: f64,
+) -> Vec<Publish> {
+    if greets {
+        bridge.greet();
+    }
+    for (topic, payload) in messages {
+        bridge.receive(supervisor, topic, payload, now);
+    }
+    if !works {
+        bridge.told(told);
+        return Vec::new();
+    }
+    supervisor.decide(now);
+    bridge.settled(supervisor, told, now);
+    bridge.out()
 }
 
 /// The bridge; a thread that has panicked has left it as it was between two messages at worst.

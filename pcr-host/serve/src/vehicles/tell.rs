@@ -1,10 +1,10 @@
 //! What a vehicle says.
 
-use super::vehicle::{Task, Vehicle};
+use super::vehicle::Vehicle;
 use crate::vda5050::header::Header;
 use crate::vda5050::messages::{Connection, Visualization};
 use crate::vda5050::stamp;
-use crate::vda5050::state::{EdgeState, NodeState, Pose, State, Velocity};
+use crate::vda5050::state::{EdgeAhead, Listed, NodeAhead, Pose, State, Velocity};
 use crate::vda5050::topics::Kind;
 use crate::vda5050::version::Version;
 use serde::Serialize;
@@ -78,14 +78,18 @@ impl Vehicle {
         if !is_third {
             actions.extend(self.instant.iter().cloned());
         }
+        let nodes = open.iter().flat_map(|task| task.held.nodes.iter().skip(task.done + 1));
+        let edges = open.iter().flat_map(|task| task.held.edges.iter().skip(task.done));
+        let nodes: Vec<NodeAhead<'_>> = nodes.map(NodeAhead::from).collect();
+        let edges: Vec<EdgeAhead<'_>> = edges.map(EdgeAhead::from).collect();
         let mut state = State {
             header,
             order_id: task.map_or_else(String::new, |task| task.held.order_id.clone()),
             order_update_id: task.map_or(0, |task| task.held.update_id),
             last_node_id: last.map_or_else(String::new, |node| node.node_id.clone()),
             last_node_sequence_id: last.map_or(0, |node| node.sequence_id),
-            node_states: open.map_or_else(Vec::new, nodes),
-            edge_states: open.map_or_else(Vec::new, edges),
+            node_states: Listed::written(&nodes),
+            edge_states: Listed::written(&edges),
             driving: task.is_some_and(|task| task.drive.is_driving()),
             new_base_request: Some(false),
             agv_position: agv,
@@ -178,28 +182,4 @@ fn third() -> Value {
         "powerSupply": { "stateOfCharge": 80.0, "charging": false },
         "safetyState": { "activeEmergencyStop": "NONE", "fieldViolation": false },
     })
-}
-
-fn nodes(task: &Task) -> Vec<NodeState> {
-    let ahead = task.held.nodes.iter().skip(task.done + 1);
-    ahead
-        .map(|node| NodeState {
-            node_id: node.node_id.clone(),
-            sequence_id: node.sequence_id,
-            released: node.released,
-            rest: Map::new(),
-        })
-        .collect()
-}
-
-fn edges(task: &Task) -> Vec<EdgeState> {
-    let ahead = task.held.edges.iter().skip(task.done);
-    ahead
-        .map(|edge| EdgeState {
-            edge_id: edge.edge_id.clone(),
-            sequence_id: edge.sequence_id,
-            released: edge.released,
-            rest: Map::new(),
-        })
-        .collect()
 }

@@ -3,19 +3,18 @@
 use super::super::door::{self, Limits, Refusal};
 use super::super::header::Header;
 use super::super::messages::{Connection, Factsheet, Responses};
-use super::super::order::{Edge, Node};
-use super::super::state::{EdgeState, NodeState, State};
+use super::super::state::{EdgeAhead, Listed, NodeAhead, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::{Lane, Post, To};
 use pcr_formats::import::{self, Options, Warnings};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 impl Lane {
     /// Tells the manager the newest state.
     pub(super) fn mirror(&mut self) {
         let (Some(version), Some(state)) = (self.version, &self.state) else { return };
-        let state = self.translated(state.clone());
+        let state = self.translated(State::clone(state));
         self.post(To::Manager, Kind::State, version, &state);
     }
 
@@ -129,38 +128,14 @@ impl Lane {
             return state;
         }
         let waits = state.node_states.iter().any(|node| node.released);
-        state.node_states = job.held.nodes.iter().skip(stop.node + 1).map(node_state).collect();
-        state.edge_states = job.held.edges.iter().skip(stop.node).map(edge_state).collect();
+        let nodes: Vec<NodeAhead<'_>> = job.held.nodes.iter().skip(stop.node + 1).map(NodeAhead::from).collect();
+        let edges: Vec<EdgeAhead<'_>> = job.held.edges.iter().skip(stop.node).map(EdgeAhead::from).collect();
         // Whether more base is needed depends on what the manager has released, not on what the vehicle has of that.
-        let has_base = state.node_states.iter().any(|node| node.released);
+        let has_base = nodes.iter().any(|node| node.released);
+        (state.node_states, state.edge_states) = (Listed::written(&nodes), Listed::written(&edges));
         if let Some(request) = &mut state.new_base_request {
             *request &= waits || !has_base;
         }
         state
-    }
-}
-
-fn node_state(node: &Node) -> NodeState {
-    let mut rest = Map::new();
-    if let Some(position) = &node.node_position {
-        let mut place = Map::from_iter([
-            ("x".to_owned(), position.x.into()),
-            ("y".to_owned(), position.y.into()),
-            ("mapId".to_owned(), position.map_id.clone().into()),
-        ]);
-        // Schema 2.0 asks for one.
-        let theta = position.rest.get("theta").cloned().unwrap_or_else(|| 0.0.into());
-        place.insert("theta".into(), theta);
-        rest.insert("nodePosition".into(), place.into());
-    }
-    NodeState { node_id: node.node_id.clone(), sequence_id: node.sequence_id, released: node.released, rest }
-}
-
-fn edge_state(edge: &Edge) -> EdgeState {
-    EdgeState {
-        edge_id: edge.edge_id.clone(),
-        sequence_id: edge.sequence_id,
-        released: edge.released,
-        rest: Map::new(),
     }
 }

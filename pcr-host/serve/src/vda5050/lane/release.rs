@@ -22,9 +22,8 @@ const PART: f64 = 0.05;
 const AHEAD: usize = 60;
 
 impl Lane {
-    /// Sends the vehicle what it may do now. What the supervisor has settled counts, and nothing else.
+    /// Sends the vehicle what it may do now. What the supervisor has decided counts, and nothing else.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
-        self.is_touched = false;
         let Some(version) = self.version else { return };
         self.follow_cancel(now);
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };

@@ -8,6 +8,7 @@ use super::super::topics::Kind;
 use super::Lane;
 use crate::course::{Course, Start};
 use crate::supervisor::{Report, Supervisor};
+use std::sync::Arc;
 
 /// A vehicle that says otherwise so often in a row, for so long \[s\], has lost its order or was moved.
 const ASTRAY: (u32, f64) = (3, 2.0);
@@ -34,7 +35,7 @@ impl Lane {
         self.acknowledge(&state);
         self.locate(supervisor, &state, is_new, now);
         if is_new {
-            self.state = Some(state);
+            self.state = Some(Arc::new(state));
             self.finish(supervisor, now);
             self.mirror();
         }
@@ -186,7 +187,7 @@ impl Lane {
         if !self.is_new(Kind::Visualization, &message.header) || newer.is_none_or(|(own, state)| own < state) {
             return Ok(());
         }
-        if let Some(mut state) = self.state.clone() {
+        if let Some(mut state) = self.state.as_deref().cloned() {
             let has_it = self.job.as_ref().is_some_and(|job| job.held.order_id == state.order_id);
             (state.agv_position, state.mobile_robot_position) = (message.agv_position, message.mobile_robot_position);
             // It may have passed the next node since: no alarm.

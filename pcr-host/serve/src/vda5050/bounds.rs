@@ -1,0 +1,200 @@
+//! Bounds of all values of a message, and the types of what is in every header, in one pass that keeps nothing.
+
+use serde::Deserialize;
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use std::borrow::Cow;
+use std::fmt;
+
+/// Largest magnitude of a number that is read \[m, s\].
+const LARGEST: f64 = 1e10;
+
+/// What is read of parameters of actions is passed on as it is.
+pub(super) const VERBATIM: &str = "actionParameters";
+
+/// Texts in headers.
+const TEXTS: [&str; 4] = ["timestamp", "version", "manufacturer", "serialNumber"];
+
+/// How large messages may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// \[bytes\]
+    pub bytes: usize,
+    /// Elements of one list.
+    pub list: usize,
+    /// \[bytes\] of one text.
+    pub text: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { bytes: 256 * 1024, list: 2_000, text: 4_096 }
+    }
+}
+
+/// Checks all of a message.
+///
+/// # Errors
+/// The field of the first value that is too large, and why; no field for what is no JSON.
+pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)> {
+    let mut fault = Fault::default();
+    let mut reader = serde_json::Deserializer::from_slice(bytes);
+    let all = Check { limits, fault: &mut fault, depth: 0, asked: Asked::Anything };
+    let read = all.deserialize(&mut reader).and_then(|()| reader.end());
+    read.map_err(|error| match fault.why {
+        Some(why) => {
+            fault.path.reverse();
+            (fault.path.concat().trim_start_matches('.').into(), why)
+        }
+        None => (String::new(), error.to_string()),
+    })
+}
+
+/// What was refused, and where, from the inside outward.
+#[derive(Default)]
+struct Fault {
+    why: Option<String>,
+    path: Vec<String>,
+}
+
+/// What has to be there.
+#[derive(Clone, Copy, PartialEq)]
+enum Asked {
+    Anything,
+    Text,
+    Count,
+}
+
+impl Asked {
+    fn of(depth: usize, name: &str) -> Self {
+        match name {
+            "headerId" if depth == 0 => Self::Count,
+            _ if depth == 0 && TEXTS.contains(&name) => Self::Text,
+            _ => Self::Anything,
+        }
+    }
+}
+
+struct Check<'f> {
+    limits: Limits,
+    fault: &'f mut Fault,
+    depth: usize,
+    asked: Asked,
+}
+
+impl Check<'_> {
+    fn refused<E: Error>(self, why: impl fmt::Display) -> E {
+        self.fault.why = Some(why.to_string());
+        E::custom("")
+    }
+
+    /// Something that is no text, and no count but where it is one.
+    fn other<E: Error>(self, is_count: bool) -> Result<(), E> {
+        match self.asked {
+            Asked::Text => Err(self.refused("not a text")),
+            Asked::Count if !is_count => Err(self.refused("not a number of a message")),
+            _ => Ok(()),
+        }
+    }
+
+    fn number<E: Error>(self, number: impl fmt::Debug, magnitude: f64, is_count: bool) -> Result<(), E> {
+        if magnitude.abs() <= LARGEST {
+            return self.other(is_count);
+        }
+        Err(self.refused(format!("{number:?} is out of range; allowed is up to {LARGEST:e}")))
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Check<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, reader: D) -> Result<(), D::Error> {
+        reader.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Check<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    // As good as nothing.
+    fn visit_unit<E: Error>(self) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_bool<E: Error>(self, _: bool) -> Result<(), E> {
+        self.other(false)
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<(), E> {
+        self.number(number, number as f64, true)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<(), E> {
+        self.number(number, number as f64, false)
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<(), E> {
+        self.number(number, number, false)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<(), E> {
+        if self.asked == Asked::Count {
+            return self.other(false);
+        }
+        let most = self.limits.text;
+        if text.len() > most {
+            return Err(self.refused(format!("{} bytes; a text has at most {most}", text.len())));
+        }
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let Self { limits, fault, depth, asked } = self;
+        Check { limits, fault: &mut *fault, depth, asked }.other(false)?;
+        for k in 0.. {
+            let element = Check { limits, fault: &mut *fault, depth: depth + 1, asked: Asked::Anything };
+            match list.next_element_seed(element) {
+                Ok(None) => break,
+                Ok(Some(())) if k < limits.list => {}
+                Ok(Some(())) => {
+                    fault.why = Some(format!("too long; a list has at most {} elements", limits.list));
+                    return Err(A::Error::custom(""));
+                }
+                Err(error) => {
+                    if fault.why.is_some() {
+                        fault.path.push(format!("[{k}]"));
+                    }
+                    return Err(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<(), A::Error> {
+        let Self { limits, fault, depth, asked } = self;
+        Check { limits, fault: &mut *fault, depth, asked }.other(false)?;
+        while let Some(Name(name)) = members.next_key()? {
+            if name == VERBATIM {
+                members.next_value::<IgnoredAny>()?;
+                continue;
+            }
+            let asked = Asked::of(depth, &name);
+            let value = Check { limits, fault: &mut *fault, depth: depth + 1, asked };
+            if let Err(error) = members.next_value_seed(value) {
+                if fault.why.is_some() {
+                    fault.path.push(format!(".{name}"));
+                }
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A name, where it is if nothing in it is escaped.
+#[derive(Deserialize)]
+struct Name<'a>(#[serde(borrow)] Cow<'a, str>);
