@@ -289,6 +289,9 @@ impl<'a, S> Iterator for List<'a, S> {
 #[cfg(all(test, feature = "libm"))]
 mod tests {
     use super::*;
+    use crate::geometry::{Point, Pose};
+    use crate::path::Path;
+    use crate::scalar::Radians;
 
     fn piece(k: u16) -> Piece<f32> {
         Piece { first_segment: k, ..Piece::EMPTY }
@@ -296,6 +299,24 @@ mod tests {
 
     fn members<const N: usize>(pieces: &Pieces<f32, [Piece<f32>; N]>, head: u32) -> heapless::Vec<u16, N> {
         List::new(pieces.slots(), head).map(|piece| piece.first_segment).collect()
+    }
+
+    #[test]
+    fn of_two_intervals_at_a_joint_one_is_thin_but_on_a_whole_circle() {
+        let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+        let path = Path::<f32, 1>::starting_at(start).unwrap().line(4.0).unwrap();
+        let segment = &path.as_path().segments()[0];
+        let [thin, thick, equal] = [(0.0, 0.25), (1.0, 3.0), (0.5, 2.5)].map(|(lo, hi)| Interval::new(lo, hi));
+        let at_joint = |lap, both: [Interval<f32>; 2]| {
+            let all = Interval::new(0.0, 4.0);
+            Piece::new([0; 2], lap, Share::Only, all, all).at_joint(both.map(Some), segment)
+        };
+        for lap in [Lap::Previous, Lap::Same, Lap::Next] {
+            for both in [[thin, thick], [thick, thin], [thick, equal]] {
+                assert_eq!(at_joint(lap, both), [Some(thick), None]);
+            }
+        }
+        assert_eq!(at_joint(Lap::Whole, [thin, thick]), [Some(thin), Some(thick)]);
     }
 
     #[test]

@@ -117,3 +117,65 @@ impl Turns {
         self.to_bits() as f64 * (core::f64::consts::TAU / (1_i64 << 32) as f64)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Q16;
+    use core::f64::consts::{FRAC_PI_2, TAU};
+
+    const DIGIT: f64 = 1.0 / 65_536.0;
+
+    fn bits(digits: f64) -> Option<i32> {
+        Q16::from_f64(digits * DIGIT).ok().map(Q16::to_bits)
+    }
+
+    #[test]
+    fn halves_are_rounded_away_from_zero() {
+        let found = [0.499, 0.5, 1.0, 1.499, 1.5, 7.5].map(|digits| [bits(digits), bits(-digits)]);
+        assert_eq!(found, [0, 1, 1, 1, 2, 8].map(|digits: i32| [Some(digits), Some(-digits)]));
+        assert_eq!(Q16::from_f32(-2.5).map(Q16::to_f32), Ok(-2.5));
+        assert_eq!([Q16::try_from(0.25_f32), Q16::try_from(0.25_f64)], [Ok(Q16::from_bits(1 << 14)); 2]);
+        assert_eq!(f64::from(Q16::from_bits(-3)), -3.0 * DIGIT);
+        assert_eq!(Sine::from_bits(-3 << 28).to_f64(), -0.75);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let (most, least) = (f64::from(i32::MAX), f64::from(i32::MIN));
+        assert_eq!([bits(most + 0.499), bits(most)], [Some(i32::MAX); 2]);
+        assert_eq!([bits(least - 0.499), bits(least)], [Some(i32::MIN); 2]);
+        for digits in [most + 0.5, least - 0.5, 1e300, f64::INFINITY, f64::NAN] {
+            assert_eq!((bits(digits), Q16::from_f32(digits as f32).ok()), (None, None), "{digits}");
+        }
+    }
+
+    #[test]
+    fn angles_are_rounded_to_nearest_and_whole_turns_taken_off() {
+        let turn = |digits: f64| Turns::from_radians(digits * (TAU / 4_294_967_296.0)).map(Turns::to_bits);
+        for (digits, rounded) in [(0.0, 0), (0.4, 0), (0.6, 1), (2.4, 2), (2.6, 3)] {
+            assert_eq!([turn(digits), turn(-digits)], [Ok(rounded), Ok(-rounded)], "{digits}");
+        }
+        for quarters in [1.0, 5.0, 401.0, -3.0, -403.0] {
+            assert_eq!(Turns::from_radians(quarters * FRAC_PI_2), Ok(Turns::QUARTER), "{quarters}");
+        }
+        // An exact half of the last place, whose quotient by 2π is exact as well.
+        assert_eq!(
+            [TAU, -TAU].map(|turn| Turns::from_radians(turn * 1.25).map(Turns::to_bits)),
+            [Ok(1 << 30), Ok(-1 << 30)]
+        );
+        assert_eq!([0.5, 1.5, 2.5].map(turn), [Ok(1), Ok(2), Ok(3)]);
+        assert_eq!([-0.5, -1.5, -2.5].map(turn), [Ok(-1), Ok(-2), Ok(-3)]);
+        // As far as an `f64` knows an angle.
+        for k in 1..1000 {
+            let radians = TAU * (1_048_576.0 + f64::from(k) / 4_294_967_296.0);
+            let digits = ((radians / TAU).fract() * 4_294_967_296.0).round() as i32;
+            assert_eq!(Turns::from_radians(radians).map(Turns::to_bits), Ok(digits));
+        }
+        for turns in [1e9, -1e9, 2e9, f64::INFINITY, f64::NAN] {
+            assert_eq!(Turns::from_radians(turns * TAU), Err(OutOfRange), "{turns}");
+        }
+        assert!(Turns::from_radians(0.999e9 * TAU).is_ok() && Turns::from_radians(-0.999e9 * TAU).is_ok());
+        assert_eq!([Turns::QUARTER, Turns::HALF].map(Turns::to_radians), [FRAC_PI_2, -2.0 * FRAC_PI_2]);
+    }
+}

@@ -82,3 +82,32 @@ impl defmt::Format for Turns {
         defmt::write!(f, "{=i32} / 2^32 turns", self.to_bits());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use crate::{Q12, Q16, Turns};
+    use std::format;
+
+    #[test]
+    fn numbers_are_written_exactly_or_rounded() {
+        let number = |x: f64| Q16::from_f64(x).expect("a number");
+        let all = [0.0, -1.5, 4096.0, 0.062_5].map(|x| format!("{}", number(x)));
+        assert_eq!(all, ["0", "-1.5", "4096", "0.0625"]);
+        assert_eq!(format!("{:?} {:+}", Q16::LAST_DIGIT, Q16::ONE), "0.0000152587890625 +1");
+        assert_eq!(format!("{} {}", Q12::from_bits(-1), Q12::from_bits(i32::MIN)), "-0.000244140625 -524288");
+        // Halves up; what carries over goes on to the digit before, and to the whole.
+        let one = [0.25, 0.75, 0.249, 0.96, 9.96, -9.96].map(|x| format!("{:.1}", number(x)));
+        assert_eq!(one, ["0.3", "0.8", "0.2", "1.0", "10.0", "-10.0"]);
+        let two = [0.125, 0.994, 0.996, 1.5, 0.495_1].map(|x| format!("{:.2}", number(x)));
+        assert_eq!(two, ["0.13", "0.99", "1.00", "1.50", "0.50"]);
+        assert_eq!([0.5, 1.5, 0.49].map(|x| format!("{:.0}", number(x))), ["1", "2", "0"]);
+        assert_eq!(format!("{:.30}", number(0.5)), format!("0.5{}", "0".repeat(23)));
+    }
+
+    #[test]
+    fn angles_are_written_as_their_bits() {
+        assert_eq!(format!("{:?}", Turns::from_bits(-5)), "Turns(-5 / 2^32)");
+    }
+}

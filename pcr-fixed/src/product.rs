@@ -62,3 +62,39 @@ impl<const F: u32> Wide<Q<F>> for Product<F> {
         Self(self.0 >> 1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type P = Product<16>;
+
+    fn narrow(bits: i64) -> i32 {
+        P::from_bits(bits).narrow().to_bits()
+    }
+
+    #[test]
+    fn products_are_narrowed_to_nearest_and_saturate() {
+        let half = 1 << 15;
+        let found = [half - 1, half, -half, -half - 1, 3 * half - 1, 3 * half].map(narrow);
+        assert_eq!(found, [0, 1, 0, -1, 1, 2]);
+        let most = 1 << 29;
+        for bits in [1 << 45, (1 << 46) + half, i64::MAX] {
+            assert_eq!([narrow(bits), narrow(-bits)], [most, -most]);
+        }
+        assert_eq!([narrow((1 << 45) - half), narrow((1 << 45) - half - 1)], [most, most - 1]);
+        assert_eq!([narrow(half - 1 - (1 << 45)), narrow(half - (1 << 45))], [-most, 1 - most]);
+    }
+
+    #[test]
+    fn sums_halves_and_roots_are_those_of_the_bits() {
+        let [a, b] = [P::from_bits(5 << 32), P::from_bits(3 << 32)];
+        assert_eq!(
+            [a + b, a - b, -a, a.half(), a.double()].map(P::to_bits),
+            [8, 2, -5, 5, 10].map(|x: i64| { if x == 5 { 5 << 31 } else { x << 32 } })
+        );
+        assert_eq!([4_i64 << 32, -1, 0].map(|bits| P::from_bits(bits).sqrt().to_bits()), [2 << 16, 0, 0]);
+        let near = [(1_i64 << 62) - (1 << 31), 1 << 62, i64::MAX].map(|bits| P::from_bits(bits).sqrt().to_bits());
+        assert_eq!(near, [i32::MAX; 3]);
+    }
+}

@@ -42,3 +42,59 @@ pub(crate) fn time<const F: u32>(ramp: Ramp<Q<F>>, length: Q<F>) -> Q<F> {
     let twice_mean = if square.is_negative() { slow } else { slow.plus(square.sqrt()) };
     rounded(way.plus(way).over(twice_mean))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Q16;
+
+    fn q(metres: f64) -> Q16 {
+        Q16::from_f64(metres).expect("a number")
+    }
+
+    fn ramp(slow: f64, fast: f64, duration: f64) -> Ramp<Q16> {
+        // The acceleration is not looked at.
+        let length = q((slow + fast) / 2.0 * duration);
+        Ramp { slow: q(slow), fast: q(fast), acceleration: q(0.0), duration: q(duration), length }
+    }
+
+    #[test]
+    fn lengths_and_times_are_the_nearest_numbers() {
+        for (slow, fast, duration) in [(0.0, 1.5, 3.0), (0.25, 2.0, 7.0), (1.0, 1.0, 5.0), (0.1, 5.0, 40.0)] {
+            let ramp = ramp(slow, fast, duration);
+            let [v, l, t] = [ramp.slow, ramp.length, ramp.duration].map(Q16::to_f64);
+            for eighths in 1..=64 {
+                let elapsed = q(duration * f64::from(eighths) / 64.0);
+                let e = elapsed.to_f64();
+                let exact = (v + (l / t - v) * e / t) * e;
+                let off = |found: Q16, exact: f64| (found.to_f64() - exact).abs() * 65_536.0;
+                assert!(off(super::length(ramp, elapsed), exact) < 0.51, "{elapsed} of {ramp:?}");
+                let way = q(exact);
+                let w = way.to_f64();
+                let exact = 2.0 * w / (v + (v * v + 4.0 * (l / t - v) * w / t).max(0.0).sqrt());
+                assert!(off(time(ramp, way), exact) < 0.52, "{way} of {ramp:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_before_a_ramp() {
+        for slow in [0.0, 0.5] {
+            let ramp = ramp(slow, 2.0, 4.0);
+            for metres in [0.0, -1.0] {
+                assert_eq!([super::length(ramp, q(metres)), time(ramp, q(metres))], [q(0.0); 2]);
+            }
+        }
+    }
+
+    /// A length that was rounded down, so that the mean speed is below that of the slow end.
+    #[test]
+    fn a_ramp_that_falls_by_rounding_has_an_end() {
+        let digit = Q16::LAST_DIGIT.to_f64();
+        let falling = Ramp { length: q(1.0 - digit), ..ramp(1.0, 1.0, 1.0) };
+        assert_eq!(time(falling, falling.length), falling.duration);
+        let stopping = Ramp { length: Q16::LAST_DIGIT, ..ramp(1.0, 1.0, 1.0) };
+        // v² + 4 (L/T - v) s/T is below 0: as at the constant speed, twice the mean of which is left.
+        assert_eq!(time(stopping, q(0.5)), q(1.0));
+    }
+}

@@ -20,6 +20,7 @@ pub(crate) fn half_tangent(
     let mut from = None;
     for equation in equations {
         for [n, m] in half_tangents(equation).into_iter().flatten() {
+            // Not both below 0, where the sum of their squares would not fit.
             let (n, m) = if m.is_negative() { (n.minus(), m.minus()) } else { (n, m) };
             let [n, m] = n.aligned(m);
             if may_lie_in(sector, n, m) {
@@ -85,6 +86,53 @@ mod tests {
             assert!((root - quarter).to_bits().abs() <= 1 << 14, "{root:?}");
             assert_eq!(roots(off / 4), []);
         }
+    }
+
+    /// (τ - 1)(τ + 2); and equations that are real by doubt alone, of which the larger coefficient tells the root.
+    #[test]
+    fn roots_are_those_of_the_equation() {
+        let one = f64::from(1 << 30);
+        let roots = |equation: [f64; 4], from: [Sine; 2]| {
+            let mut roots = Vec::new();
+            half_tangent([equation.map(|x| (x * one) as i64)].into_iter(), Sector::all(from), |root| roots.push(root));
+            roots
+        };
+        let (east, north) = ([Sine::ONE, Sine::ZERO], [Sine::ZERO, Sine::ONE]);
+        let near = |found: Vec<Turns>, tangents: &[f64]| {
+            let exact = tangents.iter().map(|tangent| Turns::from_radians(2.0 * tangent.atan()).expect("an angle"));
+            let close = |(found, exact): (&Turns, Turns)| (*found - exact).to_bits().abs() <= 4;
+            assert!(found.len() == tangents.len() && found.iter().zip(exact).all(close), "{found:?} {tangents:?}");
+        };
+        for scale in [1.0, -1.0, 1.0 / 1024.0] {
+            let equation = |[a, b, g, doubt]: [f64; 4]| [scale * a, scale * b, scale * g, scale.abs() * doubt];
+            near(roots(equation([1.0, 0.5, -2.0, 0.0]), east), &[-2.0, 1.0]);
+            near(roots(equation([1.0, -0.5, -2.0, 0.0]), east), &[2.0, -1.0]);
+            near(roots(equation([0.0, 1.0, 2.0, 0.0]), east), &[f64::NEG_INFINITY, -1.0]);
+            near(roots(equation([1.0, 1.0, 3.0, 0.51]), east), &[-3.0]);
+            near(roots(equation([1.0, -1.0, 3.0, 0.51]), east), &[3.0]);
+            near(roots(equation([3.0, 1.0, 1.0, 0.51]), east), &[-1.0 / 3.0]);
+            near(roots(equation([1.0, 0.5, 1.0, 0.376]), east), &[-0.5]);
+            near(roots(equation([1.0, 1.0, 3.0, 0.49]), east), &[]);
+        }
+        let turned = roots([1.0, 0.5, -2.0, 0.0], north).into_iter().map(|root| root - Turns::QUARTER).collect();
+        near(turned, &[-2.0, 1.0]);
+    }
+
+    /// Both terms with 15 digits of 1 after the sign: negative, their squares would be 2³⁰ each, and the sum overflow.
+    #[test]
+    fn a_denominator_is_positive_so_that_squares_fit() {
+        let (a, b) = ((1 << 31) - 2, 1 - (1 << 30));
+        let mut roots = Vec::new();
+        half_tangent([[a, b, 0, 0]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| roots.push(root));
+        assert_eq!(roots, [Turns::QUARTER, Turns::ZERO]);
+    }
+
+    #[test]
+    fn the_ends_of_a_sector_are_in_it() {
+        let east = [Sine::ONE, Sine::ZERO];
+        let half_circle = Sector { least: Sine::ZERO, ..Sector::all(east) };
+        assert!(may_lie_in(half_circle, 1 << 30, 1 << 30) && may_lie_in(half_circle, -1 << 30, 1 << 30));
+        assert!(!may_lie_in(half_circle, (1 << 30) + (1 << 22), 1 << 30));
     }
 
     /// Whatever is left out lies outside: an angle a little inside of the sector never is.

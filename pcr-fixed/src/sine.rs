@@ -91,3 +91,65 @@ impl Unit for Sine {
         Self(Self::combine(a.0, u, b.0, v))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use std::iter;
+
+    const ONE: i64 = 1 << 30;
+
+    /// Numbers of all 32 bits, the same in every run.
+    fn numbers() -> impl Iterator<Item = i32> {
+        iter::successors(Some(1_u32), |x| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223))).map(|x| x as i32)
+    }
+
+    #[test]
+    fn products_are_rounded_once_and_nothing_of_them_is_lost() {
+        let mut numbers = numbers();
+        for _ in 0..1000 {
+            let [a, b, u, v, rest] = [(); 5].map(|()| numbers.next().unwrap_or(0) >> 2);
+            let (sine, other) = (Sine(u), Sine(v));
+            let exact = i64::from(a) * i64::from(u);
+            // Twice the error, of which a half is the most; up where it is a half.
+            let off = |found: i32, exact: i64| 2 * ((i64::from(found) << 30) - exact);
+            let nearest = |found: i32, exact: i64| -ONE < off(found, exact) && off(found, exact) <= ONE;
+            assert!(nearest(sine.of(a), exact) && nearest(sine.times(Sine(a)).0, exact));
+            assert!(nearest(Sine::combine(a, sine, b, other), exact + i64::from(b) * i64::from(v)));
+            assert_eq!(Unit::combine(Sine(a), sine, Sine(b), other).0, Sine::combine(a, sine, b, other));
+            let (whole, left) = sine.of_with_rest(a, rest);
+            assert_eq!((i64::from(whole) << 30) + i64::from(left), exact + i64::from(rest));
+            assert!(nearest(whole, exact + i64::from(rest)));
+            assert_eq!([sine + other, sine - other, -sine].map(Sine::to_bits), [u + v, u - v, -u]);
+            assert_eq!(Unit::abs(sine).0, u.abs());
+        }
+        let half = Sine(1 << 29);
+        assert_eq!([half.of(1), half.of(-1), half.of(3), Sine::combine(1, half, 2, half)], [1, 0, 2, 2]);
+        assert_eq!([half.of_with_rest(1, 0), half.of_with_rest(1, -1)], [(1, -(1 << 29)), (0, (1 << 29) - 1)]);
+    }
+
+    #[test]
+    fn unit_vectors_are_right_to_two_last_digits() {
+        let mut numbers = numbers();
+        let mut worst = 0.0_f64;
+        for k in 0..20_000 {
+            let [x, y] = [(); 2].map(|()| numbers.next().unwrap_or(0) >> (1 + k % 29));
+            if (x, y) != (0, 0) {
+                let norm = f64::from(x).hypot(f64::from(y));
+                let off = |found: Sine, x: i32| (f64::from(found.0) - f64::from(x) / norm * ONE as f64).abs();
+                let [u, v] = Sine::unit_vector(x, y);
+                worst = worst.max(off(u, x)).max(off(v, y));
+            }
+        }
+        assert!(worst <= 2.0 && worst > 1.0, "{worst} last digits");
+        for length in [1, 3, 1 << 16, (1 << 30) + 1, i32::MAX] {
+            let found = [[length, 0], [0, length], [-length, 0], [0, -length]].map(|[x, y]| Sine::unit_vector(x, y));
+            assert_eq!(
+                found.map(|unit| unit.map(Sine::to_bits)),
+                [[1, 0], [0, 1], [-1, 0], [0, -1]].map(|unit| unit.map(|u: i32| u << 30))
+            );
+        }
+    }
+}

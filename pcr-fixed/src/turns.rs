@@ -102,3 +102,67 @@ impl<const F: u32> Angle<Q<F>> for Turns {
         Q::from_bits(multiply::<28>(radius.to_bits(), TURN))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::Q16;
+    use std::f64::consts::{PI, TAU};
+
+    type A = Turns;
+
+    fn q(bits: i32) -> Q16 {
+        Q16::from_bits(bits)
+    }
+
+    #[test]
+    fn angles_wrap() {
+        let (quarter, half) = (Turns::QUARTER, Turns::HALF);
+        assert_eq!(
+            [quarter + quarter, -half, half + half, half - quarter, -quarter - half],
+            [half, half, Turns::ZERO, quarter, quarter]
+        );
+    }
+
+    #[test]
+    fn an_arc_subtends_its_length_by_its_radius() {
+        // One radian: 2^32 / 2π = 683,565,275.6.
+        for radius in [1, 7, 1 << 16, (1 << 27) - 1] {
+            assert_eq!(A::subtended(q(radius), q(radius)), Turns(683_565_276));
+            assert_eq!(A::half_subtended(q(radius), q(radius)), Turns(341_782_638));
+        }
+        let mut worst = [0.0_f64; 2];
+        for k in 1..20_000 {
+            let radius = 1 + (k * 6_701) % 130_000;
+            let length = (f64::from(radius) * TAU * f64::from(k) / 20_000.0) as i32;
+            let (sweep, exact) = (sweep(q(length), q(radius)) as i64, i64::from(length) << 29);
+            assert!((2 * (sweep * i64::from(radius) - exact)).abs() <= i64::from(radius), "{length} {radius}");
+            let turn = f64::from(length) / f64::from(radius) / TAU * 4_294_967_296.0;
+            let off = |found: Turns, exact: f64| {
+                let off = f64::from(found.0) - exact;
+                (off - 4_294_967_296.0 * (off / 4_294_967_296.0).round()).abs()
+            };
+            worst[0] = worst[0].max(off(A::subtended(q(length), q(radius)), turn));
+            worst[1] = worst[1].max(off(A::half_subtended(q(length), q(radius)), 0.5 * turn));
+        }
+        assert!(worst[0] < 1.9 && worst[1] < 1.2, "{worst:?} of 2^-32 of a turn");
+    }
+
+    #[test]
+    fn an_angle_subtends_the_nearest_length() {
+        let mut worst = 0.0_f64;
+        for k in 0..20_000_i32 {
+            let (angle, radius) = (k.wrapping_mul(-1_640_531_527), 1 + k * 13);
+            let exact = f64::from(angle) / 2_147_483_648.0 * PI * f64::from(radius);
+            worst = worst.max((f64::from(Turns(angle).arc_length(q(radius)).to_bits()) - exact).abs());
+        }
+        assert!(worst > 0.49 && worst < 0.501, "{worst} last digits");
+        assert_eq!(
+            [1, 2, 3, 4, 1 << 24].map(|radius| A::circumference(q(radius)).to_bits()),
+            [6, 13, 19, 25, 105_414_357]
+        );
+        assert!(<Turns as Angle<Q16>>::is_finite(Turns::HALF));
+    }
+}

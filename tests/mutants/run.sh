@@ -1,24 +1,31 @@
 #!/usr/bin/env bash
-# Mutants of pcr-core (but for its number formats) and of the importers, run against the tests that reach them.
+# Mutants of pcr-core, of pcr-fixed and of the importers, run against the tests that reach them.
 #   tests/mutants/run.sh FOLDER [SECONDS [JOBS]]     a copy of what is committed is made in FOLDER/copy and built there; a mutant has
 #                                                    SECONDS of tests (4). Again: goes on where it stopped. FOLDER/results
 #                                                    has a line a mutant, `mutants table FOLDER` counts them.
+#   ONLY='scalar|pcr-fixed' tests/mutants/run.sh FOLDER    those whose line in FOLDER/all matches; one ONLY a folder
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=$(realpath -m "$1") seconds=${2:-4} jobs=${3:-2}
 copy=$folder/copy
-cargo build -q --release --locked --manifest-path tests/mutants/Cargo.toml
+cargo build -q --release --locked --manifest-path tests/mutants/Cargo.toml --target-dir tests/mutants/target
 tool=$PWD/tests/mutants/target/release/mutants
 
-core() { find pcr-core/src -name '*.rs' | grep -vE 'src/(lib|scalar|recorded|internals)\.rs|src/scalar/' | LC_ALL=C sort; }
-importers() { find pcr-host/formats/src/import pcr-host/formats/src/import.rs -name '*.rs' | LC_ALL=C sort; }
+sorted() { LC_ALL=C sort; }
+kernels() { find pcr-core/src -name '*.rs' | grep -vE 'src/(lib|scalar|recorded|internals)\.rs|src/scalar/' | sorted; }
+floats() { find pcr-core/src/scalar.rs pcr-core/src/scalar -name '*.rs' | grep -vE 'vsqrt|tests' | sorted; }
+fixed() { find pcr-fixed/src -name '*.rs' | grep -v 'src/lib\.rs' | sorted; }
+importers() { find pcr-host/formats/src/import pcr-host/formats/src/import.rs -name '*.rs' | sorted; }
 
+# Numbers of their own for each crate, as all are in one build. Those in SKIP get no switch.
 # shellcheck disable=SC2046
 put() {
-  git checkout -q -- pcr-core pcr-host
-  "$tool" put 0 pcr-core/src/lib.rs $(core) >"$folder/list"
-  # Numbers of their own, as both crates are in one build.
-  "$tool" put 10000 pcr-host/formats/src/lib.rs $(importers) >>"$folder/list"
+  git checkout -q -- pcr-core pcr-fixed pcr-host
+  # What converts is `const` for its users, and could not have a switch.
+  sed -i 's/const fn/fn/' pcr-fixed/src/convert.rs
+  "$tool" put 0 pcr-core/src/lib.rs $(kernels) $(floats)
+  "$tool" put 10000 pcr-host/formats/src/lib.rs $(importers)
+  "$tool" put 20000 pcr-fixed/src/lib.rs $(fixed)
 }
 
 if [ ! -e "$copy" ]; then
@@ -29,17 +36,21 @@ cd "$copy"
 if [ ! -e "$folder/binaries" ]; then
   # As many cases as in a debug run, though optimized.
   sed -i '/cfg=optimized/d' tests/build.rs
-  SKIP=""
+  SKIP="" put >"$folder/all"
+  SKIP=$(grep -vE "${ONLY:-.}" "$folder/all" | cut -f1 | tr '\n' ' ') || true
   export SKIP
   for ((;;)); do
-    put
-    if cargo check -q --profile checked --locked -p pcr-formats --message-format=short 2>"$folder/messages"; then break; fi
+    put >"$folder/list"
+    if cargo check -q --profile checked --locked -p pcr-formats -p pcr-fixed -p pcr-core -F pcr-core/micromath \
+      --message-format=short 2>"$folder/messages"; then break; fi
     more=$("$tool" broken <"$folder/messages" | tr '\n' ' ')
     [ -n "$more" ] || { cat "$folder/messages" >&2; exit 1; }
+    echo "left out, as they do not compile: $more"
     SKIP+=" $more"
   done
   # Not the tests of the tool `pcr`: the files that they write have one name, and jobs run side by side.
-  cargo test --profile checked --locked -p pcr-core -p pcr-formats -p pcr-tests --lib --test all --no-run --message-format=json |
+  cargo test --profile checked --locked -p pcr-core -p pcr-fixed -p pcr-formats -p pcr-tests --lib --test all --no-run \
+    --message-format=json |
     python3 -c 'import json, os, sys
 for line in sys.stdin:
     message = json.loads(line)

@@ -172,6 +172,9 @@ fn motions<S: Format>() {
     let motion = make(one, S::ZERO).expect("a motion");
     each::<S, _>(refused_if_negative::<S>(), "margin", |margin| motion.with_margin(margin));
     assert_eq!(motion.with_margin(S::LIMIT).err(), Some(Invalid::OutOfRange("radius with its margin")));
+    let inflated = motion.with_margin(one).expect("a margin").inflated();
+    assert_eq!((inflated.radius(), inflated.margin()), (motion.radius() + one, S::ZERO));
+    assert_eq!(inflated.extent(), motion.extent() + (one + one));
     // For plans it is larger by its margin and the tolerance of contacts.
     let planned = motion.with_margin(one).and_then(Motion::for_plan).expect("a margin");
     let tolerance = Encounter::new(&motion, &motion).tolerance();

@@ -215,6 +215,32 @@ fn a_disc_larger_than_the_circle_covers_it_at_once() {
     }
 }
 
+/// A disc that covers all of an arc but for a gap opposite: what lies before the gap and what lies behind it are two regions, at a joint,
+/// too, where each is as long as the gap moves, so that their ranges meet.
+#[test]
+fn two_laps_stay_two_at_a_joint() {
+    let (third, inner) = (PI / 3.0, 0.2_f64);
+    let ego = disc(0.575, 1.0, 0.0, FRAC_PI_2, &[Leg::arc(1.0, 5.0 * third)]);
+    let from = 260.0_f64.to_radians();
+    let part = 70.0_f64.to_radians();
+    let legs = [Leg::arc(inner, part), Leg::arc(inner, part)];
+    let other = disc(0.575, inner * from.cos(), inner * from.sin(), from + FRAC_PI_2, &legs);
+    let all = 2.0 * part * inner;
+    // Half of what is covered, from the law of cosines.
+    let half = ((1.0 + inner * inner - 1.15 * 1.15) / (2.0 * inner)).acos();
+    let found = regions(&ego, &other);
+    assert_eq!(found.len(), 2, "{found:?}");
+    let turn = |s: f64| from + s / inner;
+    assert_band(&found[0], [0.0, all], [0.0, turn(all) + half - TAU], |s| [0.0, turn(s) + half - TAU]);
+    assert_band(&found[1], [0.0, all], [turn(0.0) - half, 5.0 * third], |s| [turn(s) - half, 5.0 * third]);
+    let swapped = regions(&other, &ego);
+    assert_eq!(swapped.len(), 2, "{swapped:?}");
+    for (found, swapped) in found.iter().zip(&swapped) {
+        assert_near(swapped.l, found.s.lo, found.s.hi, EXACT);
+        assert_near(swapped.s, found.l.lo, found.l.hi, EXACT);
+    }
+}
+
 #[test]
 fn a_line_tangent_to_a_circle_at_the_combined_radius_touches_it_once() {
     let ego = disc(0.5, 0.0, -2.0, 0.0, &[Leg::arc(2.0, TAU)]);

@@ -3,7 +3,7 @@
 
 use pcr_certify::data::{Agent, Angle, Path, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
-use pcr_exclusions::{Audit, Rules, Settings, Spot, Target, read, stretch, write};
+use pcr_exclusions::{Audit, Settings, Spot, Target, read, stretch, write};
 use pcr_formats::import::{Format, Id, Imported, Options, Warnings, layout};
 use pcr_planning::locks::Locks;
 use pcr_tests::rules::run;

@@ -327,6 +327,13 @@ fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
     let two = format!("{} {}", order(json!([node("a", 0.0, "m")]), 0), order(json!([node("a", 0.0, "n")]), 0));
     let (_, warnings) = read(&two, &options()).unwrap();
     assert_eq!(warnings, ["maps m, n: the agents are on several, which a scenario does not tell apart"]);
+    let state = |map: &str| {
+        let pose = json!({ "x": 1.0, "y": 2.0, "theta": 0.5, "mapId": map });
+        json!({ "serialNumber": map, "nodeStates": [], "mobileRobotPosition": pose }).to_string()
+    };
+    assert!(read(&format!("{} {}", state("m"), state("m")), &options()).unwrap().1.is_empty());
+    let (_, warnings) = read(&format!("{} {}", state("m"), state("n")), &options()).unwrap();
+    assert_eq!(warnings, ["maps m, n: the agents are on several, which a scenario does not tell apart"]);
     // What is beyond the base is not travelled: neither its map nor its actions count.
     let mut beyond = node("b", 3.0, "n");
     (beyond["released"], beyond["actions"]) = (json!(false), json!([{ "actionType": "pick" }]));

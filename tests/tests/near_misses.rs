@@ -116,6 +116,20 @@ fn inside<S: Format>() {
     }
 }
 
+/// An arc is followed lap by lap up to a radius of sixteen slacks more than the disc: where the foot leaves one lap for another, behind
+/// the centre, is an event.
+fn laps<S: Format>() {
+    for (slacks, there) in [(1.0, true), (15.5, true), (16.0, true), (16.5, false), (20.0, false)] {
+        for turn in [Turn::Left, Turn::Right] {
+            let own = upper::<S>(RADIUS + slacks * SLACK, turn);
+            // Out of reach of its ends, and off the ring inside which nothing is in contact.
+            let behind = segment::<S>([-1.0, -0.7, 0.0], 2.0, None);
+            let [events, _] = found(&own, &behind, RADIUS);
+            assert_eq!(has(&events, 1.0), there, "{slacks} slacks: {events:?}");
+        }
+    }
+}
+
 /// A disc that holds all of a circle about any point near its centre: the two ends of the diameter are events.
 fn whole_circles<S: Format>() {
     let circle = segment::<S>([1.0, 0.0, FRAC_PI_2], TAU, Some(1.0));
@@ -177,6 +191,7 @@ macro_rules! in_format {
             ends_of_lines::<$format>();
             normals::<$format>();
             inside::<$format>();
+            laps::<$format>();
             whole_circles::<$format>();
             gaps::<$format>();
         }
@@ -188,3 +203,34 @@ in_format!(near_misses_are_events_up_to_the_slack_in_f32, f32);
 in_format!(near_misses_are_events_up_to_the_slack_in_q20, Q20);
 in_format!(near_misses_are_events_up_to_the_slack_in_q16, Q16);
 in_format!(near_misses_are_events_up_to_the_slack_in_q12, Q12);
+
+/// A line that passes an arc, inside of it out of reach, from where it is but a third of a slack too far away to a third of a slack
+/// after: two pieces, and what lies before the first and after the last is part of neither.
+#[test]
+fn gaps_lie_between_two_contacts() {
+    for turn in [Turn::Left, Turn::Right] {
+        let own = upper::<f64>(4.0, turn);
+        let [outer, inner] = [5.0, 3.0].map(|distance: f64| (distance * distance - 2.8 * 2.8).sqrt());
+        let more = SLACK / 3.0;
+        let passing = segment::<f64>([-outer - more, 2.8, 0.0], 2.0 * (outer + more), None);
+        let mut found = Vec::new();
+        let add = |[_, second]: [pcr_core::Interval<f64>; 2]| found.extend([second.lo, second.hi]);
+        internals::pieces(&own, &passing, [RADIUS, SLACK], add).expect("room");
+        let exact = [-outer, -inner, inner, outer].map(|x| x + outer + more);
+        let near = found.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-12);
+        assert!(found.len() == 4 && near, "{found:?} {exact:?}");
+    }
+}
+
+/// As an arc is that is half a turn or longer, whatever its radius.
+#[test]
+fn half_a_turn_is_followed_lap_by_lap() {
+    let behind = segment::<f64>([-1.0, -2.0, 0.0], 2.0, None);
+    for (length, there) in [(4.0 * PI, true), ((4.0 * PI).next_down(), false), (4.5 * PI, true), (3.5 * PI, false)] {
+        // Its middle is on top of a circle about the origin.
+        let from = FRAC_PI_2 - length / 8.0;
+        let own = segment::<f64>([4.0 * from.cos(), 4.0 * from.sin(), from + FRAC_PI_2], length, Some(4.0));
+        let [events, _] = found(&own, &behind, RADIUS);
+        assert_eq!(has(&events, 1.0), there, "{length} m: {events:?}");
+    }
+}

@@ -238,3 +238,18 @@ fn cells<S: Scalar>(length: S, cell: S, most: usize) -> Option<(usize, S)> {
     let all = count.saturating_add(usize::from(rest > S::ZERO));
     (2 <= all && all <= most).then_some((count, rest))
 }
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::cells;
+
+    #[test]
+    fn what_is_left_of_a_length_is_a_cell() {
+        assert_eq!([cells(2.5, 1.0, 3), cells(2.5, 1.0, 2)], [Some((2, 0.5)), None]);
+        assert_eq!([cells(1.5, 1.0, 2), cells(1.0, 1.0, 2), cells(0.5, 1.0, 2)], [Some((1, 0.5)), None, None]);
+        assert_eq!([cells(2.0, 1.0, 2), cells(3.0, 1.0, 2), cells(2.0, 0.0, 9)], [Some((2, 0.0)), None, None]);
+        // By rounding alone there is something left, or a cell is not whole.
+        let digit = f64::EPSILON;
+        assert_eq!([cells(2.0 + 2.0 * digit, 1.0, 2), cells(2.0 - digit, 1.0, 2)], [Some((2, 0.0)); 2]);
+    }
+}

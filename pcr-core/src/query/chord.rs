@@ -101,6 +101,13 @@ mod tests {
 
     const PARTS: u32 = 200;
 
+    /// 8 ϱ e + 16 e² is 9/16 for a sixteenth of the radius.
+    #[test]
+    fn chords_dive_from_the_length_at_which_they_are_proved_to() {
+        let dives = |length: f64| Chord { length, foot: 0.5, offset: 0.25 }.dives(1.0, 1.0 / 16.0);
+        assert!(dives(0.75) && !dives(0.75_f64.next_down()));
+    }
+
     /// Relative motions that deviate from their chord by `error` in the middle, to a side: their ends, the error, and how
     /// far they are from the origin at each of so many parts of the way.
     fn motions() -> impl Iterator<Item = ([Vector<f64>; 2], f64, impl Fn(f64) -> f64)> {

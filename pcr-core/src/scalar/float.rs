@@ -268,39 +268,4 @@ fn sqrt_f32(x: f32) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quadratics_keep_the_small_root() {
-        // u² - 2e4 u + 1 = 0: the naive small root of f32 is 0.
-        let [large, small] = f32::quadratic_roots(-1e4, 1.0, 0.0).unwrap();
-        assert_eq!((large, small), (2e4, 5e-5));
-        assert_eq!(f64::quadratic_roots(0.0, 1.0, 0.0), None);
-        assert_eq!(f64::quadratic_roots(0.0, 0.0, 0.0), Some([-0.0, 0.0]));
-    }
-
-    #[test]
-    fn half_tangent_roots_reach_the_far_end_of_the_diameter() {
-        // τ² - 1 = 0: ± a quarter turn; a = 0: τ = ∞ is half a turn.
-        let half_tangents = |a, b, g| {
-            let mut angles = Few::<f64, 2>::new(0.0);
-            let sector = Sector::all([1.0, 0.0]);
-            f64::half_tangent_roots([[a, b, g, 0.0]].into_iter(), sector, |angle| angles.add(angle.0, true));
-            <[f64; 2]>::try_from(angles.as_slice()).unwrap()
-        };
-        let quarter = core::f64::consts::FRAC_PI_2;
-        let [r, s] = half_tangents(1.0, 0.0, -1.0);
-        assert!((r.abs() - quarter).abs() < 1e-15 && (r + s).abs() < 1e-15);
-        let [r, s] = half_tangents(0.0, 1.0, 0.0);
-        assert!((r.abs() - 2.0 * quarter).abs() < 1e-15 && s == 0.0);
-    }
-
-    #[test]
-    fn differences_of_close_numbers_do_not_cancel() {
-        // √(1e8 + 1) - 1e4 = 5e-5 - 1.25e-13
-        let a = (1e8_f64 + 1.0).sqrt();
-        assert!((f64::difference(a, 1e4, 1.0) - 4.999_999_987_5e-5).abs() < 1e-19);
-        assert_eq!(f32::difference(0.0, 0.0, 0.0), 0.0);
-    }
-}
+mod tests;

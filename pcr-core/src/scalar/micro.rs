@@ -234,41 +234,4 @@ fn atan2(y: f32, x: f32) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn roots_are_right_to_one_and_a_half_last_digits() {
-        let mut worst = 0.0_f64;
-        for step in 0..200_003_u32 {
-            let x = f32::from_bits(0x0080_0000 + step * 10_600);
-            let exact = libm::sqrt(f64::from(x));
-            worst = worst.max((f64::from(sqrt(x)) - exact).abs() / (exact * f64::from(f32::EPSILON)));
-        }
-        assert!(worst < 1.5, "{worst} last digits");
-        assert_eq!((sqrt(0.0), sqrt(-1.0), sqrt(4.0)), (0.0, 0.0, 2.0));
-    }
-
-    #[test]
-    fn arctangents_are_right_to_a_few_last_digits() {
-        let mut worst = 0.0_f64;
-        for step in 0..200_003_u32 {
-            let (sin, cos) = libm::sincos(f64::from(step) * 3.141_6e-5);
-            let length = libm::exp10(f64::from(step % 61) - 30.0);
-            let (y, x) = ((length * sin) as f32, (length * cos) as f32);
-            let exact = libm::atan2(f64::from(y), f64::from(x));
-            worst = worst.max(((f64::from(atan2(y, x)) - exact) / exact).abs() / (0.5 * f64::from(f32::EPSILON)));
-        }
-        assert!(worst < 7.0 && worst > 2.0, "largest error {worst} roundoffs of the angle");
-        for (y, x, angle) in [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1e-30, 1e-30, core::f32::consts::FRAC_PI_4)] {
-            assert!((atan2(y, x) - angle).abs() < 5e-7, "atan2({y}, {x})");
-        }
-        assert!((atan2(1e-9, 1.0) - 1e-9).abs() < 1e-15);
-    }
-
-    #[test]
-    fn the_seeds_alone_would_not_do() {
-        assert!((F32Ext::sqrt(2.0_f32) / libm::sqrtf(2.0) - 1.0).abs() > 1e-2);
-        assert!((F32Ext::atan2(0.5_f32, 1.0) - libm::atan2f(0.5, 1.0)).abs() > 1e-3);
-    }
-}
+mod tests;

@@ -206,6 +206,8 @@ atan2!(
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
 
     /// The largest error in either of `pairs`, which is below `bound` and not far below it.
@@ -277,6 +279,48 @@ mod tests {
         }
         for tiny in [1e-300, 1e-20] {
             assert_eq!(atan2_f64(tiny, 1.0), tiny);
+        }
+    }
+
+    /// Far inside of their bounds, too, a result has the same bits on every machine.
+    #[test]
+    fn results_have_the_same_bits_everywhere() {
+        let add = |sum: u64, bits: u64| sum.wrapping_mul(0x0000_0100_0000_01b3) ^ bits;
+        let mut sums = [0; 4];
+        for (y, x) in vectors().step_by(97) {
+            let ((sin, cos), angle) = (sin_cos_f64(y), atan2_f64(y, x));
+            sums[0] = add(add(sums[0], sin.to_bits()), cos.to_bits());
+            sums[1] = add(sums[1], angle.to_bits());
+            let (y, x) = (y as f32, x as f32);
+            let ((sin, cos), angle) = (sin_cos_f32(y.clamp(-1024.0, 1024.0)), atan2_f32(y, x));
+            sums[2] = add(add(sums[2], sin.to_bits().into()), cos.to_bits().into());
+            sums[3] = add(sums[3], angle.to_bits().into());
+        }
+        assert_eq!(
+            sums,
+            [
+                13_792_369_514_597_387_430,
+                12_193_820_165_543_421_553,
+                12_791_667_522_432_000_330,
+                12_340_913_809_746_776_790
+            ]
+        );
+    }
+
+    #[test]
+    fn angles_of_any_number_of_vectors_are_told_in_order() {
+        let vectors = [[1.0, 1.0], [1.0, 0.0], [0.0, -1.0], [-1.0, 0.0]];
+        let angles = [0.25, 0.5, 1.0, -0.5].map(|half: f64| half * core::f64::consts::PI);
+        for count in 0..=4 {
+            let mut told = std::vec::Vec::new();
+            Trig::angles(&vectors[..count], |angle: f64| told.push(angle));
+            assert_eq!(told, angles[..count]);
+            let mut told = std::vec::Vec::new();
+            Trig::angles(
+                &vectors[..count].iter().map(|v| v.map(|x| x as f32)).collect::<std::vec::Vec<_>>(),
+                |angle: f32| told.push(angle),
+            );
+            assert_eq!(told, angles[..count].iter().map(|&x| x as f32).collect::<std::vec::Vec<_>>());
         }
     }
 }

@@ -11,6 +11,7 @@
 //! A mutant is on if the variable `MUTANT` holds its number when the tests run.
 
 mod broken;
+mod expand;
 mod put;
 mod run;
 mod table;

@@ -1,9 +1,10 @@
 //! Puts a switch at every place of some Rust files where one token may be wrong, so that one build holds all mutants.
 //!
-//! Another comparison, `+` for `-`, `*` for `/`, `&&` for `||`, `&` for `|`, `min` for `max`, `any` for `all`, a half, a double or an
-//! absolute value left out, a condition or a truth value turned round, a statement left out. Constants, patterns, macros
-//! and tests are left alone.
+//! Another comparison, `+` for `-`, `*` for `/`, `&&` for `||`, `&` or `^` for `|`, `<<` for `>>`, `min` for `max`, `any` for `all`,
+//! a half, a double, a limit, a sign or an absolute value left out, a condition or a truth value turned round, a statement left out.
+//! Constants, patterns and tests are left alone, and macros but those that make items of their file.
 
+use crate::expand::expand;
 use quote::{ToTokens, quote};
 use std::collections::HashSet;
 use std::{env, fs};
@@ -13,6 +14,9 @@ use syn::{BinOp, Expr, Stmt, UnOp, parse_quote};
 
 struct Mutator {
     file: String,
+    /// Type and function.
+    of: String,
+    within: String,
     next: u32,
     skip: HashSet<u32>,
 }
@@ -47,6 +51,9 @@ fn others(op: &BinOp) -> Vec<BinOp> {
         BinOp::Sub(_) => vec![parse_quote!(+)],
         BinOp::Mul(_) => vec![parse_quote!(/)],
         BinOp::Div(_) => vec![parse_quote!(*)],
+        BinOp::Shl(_) => vec![parse_quote!(>>)],
+        BinOp::Shr(_) => vec![parse_quote!(<<)],
+        BinOp::BitXor(_) => vec![parse_quote!(|)],
         BinOp::AddAssign(_) => vec![parse_quote!(-=)],
         BinOp::SubAssign(_) => vec![parse_quote!(+=)],
         _ => Vec::new(),
@@ -66,6 +73,15 @@ fn other_call(call: &syn::ExprMethodCall) -> Option<(&'static str, Expr)> {
         ("abs", 0) => Some(("without abs", receiver())),
         ("widen", 2) => Some(("without widen", receiver())),
         ("limited", 0) => Some(("without limited", receiver())),
+        ("clamp", 2) => Some(("without clamp", receiver())),
+        ("magnitude", 0) => Some(("without magnitude", receiver())),
+        ("minus", 0) => Some(("without minus", receiver())),
+        ("wrapping_neg", 0) => Some(("without wrapping_neg", receiver())),
+        ("next_up", 0) => Some(("without next_up", receiver())),
+        ("copysign", 1) => Some(("without copysign", receiver())),
+        ("negate_if", 1) => Some(("without negate_if", receiver())),
+        ("wrapping_add", 1) => Some(("wrapping_sub for wrapping_add", other("wrapping_sub"))),
+        ("wrapping_sub", 1) => Some(("wrapping_add for wrapping_sub", other("wrapping_add"))),
         ("min", 1) => Some(("max for min", other("max"))),
         ("max", 1) => Some(("min for max", other("min"))),
         ("any", 1) => Some(("all for any", other("all"))),
@@ -83,7 +99,7 @@ impl Mutator {
         if self.skip.contains(&self.next) {
             return None;
         }
-        println!("{}\t{}:{}\t{what}", self.next, self.file, at.start().line);
+        println!("{}\t{}:{}\t{what} in {}{}", self.next, self.file, at.start().line, self.of, self.within);
         Some(self.next)
     }
 
@@ -115,14 +131,21 @@ impl VisitMut for Mutator {
 
     fn visit_item_fn_mut(&mut self, item: &mut syn::ItemFn) {
         if item.sig.constness.is_none() && !is_test(&item.attrs) {
+            self.within = item.sig.ident.to_string();
             visit_mut::visit_item_fn_mut(self, item);
         }
     }
 
     fn visit_impl_item_fn_mut(&mut self, item: &mut syn::ImplItemFn) {
         if item.sig.constness.is_none() {
+            self.within = item.sig.ident.to_string();
             visit_mut::visit_impl_item_fn_mut(self, item);
         }
+    }
+
+    fn visit_trait_item_fn_mut(&mut self, item: &mut syn::TraitItemFn) {
+        self.within = item.sig.ident.to_string();
+        visit_mut::visit_trait_item_fn_mut(self, item);
     }
 
     fn visit_item_impl_mut(&mut self, item: &mut syn::ItemImpl) {
@@ -130,7 +153,9 @@ impl VisitMut for Mutator {
         let of_display =
             item.trait_.as_ref().is_some_and(|(_, path, _)| path.to_token_stream().to_string().contains("Display"));
         if !of_display {
+            self.of = format!("{}::", item.self_ty.to_token_stream().to_string().replace(' ', ""));
             visit_mut::visit_item_impl_mut(self, item);
+            self.of.clear();
         }
     }
 
@@ -200,11 +225,15 @@ impl VisitMut for Mutator {
 pub fn put(after: u32, root: &str, files: &[String]) {
     let skip = env::var("SKIP").unwrap_or_default();
     let skip = skip.split_whitespace().filter_map(|number| number.parse().ok()).collect();
-    let mut mutator = Mutator { file: String::new(), next: after, skip };
+    let mut mutator = Mutator { file: String::new(), of: String::new(), within: String::new(), next: after, skip };
     for file in files {
         let text = fs::read_to_string(file).expect("a file");
         let mut parsed = syn::parse_file(&text).expect("Rust");
-        mutator.file = file.rsplit_once("src/").map_or(file.as_str(), |(_, name)| name).to_owned();
+        expand(&mut parsed);
+        // Two crates have files of one name.
+        let (package, name) = file.rsplit_once("/src/").unwrap_or_default();
+        let package = if package == "pcr-fixed" { "pcr-fixed/" } else { "" };
+        mutator.file = format!("{package}{name}");
         mutator.visit_file_mut(&mut parsed);
         fs::write(file, prettyplease::unparse(&parsed)).expect("written");
     }

@@ -65,7 +65,7 @@ fn result(number: &str, binaries: &[Binary], tests: &[Test], seconds: f64) -> St
 /// Runs all mutants of `folder/list` that `folder/results` does not have, or has as passed within fewer seconds than these.
 pub fn run(folder: &Path, seconds: f64, jobs: usize, binaries: &[&str]) {
     let binaries: Vec<Binary> = binaries.iter().map(|text| Binary::new(text)).collect();
-    let tests = tests(folder, &binaries, jobs);
+    let tests = tests(folder, &binaries, seconds, jobs);
     let list = fs::read_to_string(folder.join("list")).expect("a list");
     let results = folder.join("results");
     let done = fs::read_to_string(&results).unwrap_or_default();

@@ -10,9 +10,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
-/// A test that takes more of a core's time than this \[s\] is not part of a run.
-const LONGEST: u64 = 10;
-
 pub struct Binary {
     folder: PathBuf,
     path: PathBuf,
@@ -54,10 +51,10 @@ impl Binary {
             .expect("a process")
     }
 
-    /// How long a test takes \[s\], with the start of the process; no end if it fails.
-    fn time(&self, name: &str) -> f64 {
+    /// How long a test takes \[s\], with the start of the process; no end if it fails, or takes longer than this.
+    fn time(&self, name: &str, longest: u64) -> f64 {
         let start = Instant::now();
-        let passed = self.run(&[name], LONGEST, ("MUTANT", "0")).status.success();
+        let passed = self.run(&[name], longest, ("MUTANT", "0")).status.success();
         if passed { start.elapsed().as_secs_f64() } else { f64::INFINITY }
     }
 
@@ -80,7 +77,9 @@ fn known(file: &Path) -> HashMap<String, (f64, HashSet<u32>)> {
 }
 
 /// All tests that pass in time without a mutant, with what they reach; those of a former run are read from its file.
-pub fn tests(folder: &Path, binaries: &[Binary], jobs: usize) -> Vec<Test> {
+pub fn tests(folder: &Path, binaries: &[Binary], seconds: f64, jobs: usize) -> Vec<Test> {
+    // One that takes longer than a mutant has is no part of the run.
+    let longest = seconds.ceil() as u64;
     let path = folder.join("reached");
     let known = known(&path);
     let file = Mutex::new(File::options().append(true).create(true).open(&path).expect("a file"));
@@ -89,7 +88,7 @@ pub fn tests(folder: &Path, binaries: &[Binary], jobs: usize) -> Vec<Test> {
         .enumerate()
         .flat_map(|(at, binary)| binary.names().into_iter().map(move |name| (at, name)))
         .collect();
-    let starts: Vec<f64> = binaries.iter().map(|binary| binary.time("no test has this name")).collect();
+    let starts: Vec<f64> = binaries.iter().map(|binary| binary.time("no test has this name", longest)).collect();
     let (next, tests) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = |job: usize| {
         let reached = std::path::absolute(folder.join(format!("reached.{job}"))).expect("a path");
@@ -97,9 +96,12 @@ pub fn tests(folder: &Path, binaries: &[Binary], jobs: usize) -> Vec<Test> {
             let full = format!("{}/{name}", binaries[*binary].name);
             let (seconds, numbers) = known.get(&full).cloned().unwrap_or_else(|| {
                 let _ = fs::remove_file(&reached);
-                let seconds = binaries[*binary].time(name) - starts[*binary];
+                let seconds = binaries[*binary].time(name, longest) - starts[*binary];
                 let variable = ("REACHED", reached.to_str().expect("text"));
-                if seconds.is_finite() && !binaries[*binary].run(&[name], 10 * LONGEST, variable).status.success() {
+                if seconds.is_infinite() {
+                    return (seconds, HashSet::new());
+                }
+                if !binaries[*binary].run(&[name], 10 * longest, variable).status.success() {
                     panic!("{full} fails where what it reaches is written");
                 }
                 let text = fs::read_to_string(&reached).unwrap_or_default();

@@ -302,6 +302,19 @@ mod tests {
         assert!(matches!(right.shape, PathSegment::Arc { sweep, .. } if (sweep + 2.0 * PI / 3.0).abs() < 1e-12));
         let end = right.end();
         assert!((end[0] + 0.25 * 3.0_f64.sqrt()).abs() < 1e-12 && (end[1] + 0.75).abs() < 1e-12);
+        // Along no axis: it begins 1 m of 5 m before the corner, and half a metre.
+        let askew = corner_arc([-1.0, -1.0], [2.0, 3.0], [-2.0, 6.0], 1.0).unwrap();
+        assert!((askew.at[0] - 1.4).hypot(askew.at[1] - 2.2) < 1e-12, "{askew:?}");
+        let askew = corner_arc([-1.0, -1.0], [2.0, 3.0], [-2.0, 6.0], 0.5).unwrap();
+        assert!((askew.at[0] - 1.7).hypot(askew.at[1] - 2.6) < 1e-12, "{askew:?}");
+        assert_eq!(corner_arc([-3.0, 0.0], [0.0, 0.0], [0.0, 2.0], 0.0), None);
+    }
+
+    #[test]
+    fn an_edge_is_on_the_levels_of_its_ends() {
+        let layout = bend(1);
+        let on = |edge: usize| [0, 1, 2].map(|level| layout.is_on(&layout.edges[edge], level));
+        assert_eq!([on(1), on(2), on(3)], [[true, false, false], [true, true, false], [false, true, false]]);
     }
 
     #[test]

@@ -77,3 +77,62 @@ fn add(pieces: &mut Vec<(f64, f64)>, duration: f64, acceleration: f64) {
         _ => pieces.push((duration, acceleration)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const VEHICLE: Vehicle = Vehicle {
+        name: None,
+        radius: 0.4,
+        footprint: None,
+        margin: 0.0,
+        speed: 2.0,
+        acceleration: 0.5,
+        rotation: 1.0,
+        rotation_acceleration: 0.25,
+    };
+
+    fn stretch(shape: PathSegment, speed: Option<f64>, rotation: Option<f64>) -> Stretch {
+        Stretch { shape, speed, rotation, in_place: false }
+    }
+
+    fn line(speed: Option<f64>) -> Stretch {
+        stretch(PathSegment::Line { length: 8.0 }, speed, None)
+    }
+
+    fn turn(rotation: Option<f64>) -> Stretch {
+        Stretch { in_place: true, ..stretch(PathSegment::Arc { radius: TURN, sweep: 1.0 }, None, rotation) }
+    }
+
+    #[test]
+    fn the_smaller_of_two_limits_counts() {
+        let bend = |speed, rotation| {
+            limited(&stretch(PathSegment::Arc { radius: 1.5, sweep: 1.0 }, speed, rotation), &VEHICLE).speed
+        };
+        assert_eq!([bend(None, None), bend(None, Some(0.5)), bend(None, Some(3.0))], [1.5, 0.75, 1.5]);
+        assert_eq!([bend(Some(0.25), Some(3.0)), bend(Some(9.0), Some(0.5))], [0.25, 0.75]);
+        let speed = |rotation| limited(&turn(rotation), &VEHICLE).speed / TURN;
+        assert_eq!([speed(None), speed(Some(0.5)), speed(Some(3.0))], [1.0, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn only_a_path_without_limits_of_its_own_is_from_rest_to_rest() {
+        let whole = MotionSpec::RestToRest { v_max: 2.0, a_max: 0.5 };
+        for free in [vec![], vec![line(None)], vec![line(None), line(Some(2.0))], vec![line(Some(3.0))]] {
+            assert_eq!(motion(&free, &VEHICLE), whole);
+        }
+        // A vehicle as slow as its turns in place.
+        let slow = Vehicle { speed: TURN, ..VEHICLE };
+        let limits = |stretches: &[Stretch]| -> bool { motion(stretches, &VEHICLE) != whole };
+        assert!(limits(&[line(None), line(Some(1.5))]) && limits(&[line(None), turn(None)]));
+        assert!(matches!(motion(&[turn(None)], &slow), MotionSpec::Profile { .. }));
+    }
+
+    #[test]
+    fn before_and_after_a_turn_in_place_the_vehicle_is_at_rest() {
+        let limits: Vec<Limited> =
+            [line(None), turn(None), line(Some(1.0)), line(None)].iter().map(|one| limited(one, &VEHICLE)).collect();
+        assert_eq!(speeds(&limits), [[0.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]);
+    }
+}

@@ -117,4 +117,37 @@ mod tests {
         assert!(message(&[([0.0, 0.0], 0.0), ([1.0, 0.0], f64::NAN)]).contains("NaN"));
         assert!(message(&[([0.0, 0.0], 0.0), ([1.0, 0.0], 1e-300)]).contains("reached in"));
     }
+
+    #[test]
+    fn a_speed_above_the_limit_is_refused() {
+        let way = |metres: f64| agent(1, 0.5, &[([0.0, 0.0], 0.0), ([metres, 0.0], 0.5)]);
+        assert!(way(LIMIT / 2e3).is_ok() && way(1.0).is_ok());
+        assert!(way(LIMIT / 2e3 + 1.0).unwrap_err().to_string().contains("reached in 0.5 s"));
+    }
+
+    #[test]
+    fn speeds_change_in_the_time_of_a_ramp_and_every_point_is_reached_in_time() {
+        // Nanoseconds; at a speed of which the acceleration would be too large; and in a section that is shorter than these.
+        for (sections, ramps) in [
+            (vec![(1.0, 2.0), (3.0, 2.0)], vec![1e-9, 1e-9]),
+            (vec![(1e6, 1.0), (1.0, 1.0)], vec![2e6 / LIMIT, 1e-9]),
+            (vec![(1e-9, 2e-9), (4e-9, 2e-9), (2e-9, 2e-9)], vec![0.5e-9; 3]),
+        ] {
+            let MotionSpec::Profile { v0, pieces } = sectioned(&sections) else { panic!("no profile") };
+            let mut speed = v0;
+            for ((&(length, duration), ramp), pieces) in sections.iter().zip(ramps).zip(pieces.chunks(3)) {
+                let mut way = 0.0;
+                for &(time, acceleration) in pieces {
+                    way += (speed + acceleration * time / 2.0) * time;
+                    speed += acceleration * time;
+                }
+                assert!((way / length - 1.0).abs() < 1e-12, "{way} m of {length} m");
+                let [up, between, down] = [pieces[0].0, pieces[1].0, pieces[2].0];
+                assert_eq!((up, down), (ramp, ramp));
+                assert!(((up + between + down) / duration - 1.0).abs() < 1e-12);
+            }
+            let last = sections.last().map_or(0.0, |(length, duration)| length / duration);
+            assert!(speed.abs() < 1e-9 * last, "{speed} m/s at the end");
+        }
+    }
 }

@@ -191,6 +191,22 @@ mod tests {
     }
 
     #[test]
+    fn straight_on_at_the_same_limits_is_one_line() {
+        let lines = |limits: [[Option<f64>; 2]; 2]| {
+            let mut tracer = Tracer::default();
+            for ([speed, rotation], [from, to]) in limits.into_iter().zip([[0.0, 1.0], [1.0, 3.0]]) {
+                tracer.limit(speed, rotation);
+                tracer.line([from, 0.0], [to, 0.0]);
+            }
+            let stretches = tracer.finish([0.0, 0.0]).stretches;
+            stretches.iter().map(|one| (one.shape.length(), one.speed, one.rotation)).collect::<Vec<_>>()
+        };
+        assert_eq!(lines([[Some(1.0), None]; 2]), [(3.0, Some(1.0), None)]);
+        assert_eq!(lines([[Some(1.0), None], [None; 2]]), [(1.0, Some(1.0), None), (2.0, None, None)]);
+        assert_eq!(lines([[None, Some(0.5)], [None; 2]]), [(1.0, None, Some(0.5)), (2.0, None, None)]);
+    }
+
+    #[test]
     fn turning_back_is_half_a_turn() {
         let mut tracer = Tracer::default();
         tracer.line([0.0, 0.0], [1.0, 0.0]);
