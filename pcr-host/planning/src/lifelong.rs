@@ -9,6 +9,7 @@
 //! gates      holds as lists of places to wait                  Contact, Gate
 //! site       pieces of way, and how robots on them touch       Site
 //! ends       where robots may stand for good                   WellFormedness
+//! places     places to stand on dead ends, for more robots than ends
 //! routes     quickest routes
 //! abilities  what a robot can do
 //! robot      how robots move and are delayed
@@ -28,6 +29,7 @@
 //! draws      goals, delays, starts
 //! streets    a generated site of any size                      streets
 //! state      the fleet, its missions, what has come of it
+//! turns      whose turn it is, and who makes way for it
 //! decide     who looks for a way when
 //! run        a run
 //! answer     what `pcr traffic --hours` prints                 Lifelong
@@ -45,6 +47,7 @@ mod forecast;
 mod gates;
 mod locks;
 mod outcome;
+mod places;
 mod record;
 mod robot;
 mod routes;
@@ -56,6 +59,7 @@ mod state;
 mod streets;
 mod tasks;
 mod timetable;
+mod turns;
 mod waits;
 mod way;
 

@@ -26,32 +26,38 @@ impl Scene<'_> {
         found
     }
 
-    /// Finds a way for a robot to where it is on none of some routes.
+    /// Finds a way for a robot that stands where it cuts others off to where it cuts off fewer.
+    pub(super) fn tidied(&self, robot: usize) -> Option<Admitted> {
+        /// Nearest places that are tried.
+        const PLACES: usize = 3;
+        let kept = self.kept(robot);
+        let own = self.burden(self.robots[robot].way.end(), &[]);
+        let mut found = self.aside(robot, kept.on, TOLLS[0], |_| true, PLACES);
+        found.retain(|route| self.burden(kept.on.node, route) < own);
+        self.admitted(robot, &kept, found.into_iter().map(|route| (route, Vec::new())).collect())
+    }
+
+    /// Whether a robot stands on a route that is reserved for another one.
+    pub(super) fn is_on_reserved(&self, robot: usize) -> bool {
+        self.is_reserved(robot, self.robots[robot].way.end())
+    }
+
+    /// Finds a way for a robot to where it is on no route that is reserved.
     ///
     /// # Errors
     /// The route that it would take if nobody stood on it, if there is any.
-    pub(super) fn make_way(&self, robot: usize, routes: &[Vec<usize>]) -> Result<Admitted, Option<Vec<usize>>> {
+    pub(super) fn make_way(&self, robot: usize) -> Result<Admitted, Option<Vec<usize>>> {
         /// Nearest places that are tried.
         const PLACES: usize = 6;
         let kept = self.kept(robot);
         let here = self.robots[robot].way.end();
-        let clear = |node: usize| {
-            node != here
-                && self.is_free(robot, node)
-                && !routes.iter().flatten().any(|&atom| self.site.passes(atom, node))
-        };
-        let ends = self.routes(robot, &kept, TOLLS[0], |node| clear(node) && self.ends[node], None, PLACES);
-        let found = if ends.is_empty() {
-            let good = self.harmless(robot, clear);
-            self.routes(robot, &kept, TOLLS[0], |node| good.contains(&node), None, PLACES)
-        } else {
-            ends
-        };
-        if let Some(admitted) =
-            self.admitted(robot, &kept, found.into_iter().map(|route| (route, Vec::new())).collect())
-        {
-            return Ok(admitted);
+        let clear = |node: usize| node != here && self.is_free(robot, node);
+        let safe = |node: usize| !self.crowded && clear(node) && self.ends.is_safe[node];
+        let mut found = self.routes(robot, &kept, TOLLS[0], safe, None, PLACES);
+        if found.is_empty() {
+            found = self.aside(robot, kept.on, TOLLS[0], clear, PLACES);
         }
-        Err(self.routes(robot, &kept, [20.0, 0.0], clear, None, 1).pop())
+        let admitted = self.admitted(robot, &kept, found.into_iter().map(|route| (route, Vec::new())).collect());
+        admitted.ok_or_else(|| self.aside(robot, kept.on, [20.0, 0.0], clear, 1).pop())
     }
 }

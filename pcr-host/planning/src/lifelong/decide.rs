@@ -6,13 +6,10 @@ use super::draws;
 use super::forecast::Trial;
 use super::state::{Mission, Run};
 use super::waits::Waits;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Between two tries for the same mission \[s\].
-const AGAIN: f64 = 1.0;
-
-/// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
-const PATIENCE: f64 = 2.0;
+pub(super) const AGAIN: f64 = 1.0;
 
 /// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\], and whoever does not wait so often.
 const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
@@ -20,29 +17,18 @@ const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
 /// The way for the next mission is looked for so long before the goal \[s\].
 const AHEAD: f64 = 10.0;
 
-/// Robots that are asked to go elsewhere for one mission at a time.
-const MOVES: usize = 4;
-
 /// Decisions between two controls.
-const TRIES: usize = 4;
+pub(super) const TRIES: usize = 4;
 
 impl Run {
     /// Looks for ways for the missions that have waited longest, then for better ways for whoever waits on the way.
     pub(super) fn decide(&mut self, now: f64) {
-        let due = |mission: &Option<Mission>| mission.is_some_and(|it| !it.admitted && it.next_try <= now);
-        let mut waiting: Vec<usize> = (0..self.robots.len()).filter(|&robot| due(&self.missions[robot])).collect();
-        let since = |robot: usize| self.missions[robot].map_or(0.0, |mission| mission.since);
-        waiting.sort_by(|&a, &b| since(a).total_cmp(&since(b)));
-        let mut tries = 0;
-        for robot in waiting.into_iter().take(TRIES) {
-            tries += 1;
-            self.try_mission(robot, now);
-        }
+        let mut tries = self.try_missions(now);
         if self.request.method != Method::Orders {
             return;
         }
         // Who does the next task is settled when somebody is idle.
-        if self.tasks.is_none() {
+        if self.tasks.is_none() && !self.is_urgent {
             self.look_ahead(now, &mut tries);
         }
         self.look_again(now, tries);
@@ -66,7 +52,10 @@ impl Run {
             let found = self.scene(now).dispatch(robot, &[mission.goal, next]);
             self.decisions.push(begin.elapsed());
             match found {
-                Some(admitted) => self.take(robot, admitted),
+                Some(admitted) => {
+                    self.take(robot, admitted);
+                    self.pass(now);
+                }
                 None => self.missions[robot] = Some(Mission { next_try: now + 2.0 * AGAIN, ..mission }),
             }
         }
@@ -121,59 +110,6 @@ impl Run {
                 let lines = forecast.robots.into_iter().zip(forecast.lines).collect();
                 timetable.change(lines);
             }
-        }
-    }
-
-    fn try_mission(&mut self, robot: usize, now: f64) {
-        let Some(mission) = self.missions[robot] else { return };
-        let begin = Instant::now();
-        let found = self.scene(now).dispatch(robot, &[mission.goal]);
-        self.decisions.push(mission.prepared + begin.elapsed());
-        let mission = Mission { prepared: Duration::ZERO, ..mission };
-        match found {
-            Some(admitted) => {
-                self.take(robot, admitted);
-                self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.since);
-                self.missions[robot] = Some(Mission { admitted: true, ..mission });
-            }
-            None => {
-                self.outcome.refused += 1;
-                self.missions[robot] = Some(Mission { next_try: now + AGAIN, ..mission });
-                if now - mission.since > PATIENCE
-                    && let Some(route) = self.scene(now).wanted(robot, mission.goal)
-                {
-                    let mut left = MOVES;
-                    self.clear(robot, &[route], now, &mut left);
-                }
-            }
-        }
-    }
-
-    /// Asks those who stand on the last of some routes to go where they are on none of them, and those who stand in their way likewise.
-    fn clear(&mut self, robot: usize, routes: &[Vec<usize>], now: f64, tries: &mut usize) {
-        let standing = self.scene(now).standing_on(robot, routes.last().map_or(&[], Vec::as_slice));
-        for by in standing {
-            if *tries == 0 || self.missions[by].is_some_and(|mission| mission.admitted) {
-                continue;
-            }
-            *tries -= 1;
-            let begin = Instant::now();
-            let found = self.scene(now).make_way(by, routes);
-            self.decisions.push(begin.elapsed());
-            match found {
-                Ok(admitted) => {
-                    self.take(by, admitted);
-                    self.outcome.moved += 1;
-                }
-                Err(Some(route)) if routes.len() < 6 => {
-                    let mut routes = routes.to_vec();
-                    routes.push(route);
-                    self.clear(by, &routes, now, tries);
-                }
-                Err(_) => {}
-            }
-            // In the way of the others behind it.
-            return;
         }
     }
 

@@ -68,7 +68,6 @@ impl Scene<'_> {
     /// Routes to goals and on to an end.
     fn candidates(&self, robot: usize, kept: &Kept, goals: &[usize]) -> Vec<Route> {
         let mut found: Vec<Route> = Vec::new();
-        let mut good: Option<Vec<usize>> = None;
         // In a large fleet the quickest way has to do, if there is any: decisions cost what they are about.
         let is_large = self.timetable.is_some();
         let ends = if is_large { 1 } else { ENDS };
@@ -88,12 +87,14 @@ impl Scene<'_> {
             if marks.len() < goals.len() {
                 continue;
             }
-            let safe = |node: usize| self.is_free(robot, node) && self.ends[node];
-            let mut onward = self.onward(robot, from, tolls, safe, None, ends);
+            let safe = |node: usize| self.is_free(robot, node) && self.ends.is_safe[node];
+            let mut onward = Vec::new();
+            if !self.crowded {
+                onward = self.onward(robot, from, tolls, safe, None, ends);
+            }
             if onward.is_empty() {
                 // More robots than ends: wherever nobody stands.
-                let good = good.get_or_insert_with(|| self.harmless(robot, |node| self.is_free(robot, node)));
-                onward = self.onward(robot, from, tolls, |node| good.contains(&node), None, ends);
+                onward = self.aside(robot, from, tolls, |_| true, ends);
             }
             for end in onward {
                 let way: Vec<usize> = way.iter().chain(&end).copied().collect();

@@ -4,6 +4,7 @@ use super::site::Site;
 use crate::random::Random;
 use pcr_formats::import::{Id, Layout};
 use serde::Serialize;
+use std::cell::OnceCell;
 use std::collections::VecDeque;
 
 /// How often safe ends are looked for, from another order of nodes.
@@ -39,6 +40,10 @@ pub(super) struct Ends {
     pub(super) safe: Vec<usize>,
     /// Of each node whether it is one.
     pub(super) is_safe: Vec<bool>,
+    /// Places on dead ends, the dead end first; of each node in which of these and as which of it.
+    lanes: Vec<Vec<usize>>,
+    lane: Vec<Option<(usize, usize)>>,
+    harm: OnceCell<Vec<usize>>,
 }
 
 impl Ends {
@@ -47,7 +52,43 @@ impl Ends {
         let safe = if nodes.len() <= SMALL { drawn(site, &nodes, seed) } else { dead_ends(site, &nodes) };
         let mut is_safe = vec![false; site.points.len()];
         safe.iter().for_each(|&end| is_safe[end] = true);
-        Self { nodes, safe, is_safe }
+        Self { lane: vec![None; is_safe.len()], lanes: Vec::new(), harm: OnceCell::new(), nodes, safe, is_safe }
+    }
+
+    /// With places on dead ends, each with its dead end first.
+    pub(super) fn queued(self, site: &Site, lanes: Vec<Vec<usize>>) -> Self {
+        let (mut is_safe, mut lane) = (self.is_safe, vec![None; site.points.len()]);
+        is_safe.resize(site.points.len(), false);
+        for (k, nodes) in lanes.iter().enumerate() {
+            nodes.iter().enumerate().for_each(|(place, &node)| lane[node] = Some((k, place)));
+        }
+        Self { lanes, lane, is_safe, ..self }
+    }
+
+    /// Whether a robot that comes to a place on a dead end has no room that is left behind it, and nobody in front.
+    pub(super) fn is_next(&self, node: usize, is_free: impl Fn(usize) -> bool) -> bool {
+        let Some((lane, place)) = self.lane[node] else { return true };
+        let lane = &self.lanes[lane];
+        !lane[..place].last().is_some_and(|&behind| is_free(behind))
+            && lane[place + 1..].iter().all(|&front| is_free(front))
+    }
+
+    /// Of each node how many others are cut off if a robot stands there and at all safe ends, places on dead ends among them; all of a
+    /// node where nobody should. Those behind a place are full already.
+    pub(super) fn harm(&self, site: &Site) -> &[usize] {
+        self.harm.get_or_init(|| {
+            let places: Vec<usize> = self.lanes.iter().flat_map(|lane| &lane[1..]).copied().collect();
+            let all: Vec<usize> = self.nodes.iter().chain(&places).copied().collect();
+            let mut harm = vec![usize::MAX; site.points.len()];
+            for (nodes, counted) in [(&self.nodes, &all), (&places, &self.nodes)] {
+                let least = left(site, counted, &self.safe);
+                for &node in nodes {
+                    let ends: Vec<usize> = self.safe.iter().chain([&node]).copied().collect();
+                    harm[node] = least.saturating_sub(left(site, counted, &ends));
+                }
+            }
+            harm
+        })
     }
 
     /// What is told of them.
@@ -147,18 +188,22 @@ fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
         })
 }
 
-/// How many nodes robots on these nodes cut off from most others, with those who stand for good on so many atoms.
-pub(super) fn cut_off(site: &Site, nodes: &[usize], parked: &[u16], more: &[u16]) -> usize {
+/// How many nodes can be reached from one another, at most, if robots stand at some of them.
+fn left(site: &Site, nodes: &[usize], ends: &[usize]) -> usize {
     /// The largest part is found from one of so many nodes, but for odd layouts.
     const HUBS: usize = 4;
-    let open = |atom: usize| parked[atom] + more[atom] == 0;
+    let mut is_open = vec![true; site.atoms.len()];
+    for &end in ends {
+        site.covers(end).iter().for_each(|&atom| is_open[atom] = false);
+    }
+    let open = |atom: usize| is_open[atom];
     let free: Vec<usize> = nodes.iter().copied().filter(|&node| open(site.standing(node))).collect();
     let sizes = (0..HUBS.min(free.len())).map(|k| {
         let hub = free[k * free.len() / HUBS.min(free.len())];
         let both = [false, true].map(|back| reached(site, hub, back, open));
         free.iter().filter(|&&node| both[0][node] && both[1][node]).count()
     });
-    nodes.len() - sizes.max().unwrap_or(0)
+    sizes.max().unwrap_or(0)
 }
 
 /// Whether a robot that stands at one of the nodes that can all be reached from one another cuts some of them off: other nodes within
@@ -187,13 +232,14 @@ fn bridges(site: &Site, is_inside: &[bool]) -> Vec<usize> {
     let two_way =
         site.atoms.iter().enumerate().filter(|(place, _)| site.back[*place].is_some_and(|back| back > *place));
     let inside = two_way.filter(|(_, atom)| atom.ends.iter().all(|&node| is_inside[node]));
-    let mut cuts = |edge: usize, [a, b]: [usize; 2]| {
+    let mut cuts = |place: usize, [a, b]: [usize; 2]| {
         // From a dead end the search is over at once.
         let (a, b) = if site.leaving[a].len() < site.leaving[b].len() { (a, b) } else { (b, a) };
-        let mut leads = |from: usize, to: usize| search.leads(from, to, |atom| site.atoms[atom].edge != Some(edge));
+        let mut leads =
+            |from: usize, to: usize| search.leads(from, to, |atom| atom != place && Some(atom) != site.back[place]);
         !leads(a, b) || !leads(b, a)
     };
-    inside.filter_map(|(_, atom)| atom.edge.filter(|&edge| cuts(edge, atom.ends))).collect()
+    inside.filter(|(place, atom)| cuts(*place, atom.ends)).filter_map(|(_, atom)| atom.edge).collect()
 }
 
 /// Looks for ways between two nodes, those that are near first.

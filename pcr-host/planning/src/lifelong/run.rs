@@ -37,7 +37,6 @@ pub fn run_tasks(imported: &Imported, request: Request, tasks: &Tasks) -> Result
 }
 
 fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report, String> {
-    let layout = run.ends.report(&run.site, &imported.layout);
     let mut certificate = Certificate::new();
     let mut window = Window::new(&run.site, &run.robots);
     let (mut still, mut time) = (0.0, Duration::ZERO);
@@ -65,7 +64,13 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
         time += begin.elapsed();
     }
     run.outcome.certificate = certificate;
-    Ok(Report { outcome: run.finished(), layout, decisions: run.decisions, time, last_arrival: run.last_arrival })
+    Ok(Report {
+        outcome: run.finished(),
+        layout: run.layout,
+        decisions: run.decisions,
+        time,
+        last_arrival: run.last_arrival,
+    })
 }
 
 impl Run {

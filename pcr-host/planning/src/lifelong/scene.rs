@@ -3,7 +3,7 @@
 use super::Method;
 use super::abilities::Abilities;
 use super::book::Book;
-use super::ends::cut_off;
+use super::ends::Ends;
 use super::forecast::{Forecast, Stuck, Trial};
 use super::locks::Locks;
 use super::robot::Robot;
@@ -17,6 +17,10 @@ use super::way::Kept;
 pub(super) const TOLLS: [[f64; 2]; 4] =
     [[f64::INFINITY, 0.0], [f64::INFINITY, 4.0], [f64::INFINITY, 15.0], [20.0, 4.0]];
 
+/// What it costs others that a robot stands for good where it cuts off a node: about as long as one of them waits; and where that is
+/// not to be, more than any route \[s\].
+const HARM: [f64; 2] = [10.0, 1e6];
+
 /// What a decision is about.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'s> {
@@ -26,10 +30,14 @@ pub(super) struct Scene<'s> {
     pub(super) locks: &'s Locks,
     pub(super) abilities: &'s Abilities,
     pub(super) network: &'s Routes,
-    /// Whether robots may stand at a node for good.
-    pub(super) ends: &'s [bool],
-    /// Nodes that can all be reached from one another.
-    pub(super) nodes: &'s [usize],
+    /// Where robots may stand for good.
+    pub(super) ends: &'s Ends,
+    /// Whether there are more robots than safe ends.
+    pub(super) crowded: bool,
+    /// Whether only the mission that has waited longest is served.
+    pub(super) is_urgent: bool,
+    /// The route that the mission which has waited longest wants, and those of whoever stands in its way; whose they are.
+    pub(super) reserved: &'s [(usize, Vec<usize>)],
     /// How many robots stand for good in the way of an atom.
     pub(super) parked: &'s [u16],
     pub(super) time: f64,
@@ -51,11 +59,17 @@ impl Scene<'_> {
         it.way.kept(self.site, it.at, it.stop(self.abilities), it.turned)
     }
 
-    /// Whether nobody else stands for good where a robot would stand at a node.
+    /// Whether nobody else stands for good where a robot would stand at a node, and it would be on no route that is reserved for others.
     pub(super) fn is_free(&self, robot: usize, node: usize) -> bool {
         let own = self.site.collide(self.robots[robot].way.end(), node);
         let count = usize::from(self.parked[self.site.standing(node)]);
-        count <= usize::from(own)
+        count <= usize::from(own) && !self.is_reserved(robot, node)
+    }
+
+    /// Whether a robot that stands at a node is on a route that is reserved for another one.
+    pub(super) fn is_reserved(&self, robot: usize, node: usize) -> bool {
+        let mut others = self.reserved.iter().filter(|route| route.0 != robot);
+        others.any(|(_, route)| route.iter().any(|&atom| self.site.passes(atom, node)))
     }
 
     /// Routes on from where a robot can leave its way.
@@ -97,20 +111,31 @@ impl Scene<'_> {
         self.network.quickest(self.site, from, toll, asked, towards, count)
     }
 
-    /// The nodes at which a robot would cut off fewest others, of some.
-    pub(super) fn harmless(&self, robot: usize, of: impl Fn(usize) -> bool) -> Vec<usize> {
-        let mut parked = self.parked.to_vec();
-        self.site.covers(self.robots[robot].way.end()).iter().for_each(|&atom| parked[atom] -= 1);
-        let mut more = vec![0; parked.len()];
-        let mut lost: Vec<(usize, usize)> = Vec::new();
-        for node in self.nodes.iter().copied().filter(|&node| of(node)) {
-            let covers = self.site.covers(node);
-            covers.iter().for_each(|&atom| more[atom] = 1);
-            lost.push((cut_off(self.site, self.nodes, &parked, &more), node));
-            covers.iter().for_each(|&atom| more[atom] = 0);
-        }
-        let least = lost.iter().map(|lost| lost.0).min().unwrap_or(0);
-        lost.retain(|lost| lost.0 <= least + 1);
-        lost.into_iter().map(|lost| lost.1).collect()
+    /// Routes to where a robot may stand for good if there is no safe end for it: near, and where it cuts off few others.
+    pub(super) fn aside(
+        &self,
+        robot: usize,
+        from: From,
+        tolls: [f64; 2],
+        asked: impl Fn(usize) -> bool,
+        count: usize,
+    ) -> Vec<Vec<usize>> {
+        let harm = self.ends.harm(self.site);
+        let free = |node: usize| self.is_free(robot, node);
+        let asked = |node: usize| harm[node] < usize::MAX && asked(node) && free(node) && self.ends.is_next(node, free);
+        let found = self.onward(robot, from, tolls, asked, None, usize::MAX);
+        let mut found: Vec<(f64, Vec<usize>)> =
+            found.into_iter().map(|route| (self.burden(from.node, &route), route)).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(count);
+        found.into_iter().map(|found| found.1).collect()
+    }
+
+    /// Time of a route, and what it costs others if a robot stands at its end \[s\].
+    pub(super) fn burden(&self, from: usize, route: &[usize]) -> f64 {
+        let end = route.last().map_or(from, |&last| self.site.atoms[last].ends[1]);
+        let time: f64 = route.iter().map(|&atom| self.site.atoms[atom].length / self.site.atoms[atom].speed).sum();
+        let each = if self.is_urgent || !self.crowded { HARM[1] } else { HARM[0] };
+        time + each * self.ends.harm(self.site)[end] as f64
     }
 }

@@ -102,8 +102,14 @@ impl Site {
         let near = neighbours(&atoms, 2.0 * radius);
         let back = |(place, atom): (usize, &Atom)| {
             let [a, b] = atom.ends;
-            let other = |&other: &usize| other != place && atoms[other].edge == atom.edge && atom.edge.is_some();
-            leaving[b].iter().copied().filter(|&other: &usize| atoms[other].ends[1] == a).find(other)
+            let is_line =
+                |atom: &Atom| matches!(&atom.shapes[..], [one] if matches!(one.shape, PathSegment::Line { .. }));
+            let back =
+                || leaving[b].iter().copied().filter(|&other: &usize| other != place && atoms[other].ends[1] == a);
+            // The same edge, or another straight one between the same nodes.
+            let same = |&other: &usize| atoms[other].edge == atom.edge;
+            let along = |&other: &usize| is_line(atom) && is_line(&atoms[other]);
+            atom.edge.and_then(|_| back().find(same).or_else(|| back().find(along)))
         };
         let back = atoms.iter().enumerate().map(back).collect();
         let contacts = near.iter().map(|near| vec![OnceCell::new(); near.len()]).collect();
@@ -121,7 +127,12 @@ impl Site {
     /// Whether robots that stand at two nodes would touch.
     pub(super) fn collide(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.points[a], self.points[b]);
-        (a[0] - b[0]).hypot(a[1] - b[1]) < 2.0 * self.radius
+        (a[0] - b[0]).hypot(a[1] - b[1]) < self.width()
+    }
+
+    /// How far apart robots have to stand \[m\].
+    pub(super) fn width(&self) -> f64 {
+        2.0 * self.radius
     }
 
     /// The atoms that touch one, and how.

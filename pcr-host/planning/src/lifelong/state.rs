@@ -4,10 +4,11 @@ use super::abilities::Abilities;
 use super::book::Book;
 use super::dispatch::Admitted;
 use super::draws::{self, starts};
-use super::ends::Ends;
+use super::ends::{Ends, WellFormedness};
 use super::forecast::WHOLE;
 use super::locks::Locks;
 use super::outcome::{Outcome, Shares};
+use super::places::queued;
 use super::record::Certificate;
 use super::robot::Robot;
 use super::routes::Routes;
@@ -29,6 +30,8 @@ pub(super) struct Mission {
     pub(super) alone: f64,
     /// Whether it has a way.
     pub(super) admitted: bool,
+    /// How many missions were admitted while it waited.
+    pub(super) passed: usize,
     pub(super) next_try: f64,
     /// What it took to find the quickest way before the first decision.
     pub(super) prepared: Duration,
@@ -37,6 +40,14 @@ pub(super) struct Mission {
 pub(super) struct Run {
     pub(super) site: Site,
     pub(super) ends: Ends,
+    pub(super) layout: WellFormedness,
+    /// Whether there are more robots than safe ends.
+    pub(super) crowded: bool,
+    /// Whether only the mission that has waited longest is served.
+    pub(super) is_urgent: bool,
+    /// The route that the mission which has waited longest wants, and those of whoever stands in its way; whose they are: nobody else
+    /// comes to stand there.
+    pub(super) reserved: Vec<(usize, Vec<usize>)>,
     pub(super) abilities: Abilities,
     pub(super) network: Routes,
     pub(super) request: Request,
@@ -62,17 +73,24 @@ pub(super) struct Run {
 
 impl Run {
     pub(super) fn new(imported: &Imported, request: Request, tasks: Option<&Tasks>) -> Result<Self, String> {
-        let site = Site::new(imported)?;
-        // Tests do without, as it takes a while where nothing is optimized.
-        if !cfg!(debug_assertions) {
-            site.warm();
-        }
-        let ends = Ends::of(&site, request.seed);
-        let abilities = Abilities::of(&imported.vehicle);
+        let mut site = Site::new(imported)?;
+        let mut ends = Ends::of(&site, request.seed);
+        let layout = ends.report(&site, &imported.layout);
         let starts = match tasks {
             Some(tasks) => tasks.starts(&site)?,
             None => starts(&site, &ends, request.agents, request.seed),
         };
+        let crowded = starts.len() > ends.safe.len();
+        if crowded {
+            let (queued, lanes) = queued(imported, &site);
+            site = Site::new(&queued)?;
+            ends = ends.queued(&site, lanes);
+        }
+        // Tests do without, as it takes a while where nothing is optimized.
+        if !cfg!(debug_assertions) {
+            site.warm();
+        }
+        let abilities = Abilities::of(&imported.vehicle);
         if starts.is_empty() {
             return Err("the layout has no two nodes that can be reached from one another".into());
         }
@@ -103,6 +121,10 @@ impl Run {
             locks: Locks::new(count),
             network: Routes::new(&site, abilities),
             timetable: Timetable::new(count),
+            layout,
+            crowded,
+            is_urgent: false,
+            reserved: Vec::new(),
             site,
             ends,
             abilities,
@@ -144,7 +166,8 @@ impl Run {
                 continue;
             }
             let prepared = Duration::ZERO;
-            self.missions[robot] = Some(Mission { goal, since, alone: 0.0, admitted: false, next_try: now, prepared });
+            self.missions[robot] =
+                Some(Mission { goal, since, alone: 0.0, admitted: false, passed: 0, next_try: now, prepared });
         }
         tasks
     }
@@ -172,7 +195,8 @@ impl Run {
             });
             let admitted = !it.way.goals.is_empty();
             let prepared = begin.elapsed();
-            self.missions[robot] = Some(Mission { goal, since: now, alone, admitted, next_try: now, prepared });
+            self.missions[robot] =
+                Some(Mission { goal, since: now, alone, admitted, passed: 0, next_try: now, prepared });
         }
     }
 
@@ -189,8 +213,10 @@ impl Run {
             locks: &self.locks,
             abilities: &self.abilities,
             network: &self.network,
-            ends: &self.ends.is_safe,
-            nodes: &self.ends.nodes,
+            ends: &self.ends,
+            crowded: self.crowded,
+            is_urgent: self.is_urgent,
+            reserved: &self.reserved,
             parked: &self.parked,
             time: now,
             timetable: self.is_large().then_some(&self.timetable),
@@ -201,6 +227,9 @@ impl Run {
     pub(super) fn take(&mut self, robot: usize, admitted: Admitted) {
         let Admitted { way, kept, before, regions, departs, lines, .. } = admitted;
         self.timetable.change(lines);
+        if let Some(level) = self.reserved.iter().position(|route| route.0 == robot) {
+            self.reserved.truncate(level);
+        }
         let it = &mut self.robots[robot];
         self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
         self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);

@@ -1,0 +1,171 @@
+//! Whose turn it is: missions are tried by age, and whoever has waited longest is made way for.
+
+use super::decide::{AGAIN, TRIES};
+use super::state::{Mission, Run};
+use std::time::{Duration, Instant};
+
+/// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
+const PATIENCE: f64 = 2.0;
+
+/// A mission that was passed by so many for each robot is the only one that is admitted.
+const ROUNDS: usize = 4;
+
+/// Robots that are asked to go elsewhere for one mission at a time.
+const MOVES: usize = 4;
+
+impl Run {
+    /// Tries the missions that have waited longest; how many decisions that were.
+    pub(super) fn try_missions(&mut self, now: f64) -> usize {
+        let mut waiting: Vec<(f64, usize)> = Vec::new();
+        for (robot, mission) in self.missions.iter().enumerate() {
+            waiting.extend(mission.filter(|mission| !mission.admitted).map(|mission| (mission.since, robot)));
+        }
+        waiting.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let active = self.robots.len() - waiting.len();
+        let oldest = waiting.first().map(|first| first.1);
+        if self.reserved.first().is_some_and(|route| Some(route.0) != oldest) {
+            self.reserved.clear();
+        }
+        self.is_urgent = false;
+        if self.crowded {
+            let passed = oldest.and_then(|oldest| self.missions[oldest]).map_or(0, |mission| mission.passed);
+            self.is_urgent = passed >= ROUNDS * self.robots.len();
+            if self.is_urgent {
+                waiting.truncate(1);
+            } else if active >= self.ends.safe.len() {
+                waiting.clear();
+            }
+            self.tidy(now);
+        }
+        let is_due = |robot: usize| self.missions[robot].is_some_and(|mission| mission.next_try <= now);
+        waiting.retain(|&(_, robot)| is_due(robot));
+        waiting.truncate(TRIES);
+        for &(_, robot) in &waiting {
+            self.try_mission(robot, now, oldest == Some(robot));
+        }
+        waiting.len()
+    }
+
+    /// Sends those who stand where they cut others off elsewhere.
+    fn tidy(&mut self, now: f64) {
+        /// Decisions between two controls.
+        const TRIES: usize = 2;
+        /// Between two tries for the same robot \[s\].
+        const AGAIN: f64 = 2.0;
+        let idle = |robot: &usize| {
+            self.robots[*robot].has_arrived()
+                && self.missions[*robot].is_none_or(|it| !it.admitted)
+                && now - self.reviewed[*robot] > AGAIN
+                && self.ends.harm(&self.site)[self.robots[*robot].way.end()] > 0
+        };
+        let mut idle: Vec<usize> = (0..self.robots.len()).filter(idle).collect();
+        idle.sort_by(|&a, &b| self.reviewed[a].total_cmp(&self.reviewed[b]));
+        for robot in idle.into_iter().take(TRIES) {
+            self.reviewed[robot] = now;
+            let begin = Instant::now();
+            let found = self.scene(now).tidied(robot);
+            self.decisions.push(begin.elapsed());
+            if let Some(admitted) = found {
+                self.take(robot, admitted);
+                self.outcome.moved += 1;
+            }
+        }
+    }
+
+    /// Tries the mission of a robot; where it is refused, those who stand in its way are asked to go elsewhere.
+    fn try_mission(&mut self, robot: usize, now: f64, is_oldest: bool) {
+        let Some(mission) = self.missions[robot] else { return };
+        if self.is_begun(robot, now) {
+            return;
+        }
+        self.outcome.refused += 1;
+        self.missions[robot] = Some(Mission { next_try: now + AGAIN, prepared: Duration::ZERO, ..mission });
+        if now - mission.since <= PATIENCE || (self.crowded && !is_oldest) || !self.robots[robot].has_arrived() {
+            return;
+        }
+        // What it wants is the same until it has it, so that whoever has made way stays away.
+        if !is_oldest {
+            self.reserved.clear();
+        }
+        if self.reserved.is_empty() {
+            let wanted = self.scene(now).wanted(robot, mission.goal);
+            self.reserved.extend(wanted.map(|route| (robot, route)));
+        }
+        self.clear(now);
+        if !is_oldest {
+            self.reserved.clear();
+        }
+    }
+
+    /// Begins the mission of a robot, if it is admitted.
+    fn is_begun(&mut self, robot: usize, now: f64) -> bool {
+        let Some(mission) = self.missions[robot].filter(|mission| !mission.admitted) else { return false };
+        let begin = Instant::now();
+        let found = self.scene(now).dispatch(robot, &[mission.goal]);
+        self.decisions.push(mission.prepared + begin.elapsed());
+        let Some(admitted) = found else { return false };
+        self.take(robot, admitted);
+        self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.since);
+        self.missions[robot] = Some(Mission { admitted: true, prepared: Duration::ZERO, ..mission });
+        self.pass(mission.since);
+        true
+    }
+
+    /// A mission is admitted that was given then: it passes the older ones that wait.
+    pub(super) fn pass(&mut self, since: f64) {
+        for other in self.missions.iter_mut().flatten() {
+            other.passed += usize::from(!other.admitted && other.since < since);
+        }
+    }
+
+    /// Those who stand on reserved routes go on with their own missions, or elsewhere; where none can, the route of one of them is reserved
+    /// likewise.
+    fn clear(&mut self, now: f64) {
+        /// Routes that are cleared for one another, at most.
+        const DEEP: usize = 6;
+        let (mut moved, mut blocked, mut level, mut is_new) = (0, None, self.reserved.len(), false);
+        while level > 0 {
+            level -= 1;
+            let Some((robot, route)) = self.reserved.get(level) else { continue };
+            let standing = self.scene(now).standing_on(*robot, route);
+            // Nobody in its way any more, but where it was to go others may have come.
+            if standing.is_empty() && level > 0 {
+                self.reserved.truncate(level);
+            }
+            // Whoever stands behind another one can go when that one does.
+            for by in standing.iter().chain(standing.iter().rev()).copied() {
+                if moved >= MOVES {
+                    return;
+                }
+                if self.missions[by].is_some_and(|mission| mission.admitted) || !self.scene(now).is_on_reserved(by) {
+                    continue;
+                }
+                if self.is_begun(by, now) {
+                    moved += 1;
+                    continue;
+                }
+                let begin = Instant::now();
+                let found = self.scene(now).make_way(by);
+                self.decisions.push(begin.elapsed());
+                match found {
+                    Ok(admitted) => {
+                        self.take(by, admitted);
+                        self.outcome.moved += 1;
+                        moved += 1;
+                    }
+                    Err(route) => blocked = blocked.or(route.map(|route| (by, route))),
+                }
+            }
+            if level == 0
+                && moved == 0
+                && !is_new
+                && self.reserved.len() < DEEP
+                && let Some(next) = blocked.take().filter(|next| self.reserved.iter().all(|route| route.0 != next.0))
+            {
+                self.reserved.push(next);
+                is_new = true;
+                level = self.reserved.len();
+            }
+        }
+    }
+}
