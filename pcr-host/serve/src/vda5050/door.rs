@@ -72,6 +72,7 @@ fn drop_null(value: &mut Value) {
 mod tests {
     use super::*;
     use crate::vda5050::order::Order;
+    use crate::vda5050::state::State;
 
     fn refused(text: &str) -> String {
         read::<Order>(text.as_bytes(), Limits::default()).unwrap_err().to_string()
@@ -96,10 +97,42 @@ mod tests {
         assert!(refused(&order("1e11")).starts_with("nodes[0].nodePosition.x: 100000000000.0 is out of range"));
         assert!(refused(&order("1e999")).contains("out of range"));
         assert!(refused(&order("null")).starts_with("nodes[0].nodePosition: missing field `x`"));
+        assert_eq!(
+            refused(&order("1").replace("\"headerId\":1", "\"headerId\":\"1\"")),
+            "headerId: not a number of a message"
+        );
+        assert_eq!(refused(&order("1").replace("\"t\"", "5")), "timestamp: not a text");
+        assert!(
+            refused(&order("1").replace("\"t\"", "null").replace("2.1.0", &"2".repeat(5_000)))
+                .starts_with("version: 5000 bytes")
+        );
         assert!(refused("{").starts_with("EOF"));
         assert!(refused(&"[".repeat(500)).contains("recursion"));
         assert!(refused(&format!("\"{}\"", "x".repeat(5_000))).contains("a text has at most"));
         assert!(refused(&format!("[{}0]", "0,".repeat(3_000))).contains("a list has at most 2000"));
         assert!(refused(&" ".repeat(300_000)).contains("at most 262144 are read"));
+    }
+
+    /// Lists of a state are kept as they were written, but for what is nothing.
+    #[test]
+    fn what_is_passed_on_is_read_all_the_same() {
+        let state = |node: &str| {
+            let text = format!(
+                r#"{{"orderId":"","orderUpdateId":0,"lastNodeId":"","lastNodeSequenceId":0,"driving":false,"actionStates":[],"operatingMode":"AUTOMATIC",
+                    "errors":[],"edgeStates":[],"nodeStates":[{{"nodeId":"A","sequenceId":2,"released":true,"own":[1]}},{node}]}}"#
+            );
+            read::<State>(text.as_bytes(), Limits::default())
+        };
+        let read = state(r#"{"nodeId":"B","sequenceId":4,"released":false,"nodePosition":null}"#).unwrap();
+        assert_eq!((read.base(), read.node_states.len()), (2, 2));
+        let written = serde_json::to_string(&read).unwrap();
+        assert!(written.contains(r#""own":[1]"#) && !written.contains("null"), "{written}");
+        for wrong in
+            [r#"{"nodeId":"B","sequenceId":"4","released":false}"#, r#"{"nodeId":5,"sequenceId":4,"released":false}"#]
+        {
+            let refusal = state(wrong).unwrap_err();
+            assert!(refusal.field == "nodeStates" && refusal.why.starts_with("[1]."), "{refusal}");
+        }
+        assert_eq!(state(r#"{"sequenceId":1e11}"#).unwrap_err().field, "nodeStates[1].sequenceId");
     }
 }

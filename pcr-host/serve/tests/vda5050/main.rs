@@ -3,6 +3,7 @@
 mod broker;
 mod dump;
 mod faults;
+mod following;
 mod lanes;
 mod runs;
 mod samples;
