@@ -9,6 +9,7 @@
 //! header     what every message begins with                         Header
 //! order      orders                                                 Order
 //! state      states, positions                                      State
+//! ahead      what is ahead of an order, to be written                NodeAhead, EdgeAhead
 //! messages   the others                                             Connection, InstantActions
 //! held       an order as its receiver keeps it, updates stitched    Held
 //! way        the path of an order, lengths of its nodes             Way
@@ -19,6 +20,7 @@
 //! station    the bridge at its broker, one at a time                Station
 //! ```
 
+pub mod ahead;
 mod bounds;
 pub mod bridge;
 pub mod door;

@@ -1,10 +1,11 @@
 //! What a vehicle says.
 
 use super::vehicle::Vehicle;
+use crate::vda5050::ahead::{EdgeAhead, NodeAhead};
 use crate::vda5050::header::Header;
 use crate::vda5050::messages::{Connection, Visualization};
 use crate::vda5050::stamp;
-use crate::vda5050::state::{EdgeAhead, Listed, NodeAhead, Pose, State, Velocity};
+use crate::vda5050::state::{Listed, Pose, State, Velocity};
 use crate::vda5050::topics::Kind;
 use crate::vda5050::version::Version;
 use serde::Serialize;

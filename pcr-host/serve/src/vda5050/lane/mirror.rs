@@ -1,9 +1,10 @@
 //! What the manager is told of the vehicle: its state, in the manager's numbers.
 
+use super::super::ahead::{EdgeAhead, NodeAhead};
 use super::super::door::{self, Limits, Refusal};
 use super::super::header::Header;
 use super::super::messages::{Connection, Factsheet, Responses};
-use super::super::state::{EdgeAhead, Listed, NodeAhead, State};
+use super::super::state::{Listed, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::{Lane, Post, To};
