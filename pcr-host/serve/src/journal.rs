@@ -1,8 +1,10 @@
 //! A file of entries that is only ever appended to: frames of a length, a checksum and JSON, each on the disc before anything in it is
 //! told to anybody.
 //!
-//! A frame that was cut off by the end of the process, or of the power, is the last one, and nobody has been told what is in it: it
+//! A frame that the end of the process, or of the power, has left incomplete is the last one, and nobody has been told what is in it: it
 //! is left out. Anything else that is wrong is damage, and no journal to go on with.
+//!
+//! After the last frame there are zeros: what is written over them is on the disc sooner than what makes a file longer.
 
 use crate::entry::{Entry, Keep};
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -21,28 +23,15 @@ const LONGEST: usize = 1 << 28;
 /// A journal that is longer than this, and than so many times what it was at the start, is begun anew \[bytes\].
 const LONG: (u64, u64) = (16 << 20, 8);
 
-/// Where frames are written to: a file, or what a test makes of one.
-pub trait Medium: Send {
-    /// Adds bytes at the end, and returns when they are there for good.
-    ///
-    /// # Errors
-    /// Any part of them may be there then.
-    fn add(&mut self, bytes: &[u8]) -> io::Result<()>;
-}
-
-impl Medium for File {
-    fn add(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)?;
-        self.sync_data()
-    }
-}
+/// The file becomes longer by so many zeros at a time \[bytes\].
+const ROOM: u64 = 1 << 20;
 
 /// What was found in a journal.
 #[derive(Debug)]
 pub struct Found {
     /// The entries, oldest first.
     pub entries: Vec<Entry>,
-    /// Bytes of a last frame that was cut off, and is left out.
+    /// Bytes of a last frame that is not complete, and is left out.
     pub torn: u64,
 }
 
@@ -53,9 +42,11 @@ pub struct Journal {
     file: File,
     /// Locked as long as it is open.
     _lock: File,
-    /// Bytes that are in it, and that were after the last start.
+    /// Where its frames end, and did after the last start \[bytes\].
     len: u64,
     first: u64,
+    /// Where its zeros end \[bytes\].
+    end: u64,
     /// A write failed: what is on the disc is not known.
     failed: bool,
 }
@@ -80,16 +71,32 @@ impl Journal {
         let mut file = OpenOptions::new().read(true).write(true).open(&path)?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)?;
-        let (entries, end) = read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
-        let torn = (bytes.len() - end) as u64;
-        if torn > 0 {
-            file.set_len(end as u64)?;
-            file.sync_all()?;
-        }
-        file.seek(SeekFrom::Start(end as u64))?;
-        let len = end as u64;
-        let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, failed: false };
+        let (entries, len) = read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
+        let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
+        let len = len as u64;
+        // Nothing of an incomplete frame is left where others will be.
+        file.set_len(len)?;
+        file.sync_all()?;
+        file.seek(SeekFrom::Start(len))?;
+        let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, end: len, failed: false };
         Ok((own, Found { entries, torn }))
+    }
+
+    /// Adds a frame, and returns when it is on the disc; any part of it may be there on an error.
+    fn add(&mut self, frame: &[u8]) -> io::Result<()> {
+        let len = self.len + frame.len() as u64;
+        if len > self.end {
+            let end = len + ROOM;
+            self.file.seek(SeekFrom::Start(self.end))?;
+            self.file.write_all(&vec![0; (end - self.end) as usize])?;
+            self.file.sync_all()?;
+            self.file.seek(SeekFrom::Start(self.len))?;
+            self.end = end;
+        }
+        self.file.write_all(frame)?;
+        self.file.sync_data()?;
+        self.len = len;
+        Ok(())
     }
 }
 
@@ -100,9 +107,8 @@ impl Keep for Journal {
         }
         let frame = frame(entries)?;
         self.failed = true;
-        self.file.add(&frame)?;
+        self.add(&frame)?;
         self.failed = false;
-        self.len += frame.len() as u64;
         Ok(())
     }
 
@@ -116,8 +122,9 @@ impl Keep for Journal {
         }
         self.failed = true;
         self.len = written(&self.folder, entries)?;
-        self.first = self.len;
-        self.file = OpenOptions::new().append(true).open(self.folder.join("journal"))?;
+        (self.first, self.end) = (self.len, self.len);
+        self.file = OpenOptions::new().write(true).open(self.folder.join("journal"))?;
+        self.file.seek(SeekFrom::Start(self.len))?;
         self.failed = false;
         Ok(())
     }
@@ -169,41 +176,29 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Entry>, usize), String> {
     }
     let (mut entries, mut at) = (Vec::new(), HEADER.len());
     while let Some(rest) = bytes.get(at..).filter(|rest| !rest.is_empty()) {
-        match next(rest) {
-            Frame::Whole(batch, length) => {
+        let damage = |why: &str| format!("at byte {at}: {why}");
+        match text(rest) {
+            Ok(text) => {
+                let batch: Vec<Entry> = serde_json::from_slice(text).map_err(|error| damage(&error.to_string()))?;
                 entries.extend(batch);
-                at += length;
+                at += FRAME + text.len();
             }
-            Frame::Torn => break,
-            Frame::Damaged(why) => return Err(format!("at byte {at}: {why}")),
+            // The next frame is begun when this one is on the disc. (None begins inside of another one: the fourth byte of a length is
+            // no character of JSON.)
+            Err(why) if (1..rest.len()).any(|later| text(&rest[later..]).is_ok()) => return Err(damage(why)),
+            Err(_) => break,
         }
     }
     Ok((entries, at))
 }
 
-enum Frame {
-    Whole(Vec<Entry>, usize),
-    /// The last one, cut off.
-    Torn,
-    Damaged(String),
-}
-
-fn next(bytes: &[u8]) -> Frame {
+/// What is in the frame that begins here, if all of it is there.
+fn text(bytes: &[u8]) -> Result<&[u8], &'static str> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
-    let (Some(length), Some(check), Some(sum)) = (word(0), word(4), word(8)) else { return Frame::Torn };
+    let (Some(length), Some(check), Some(sum)) = (word(0), word(4), word(8)) else { return Err("no whole frame") };
     if crc32fast::hash(&length.to_le_bytes()) != check {
-        // A file may have become longer before anything was written.
-        let empty = bytes.iter().all(|byte| *byte == 0);
-        return if empty { Frame::Torn } else { Frame::Damaged("a length that is none".into()) };
+        return Err("a length that is none");
     }
-    let end = FRAME + length as usize;
-    let Some(text) = bytes.get(FRAME..end) else { return Frame::Torn };
-    if crc32fast::hash(text) != sum {
-        let last = bytes.len() == end;
-        return if last { Frame::Torn } else { Frame::Damaged("entries that are not as they were written".into()) };
-    }
-    match serde_json::from_slice(text) {
-        Ok(batch) => Frame::Whole(batch, end),
-        Err(error) => Frame::Damaged(error.to_string()),
-    }
+    let text = bytes.get(FRAME..FRAME + length as usize).ok_or("no whole frame")?;
+    if crc32fast::hash(text) == sum { Ok(text) } else { Err("entries that are not as they were written") }
 }

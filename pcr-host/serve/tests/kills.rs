@@ -6,7 +6,7 @@ use pcr_serve::event::Event;
 use pcr_serve::journal::{self, Journal};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use std::collections::HashMap;
-use std::io::{BufRead, BufReader, ErrorKind, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::atomic::Ordering::Relaxed;
@@ -96,20 +96,57 @@ fn a_journal_that_is_damaged_is_not_gone_on_with() {
     let bytes = world.disc.bytes.lock().unwrap().clone();
     let (entries, end) = journal::read(&bytes).unwrap();
     assert_eq!(end, bytes.len());
-    // Any byte that is another one is noticed, but in the last frame: that counts as cut off.
-    let last = bytes.len() - 40;
-    for place in (0..last).step_by(37) {
+    // Any byte that is another one is noticed, but in the last frame: that counts as incomplete.
+    let last = last_frame(&bytes);
+    assert!(last > 1000);
+    for place in (0..bytes.len()).step_by(37) {
         let mut other = bytes.clone();
         other[place] ^= 0x10;
         match journal::read(&other) {
-            Err(why) => assert!(!why.is_empty()),
-            Ok((read, end)) => assert!(end < bytes.len() && read.len() < entries.len(), "byte {place}"),
+            Err(why) => assert!(place < last && !why.is_empty(), "byte {place}"),
+            Ok((read, end)) => assert!(place >= last && end == last && read.len() < entries.len(), "byte {place}"),
         }
     }
     let mut newer = bytes.clone();
     newer[12] = 2;
     assert_eq!(journal::read(&newer).unwrap_err(), "it is that of another version");
     assert_eq!(journal::read(b"{}").unwrap_err(), "it is no journal");
+}
+
+/// Where the last frame begins.
+fn last_frame(bytes: &[u8]) -> usize {
+    journal::read(&bytes[..bytes.len() - 1]).unwrap().1
+}
+
+/// The sectors of a frame may reach the disc in any order, and there are zeros where they are to be.
+#[test]
+fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
+    const SECTOR: usize = 64;
+    let mut world = World::new(3, 3, GOOD);
+    while world.now < 12.0 {
+        world.step();
+    }
+    let mut bytes = world.disc.bytes.lock().unwrap().clone();
+    pcr_serve::entry::Keep::keep(&mut world.disc.clone(), &world.supervisor.snapshot()).unwrap();
+    let whole = world.disc.bytes.lock().unwrap().clone();
+    let (before, last) = (journal::read(&bytes).unwrap().0.len(), bytes.len());
+    assert!(whole.len() - last > 4 * SECTOR && last_frame(&whole) == last);
+    let room = whole.len() + 1000;
+    bytes.resize(room, 0);
+    let sectors = (whole.len() - last).div_ceil(SECTOR);
+    for missing in 1..1_u32 << sectors.min(10) {
+        let mut torn = bytes.clone();
+        for (sector, part) in whole[last..].chunks(SECTOR).enumerate() {
+            // The last one of the pattern stands for all that follow.
+            if missing >> sector.min(9) & 1 == 0 {
+                torn[last + sector * SECTOR..][..part.len()].copy_from_slice(part);
+            }
+        }
+        let (entries, end) = journal::read(&torn).unwrap();
+        assert!(end == last && entries.len() == before, "{missing:b}");
+    }
+    let (entries, end) = journal::read(&[whole.clone(), vec![0; 1000]].concat()).unwrap();
+    assert!(end == whole.len() && entries.len() > before);
 }
 
 #[test]
@@ -146,7 +183,11 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot()).unwrap();
     drop(journal);
     let path = folder.join("journal");
-    std::fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(&[7, 0, 0]).unwrap();
+    let end = journal::read(&std::fs::read(&path).unwrap()).unwrap().1;
+    let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
+    assert!(file.metadata().unwrap().len() > end as u64, "zeros follow");
+    (&file).seek(SeekFrom::Start(end as u64)).unwrap();
+    (&file).write_all(&[0, 0, 7]).unwrap();
     let (mut journal, found) = Journal::open(&folder).unwrap();
     assert!(found.torn == 3 && !found.entries.is_empty());
     // Begun anew it holds the same.
