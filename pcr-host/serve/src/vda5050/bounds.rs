@@ -82,13 +82,26 @@ struct Check<'f> {
 }
 
 impl Check<'_> {
-    fn refused<E: Error>(self, why: impl fmt::Display) -> E {
+    fn refused<E: Error>(&mut self, why: impl fmt::Display) -> E {
         self.fault.why = Some(why.to_string());
         E::custom("")
     }
 
+    /// Of what is in it.
+    fn inner(&mut self, asked: Asked) -> Check<'_> {
+        Check { limits: self.limits, fault: &mut *self.fault, depth: self.depth + 1, asked }
+    }
+
+    /// What is in it, under this name, was refused.
+    fn named<E>(&mut self, error: E, name: impl fmt::Display) -> E {
+        if self.fault.why.is_some() {
+            self.fault.path.push(name.to_string());
+        }
+        error
+    }
+
     /// Something that is no text, and no count but where it is one.
-    fn other<E: Error>(self, is_count: bool) -> Result<(), E> {
+    fn other<E: Error>(&mut self, is_count: bool) -> Result<(), E> {
         match self.asked {
             Asked::Text => Err(self.refused("not a text")),
             Asked::Count if !is_count => Err(self.refused("not a number of a message")),
@@ -96,7 +109,7 @@ impl Check<'_> {
         }
     }
 
-    fn number<E: Error>(self, number: impl fmt::Debug, magnitude: f64, is_count: bool) -> Result<(), E> {
+    fn number<E: Error>(&mut self, number: impl fmt::Debug, magnitude: f64, is_count: bool) -> Result<(), E> {
         if magnitude.abs() <= LARGEST {
             return self.other(is_count);
         }
@@ -124,23 +137,23 @@ impl<'de> Visitor<'de> for Check<'_> {
         Ok(())
     }
 
-    fn visit_bool<E: Error>(self, _: bool) -> Result<(), E> {
+    fn visit_bool<E: Error>(mut self, _: bool) -> Result<(), E> {
         self.other(false)
     }
 
-    fn visit_u64<E: Error>(self, number: u64) -> Result<(), E> {
+    fn visit_u64<E: Error>(mut self, number: u64) -> Result<(), E> {
         self.number(number, number as f64, true)
     }
 
-    fn visit_i64<E: Error>(self, number: i64) -> Result<(), E> {
+    fn visit_i64<E: Error>(mut self, number: i64) -> Result<(), E> {
         self.number(number, number as f64, false)
     }
 
-    fn visit_f64<E: Error>(self, number: f64) -> Result<(), E> {
+    fn visit_f64<E: Error>(mut self, number: f64) -> Result<(), E> {
         self.number(number, number, false)
     }
 
-    fn visit_str<E: Error>(self, text: &str) -> Result<(), E> {
+    fn visit_str<E: Error>(mut self, text: &str) -> Result<(), E> {
         if self.asked == Asked::Count {
             return self.other(false);
         }
@@ -151,45 +164,29 @@ impl<'de> Visitor<'de> for Check<'_> {
         Ok(())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        let Self { limits, fault, depth, asked } = self;
-        Check { limits, fault: &mut *fault, depth, asked }.other(false)?;
+    fn visit_seq<A: SeqAccess<'de>>(mut self, mut list: A) -> Result<(), A::Error> {
+        self.other(false)?;
+        let most = self.limits.list;
         for k in 0.. {
-            let element = Check { limits, fault: &mut *fault, depth: depth + 1, asked: Asked::Anything };
-            match list.next_element_seed(element) {
+            match list.next_element_seed(self.inner(Asked::Anything)) {
                 Ok(None) => break,
-                Ok(Some(())) if k < limits.list => {}
-                Ok(Some(())) => {
-                    fault.why = Some(format!("too long; a list has at most {} elements", limits.list));
-                    return Err(A::Error::custom(""));
-                }
-                Err(error) => {
-                    if fault.why.is_some() {
-                        fault.path.push(format!("[{k}]"));
-                    }
-                    return Err(error);
-                }
+                Ok(Some(())) if k < most => {}
+                Ok(Some(())) => return Err(self.refused(format!("too long; a list has at most {most} elements"))),
+                Err(error) => return Err(self.named(error, format_args!("[{k}]"))),
             }
         }
         Ok(())
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<(), A::Error> {
-        let Self { limits, fault, depth, asked } = self;
-        Check { limits, fault: &mut *fault, depth, asked }.other(false)?;
+    fn visit_map<A: MapAccess<'de>>(mut self, mut members: A) -> Result<(), A::Error> {
+        self.other(false)?;
         while let Some(Name(name)) = members.next_key()? {
             if name == VERBATIM {
                 members.next_value::<IgnoredAny>()?;
                 continue;
             }
-            let asked = Asked::of(depth, &name);
-            let value = Check { limits, fault: &mut *fault, depth: depth + 1, asked };
-            if let Err(error) = members.next_value_seed(value) {
-                if fault.why.is_some() {
-                    fault.path.push(format!(".{name}"));
-                }
-                return Err(error);
-            }
+            let asked = Asked::of(self.depth, &name);
+            members.next_value_seed(self.inner(asked)).map_err(|error| self.named(error, format_args!(".{name}")))?;
         }
         Ok(())
     }

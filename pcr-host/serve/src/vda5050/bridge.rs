@@ -145,13 +145,13 @@ impl Bridge {
             return;
         };
         let limits = settings.limits;
-        let place = self.places.get(&key).copied();
-        let Some((place, lane)) = place.and_then(|place| Some((place, self.lanes.get_mut(place)?))) else {
+        let Some(&place) = self.places.get(&key) else {
             self.counts.foreign += 1;
             return;
         };
         self.counts.read += 1;
         self.touched.insert(place);
+        let lane = &mut self.lanes[place];
         let result = match kind {
             Kind::State => lane.state(supervisor, payload, limits, is_third, now),
             Kind::Visualization => lane
@@ -227,10 +227,9 @@ impl Bridge {
     /// Takes what the supervisor has settled, and sends nobody anything for it yet.
     pub fn told(&mut self, events: &[Event]) {
         for event in events {
-            let place = key(event.robot()).and_then(|key| self.places.get(&key).copied());
-            if let Some((place, lane)) = place.and_then(|place| Some((place, self.lanes.get_mut(place)?))) {
+            if let Some(&place) = key(event.robot()).and_then(|key| self.places.get(&key)) {
                 self.touched.insert(place);
-                lane.told(event);
+                self.lanes[place].told(event);
             }
         }
     }
