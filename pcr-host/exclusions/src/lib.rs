@@ -105,7 +105,7 @@ impl Target {
 
     /// What a file beside a layout is.
     pub fn of_text(text: &str) -> Option<Self> {
-        if vda5050::is_zones(text) { Some(Self::Vda5050) } else { own::is_locks(text).then_some(Self::Pcr) }
+        if own::is_locks(text) { Some(Self::Pcr) } else { vda5050::is_zones(text).then_some(Self::Vda5050) }
     }
 }
 

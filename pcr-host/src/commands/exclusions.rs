@@ -119,10 +119,9 @@ fn audit(
         Some(beside) => (beside, text(beside)?),
         None => (file, text(file)?),
     };
-    let format = import.from.or_else(|| Format::of(file, &content));
     let target = match beside {
         Some(_) => Target::of_text(&content),
-        None => format.and_then(Target::of_layout),
+        None => import.from.or_else(|| Format::of(file, &content)).and_then(Target::of_layout),
     };
     let target = target.ok_or_else(|| match beside {
         Some(_) => Stop::wrong(source, "neither a zone set of VDA 5050 nor a lock file"),
