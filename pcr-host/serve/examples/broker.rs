@@ -308,8 +308,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Some((from, before, copied)) = from else { return Ok(()) };
     let (time, core_time) = (from.elapsed().as_secs_f64(), used(&program) - before);
     let rate = (own.copied - copied) as f64 / time;
+    let way = own.members.iter().map(|member| member.said).sum::<f64>() / own.members.len() as f64;
     println!(
-        "{count} vehicles, {rate:.0} states a second, {time:.0} s; the supervisor used {:.0} % of a core",
+        "{count} vehicles, {rate:.0} states a second, {time:.0} s, {way:.1} m each; the supervisor used {:.0} % of a core",
         100.0 * core_time / time
     );
     told("a state to its copy for the manager", own.copies);
