@@ -16,47 +16,63 @@ const SPACING: f64 = 1.5;
 /// Neighbours that each node is joined with, both ways.
 const NEIGHBOURS: usize = 6;
 
+/// Of curved roadmaps one way in so many is an arc, which turns by so much \[rad\].
+const ARCS: usize = 4;
+const SWEEP: f64 = 1.0;
+
+/// Unsafe delays of arcs have no closed form: larger curved roadmaps than this are for locks only \[nodes\].
+const LARGEST: usize = 1_000;
+
 /// One roadmap: edges, pairs found, and seconds, of locks and of delays.
 struct Measured {
     edges: f64,
     locks: [f64; 2],
-    delays: [f64; 2],
+    delays: Option<[f64; 2]>,
 }
 
 pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let sizes: &[usize] = match extent {
-        Extent::Full => &[300, 1_000, 3_000, 10_000, 30_000],
+        Extent::Full => &[300, 1_000, 3_000, 10_000, 30_000, 150_000],
         Extent::Quick => &[100, 200],
     };
     let mut text = format!(
         "## Roadmaps\n\nNodes at random, one on {} m² on average, each joined with its {NEIGHBOURS} nearest ones in both directions; discs of {RADIUS} m at 1 m/s. \
         Locks: which pairs of edges can touch, and on which lengths (`pcr locks`). Unsafe delays: the interval of start delays at which two vehicles on them touch \
-        (`pcr locks --delays --speed 1`), each edge with itself included. All cores; nothing is printed.\n\n\
-        | edges | locks | s | µs a lock | unsafe delays | s | µs an interval |\n|---:|---:|---:|---:|---:|---:|---:|\n",
+        (`pcr locks --delays --speed 1`), each edge with itself included. All cores; nothing is printed.\n",
         digits(SPACING * SPACING)
     );
-    let mut all = Vec::new();
-    for &nodes in sizes {
-        let measured =
-            measured(&roadmap(nodes, 1)).map_err(|error| Problem::Method("locks".into(), error.to_string()))?;
-        let each =
-            |[count, seconds]: [f64; 2]| format!("{count} | {} | {}", digits(seconds), digits(1e6 * seconds / count));
-        let _ = writeln!(text, "| {} | {} | {} |", measured.edges, each(measured.locks), each(measured.delays));
-        all.push(measured);
+    for (is_curved, title) in [(false, "All edges straight"), (true, "One way in four an arc that turns by 1 rad")] {
+        let all = sizes.iter().map(|&nodes| measured(&roadmap(nodes, 1, is_curved), !is_curved || nodes <= LARGEST));
+        let all = all.collect::<Result<Vec<_>, _>>();
+        table(&all.map_err(|error| Problem::Method("locks".into(), error.to_string()))?, title, &mut text);
     }
-    let of = |time: fn(&Measured) -> f64| {
-        exponent(&all.iter().map(|measured| [measured.edges, time(measured)]).collect::<Vec<_>>())
+    Ok(Section { text, pictures: Vec::new() })
+}
+
+fn table(all: &[Measured], title: &str, text: &mut String) {
+    let _ = write!(
+        text,
+        "\n{title}:\n\n\
+        | edges | locks | s | µs a lock | unsafe delays | s | µs an interval |\n|---:|---:|---:|---:|---:|---:|---:|\n"
+    );
+    let each =
+        |[count, seconds]: [f64; 2]| format!("{count} | {} | {}", digits(seconds), digits(1e6 * seconds / count));
+    for measured in all {
+        let delays = measured.delays.map_or("– | – | –".to_owned(), each);
+        let _ = writeln!(text, "| {} | {} | {delays} |", measured.edges, each(measured.locks));
+    }
+    let of = |time: fn(&Measured) -> Option<[f64; 2]>| {
+        exponent(&all.iter().filter_map(|measured| Some([measured.edges, time(measured)?[1]])).collect::<Vec<_>>())
     };
     let _ = writeln!(
         text,
         "\nTime grows with the power {:.2} of the edges (locks) and {:.2} (unsafe delays), fitted to the sizes above.",
-        of(|measured| measured.locks[1]),
-        of(|measured| measured.delays[1])
+        of(|measured| Some(measured.locks)),
+        of(|measured| measured.delays)
     );
-    Ok(Section { text, pictures: Vec::new() })
 }
 
-fn measured(imported: &Imported) -> Result<Measured, ImportError> {
+fn measured(imported: &Imported, with_delays: bool) -> Result<Measured, ImportError> {
     let count = |found: usize, start: Instant| [found as f64, start.elapsed().as_secs_f64()];
     let (start, mut found) = (Instant::now(), 0);
     Sweep::new(imported, false)?.each(&|_, _| {}, <[Found]>::len, |some| {
@@ -64,17 +80,21 @@ fn measured(imported: &Imported) -> Result<Measured, ImportError> {
         Ok::<(), ImportError>(())
     })?;
     let locks = count(found, start);
-    let (start, mut found) = (Instant::now(), 0);
-    let driving = Driving { speed: 1.0, acceleration: None };
-    Delays::new(imported, driving, false)?.each(&|_, _| {}, <[Unsafe]>::len, |some| {
-        found += some;
-        Ok::<(), ImportError>(())
-    })?;
-    Ok(Measured { edges: imported.layout.edges.len() as f64, locks, delays: count(found, start) })
+    let delays = || {
+        let (start, mut found) = (Instant::now(), 0);
+        let driving = Driving { speed: 1.0, acceleration: None };
+        Delays::new(imported, driving, false)?.each(&|_, _| {}, <[Unsafe]>::len, |some| {
+            found += some;
+            Ok::<(), ImportError>(())
+        })?;
+        Ok(count(found, start))
+    };
+    let delays = with_delays.then(delays).transpose()?;
+    Ok(Measured { edges: imported.layout.edges.len() as f64, locks, delays })
 }
 
-/// A roadmap of so many nodes.
-fn roadmap(count: usize, seed: u64) -> Imported {
+/// A roadmap of so many nodes, with arcs among its ways.
+fn roadmap(count: usize, seed: u64, is_curved: bool) -> Imported {
     let (side, mut random) = (SPACING * (count as f64).sqrt(), Random(seed));
     let places: Vec<[f64; 2]> = (0..count).map(|_| [0; 2].map(|_| random.within(0.0, side))).collect();
     // Nodes by squares that hold some of them each: neighbours are looked for around their own.
@@ -99,11 +119,16 @@ fn roadmap(count: usize, seed: u64) -> Imported {
     }
     pairs.sort_unstable();
     pairs.dedup();
-    let both = pairs.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]);
-    let edges = both.enumerate().map(|(id, ends)| {
+    let sweeps = (0..pairs.len()).map(|way| if is_curved && way % ARCS == 0 { SWEEP } else { 0.0 });
+    let both = pairs.iter().zip(sweeps).flat_map(|(&[a, b], sweep)| [([a, b], sweep), ([b, a], -sweep)]);
+    let edges = both.enumerate().map(|(id, (ends, sweep))| {
         let [[x, y], [u, v]] = ends.map(|node| places[node]);
-        let shape = PathSegment::Line { length: (u - x).hypot(v - y) };
-        let curve = vec![Placed { at: [x, y], heading: (v - y).atan2(u - x), shape }];
+        let (length, heading) = ((u - x).hypot(v - y), (v - y).atan2(u - x) - sweep / 2.0);
+        let shape = match sweep {
+            0.0 => PathSegment::Line { length },
+            _ => PathSegment::Arc { radius: length / (2.0 * (sweep.abs() / 2.0).sin()), sweep },
+        };
+        let curve = vec![Placed { at: [x, y], heading, shape }];
         Edge { id: Id::Number(id as u64), ends, curve, two_way: false, speed: None, rotation: None, deviation: 0.0 }
     });
     let node = |(id, &at): (usize, &[f64; 2])| Node { id: Id::Number(id as u64), name: None, level: 0, at };
