@@ -188,6 +188,11 @@ pub(crate) fn methods() -> Vec<Box<dyn Method>> {
     methods
 }
 
+/// The names of all methods, those that lack something too.
+pub fn names() -> Vec<String> {
+    methods().iter().map(|method| method.name()).collect::<std::collections::BTreeSet<_>>().into_iter().collect()
+}
+
 /// Libraries in C++ that methods use, with their versions, or that they are left out.
 #[cfg(feature = "peers")]
 pub(crate) fn libraries() -> Vec<String> {

@@ -22,10 +22,13 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
 /// # Errors
 /// As [`write()`], and what `fill` refuses.
 pub fn stream<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -> Result<T, E>) -> Result<T, E> {
+    // Before links are followed: what a shell calls /dev/fd/63 is a link to no name.
+    if fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+        return fill(&mut OpenOptions::new().write(true).open(file)?);
+    }
     let target = followed(file)?;
     match fs::metadata(&target) {
         Ok(old) if old.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "a folder").into()),
-        Ok(old) if !old.is_file() => fill(&mut OpenOptions::new().write(true).open(&target)?),
         Ok(old) => {
             // Its folder would let it be replaced even where it is read-only.
             OpenOptions::new().write(true).open(&target)?;

@@ -174,6 +174,11 @@ fn all_called(labels: &Labels, ids: &[u64]) -> String {
     ids.iter().map(|id| called(labels, *id)).collect::<Vec<_>>().join(" and ")
 }
 
+/// How many there are, in words: `1 lock`, `2 locks`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The name of a scenario in a heading.
 pub fn heading(name: &str) -> String {
     if name.is_empty() { "scenario".into() } else { printable(name) }

@@ -61,6 +61,9 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        if self.limit && self.printed.form() == Form::Csv {
+            return Err(Stop::arguments("--limit is for --format json and table"));
+        }
         let certified = self.certified()?;
         if certified.is_empty() {
             // Nothing was proved.

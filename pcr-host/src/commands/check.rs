@@ -1,6 +1,7 @@
 //! `pcr check`.
 
 use super::number::{Number, with_scalar};
+use super::sources::without_margin;
 use super::work::{Work, run};
 use super::{CONFLICTS, Form, Printed, Stop};
 use clap::Args;
@@ -61,6 +62,7 @@ impl Arguments {
         if self.certify && self.printed.form() == Form::Csv {
             return Err(Stop::arguments("--certify is for --format json and table"));
         }
+        without_margin(&self.import)?;
         let work =
             Check { form: self.printed.form(), scalar: self.scalar, closest: self.closest, certify: self.certify };
         let found = run(&work, self.files, &self.import, &self.printed)?;

@@ -1,9 +1,10 @@
 //! `pcr compare`.
 
+use super::sources::without_margin;
 use super::{STATUSES, Stop, quiet, scenario, sources};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
-use pcr_comparing::compare::{Comparison, Effort, Question};
+use pcr_comparing::compare::{self, Comparison, Effort, Question};
 use pcr_comparing::report;
 use pcr_formats::import::Options;
 use pcr_formats::output;
@@ -62,6 +63,12 @@ const SLICES: usize = 20_000;
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        without_margin(&self.import)?;
+        let names = compare::names();
+        if let Some(word) = self.methods.iter().find(|word| !names.iter().any(|name| name.contains(word.as_str()))) {
+            let names = names.join(", ");
+            return Err(Stop::arguments(format!("--method {word}: no method has a name with that; there are {names}")));
+        }
         let files = sources(self.files)?;
         let format = if self.json { Output::Json } else { self.format };
         let mut out: Box<dyn Write> = match format {

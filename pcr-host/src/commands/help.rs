@@ -86,6 +86,7 @@ pub(super) fn useless(command: &str) -> &'static [&'static str] {
             &["routes", "speed", "acceleration", "rotation", "rotation_acceleration", "corner_radius", "horizon"]
         }
         "traffic" => &["routes", "horizon"],
+        "check" | "compare" | "map" => &["margin"],
         "nodes" => &[
             "routes",
             "radius",

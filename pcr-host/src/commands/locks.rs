@@ -190,6 +190,13 @@ impl Arguments {
             if self.index.is_some() {
                 return Err(Stop::arguments("--index beside a table of locks: the layout is expected there"));
             }
+            let given = self.import.given().first().copied().or(self.nodes.then_some("--nodes"));
+            if let Some(option) = given {
+                return Err(Stop::arguments(format!(
+                    "{option} is of no use: {} has its locks already",
+                    file.display()
+                )));
+            }
             found(file, None)?
         } else if let Some(index) = &self.index {
             found(index, Some(origin(&layout(file, &self.import, STANDING, false)?)))?

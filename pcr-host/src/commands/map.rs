@@ -1,6 +1,6 @@
 //! `pcr map`.
 
-use super::sources::source;
+use super::sources::{source, without_margin};
 use super::{STATUSES, Stop, quiet, scenario};
 use crate::progress::Progress;
 use clap::Args;
@@ -46,6 +46,7 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        without_margin(&self.import)?;
         let file = &source(self.file.clone())?;
         let scenario = scenario(file, &self.import)?;
         // What is wrong with the scenario is said before anything is written.

@@ -151,6 +151,12 @@ impl Asked {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
+        if matches!(self.method, Means::Speed) && (self.prove || self.time_limit.is_some()) {
+            let option = if self.prove { "--prove" } else { "--time-limit" };
+            return Err(Stop::arguments(format!(
+                "{option} is of no use: only start delays are searched for that long"
+            )));
+        }
         let sources = gathered(self.files.clone(), &self.import)?;
         if sources.len() > 1 {
             if self.output.as_ref().is_some_and(|output| !is_standard(Some(output))) {

@@ -28,6 +28,9 @@ Examples:
   pcr simulate fleet.json --seed 7             the same with other disturbances
   pcr simulate fleet.json --noise 0.005        with a better camera";
 
+/// From one plan to the next \[s\].
+const REPLAN: f64 = 2.0;
+
 /// How often a foraging robot goes to its resource and back.
 const TRIPS: u32 = 3;
 
@@ -47,9 +50,9 @@ pub(super) struct Arguments {
     /// The same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Seconds from one plan to the next, 0.05 to 3600
-    #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = |text: &str| within(text, 0.05, 3600.0))]
-    replan: f64,
+    /// Seconds from one plan to the next under pcr, 0.05 to 3600 (2 if left out)
+    #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
+    replan: Option<f64>,
     /// Largest error of observed positions in m, 0 to 10
     #[arg(long, value_name = "M", default_value_t = 0.015, value_parser = |text: &str| within(text, 0.0, 10.0))]
     noise: f64,
@@ -106,6 +109,12 @@ impl Arguments {
         if !self.foraging && self.trips.is_some() {
             return Err(Stop::arguments("--trips is of no use: only foraging robots go to and fro"));
         }
+        if matches!(self.controller, Some(Choice::Potential | Choice::Orca)) {
+            let margin = self.import.margin.map(|_| "--margin");
+            if let Some(option) = self.replan.map(|_| "--replan").or(margin) {
+                return Err(Stop::arguments(format!("{option} is of no use: only pcr plans, and keeps margins")));
+            }
+        }
         let file = if self.foraging { PathBuf::from("--foraging") } else { source(self.file)? };
         let named = |failure: Failure| Stop::wrong(&file, failure);
         let task = match self.foraging {
@@ -114,7 +123,7 @@ impl Arguments {
         };
         let Self { noise, slip, delay, drift, .. } = self;
         let disturbance = Disturbance { noise, slip, delay, drift };
-        let settings = Settings { seed: self.seed, replan: self.replan, disturbance };
+        let settings = Settings { seed: self.seed, replan: self.replan.unwrap_or(REPLAN), disturbance };
         let controllers = self.controller.map_or(Controller::ALL.to_vec(), |choice| vec![choice.into()]);
         let progress = Progress::new("runs");
         let mut outcomes = Vec::new();

@@ -37,6 +37,16 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
     Ok(scenario)
 }
 
+/// Refuses a margin for a command that looks at the discs themselves.
+pub(super) fn without_margin(import: &Options) -> Result<(), Stop> {
+    match import.margin {
+        Some(_) => Err(Stop::arguments(
+            "--margin is of no use: this is about contacts of the discs themselves; pcr regions and pcr plan keep margins",
+        )),
+        None => Ok(()),
+    }
+}
+
 /// What one answer is about.
 pub(super) enum Source {
     File(PathBuf),

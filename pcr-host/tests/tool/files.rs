@@ -88,6 +88,9 @@ fn full_devices_and_folders_that_take_no_file_are_errors() {
     }
     run(&["plan", PAPER, "-q", "-o", "/dev/null"]).ok();
     assert!(fs::metadata("/dev/null").is_ok_and(|null| !null.is_file()), "a device is no file to be replaced");
+    // A pipe, as the shell gives one for `>(gzip)`, whose name is a link to no file.
+    let through = run(&["plan", PAPER, "-q", "-o", "/dev/stdout"]).ok();
+    assert!(through.starts_with("{ \"format\": \"pcr-scenario\"") && through.ends_with("] }\n"), "{through}");
     let folder = folder("read-only");
     let file = folder.join("plan.json");
     fs::write(&file, "before").unwrap();

@@ -48,6 +48,9 @@ fn options_are_listed_where_they_do_something() {
         !help("locks").contains("--route") && help("locks").contains("--speed") && help("locks").contains("--radius")
     );
     assert!(!help("traffic").contains("--horizon") && !help("import").contains("--from"));
+    assert!(
+        !help("check").contains("--margin") && !help("map").contains("--margin") && help("plan").contains("--margin")
+    );
     assert!(!help("demo").contains("--radius") && !help("evaluate").contains("--radius"));
 }
 
@@ -55,6 +58,12 @@ fn options_are_listed_where_they_do_something() {
 fn options_that_do_nothing_are_refused() {
     let scenario = file("habits", "scenario.json", crossing().to_string());
     let (nav2, plan) = (real("nav2/aws_graph.geojson"), real("ccbs/example_grid_task_log.xml"));
+    let index = file("habits", "aws.locks", "");
+    run(&["locks", &nav2, "--radius", "0.3", "--index", &index, "-q"]).ok();
+    let maps = directory("habits").join("no-maps");
+    let (maps, discs) =
+        (maps.to_str().unwrap(), "--margin is of no use: this is about contacts of the discs themselves");
+    let (delays, held) = ("is of no use: only start delays are searched for that long", "is of no use: ");
     for (arguments, reason) in [
         (&["check", &scenario, "--horizon"][..], "--horizon is of no use: only orders of VDA 5050 have a horizon"),
         (&["check", &scenario, "--route", "1:2"], "--route is of no use: a scenario has its own vehicles and paths"),
@@ -66,6 +75,24 @@ fn options_that_do_nothing_are_refused() {
         (&["nodes", &nav2, "--radius", "1"], "--radius is of no use: this command lists what is in the file"),
         (&["simulate", &scenario, "--trips", "2"], "--trips is of no use: only foraging robots go to and fro"),
         (&["simulate", "--foraging", "--radius", "1"], "--radius is of no use: the foraging robots are as they are"),
+        (&["simulate", &scenario, "--controller", "orca", "--replan", "1"], "--replan is of no use: only pcr plans"),
+        (
+            &["simulate", &scenario, "--controller", "potential", "--margin", "1"],
+            "--margin is of no use: only pcr plans",
+        ),
+        (&["check", &scenario, "--margin", "0.1"], discs),
+        (&["compare", &scenario, "--margin", "0.1"], discs),
+        (&["map", &scenario, "--margin", "0.1", "-o", maps], discs),
+        (&["check", &plan, "--partial"], "--partial is of no use: it is read whole or refused"),
+        (&["plan", &scenario, "--method", "speed", "--prove"], delays),
+        (&["plan", &scenario, "--method", "speed", "--time-limit", "5"], delays),
+        (&["certify", &scenario, "--format", "csv", "--limit"], "--limit is for --format json and table"),
+        (
+            &["compare", &scenario, "--method", "nonsense"],
+            "--method nonsense: no method has a name with that; there are ",
+        ),
+        (&["locks", &index, "--edge", "100", "--radius", "0.9"], held),
+        (&["locks", &index, "--edge", "100", "--nodes"], held),
     ] {
         let message = run(arguments).failed(2);
         assert!(message.contains(reason), "{arguments:?}: {message}");

@@ -165,6 +165,8 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/agents/0/id", Value::Null),
         ("/agents/0/label", json!("AGV-7")),
         ("/agents/0/label", json!("a\u{1b}b")),
+        ("/agents/0/label", json!("a\u{202e}b")),
+        ("/agents/0/label", json!("a\u{2028}b")),
         ("/agents/0/label", json!("x".repeat(201))),
         ("/agents/0/label", json!(7)),
         ("/agents/0/radius", json!(0)),

@@ -89,6 +89,7 @@ fn useless(field: &str, kind: Kind) -> Option<&'static str> {
         ("corner_radius", Kind::Orders | Kind::Paths | Kind::Plan) => {
             Some("only routes on layouts have corners to round")
         }
+        ("partial", Kind::Paths | Kind::Plan) => Some("it is read whole or refused"),
         ("tolerance", Kind::Plan | Kind::Layout(Format::Rmf | Format::OpenDrive | Format::Ccbs | Format::Nav2)) => {
             Some("there is no curve in the file but lines and arcs")
         }

@@ -47,9 +47,15 @@ pub(super) fn called(id: u64, label: &str) -> String {
     if label.is_empty() { id.to_string() } else { format!("{id} {label}") }
 }
 
+/// What would end a line, or turn around what is printed beside it.
+fn controls(c: char) -> bool {
+    let lines_and_directions = ['\u{2028}'..='\u{202e}', '\u{2066}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
+    c.is_control() || lines_and_directions.iter().any(|range| range.contains(&c))
+}
+
 /// What a label may not be.
 pub(super) fn fault(label: &str) -> Option<String> {
-    if let Some(c) = label.chars().find(|c| c.is_control()) {
+    if let Some(c) = label.chars().find(|&c| controls(c)) {
         return Some(format!("has the control character {}; allowed is printable text", c.escape_default()));
     }
     let length = label.chars().count();
@@ -58,5 +64,5 @@ pub(super) fn fault(label: &str) -> Option<String> {
 
 /// Text from elsewhere as a label: without control characters, and not too long.
 pub fn label(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(LONGEST_LABEL).collect()
+    text.chars().filter(|&c| !controls(c)).take(LONGEST_LABEL).collect()
 }

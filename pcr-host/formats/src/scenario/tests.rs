@@ -238,6 +238,9 @@ fn labels_are_printable_text() {
     refused(&with("/label", &json!(5)), "agent 7, label: 5 where a string is expected");
     let control = "agent 7, label: has the control character \\u{1b}; allowed is printable text";
     refused(&with("/label", &json!("\u{1b}[2J")), control);
+    let turns = "agent 7, label: has the control character \\u{202e}; allowed is printable text";
+    refused(&with("/label", &json!("AGV \u{202e}7")), turns);
+    assert_eq!(crate::scenario::label("A\u{2028}G\u{202e}V\n"), "AGV");
     let long = with("/label", &json!("x".repeat(LONGEST_LABEL + 1)));
     refused(&long, "agent 7, label: has 201 characters; allowed are up to 200");
     // Messages about the agent name it.

@@ -1,6 +1,7 @@
 //! Text in aligned columns.
 
 use std::io::{self, Write};
+use unicode_width::UnicodeWidthStr;
 
 /// What a row of a table takes while the widths of its columns are not known \[bytes\]: up to eleven cells, each a text.
 pub const ROW_BYTES: u64 = 800;
@@ -24,7 +25,7 @@ impl Columns {
     /// Adds a row.
     pub fn row(&mut self, cells: Vec<String>) {
         for (width, cell) in self.widths.iter_mut().zip(&cells) {
-            *width = (*width).max(cell.chars().count());
+            *width = (*width).max(cell.width());
         }
         self.rows.push(cells);
     }
@@ -37,7 +38,10 @@ impl Columns {
         for row in &self.rows {
             let mut line = String::new();
             for ((cell, &width), &left) in row.iter().zip(&self.widths).zip(&self.left) {
-                line.push_str(&if left { format!("  {cell:<width$}") } else { format!("  {cell:>width$}") });
+                // Not by `{cell:>width$}`, which counts characters: some are two columns wide, and accents none.
+                let blanks = " ".repeat(width.saturating_sub(cell.width()));
+                let [before, after] = if left { ["", &blanks] } else { [&blanks, ""] };
+                line.extend(["  ", before, cell, after]);
             }
             writeln!(out, "{}", line.trim_end())?;
         }
@@ -57,5 +61,22 @@ impl Columns {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_aligned_by_what_is_seen() {
+        let mut columns = Columns::new(&["id", "<name", "t"]);
+        for name in ["机器人", "e\u{301}", "AGV-7"] {
+            columns.row(vec!["1".into(), name.into(), "0.5".into()]);
+        }
+        let mut text = Vec::new();
+        columns.write(&mut text).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        assert_eq!(text, "  id  name      t\n   1  机器人  0.5\n   1  e\u{301}       0.5\n   1  AGV-7   0.5\n");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use super::locks::LocksUnprinted;
-use super::{Document, json, printable, quoted};
+use super::{Document, counted, json, printable, quoted};
 use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
 use crate::memory;
 use pcr_formats::import::{Id, ImportError};
@@ -216,13 +216,12 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> {
     let name = if table.layout.is_empty() { "layout" } else { &table.layout };
     let (count, Driving { speed, acceleration }) = (table.delays.len(), table.driving);
-    let plural = if count == 1 { "" } else { "s" };
     let how = match acceleration {
         Some(acceleration) => format!("from rest to rest with {speed} m/s and {acceleration} m/s²"),
         None => format!("at {speed} m/s"),
     };
     let (name, radius) = (printable(name), table.vehicle.radius);
-    writeln!(out, "{name}: {count} interval{plural} of unsafe delays, radius {radius} m, {how}")?;
+    writeln!(out, "{name}: {} of unsafe delays, radius {radius} m, {how}", counted(count, "interval"))?;
     let text = |id: &Id, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
     if count > 0 {
         let mut columns = Columns::new(&["<a", "<b", "b later by [s]", "to"]);
@@ -232,7 +231,7 @@ pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> 
         columns.write(out)?;
     }
     if let Some(nodes) = &table.nodes {
-        writeln!(out, "{} intervals of times at nodes", nodes.len())?;
+        writeln!(out, "{} of times at nodes", counted(nodes.len(), "interval"))?;
         let mut columns = Columns::new(&["<node", "<edge", "from [s]", "to"]);
         for NodeTimes { node, edge, backward, time } in nodes {
             columns.row([[text(node, false), text(edge, *backward)], range(*time)].concat());

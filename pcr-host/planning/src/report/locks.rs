@@ -1,7 +1,7 @@
 //! Tables of locks, for programs and for reading.
 
 use super::columns::Columns;
-use super::{Document, json, printable, quoted};
+use super::{Document, counted, json, printable, quoted};
 use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
@@ -165,7 +165,6 @@ pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
     let name = if locks.layout.is_empty() { "layout" } else { &locks.layout };
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();
     pairs.dedup();
-    let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let (count, pairs) = (counted(locks.locks.len(), "lock"), counted(pairs.len(), "pair"));
     let vehicle = match (locks.vehicle.discs.len(), locks.vehicle.radius) {
         (0, radius) => format!("radius {radius} m"),
@@ -182,7 +181,7 @@ pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
         columns.write(out)?;
     }
     if let Some(nodes) = &locks.nodes {
-        writeln!(out, "{} locks of nodes", nodes.len())?;
+        writeln!(out, "{} of nodes", counted(nodes.len(), "lock"))?;
         let mut columns = Columns::new(&["<node", "<edge", "from [m]", "to"]);
         for lock in nodes {
             columns.row([[text(&lock.node), text(&lock.edge)], range(lock.edge_length)].concat());

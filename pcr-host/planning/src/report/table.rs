@@ -1,7 +1,7 @@
 //! Regions and crossings for reading.
 
 use super::columns::Columns;
-use super::{agents, called, crossings, heading, types};
+use super::{agents, called, counted, crossings, heading, types};
 use crate::regions::{Answer, Descriptor, Region};
 use pcr_formats::scenario::Labels;
 use std::collections::HashMap;
@@ -61,8 +61,8 @@ pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
 pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     let all = numbered(&answer.regions);
     let name = heading(&answer.name);
-    let (regions, number) = (answer.regions.len(), all.len());
-    writeln!(out, "{name}: {regions} collision regions, {number} crossings ({})", answer.scalar)?;
+    let (regions, crossings) = (counted(answer.regions.len(), "collision region"), counted(all.len(), "crossing"));
+    writeln!(out, "{name}: {regions}, {crossings} ({})", answer.scalar)?;
     for cover in &answer.footprints {
         let discs = cover.discs.len();
         let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
