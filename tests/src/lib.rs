@@ -1,6 +1,7 @@
 //! What the tests of pcr share: cases, generators of cases that aim at degeneracies, and an oracle that knows nothing
 //! but the definition of a collision region.
 
+pub mod adversary;
 pub mod arguments;
 pub mod audit;
 pub mod certified;

@@ -51,6 +51,7 @@ mod motions;
 mod near_misses;
 mod no_numbers;
 mod orders_admit;
+mod orders_adversary;
 mod orders_check;
 mod orders_fleet;
 mod orders_hold;

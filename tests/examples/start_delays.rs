@@ -1,0 +1,65 @@
+//! What random fleets forbid, and the start delays that are found for them, a line of JSON a fleet, for `start_delays.py`:
+//! `start_delays FIRST_SEED COUNT LEAST LARGEST`, or files of scenarios.
+//!
+//! Fleets have LEAST to LARGEST agents, one size after the other; agents that cannot go together with the others are left out.
+
+use pcr_comparing::compare::crowd;
+use pcr_formats::scenario::Scenario;
+use pcr_planning::plan::{Forbidden, Objective, Plan, Request};
+use serde_json::{Value, json};
+use std::time::Instant;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let numbers: Vec<u64> = arguments.iter().map_while(|argument| argument.parse().ok()).collect();
+    if let &[first, count, least, largest] = &numbers[..] {
+        for seed in first..first + count {
+            let agents = least + seed % (largest + 1 - least);
+            println!("{}", answered(&format!("seed {seed}"), &crowd(agents as usize, seed)));
+        }
+        return;
+    }
+    for file in &arguments {
+        let text = std::fs::read_to_string(file).expect("a file");
+        println!("{}", answered(file, &Scenario::from_json(&text).expect("a scenario")));
+    }
+}
+
+fn answered(name: &str, scenario: &Scenario) -> Value {
+    let forbidden = Forbidden::of(scenario).expect("a fleet");
+    let count = forbidden.len();
+    let pairs = (0..count).flat_map(|i| (0..i).map(move |j| [i, j])).filter_map(|[i, j]| {
+        let intervals: Vec<[Value; 2]> = forbidden.intervals(i, j).map(|ends| ends.map(number)).collect();
+        (!intervals.is_empty()).then(|| json!({ "agents": [i, j], "forbidden": intervals }))
+    });
+    let ids: Vec<u64> = scenario.agents.iter().map(|agent| agent.id).collect();
+    let ends: Vec<f64> = scenario.agents.iter().map(|agent| forbidden_end(scenario, agent.id)).collect();
+    let pairs: Vec<Value> = pairs.collect();
+    let plans = [Objective::Sum, Objective::Makespan].map(|objective| {
+        let begin = Instant::now();
+        let request = Request { objective, leave_out: true, ..Request::default() };
+        let (plan, _) = Plan::of(scenario, &request).expect("an answer");
+        let taken = begin.elapsed().as_secs_f64();
+        let delays: Vec<Value> = plan.agents.iter().map(|planned| json!([planned.id, planned.delay])).collect();
+        json!({
+            "objective": plan.objective, "sum_of_costs": plan.sum_of_costs, "makespan": plan.makespan,
+            "lower_bound": plan.lower_bound, "gap": plan.gap, "proved": plan.proved, "left_out": plan.left_out,
+            "unsolved": plan.unsolved.iter().map(|unsolved| &unsolved.ids).collect::<Vec<_>>(), "delays": delays, "seconds": taken
+        })
+    });
+    json!({ "name": name, "ids": ids, "ends": ends, "pairs": pairs, "plans": plans })
+}
+
+/// When an agent arrives without a delay \[s\]: of the fleet alone.
+fn forbidden_end(scenario: &Scenario, id: u64) -> f64 {
+    let alone = Scenario {
+        agents: scenario.agents.iter().filter(|agent| agent.id == id).cloned().collect(),
+        ..scenario.clone()
+    };
+    Plan::of(&alone, &Request::default()).expect("one agent").0.makespan
+}
+
+/// An end of an interval, none where it is infinite.
+fn number(end: f64) -> Value {
+    if end.is_finite() { json!(end) } else { Value::Null }
+}
