@@ -34,6 +34,8 @@ struct Form {
     vertex: usize,
     /// Whether a parameter is a list of its type and its value.
     typed: bool,
+    /// Names of parameters are in quotes, as in JSON, which is YAML, too.
+    quoted: bool,
 }
 
 impl Form {
@@ -41,13 +43,23 @@ impl Form {
 
     fn of(text: &str) -> Result<(Self, Value), ImportError> {
         let root = serde_saphyr::from_str(text).map_err(|error| ImportError::new(format!("not YAML: {error}")))?;
+        let quoted = serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
         let graph = is_navigation_graph(&root);
-        Ok((if graph { Self { vertex: 2, typed: false } } else { Self { vertex: 4, typed: true } }, root))
+        Ok((Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }, root))
+    }
+
+    /// A parameter: its name and what it is.
+    fn parameter(self, name: &str, value: &str) -> String {
+        if self.quoted { format!("\"{name}\": {value}") } else { format!("{name}: {value}") }
     }
 
     /// A vertex without a name, in brackets.
     fn vertex(self, [x, y]: [f64; 2]) -> String {
-        if self.typed { format!("[{x:?}, {y:?}, 0, \"\"]") } else { format!("[{x:?}, {y:?}, {{name: \"\"}}]") }
+        if self.typed {
+            format!("[{x:?}, {y:?}, 0, \"\"]")
+        } else {
+            format!("[{x:?}, {y:?}, {{{}}}]", self.parameter("name", "\"\""))
+        }
     }
 }
 
@@ -138,7 +150,7 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
         {
             replaced.insert(old.to_owned());
         }
-        set(&mut edits, text, found, place, &name(node))
+        set(&mut edits, text, form, found, place, &name(node))
             .ok_or_else(|| ImportError::new(format!("{kind} {id}: its parameters are not where they are expected")))?;
     }
     if !replaced.is_empty() {
@@ -149,28 +161,30 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
 }
 
 /// Sets the group in the parameters of a lane or a vertex.
-fn set(edits: &mut Edits, text: &str, element: &Spanned, place: usize, group: &str) -> Option<()> {
+fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned, place: usize, group: &str) -> Option<()> {
+    let whole = form.parameter("mutex", group);
     let Kind::Sequence(style, list) = &element.value else { return None };
     if let Some(parameters) = list.get(place) {
         let Kind::Mapping(style, members) = &parameters.value else { return None };
         match (parameters.get("mutex"), style, members.first(), members.last()) {
-            (Some(old), ..) => edits.replace(old.span.clone(), group),
-            (None, Style::Flow, _, Some(last)) => edits.insert(last.value.span.end, format!(", mutex: {group}")),
-            (None, Style::Flow, ..) => edits.insert(parameters.span.start + 1, format!("mutex: {group}")),
+            (Some(old), ..) => edits.replace(old.span.clone(), old.instead(group)),
+            (None, Style::Flow, _, Some(last)) => edits.insert(last.value.span.end, format!(", {whole}")),
+            (None, Style::Flow, ..) => edits.insert(parameters.span.start + 1, whole),
             (None, Style::Block, Some(first), _) => {
-                edits.insert(first.at, format!("mutex: {group}{}{}", ending(text), " ".repeat(column(text, first.at))));
+                edits.insert(first.at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, first.at))));
             }
             (None, Style::Block, ..) => return None,
         }
         return Some(());
     }
-    // A vertex may be without a name.
-    let missing = match (place - list.len(), place) {
-        (0, _) => &[][..],
-        (1, 4) => &["\"\""],
+    // A vertex of a building may be without a height and a name.
+    let missing = match (list.len(), place) {
+        (count, place) if count == place => &[][..],
+        (3, 4) => &["\"\""],
+        (2, 4) => &["0", "\"\""],
         _ => return None,
     };
-    let (last, parameters) = (list.last()?, format!("{{mutex: {group}}}"));
+    let (last, parameters) = (list.last()?, format!("{{{whole}}}"));
     let elements = missing.iter().copied().chain([parameters.as_str()]);
     let margin = " ".repeat(column(text, element.span.start));
     let before = match style {

@@ -46,7 +46,7 @@ impl Spanned {
         loop {
             let (event, span) = parser.next()?.ok()?;
             if let Event::MappingStart(..) | Event::SequenceStart(..) | Event::Scalar(..) = event {
-                return node(&event, span.byte_range()?, &mut parser, 0);
+                return node(text, &event, span.byte_range()?, &mut parser, 0);
             }
         }
     }
@@ -72,6 +72,12 @@ impl Spanned {
         }
     }
 
+    /// What stands in its place for a value on one line: a list may begin in the column of its name, that may not.
+    pub(crate) fn instead(&self, value: &str) -> String {
+        let is_block = matches!(self.value, Value::Sequence(Style::Block, _) | Value::Mapping(Style::Block, _));
+        format!("{}{value}", if is_block { "  " } else { "" })
+    }
+
     /// The text of a scalar.
     pub(crate) fn text(&self) -> Option<&str> {
         match &self.value {
@@ -91,7 +97,14 @@ fn style(given: StructureStyle) -> Style {
     }
 }
 
-fn node<'t, I>(event: &Event<'t>, span: Range<usize>, parser: &mut I, depth: usize) -> Option<Spanned>
+/// Where a list begins of which each element has a line: at the dash of its first one, which the parser does not always tell.
+fn dash(text: &str, first: usize) -> Option<usize> {
+    let at = text[..first].rfind('-')?;
+    // An anchor and a tag may be before it.
+    text[at + 1..first].split_whitespace().all(|word| word.starts_with(['&', '!'])).then_some(at)
+}
+
+fn node<'t, I>(text: &str, event: &Event<'t>, span: Range<usize>, parser: &mut I, depth: usize) -> Option<Spanned>
 where
     I: Iterator<Item = Result<(Event<'t>, granit_parser::Span), granit_parser::ScanError>>,
 {
@@ -108,8 +121,8 @@ where
         Style::Block => start.start..last.unwrap_or(start.end),
     };
     Some(match event {
-        Event::Scalar(text, _, anchor, _) => {
-            Spanned { span, value: Value::Scalar(text.to_string()), shared: *anchor != 0 }
+        Event::Scalar(scalar, _, anchor, _) => {
+            Spanned { span, value: Value::Scalar(scalar.to_string()), shared: *anchor != 0 }
         }
         Event::Alias(_) => Spanned { span, value: Value::Alias, shared: true },
         Event::SequenceStart(given, anchor, _) => {
@@ -119,11 +132,14 @@ where
                 if matches!(event, Event::SequenceEnd) {
                     break span;
                 }
-                elements.push(node(&event, span, parser, depth + 1)?);
+                elements.push(node(text, &event, span, parser, depth + 1)?);
             };
             let style = style(*given);
             let shared = *anchor != 0 || elements.iter().any(|element| element.shared);
-            let span = whole(style, span, elements.last().map(|last| last.span.end), end);
+            let mut span = whole(style, span, elements.last().map(|last| last.span.end), end);
+            if let (Style::Block, Some(first)) = (style, elements.first()) {
+                span.start = dash(text, first.span.start)?;
+            }
             Spanned { span, value: Value::Sequence(style, elements), shared }
         }
         Event::MappingStart(given, anchor, _) => {
@@ -134,9 +150,9 @@ where
                 if matches!(event, Event::MappingEnd) {
                     break span;
                 }
-                let key = node(&event, span, parser, depth + 1)?;
+                let key = node(text, &event, span, parser, depth + 1)?;
                 let (event, span) = following(parser)?;
-                let value = node(&event, span, parser, depth + 1)?;
+                let value = node(text, &event, span, parser, depth + 1)?;
                 shared |= key.shared || value.shared;
                 members.push(Member { at: key.span.start, name: key.text()?.to_owned(), value });
             };
@@ -185,11 +201,17 @@ mod tests {
         assert!(matches!(parameters.value, Value::Mapping(Style::Block, _)));
         assert!(matches!(lanes.list()[1].list()[2].value, Value::Mapping(Style::Flow, _)));
         assert_eq!(at(whole.get("more").unwrap()), "[1, ]");
+        assert!(at(lanes).starts_with("- - 0") && at(lanes).ends_with("- {}"));
+        let text = "a:\n  b:\n  - 1\n  -  -2\n  c: 3\n";
+        let whole = Spanned::of(text).unwrap();
+        assert_eq!(&text[whole.get("a").unwrap().get("b").unwrap().span.clone()], "- 1\n  -  -2");
         assert!(!whole.shared);
     }
 
     #[test]
     fn what_is_the_value_of_something_else_too_is_told() {
+        let list = Spanned::of("- &l [1]\n- !!str &m 2\n").unwrap();
+        assert!(list.shared && list.span.start == 0);
         let text = "a: &x {k: &y 1}\nb: *x\nc: [1, *y]\nd: &z [2]\ne: 3\n";
         let whole = Spanned::of(text).unwrap();
         let shared: Vec<bool> = whole.members().iter().map(|member| member.value.shared).collect();

@@ -119,13 +119,14 @@ impl Cutter {
 fn copy(text: &str, lane: &Spanned, ends: [usize; 2], back: bool) -> String {
     let begin = lane.span.start;
     let mut edits = Edits::default();
-    let mut replace = |old: &Spanned, new: String| edits.replace(old.span.start - begin..old.span.end - begin, new);
+    let mut replace =
+        |old: &Spanned, new: &str| edits.replace(old.span.start - begin..old.span.end - begin, old.instead(new));
     for (end, old) in ends.iter().zip(lane.list()) {
-        replace(old, end.to_string());
+        replace(old, &end.to_string());
     }
     let parameters = lane.list().get(Form::LANE);
     if let Some(two_way) = parameters.and_then(|parameters| parameters.get("bidirectional")) {
-        replace(two_way, "[4, false]".to_owned());
+        replace(two_way, "[4, false]");
     }
     if back && let Some(orientation) = parameters.and_then(|parameters| parameters.get("orientation")) {
         let turned = match typed(parameters, "orientation") {
@@ -134,7 +135,7 @@ fn copy(text: &str, lane: &Spanned, ends: [usize; 2], back: bool) -> String {
             _ => None,
         };
         if let Some(turned) = turned {
-            replace(orientation, format!("[1, {turned}]"));
+            replace(orientation, &format!("[1, \"{turned}\"]"));
         }
     }
     edits.made(&text[lane.span.clone()])
