@@ -20,6 +20,7 @@ mod delays_straight;
 mod documents;
 mod earned;
 mod exclusions;
+mod exclusions_forms;
 mod firmware;
 mod footprints;
 mod formats;

@@ -37,3 +37,38 @@ pub(crate) fn indent(text: &str, at: usize) -> Option<&str> {
     let line = &text[text[..at].rfind('\n').map_or(0, |end| end + 1)..at];
     line.chars().all(char::is_whitespace).then_some(line)
 }
+
+/// How lines end in a text.
+pub(crate) fn ending(text: &str) -> &'static str {
+    if text.contains("\r\n") { "\r\n" } else { "\n" }
+}
+
+/// How many characters are before a byte in its line.
+pub(crate) fn column(text: &str, at: usize) -> usize {
+    let line = &text[text[..at].rfind('\n').map_or(0, |end| end + 1)..at];
+    line.trim_start_matches('\u{feff}').chars().count()
+}
+
+/// The end of a line, where nothing but blanks and a comment of YAML is left of it; else the same place.
+pub(crate) fn rest_of_line(text: &str, at: usize) -> usize {
+    let line = text[at..].split(['\n', '\r']).next().unwrap_or_default();
+    let rest = line.trim_start();
+    if rest.is_empty() || (rest.starts_with('#') && rest.len() < line.len()) { at + line.len() } else { at }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_in_lines_are_told() {
+        let text = "\u{feff}é: 1 # one\r\n  - 2, # three\r\nx#y";
+        assert_eq!((ending(text), ending("a\nb")), ("\r\n", "\n"));
+        let at = |what: &str| text.find(what).unwrap();
+        assert_eq!([column(text, at("1")), column(text, at("- 2")), column(text, at("x"))], [3, 2, 0]);
+        assert_eq!(rest_of_line(text, at(" # one")), at("\r\n"));
+        assert_eq!(rest_of_line(text, at(", # three")), at(", # three"));
+        assert_eq!(rest_of_line(text, at("#y")), at("#y"));
+        assert_eq!(rest_of_line(text, text.len()), text.len());
+    }
+}

@@ -4,7 +4,7 @@
 //! (`closed_edges` when the vehicle comes, `opened_edges` when it has left). An edge is among its own: two vehicles on one edge can touch.
 //! The service and its lists know edges by their ids, of 16 bits; edges of one id are closed together.
 
-use crate::edit::Edits;
+use crate::edit::{Edits, ending};
 use crate::json::{Spanned, Value as Kind};
 use crate::{Claim, Group, Rules};
 use pcr_formats::import::{Id, ImportError, Imported};
@@ -153,6 +153,7 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
     let (root, spans) = both(text)?;
     let mut cutter = Cutter::new(&root);
     let (mut edits, mut whole_ones) = (Edits::default(), Vec::new());
+    let end = ending(text);
     let mut nodes = Vec::new();
     for (feature, span) in features(&root, &spans).filter(|(feature, _)| is_node(feature) == Some(false)) {
         let properties = &feature["properties"];
@@ -163,7 +164,11 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
             continue;
         }
         let id = &properties["id"];
-        if properties["operations"].as_array().is_some_and(|list| !list.is_empty()) {
+        // A list, or an object with a name for each, as nav2's loader goes over both.
+        let operations = &properties["operations"];
+        if operations.as_array().is_some_and(|list| !list.is_empty())
+            || operations.as_object().is_some_and(|named| !named.is_empty())
+        {
             whole_ones.push(format!("edge {id} is left whole: its operations belong to all of it"));
             continue;
         }
@@ -172,17 +177,19 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
             continue;
         }
         let chain = cutter.chain(ends, at, parts as usize, &mut nodes);
-        let text = &text[span.span.clone()];
+        let own = &text[span.span.clone()];
         let copies = chain.windows(2).enumerate().map(|(k, pair)| {
-            let id = if k == 0 { whole(id).unwrap_or_default() } else { cutter.new_edge() };
-            copy(text, id, [&pair[0], &pair[1]])
+            let id = if k == 0 { whole(id)? } else { cutter.new_edge() };
+            copy(own, id, [&pair[0], &pair[1]])
         });
-        edits.replace(span.span.clone(), copies.collect::<Option<Vec<_>>>().unwrap_or_default().join(",\n"));
+        let copies = copies.collect::<Option<Vec<_>>>();
+        let copies = copies.ok_or_else(|| ImportError::new(format!("edge {id}: it has not all that an edge has")))?;
+        edits.replace(span.span.clone(), copies.join(&format!(",{end}")));
     }
     if let Some(list) = spans.get("features")
         && let Some(last) = list.list().last()
     {
-        edits.insert(last.span.end, nodes.iter().map(|node| format!(",\n{node}")).collect::<String>());
+        edits.insert(last.span.end, nodes.iter().map(|node| format!(",{end}{node}")).collect::<String>());
     }
     Ok((edits.made(text), whole_ones))
 }

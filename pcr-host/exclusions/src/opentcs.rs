@@ -14,7 +14,7 @@ pub(crate) use cut::split;
 
 use crate::audit::groups;
 use crate::cover::cover;
-use crate::edit::{Edits, indent};
+use crate::edit::{Edits, ending, indent};
 use crate::outline::{around, hull, intersect};
 use crate::settings::{Notes, Settings};
 use crate::{Claim, Rules};
@@ -167,6 +167,14 @@ pub(crate) fn write(
     }
     let mut edits = Edits::default();
     let root = document.root_element();
+    let prefixed = |child: &Node<'_, '_>| {
+        let tag = text[child.range().start + offset..].split([' ', '\t', '\r', '\n', '/', '>']).next();
+        child.is_element() && tag.is_some_and(|tag| tag.contains(':'))
+    };
+    if let Some(child) = root.children().find(prefixed) {
+        let name = child.tag_name().name();
+        return Err(ImportError::new(format!("{name}: names of elements with a prefix are not written")));
+    }
     if let Some(key) = &settings.envelopes {
         notes.groups = write_envelopes(root, offset, imported, key, &mut edits)?;
     } else {
@@ -208,6 +216,11 @@ fn pairs(layout: &Layout, locks: &Locks) -> [Vec<[usize; 2]>; 2] {
     [needed, allowed]
 }
 
+/// Whether a block has a name as they are given here.
+fn is_ours(name: &str) -> bool {
+    name.strip_prefix(PREFIX).is_some_and(|rest| rest.len() >= 4 && rest.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
 fn write_blocks(
     text: &str,
     root: Node<'_, '_>,
@@ -221,7 +234,7 @@ fn write_blocks(
     let cover = cover(layout.edges.len() + layout.nodes.len(), &allowed, &needed);
     (notes.groups, notes.at_least) = (cover.cliques.len(), Some(cover.at_least));
     let (old, kept): (Vec<Node<'_, '_>>, Vec<Node<'_, '_>>) =
-        elements(root, "block").partition(|block| name(*block).starts_with(PREFIX));
+        elements(root, "block").partition(|block| is_ours(name(*block)));
     for block in &old {
         let range = block.range();
         let from = text[..range.start + offset].trim_end().len();
@@ -238,13 +251,16 @@ fn write_blocks(
         None => &layout.edges[place].id,
         Some(point) => &layout.nodes[point].id,
     };
-    let mut blocks = String::new();
-    for (k, clique) in cover.cliques.iter().enumerate() {
-        let _ = write!(blocks, "\n{margin}<block name=\"{PREFIX}{:04}\" type=\"SINGLE_VEHICLE_ONLY\">", k + 1);
+    // Names are those of one thing each in a model, of whatever kind.
+    let taken: BTreeSet<&str> = root.children().filter(|child| !old.contains(child)).map(name).collect();
+    let mut names = (1_u32..).map(|k| format!("{PREFIX}{k:04}")).filter(|name| !taken.contains(name.as_str()));
+    let (mut blocks, end) = (String::new(), ending(text));
+    for (clique, name) in cover.cliques.iter().zip(&mut names) {
+        let _ = write!(blocks, "{end}{margin}<block name=\"{name}\" type=\"SINGLE_VEHICLE_ONLY\">");
         for place in clique {
-            let _ = write!(blocks, "\n{margin}    <member name=\"{}\"/>", escaped(&id(*place).to_string()));
+            let _ = write!(blocks, "{end}{margin}    <member name=\"{}\"/>", escaped(&id(*place).to_string()));
         }
-        let _ = write!(blocks, "\n{margin}    <blockLayout color=\"#A94022\"/>\n{margin}</block>");
+        let _ = write!(blocks, "{end}{margin}    <blockLayout color=\"#A94022\"/>{end}{margin}</block>");
     }
     edits.insert(at, blocks);
 }

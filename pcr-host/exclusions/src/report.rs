@@ -52,7 +52,8 @@ pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> 
         written.nodes,
         vehicle(&written.vehicle)
     )?;
-    let bound = written.at_least.map_or(String::new(), |least| format!("; no fewer than {least} would do"));
+    let cliques = |least| format!("; of places that all touch one another no fewer than {least} do");
+    let bound = written.at_least.map_or(String::new(), cliques);
     writeln!(out, "  groups: {}{bound}", written.groups)?;
     writeln!(out, "  pairs that can touch: {}, all excluded by what stands in the file", written.can_touch)?;
     extent(out, written.excluded, written.needed, written.needless)?;

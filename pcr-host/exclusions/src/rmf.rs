@@ -1,4 +1,4 @@
-//! Buildings of Open-RMF: mutex groups of vertices and lanes.
+//! Buildings and navigation graphs of Open-RMF: mutex groups of vertices and lanes.
 //!
 //! A vertex or a lane is in one group at most. Before a robot sets off to a vertex it locks the group of the lane and that of the
 //! vertex; that of the vertex which it leaves is unlocked on the way, unless the lane is in it, too. Hence a lane is put into the group
@@ -8,18 +8,60 @@
 //! At first every vertex is a group of its own, so that lanes with a common vertex exclude each other. What else can touch is excluded by
 //! uniting the groups of two vertices, again and again those that exclude most for their size.
 
+mod cut;
+mod units;
+
+pub(crate) use cut::prepare;
+
 use crate::audit::groups;
-use crate::edit::Edits;
+use crate::edit::{Edits, column, ending};
 use crate::settings::Notes;
-use crate::yaml::Spanned;
+use crate::yaml::{Spanned, Style, Value as Kind};
 use crate::{Claim, Rules};
-use pcr_formats::import::{Id, ImportError, Imported, Layout};
+use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
 use pcr_planning::locks::Locks;
-use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use serde_json::{Value, json};
+use std::collections::{BTreeSet, HashMap};
+use units::united;
 
 /// How the names of groups begin that are written here.
 const PREFIX: &str = "pcr/";
+
+/// Where things are in a file.
+#[derive(Clone, Copy)]
+struct Form {
+    /// Place of the parameters in the list of a vertex.
+    vertex: usize,
+    /// Whether a parameter is a list of its type and its value.
+    typed: bool,
+    /// Names of parameters are in quotes, as in JSON, which is YAML, too.
+    quoted: bool,
+}
+
+impl Form {
+    const LANE: usize = 2;
+
+    fn of(text: &str) -> Result<(Self, Value), ImportError> {
+        let root = serde_saphyr::from_str(text).map_err(|error| ImportError::new(format!("not YAML: {error}")))?;
+        let quoted = serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
+        let graph = is_navigation_graph(&root);
+        Ok((Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }, root))
+    }
+
+    /// A parameter: its name and what it is.
+    fn parameter(self, name: &str, value: &str) -> String {
+        if self.quoted { format!("\"{name}\": {value}") } else { format!("{name}: {value}") }
+    }
+
+    /// A vertex without a name, in brackets.
+    fn vertex(self, [x, y]: [f64; 2]) -> String {
+        if self.typed {
+            format!("[{x:?}, {y:?}, 0, \"\"]")
+        } else {
+            format!("[{x:?}, {y:?}, {{{}}}]", self.parameter("name", "\"\""))
+        }
+    }
+}
 
 /// Level and place in its list.
 fn place_of(id: &Id) -> Option<(&str, usize)> {
@@ -30,7 +72,7 @@ fn place_of(id: &Id) -> Option<(&str, usize)> {
 
 /// Reads the groups.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let root: Value = serde_saphyr::from_str(text).map_err(|error| ImportError::new(format!("not YAML: {error}")))?;
+    let (form, root) = Form::of(text)?;
     let mut names: Vec<String> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
     let mut group = |kind: &str, id: &Id, parameters: usize| -> Result<Vec<usize>, ImportError> {
@@ -48,8 +90,9 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
     };
     let layout = &imported.layout;
-    let lanes = layout.edges.iter().map(|edge| group("lanes", &edge.id, 2)).collect::<Result<Vec<_>, _>>()?;
-    let vertices = layout.nodes.iter().map(|node| group("vertices", &node.id, 4)).collect::<Result<Vec<_>, _>>()?;
+    let lanes = layout.edges.iter().map(|edge| group("lanes", &edge.id, Form::LANE)).collect::<Result<Vec<_>, _>>()?;
+    let vertices =
+        layout.nodes.iter().map(|node| group("vertices", &node.id, form.vertex)).collect::<Result<Vec<_>, _>>()?;
     let ways = layout.edges.iter().zip(&lanes).map(|(edge, own)| {
         [1, 0].map(|end| {
             let target = edge.ends[end];
@@ -66,156 +109,28 @@ fn spans(text: &str) -> Result<Spanned, ImportError> {
     Spanned::of(text).ok_or_else(|| ImportError::new("YAML in which the places of values cannot be told"))
 }
 
-/// Cuts lanes into equal parts no longer than `most` \[m\], if that is asked for, and makes two lanes of each that leads both ways.
-pub(crate) fn prepare(
-    text: &str,
-    imported: &Imported,
-    most: Option<f64>,
-    notes: &mut Notes,
-) -> Result<String, ImportError> {
-    let root = spans(text)?;
-    let mut edits = Edits::default();
-    let lanes: HashMap<(&str, usize), usize> =
-        imported.layout.edges.iter().enumerate().filter_map(|(k, edge)| Some((place_of(&edge.id)?, k))).collect();
-    for (name, level) in root.get("levels").map_or(&[][..], Spanned::members) {
-        let (Some(list), Some(vertices)) = (level.get("lanes"), level.get("vertices")) else { continue };
-        let mut cutter = Cutter { at: corners(vertices), added: Vec::new(), between: BTreeMap::new() };
-        let mut further = Vec::new();
-        for (k, lane) in list.list().iter().enumerate() {
-            let Some(edge) = lanes.get(&(name.as_str(), k)).map(|&edge| &imported.layout.edges[edge]) else { continue };
-            let own = &text[lane.span.clone()];
-            if !own.starts_with('[') {
-                return Err(ImportError::new(format!(
-                    "lane {}: it is no list in brackets, which is what can be written",
-                    edge.id
-                )));
-            }
-            let mut parts = most.map_or(1.0, |most| (edge.length() / most - 1e-9).ceil().max(1.0)) as usize;
-            let mock = |name: &str| typed(lane.list().get(2), name).is_some_and(|value| !value.is_empty());
-            if parts > 1 && (mock("demo_mock_floor_name") || mock("demo_mock_lift_name")) {
-                notes.said.push(format!("lane {} is left whole: it stands for a lift", edge.id));
-                parts = 1;
-            }
-            if parts == 1 && !edge.two_way {
-                continue;
-            }
-            let ends =
-                [0, 1].map(|k| lane.list().get(k).and_then(Spanned::text).and_then(|text| text.parse::<usize>().ok()));
-            let [Some(from), Some(to)] = ends else { continue };
-            let chain = cutter.chain([from, to], parts);
-            let ways: &[bool] = if edge.two_way { &[false, true] } else { &[false] };
-            let mut copies = Vec::new();
-            for &back in ways {
-                let mut chain = chain.clone();
-                if back {
-                    chain.reverse();
-                }
-                for pair in chain.windows(2) {
-                    copies.push(copy(own, [pair[0], pair[1]], back)?);
-                }
-            }
-            edits.replace(lane.span.clone(), copies.remove(0));
-            further.extend(copies);
-        }
-        append(&mut edits, text, list, &further)?;
-        append(&mut edits, text, vertices, &cutter.added)?;
-    }
-    Ok(edits.made(text))
-}
-
-/// Positions of the vertices, as in the file.
-fn corners(vertices: &Spanned) -> Vec<Option<[f64; 2]>> {
-    let number = |vertex: &Spanned, k: usize| vertex.list().get(k)?.text()?.parse::<f64>().ok();
-    vertices.list().iter().map(|vertex| Some([number(vertex, 0)?, number(vertex, 1)?])).collect()
-}
-
-struct Cutter {
-    at: Vec<Option<[f64; 2]>>,
-    added: Vec<String>,
-    between: BTreeMap<(usize, usize, usize), Vec<usize>>,
-}
-
-impl Cutter {
-    /// The vertices along a lane, new ones where no other lane has been cut between the same two.
-    fn chain(&mut self, [from, to]: [usize; 2], parts: usize) -> Vec<usize> {
-        let (low, high) = (from.min(to), from.max(to));
-        let (Some(Some(a)), Some(Some(b))) = (self.at.get(low).copied(), self.at.get(high).copied()) else {
-            return vec![from, to];
-        };
-        let first = self.at.len();
-        let (at, added) = (&mut self.at, &mut self.added);
-        let cut = self.between.entry((low, high, parts)).or_insert_with(|| {
-            for k in 1..parts {
-                let share = k as f64 / parts as f64;
-                let [x, y] = [0, 1].map(|k| a[k] + (b[k] - a[k]) * share);
-                at.push(Some([x, y]));
-                added.push(format!("[{x:?}, {y:?}, 0, \"\"]"));
-            }
-            (first..first + parts - 1).collect()
-        });
-        let mut chain = vec![low];
-        chain.extend(cut.iter().copied());
-        chain.push(high);
-        if from > to {
-            chain.reverse();
-        }
-        chain
-    }
-}
-
-/// The text of a lane with other ends, for one way only.
-fn copy(text: &str, ends: [usize; 2], back: bool) -> Result<String, ImportError> {
-    let spans = spans(text)?;
-    let mut edits = Edits::default();
-    for (k, end) in ends.iter().enumerate() {
-        if let Some(old) = spans.list().get(k) {
-            edits.replace(old.span.clone(), end.to_string());
-        }
-    }
-    let parameters = spans.list().get(2);
-    if let Some(two_way) = parameters.and_then(|parameters| parameters.get("bidirectional")) {
-        edits.replace(two_way.span.clone(), "[4, false]");
-    }
-    if back && let Some(orientation) = parameters.and_then(|parameters| parameters.get("orientation")) {
-        let turned = match typed(parameters, "orientation") {
-            Some("forward") => Some("backward"),
-            Some("backward") => Some("forward"),
-            _ => None,
-        };
-        if let Some(turned) = turned {
-            edits.replace(orientation.span.clone(), format!("[1, {turned}]"));
-        }
-    }
-    Ok(edits.made(text))
-}
-
-/// The value of a parameter, which is a list of its type and itself.
+/// The value of a parameter, which is a list of its type and itself in buildings.
 fn typed<'a>(parameters: Option<&'a Spanned>, name: &str) -> Option<&'a str> {
     let given = parameters?.get(name)?;
     given.list().get(1).unwrap_or(given).text()
 }
 
-/// Adds elements to the end of a list, a line each where it has a line each.
-fn append(edits: &mut Edits, text: &str, list: &Spanned, further: &[String]) -> Result<(), ImportError> {
-    let Some(last) = list.list().last().filter(|_| !further.is_empty()) else { return Ok(()) };
-    let line = text[..last.span.start].rfind('\n').map_or(0, |end| end + 1);
-    let before = &text[line..last.span.start];
-    let end = last.span.end;
-    if text[list.span.clone()].starts_with('[') {
-        edits.insert(end, further.iter().map(|element| format!(", {element}")).collect::<String>());
-    } else if before.trim() == "-" {
-        edits.insert(end, further.iter().map(|element| format!("\n{before}{element}")).collect::<String>());
-    } else {
-        return Err(ImportError::new(format!("a list that ends in {before:?}: nothing can be added to it")));
-    }
-    Ok(())
+/// What stands in the file for something else as well cannot be changed for one of both.
+fn own(element: &Spanned, kind: &str, id: &Id) -> Result<(), ImportError> {
+    let problem =
+        || format!("{kind} {id}: there is an anchor or an alias in it; what is shared cannot be changed for one");
+    if element.shared { Err(ImportError::new(problem())) } else { Ok(()) }
 }
 
 /// Writes the groups of a table with nodes; all lanes lead one way.
 pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut Notes) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let group = united(layout, locks);
-    let name = |node: usize| format!("[1, \"{PREFIX}{}\"]", layout.nodes[group[node]].id.to_string().replace('"', "'"));
+    let (form, _) = Form::of(text)?;
+    let name = |node: usize| {
+        let name = json!(format!("{PREFIX}{}", layout.nodes[group[node]].id));
+        if form.typed { format!("[1, {name}]") } else { name.to_string() }
+    };
     notes.groups = group.iter().collect::<BTreeSet<_>>().len();
     let root = spans(text)?;
     let mut edits = Edits::default();
@@ -224,21 +139,19 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
         let (level, place) = place_of(id)?;
         root.get("levels")?.get(level)?.get(kind)?.list().get(place)
     };
-    let things = (layout.edges.iter().map(|edge| ("lanes", &edge.id, 2, edge.ends[0])))
-        .chain(layout.nodes.iter().enumerate().map(|(k, node)| ("vertices", &node.id, 4, k)));
+    let things = (layout.edges.iter().map(|edge| ("lanes", &edge.id, Form::LANE, edge.ends[0])))
+        .chain(layout.nodes.iter().enumerate().map(|(k, node)| ("vertices", &node.id, form.vertex, k)));
     for (kind, id, place, node) in things {
-        let found = element(kind, id).filter(|found| text[found.span.clone()].starts_with('['));
-        let Some(found) = found else {
-            return Err(ImportError::new(format!(
-                "{kind} {id}: it is no list in brackets, which is what can be written"
-            )));
-        };
+        let found = element(kind, id)
+            .ok_or_else(|| ImportError::new(format!("{kind} {id}: it is not where it is expected in the file")))?;
+        own(found, kind, id)?;
         if let Some(old) =
             typed(found.list().get(place), "mutex").filter(|old| !old.is_empty() && !old.starts_with(PREFIX))
         {
             replaced.insert(old.to_owned());
         }
-        set(&mut edits, found, place, &name(node), id)?;
+        set(&mut edits, text, form, found, place, &name(node))
+            .ok_or_else(|| ImportError::new(format!("{kind} {id}: its parameters are not where they are expected")))?;
     }
     if !replaced.is_empty() {
         let names: Vec<String> = replaced.into_iter().collect();
@@ -248,71 +161,36 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
 }
 
 /// Sets the group in the parameters of a lane or a vertex.
-fn set(edits: &mut Edits, element: &Spanned, place: usize, group: &str, id: &Id) -> Result<(), ImportError> {
-    let end = element.span.end - 1;
-    let problem = || ImportError::new(format!("{id}: its parameters are not where they are expected"));
-    match (element.list().get(place), element.list().len()) {
-        (Some(parameters), _) => match (parameters.get("mutex"), &parameters.value) {
-            (Some(old), _) => edits.replace(old.span.clone(), group),
-            (None, crate::yaml::Value::Mapping(members)) => {
-                let comma = if members.is_empty() { "" } else { ", " };
-                edits.insert(parameters.span.end - 1, format!("{comma}mutex: {group}"));
+fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned, place: usize, group: &str) -> Option<()> {
+    let whole = form.parameter("mutex", group);
+    let Kind::Sequence(style, list) = &element.value else { return None };
+    if let Some(parameters) = list.get(place) {
+        let Kind::Mapping(style, members) = &parameters.value else { return None };
+        match (parameters.get("mutex"), style, members.first(), members.last()) {
+            (Some(old), ..) => edits.replace(old.span.clone(), old.instead(group)),
+            (None, Style::Flow, _, Some(last)) => edits.insert(last.value.span.end, format!(", {whole}")),
+            (None, Style::Flow, ..) => edits.insert(parameters.span.start + 1, whole),
+            (None, Style::Block, Some(first), _) => {
+                edits.insert(first.at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, first.at))));
             }
-            _ => return Err(problem()),
-        },
-        (None, count) if count == place => edits.insert(end, format!(", {{mutex: {group}}}")),
-        // A vertex without a name.
-        (None, 3) if place == 4 => edits.insert(end, format!(", \"\", {{mutex: {group}}}")),
-        _ => return Err(problem()),
-    }
-    Ok(())
-}
-
-/// For each node the first node of its group.
-fn united(layout: &Layout, locks: &Locks) -> Vec<usize> {
-    let edges: HashMap<&Id, [usize; 2]> = layout.edges.iter().map(|edge| (&edge.id, edge.ends)).collect();
-    let nodes: HashMap<&Id, usize> = layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect();
-    // What has to have a group in common: the ends of two lanes, or a vertex and the ends of a lane.
-    let mut open: Vec<[Vec<usize>; 2]> = Vec::new();
-    for lock in &locks.locks {
-        if let (Some(a), Some(b)) = (edges.get(&lock.a), edges.get(&lock.b)) {
-            open.push([a.to_vec(), b.to_vec()]);
+            (None, Style::Block, ..) => return None,
         }
+        return Some(());
     }
-    for lock in locks.nodes.iter().flatten() {
-        if let (Some(&node), Some(edge)) = (nodes.get(&lock.node), edges.get(&lock.edge)) {
-            open.push([vec![node], edge.to_vec()]);
-        }
-    }
-    let mut group: Vec<usize> = (0..layout.nodes.len()).collect();
-    let mut size = vec![1_usize; layout.nodes.len()];
-    let distance = |a: usize, b: usize| {
-        let [p, q] = [layout.nodes[a].at, layout.nodes[b].at];
-        (p[0] - q[0]).hypot(p[1] - q[1])
+    // A vertex of a building may be without a height and a name.
+    let missing = match (list.len(), place) {
+        (count, place) if count == place => &[][..],
+        (3, 4) => &["\"\""],
+        (2, 4) => &["0", "\"\""],
+        _ => return None,
     };
-    loop {
-        let common = |[a, b]: &[Vec<usize>; 2]| a.iter().any(|a| b.iter().any(|b| group[*a] == group[*b]));
-        open.retain(|pair| !common(pair));
-        let mut candidates: BTreeMap<[usize; 2], (usize, f64)> = BTreeMap::new();
-        for [own, other] in &open {
-            let pairs = own.iter().flat_map(|&a| other.iter().map(move |&b| (a, b)));
-            let mut once = BTreeSet::new();
-            for (a, b) in pairs {
-                let key = [group[a].min(group[b]), group[a].max(group[b])];
-                let entry = candidates.entry(key).or_insert((0, f64::INFINITY));
-                entry.0 += usize::from(once.insert(key));
-                entry.1 = entry.1.min(distance(a, b));
-            }
-        }
-        let worth = |([a, b], (count, apart)): (&[usize; 2], &(usize, f64))| {
-            (*count as f64 / (size[*a] * size[*b]) as f64, -apart)
-        };
-        let best = candidates.iter().max_by(|x, y| {
-            let (x, y) = (worth((x.0, x.1)), worth((y.0, y.1)));
-            x.0.total_cmp(&y.0).then(x.1.total_cmp(&y.1))
-        });
-        let Some((&[keep, gone], _)) = best else { return group };
-        size[keep] += size[gone];
-        group.iter_mut().filter(|group| **group == gone).for_each(|group| *group = keep);
-    }
+    let (last, parameters) = (list.last()?, format!("{{{whole}}}"));
+    let elements = missing.iter().copied().chain([parameters.as_str()]);
+    let margin = " ".repeat(column(text, element.span.start));
+    let before = match style {
+        Style::Flow => ", ".to_owned(),
+        Style::Block => format!("{}{margin}- ", ending(text)),
+    };
+    edits.insert(last.span.end, elements.map(|element| format!("{before}{element}")).collect::<String>());
+    Some(())
 }

@@ -10,6 +10,7 @@ use crate::{Claim, Group, Mark, Rules, Way, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;
+use pcr_planning::checksum::crc32;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::FRAC_PI_4;
@@ -147,6 +148,7 @@ pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes)
     for level in 0..layout.levels.len() {
         let mut zones = zones(imported, level, settings.split);
         zones.extend(lone_nodes(imported, level));
+        distinguish(&mut zones);
         notes.groups += zones.len();
         let zones: Vec<Value> = zones
             .into_iter()
@@ -156,7 +158,10 @@ pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes)
             })
             .collect();
         let map = map(layout, level);
-        let set = json!({ "mapId": map, "zoneSetId": format!("{map}-pcr"), "zones": zones });
+        // Other zones are another set: vehicles know sets by their names.
+        let zones = Value::Array(zones);
+        let sum = crc32(zones.to_string().as_bytes());
+        let set = json!({ "mapId": map, "zoneSetId": format!("{map}-pcr-{sum:08x}"), "zones": zones });
         messages.push(json!({
             "headerId": 0, "timestamp": "1970-01-01T00:00:00.000Z", "version": "3.0.0", "manufacturer": "", "serialNumber": "",
             "zoneSet": set
@@ -190,6 +195,19 @@ fn zones(imported: &Imported, level: usize, split: Option<f64>) -> Vec<Outline> 
         }
     }
     zones
+}
+
+/// Gives zones of one name different ones.
+fn distinguish(zones: &mut [Outline]) {
+    let mut taken = BTreeSet::new();
+    for (name, _) in zones {
+        let given = name.clone();
+        let mut count = 1;
+        while !taken.insert(name.clone()) {
+            count += 1;
+            *name = format!("{given} [{count}]");
+        }
+    }
 }
 
 /// Zones of nodes at which no edge ends: a vehicle there is on no corridor.

@@ -6,7 +6,11 @@ use crate::settings::{Notes, Settings};
 use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};
 use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
 use pcr_planning::locks::LockVehicle;
+use pcr_planning::memory;
 use serde::Serialize;
+
+/// What a part of an edge that is cut takes, with a few locks \[bytes\].
+const PART_BYTES: u64 = 4096;
 
 /// What has been written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -68,9 +72,6 @@ pub fn write(
     if settings.envelopes.is_some() && target != Target::OpenTcs {
         return refused(format!("--envelopes: {target} has none"));
     }
-    // What cutting is worth.
-    let uncut = Settings { split: None, ..settings.clone() };
-    let uncut = settings.split.map(|_| write(format, text, options, name, &uncut)).transpose()?;
     let mut notes = Notes::default();
     let read_layout = |text: &str| -> Result<Imported, ImportError> {
         let mut imported = import::layout(format, text, options, &mut Warnings::default())?;
@@ -83,6 +84,14 @@ pub fn write(
     if imported.vehicle.footprint.is_some() && target == Target::Vda5050 {
         notes.said.push("zones: they are for the disc around the outline".into());
     }
+    if let Some(most) = settings.split {
+        let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
+        let asked = memory::ask(parts.saturating_mul(PART_BYTES), || format!("--split {most}: {parts} parts"));
+        asked.map_err(|large| ImportError::new(large.to_string()))?;
+    }
+    // What cutting is worth.
+    let uncut = Settings { split: None, ..settings.clone() };
+    let uncut = settings.split.map(|_| write(format, text, options, name, &uncut)).transpose()?;
     let prepared = match (target, settings.split) {
         (Target::Nav2, Some(most)) => {
             let (text, whole) = nav2::split(text, most)?;

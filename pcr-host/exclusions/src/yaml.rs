@@ -1,23 +1,42 @@
 //! YAML with the span of every value.
 
-use granit_parser::{Event, Parser};
+use granit_parser::{Event, Parser, StructureStyle};
 use std::ops::Range;
 
 /// A value and where it is.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spanned {
+    /// What is written for it, without an anchor. That of a block ends with its last value.
     pub(crate) span: Range<usize>,
     pub(crate) value: Value,
+    /// Whether an anchor or an alias is in it: the same text is the value of something else.
+    pub(crate) shared: bool,
 }
 
 /// What it is.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    Mapping(Vec<(String, Spanned)>),
-    Sequence(Vec<Spanned>),
+    Mapping(Style, Vec<Member>),
+    Sequence(Style, Vec<Spanned>),
     Scalar(String),
     /// It stands for a value elsewhere.
     Alias,
+}
+
+/// A member of a mapping.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Member {
+    /// Where its name begins.
+    pub(crate) at: usize,
+    pub(crate) name: String,
+    pub(crate) value: Spanned,
+}
+
+/// In brackets, or a line each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Style {
+    Flow,
+    Block,
 }
 
 impl Spanned {
@@ -27,23 +46,20 @@ impl Spanned {
         loop {
             let (event, span) = parser.next()?.ok()?;
             if let Event::MappingStart(..) | Event::SequenceStart(..) | Event::Scalar(..) = event {
-                return node(&event, span.byte_range()?, &mut parser, 0);
+                return node(text, &event, span.byte_range()?, &mut parser, 0);
             }
         }
     }
 
     /// A member.
     pub(crate) fn get(&self, name: &str) -> Option<&Self> {
-        match &self.value {
-            Value::Mapping(members) => members.iter().find(|(key, _)| key == name).map(|(_, value)| value),
-            _ => None,
-        }
+        self.members().iter().find(|member| member.name == name).map(|member| &member.value)
     }
 
     /// The members of a mapping.
-    pub(crate) fn members(&self) -> &[(String, Self)] {
+    pub(crate) fn members(&self) -> &[Member] {
         match &self.value {
-            Value::Mapping(members) => members,
+            Value::Mapping(_, members) => members,
             _ => &[],
         }
     }
@@ -51,9 +67,15 @@ impl Spanned {
     /// The elements of a list.
     pub(crate) fn list(&self) -> &[Self] {
         match &self.value {
-            Value::Sequence(elements) => elements,
+            Value::Sequence(_, elements) => elements,
             _ => &[],
         }
+    }
+
+    /// What stands in its place for a value on one line: a list may begin in the column of its name, that may not.
+    pub(crate) fn instead(&self, value: &str) -> String {
+        let is_block = matches!(self.value, Value::Sequence(Style::Block, _) | Value::Mapping(Style::Block, _));
+        format!("{}{value}", if is_block { "  " } else { "" })
     }
 
     /// The text of a scalar.
@@ -68,7 +90,21 @@ impl Spanned {
 /// Deepest nesting that is read.
 const DEPTH: usize = 100;
 
-fn node<'t, I>(event: &Event<'t>, span: Range<usize>, parser: &mut I, depth: usize) -> Option<Spanned>
+fn style(given: StructureStyle) -> Style {
+    match given {
+        StructureStyle::Flow => Style::Flow,
+        StructureStyle::Block => Style::Block,
+    }
+}
+
+/// Where a list begins of which each element has a line: at the dash of its first one, which the parser does not always tell.
+fn dash(text: &str, first: usize) -> Option<usize> {
+    let at = text[..first].rfind('-')?;
+    // An anchor and a tag may be before it.
+    text[at + 1..first].split_whitespace().all(|word| word.starts_with(['&', '!'])).then_some(at)
+}
+
+fn node<'t, I>(text: &str, event: &Event<'t>, span: Range<usize>, parser: &mut I, depth: usize) -> Option<Spanned>
 where
     I: Iterator<Item = Result<(Event<'t>, granit_parser::Span), granit_parser::ScanError>>,
 {
@@ -79,38 +115,53 @@ where
         let (event, span) = parser.next()?.ok()?;
         Some((event, span.byte_range()?))
     };
-    let mut whole = span;
-    let value = match event {
-        Event::Scalar(text, ..) => Value::Scalar(text.to_string()),
-        Event::Alias(_) => Value::Alias,
-        Event::SequenceStart(..) => {
-            let mut elements = Vec::new();
-            loop {
+    // The end of a block is told where the next value begins, behind comments that are not part of it.
+    let whole = |style: Style, start: Range<usize>, last: Option<usize>, end: Range<usize>| match style {
+        Style::Flow => start.start..end.end,
+        Style::Block => start.start..last.unwrap_or(start.end),
+    };
+    Some(match event {
+        Event::Scalar(scalar, _, anchor, _) => {
+            Spanned { span, value: Value::Scalar(scalar.to_string()), shared: *anchor != 0 }
+        }
+        Event::Alias(_) => Spanned { span, value: Value::Alias, shared: true },
+        Event::SequenceStart(given, anchor, _) => {
+            let mut elements: Vec<Spanned> = Vec::new();
+            let end = loop {
                 let (event, span) = following(parser)?;
                 if matches!(event, Event::SequenceEnd) {
-                    whole.end = span.end;
-                    break Value::Sequence(elements);
+                    break span;
                 }
-                elements.push(node(&event, span, parser, depth + 1)?);
+                elements.push(node(text, &event, span, parser, depth + 1)?);
+            };
+            let style = style(*given);
+            let shared = *anchor != 0 || elements.iter().any(|element| element.shared);
+            let mut span = whole(style, span, elements.last().map(|last| last.span.end), end);
+            if let (Style::Block, Some(first)) = (style, elements.first()) {
+                span.start = dash(text, first.span.start)?;
             }
+            Spanned { span, value: Value::Sequence(style, elements), shared }
         }
-        Event::MappingStart(..) => {
-            let mut members = Vec::new();
-            loop {
+        Event::MappingStart(given, anchor, _) => {
+            let mut members: Vec<Member> = Vec::new();
+            let mut shared = *anchor != 0;
+            let end = loop {
                 let (event, span) = following(parser)?;
                 if matches!(event, Event::MappingEnd) {
-                    whole.end = span.end;
-                    break Value::Mapping(members);
+                    break span;
                 }
-                let key = node(&event, span, parser, depth + 1)?;
+                let key = node(text, &event, span, parser, depth + 1)?;
                 let (event, span) = following(parser)?;
-                let value = node(&event, span, parser, depth + 1)?;
-                members.push((key.text()?.to_owned(), value));
-            }
+                let value = node(text, &event, span, parser, depth + 1)?;
+                shared |= key.shared || value.shared;
+                members.push(Member { at: key.span.start, name: key.text()?.to_owned(), value });
+            };
+            let style = style(*given);
+            let span = whole(style, span, members.last().map(|last| last.value.span.end), end);
+            Spanned { span, value: Value::Mapping(style, members), shared }
         }
         _ => return None,
-    };
-    Some(Spanned { span: whole, value })
+    })
 }
 
 #[cfg(test)]
@@ -131,5 +182,40 @@ mod tests {
         assert_eq!(at(parameters.get("mutex").unwrap()), "[1, \"\"]");
         assert_eq!(at(&parameters.get("mutex").unwrap().list()[1]), "\"\"");
         assert_eq!(whole.get("levels").unwrap().get("L1").unwrap().get("name").unwrap().text(), Some("é"));
+    }
+
+    #[test]
+    fn blocks_end_with_their_last_value() {
+        let text = "\u{feff}lanes:\r\n- - 0 # from\r\n  - 1\r\n  - speed_limit: 0.5\r\n    mutex: é # group\r\n# next\r\n- - 1\r\n  - 2\r\n  - {}\r\n# the end\r\nmore: [1, ]\r\n";
+        let whole = Spanned::of(text).unwrap();
+        let at = |value: &Spanned| &text[value.span.clone()];
+        let lanes = whole.get("lanes").unwrap();
+        assert_eq!(
+            lanes.list().iter().map(at).collect::<Vec<_>>(),
+            ["- 0 # from\r\n  - 1\r\n  - speed_limit: 0.5\r\n    mutex: é", "- 1\r\n  - 2\r\n  - {}"]
+        );
+        let parameters = &lanes.list()[0].list()[2];
+        assert_eq!(at(parameters), "speed_limit: 0.5\r\n    mutex: é");
+        let names: Vec<&str> = parameters.members().iter().map(|member| &text[member.at..][..5]).collect();
+        assert_eq!(names, ["speed", "mutex"]);
+        assert!(matches!(parameters.value, Value::Mapping(Style::Block, _)));
+        assert!(matches!(lanes.list()[1].list()[2].value, Value::Mapping(Style::Flow, _)));
+        assert_eq!(at(whole.get("more").unwrap()), "[1, ]");
+        assert!(at(lanes).starts_with("- - 0") && at(lanes).ends_with("- {}"));
+        let text = "a:\n  b:\n  - 1\n  -  -2\n  c: 3\n";
+        let whole = Spanned::of(text).unwrap();
+        assert_eq!(&text[whole.get("a").unwrap().get("b").unwrap().span.clone()], "- 1\n  -  -2");
+        assert!(!whole.shared);
+    }
+
+    #[test]
+    fn what_is_the_value_of_something_else_too_is_told() {
+        let list = Spanned::of("- &l [1]\n- !!str &m 2\n").unwrap();
+        assert!(list.shared && list.span.start == 0);
+        let text = "a: &x {k: &y 1}\nb: *x\nc: [1, *y]\nd: &z [2]\ne: 3\n";
+        let whole = Spanned::of(text).unwrap();
+        let shared: Vec<bool> = whole.members().iter().map(|member| member.value.shared).collect();
+        assert_eq!(shared, [true, true, true, true, false]);
+        assert_eq!(&text[whole.get("d").unwrap().span.clone()], "[2]");
     }
 }

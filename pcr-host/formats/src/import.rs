@@ -58,6 +58,7 @@ mod xml;
 
 pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
+pub use rmf::is_navigation_graph;
 pub use route::{Step, cheapest, ride, turn};
 pub use timed::{seconds, sectioned};
 pub use useful::Kind;

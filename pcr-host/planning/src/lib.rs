@@ -26,7 +26,7 @@ pub mod bodies;
 pub mod certificate;
 pub mod certify;
 pub mod check;
-mod checksum;
+pub mod checksum;
 pub mod execution;
 pub mod fleet;
 pub mod lifelong;

@@ -4,7 +4,7 @@
 //! begins or ends there, and nobody turns around in between. The first part keeps the name of the path. What belongs to all of a path leaves it whole.
 
 use super::{elements, escaped, name, parse};
-use crate::edit::{Edits, indent};
+use crate::edit::{Edits, ending, indent};
 use crate::settings::Notes;
 use pcr_formats::import::{Edge, ImportError, Imported};
 use pcr_formats::scenario::PathSegment;
@@ -54,6 +54,8 @@ struct Cutter<'a, 'i> {
     text: &'a str,
     /// Where the document begins in the text.
     offset: usize,
+    /// How its lines end.
+    end: &'static str,
     root: Node<'a, 'i>,
     points: HashMap<&'a str, Node<'a, 'i>>,
     edges: HashMap<String, &'a Edge>,
@@ -75,6 +77,7 @@ impl<'a, 'i> Cutter<'a, 'i> {
         Self {
             text,
             offset: text.len() - text.trim_start_matches('\u{feff}').len(),
+            end: ending(text),
             root,
             points: elements(root, "point").map(|point| (name(point), point)).collect(),
             edges: imported.layout.edges.iter().map(|edge| (edge.id.to_string(), edge)).collect(),
@@ -150,24 +153,25 @@ impl<'a, 'i> Cutter<'a, 'i> {
             ];
             self.copy(path, &changed)
         });
-        let copies = copies.collect::<Vec<_>>().join(&format!("\n{}", self.margin(path)));
+        let copies = copies.collect::<Vec<_>>().join(&format!("{}{}", self.end, self.margin(path)));
         for (k, (point, out)) in (1..parts).zip(points[1..].iter().zip(&names[1..])) {
             let [x, y, z] = ["positionX", "positionY", "positionZ"].map(|attribute| share(at(attribute), k));
+            let end = self.end;
             let _ = write!(
                 self.added,
-                "\n{margin}<point name=\"{}\" positionX=\"{x}\" positionY=\"{y}\" positionZ=\"{z}\" vehicleOrientationAngle=\"NaN\" type=\"HALT_POSITION\">",
+                "{end}{margin}<point name=\"{}\" positionX=\"{x}\" positionY=\"{y}\" positionZ=\"{z}\" vehicleOrientationAngle=\"NaN\" type=\"HALT_POSITION\">",
                 escaped(point)
             );
             // Whoever may go to the end of the path may go there.
             if let Some(room) = elements(to, "maxVehicleBoundingBox").next() {
-                let _ = write!(self.added, "\n{margin}    {}", &self.text[self.span(room.range())]);
+                let _ = write!(self.added, "{end}{margin}    {}", &self.text[self.span(room.range())]);
             }
-            let _ = write!(self.added, "\n{margin}    <outgoingPath name=\"{}\"/>", escaped(out));
+            let _ = write!(self.added, "{end}{margin}    <outgoingPath name=\"{}\"/>", escaped(out));
             if let Some(layer) = layer {
                 let layout = format!("<pointLayout labelOffsetX=\"-10\" labelOffsetY=\"-20\" layerId=\"{layer}\"/>");
-                let _ = write!(self.added, "\n{margin}    {layout}");
+                let _ = write!(self.added, "{end}{margin}    {layout}");
             }
-            let _ = write!(self.added, "\n{margin}</point>");
+            let _ = write!(self.added, "{end}{margin}</point>");
         }
         self.edits.replace(self.span(path.range()), copies);
         let inner = points.len() - 1;
@@ -197,7 +201,7 @@ impl<'a, 'i> Cutter<'a, 'i> {
             let margin = self.margin(member);
             for further in self.resources.get(name(member)).into_iter().flatten() {
                 let at = member.range().end + self.offset;
-                self.edits.insert(at, format!("\n{margin}<member name=\"{}\"/>", escaped(further)));
+                self.edits.insert(at, format!("{}{margin}<member name=\"{}\"/>", self.end, escaped(further)));
             }
         }
         self.edits.made(self.text)

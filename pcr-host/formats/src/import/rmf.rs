@@ -1,7 +1,8 @@
-//! Buildings of Open-RMF (`*.building.yaml`) and the configuration of a fleet.
+//! Buildings of Open-RMF (`*.building.yaml`), navigation graphs (`nav_graphs/*.yaml`) and the configuration of a fleet.
 //!
-//! Vertices are pixels of a floor plan, y down; the scale of a level is the mean of its measurements, metres by the
-//! distance of two vertices. A lane is straight; the vehicle stops and turns where two meet at an angle. Lanes and vertices
+//! Vertices of a building are pixels of a floor plan, y down; the scale of a level is the mean of its measurements, metres by the
+//! distance of two vertices. Those of a navigation graph, which the building tools make of it and fleet adapters load, are in metres,
+//! y up, and each lane leads one way. A lane is straight; the vehicle stops and turns where two meet at an angle. Lanes and vertices
 //! have no names of their own: they are called by their level and their place in its list, from 0, as in `L1/12`.
 
 use super::layout::{Edge, Id, Layout, Node};
@@ -52,7 +53,15 @@ pub(super) fn fleet(value: &Value) -> Result<Given, ImportError> {
     Ok(given)
 }
 
-/// Reads a building.
+/// Whether it is a navigation graph, and not a building: the third element of a vertex has its parameters, and not its height.
+pub fn is_navigation_graph(root: &Value) -> bool {
+    let levels = root.get("levels").and_then(Value::as_object);
+    let vertices =
+        levels.into_iter().flat_map(|levels| levels.values()).filter_map(|level| level.get("vertices")?.as_array());
+    root.get("building_name").is_some() || vertices.flatten().any(|vertex| vertex.get(2).is_some_and(Value::is_object))
+}
+
+/// Reads a building, or a navigation graph.
 pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let value = yaml(text)?;
     let root = Object::new("building", &value)?;
@@ -60,26 +69,28 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
     }
     let levels = root.object("levels")?.ok_or_else(|| root.missing("levels"))?;
+    let graph = is_navigation_graph(&value);
     let flipped = match root.text("coordinate_system")? {
+        None if graph => 1.0,
         None | Some("reference_image") => -1.0,
         Some("cartesian_meters") => 1.0,
         Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
     };
     let mut layout = Layout {
-        name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
+        name: root.text(if graph { "building_name" } else { "name" }).ok().flatten().unwrap_or_default().to_owned(),
         corner_radius: options.corner_radius,
         ..Layout::default()
     };
     let mut graphs = BTreeSet::new();
     for (name, value) in levels.members() {
         let object = Object::new(format!("level {name}"), value)?;
-        let vertices = object.list("vertices")?.iter().map(vertex).collect::<Vec<_>>();
+        let vertices = object.list("vertices")?.iter().map(|value| vertex(value, graph)).collect::<Vec<_>>();
         if object.list("lanes")?.is_empty() {
             continue;
         }
         let scale = if flipped < 0.0 { scale(&object, &vertices, warnings)? } else { 1.0 };
-        let mut level =
-            Level { name, scale: [scale, scale * flipped], vertices, nodes: HashMap::new(), layout: &mut layout };
+        let scale = [scale, scale * flipped];
+        let mut level = Level { name, graph, scale, vertices, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in object.list("lanes")?.iter().enumerate() {
             match level.lane(k, lane, options, &mut graphs) {
                 Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
@@ -107,11 +118,12 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     Ok(layout)
 }
 
-/// Position in pixels, name, and whether the vertex is one.
-fn vertex(value: &Value) -> Option<([f64; 2], Option<String>)> {
+/// Position as in the file, and name, if the vertex is one.
+fn vertex(value: &Value, graph: bool) -> Option<([f64; 2], Option<String>)> {
     let list = value.as_array()?;
     let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
-    let name = list.get(3).and_then(Value::as_str).filter(|name| !name.is_empty());
+    let name = if graph { list.get(2).and_then(|parameters| parameters.get("name")) } else { list.get(3) };
+    let name = name.and_then(Value::as_str).filter(|name| !name.is_empty());
     Some(([number(0)?, number(1)?], name.map(str::to_owned)))
 }
 
@@ -166,6 +178,8 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
 
 struct Level<'a> {
     name: &'a str,
+    /// Of a navigation graph.
+    graph: bool,
     /// Metres of a pixel to the right and down.
     scale: [f64; 2],
     vertices: Vec<Vertex>,
@@ -213,16 +227,21 @@ impl Level<'_> {
         let [from, to] = both.map(|(vertex, pixels)| self.node(vertex, pixels));
         let line = Placed::line(from.1, to.1);
         let straight = line.shape.length() > 0.0;
+        // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
+        let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
+        let both_ways = two_way.unwrap_or(false);
         let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
         self.layout.edges.push(Edge {
             id: Id::Text(format!("{}/{k}", self.name)),
             ends: [from.0, to.0],
             curve: if straight { vec![line] } else { Vec::new() },
-            two_way: typed(parameters, "bidirectional", Value::as_bool)?.unwrap_or(false),
+            two_way: both_ways && !self.graph,
             speed: speed.filter(|speed| *speed < 1e6),
             rotation: None,
             deviation: 0.0,
         });
-        Ok((!straight).then(|| "its length is 0".to_owned()))
+        let one_way =
+            (both_ways && self.graph).then_some("it is taken one way, as fleet adapters do with navigation graphs");
+        Ok((!straight).then_some("its length is 0").or(one_way).map(str::to_owned))
     }
 }
