@@ -20,7 +20,8 @@ cd "$(dirname "$0")/.."
 root=$PWD
 if [ -n "$(git status --porcelain)" ]; then echo "release: what is not committed is not in it" >&2; fi
 version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
-SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+revision=$(git rev-parse HEAD)
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct "$revision")
 export SOURCE_DATE_EPOCH CARGO_INCREMENTAL=0 RUSTUP_AUTO_INSTALL=0 LC_ALL=C TZ=UTC
 host=$(rustc -vV | sed -n 's/^host: //p')
 unset CARGO_TARGET_DIR
@@ -86,7 +87,8 @@ playground() {
 # once FOLDER: a release, from a clone there.
 once() {
   local here=$scratch/$1/source made=$scratch/$1/made part
-  git clone -q "$root" "$here"
+  git clone -q --no-checkout "$root" "$here"
+  git -C "$here" checkout -q --detach "$revision" # whatever is committed meanwhile
   mkdir -p "$made"
   cd "$here"
   for part in x86_64 aarch64; do if [[ $parts == *" $part "* ]]; then tool "$here" "$made" $part; fi; done

@@ -126,7 +126,15 @@ def files(tool, folder, browser):
     if said != "No conflict." or starts != browser.value("scenario.agents.map((agent) => agent.t_start)") or not any(starts):
         wrong.append(f"a plan of the tool: {said}, starts {starts}")
     kept = browser.value("scenario")
-    for text, reason in (("{", "Not loaded"), (json.dumps({"agents": [dict(ONE["agents"][0], margin=0.1)]}), '"margin" is not known here')):
+    one = ONE["agents"][0]
+    changed = lambda **fields: json.dumps({"agents": [one, dict(one, id=2, **fields)] if "id" not in fields else [one, dict(one, **fields)]})
+    for text, reason in (("{", "Not loaded"), ("null", "no agents"), ('{"agents": [null]}', "not an object"), (changed(margin=0.1), '"margin" is not known here'),
+                         (changed(start=dict(one["start"], z=1)), '"z" is not known here'), (changed(path=[{"kind": "line", "length": 1, "radius": 2}]), '"radius" is not known here'),
+                         (changed(path=[None]), "only lines and arcs"), (changed(path=[{"kind": "turn", "sweep": 1}]), "only lines and arcs"),
+                         (changed(path=[{"kind": "arc", "radius": 1, "sweep": 0}]), "does not turn"), (changed(id=1), "given twice"), (changed(id="a"), "others names"),
+                         (changed(id=2**60 + 1), "no whole number"), (changed(id=-1), "no whole number"), (changed(id=None), "no whole number"),
+                         (changed(label=5), "not a text"), (changed(radius="0.2"), "not a number"), (json.dumps({"agents": [one], "version": 2}), "version 2"),
+                         (json.dumps({"agents": [one] * 25}), "there is room for 24")):
         (saved / "bad.json").write_text(text)
         said = load(browser, saved / "bad.json")
         if reason not in said or browser.value("scenario") != kept:
@@ -259,6 +267,10 @@ def main(tool, page, folder):
         holds = browser.value("answers.holds && answers.holds.filter(isFinite).length")
         wrong += [] if holds else ["no agent has a hold at the start of the plan"]
         browser.screenshot(folder / "playground-planned.png")
+        browser.value("open({ agents: [] }); 0")
+        wrong += [] if browser.value("$('said').textContent") == "No agents." and browser.value("$('remove').disabled") else ["nobody is said to have no conflict"]
+        browser.value("$('add').click(); $('add').click(); 0")
+        wrong += [] if browser.value("scenario.agents.map((agent) => agent.id)") == [1, 2] else ["agents that are added have other numbers than 1 and 2"]
         for bad, reason in (('{"agents":[{"id":1}]}', "legs"), ('{"agents":[],"x":1}', "not known"), ("[]", "no agents")):
             said = browser.value(f"(() => {{ try {{ read({bad}); return 'taken'; }} catch (e) {{ return e.message; }} }})()")
             wrong += [] if reason in said else [f"{bad}: {said}"]

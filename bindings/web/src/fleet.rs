@@ -3,7 +3,7 @@
 use crate::agents::{AGENTS, Agents, Input};
 use crate::message::Fault;
 use heapless::Vec;
-use pcr_core::{Ecm, Encounter, Hold, Interval, Motion, Order, Orders, Piece, Progress, Region, plan_delays};
+use pcr_core::{Ecm, Encounter, Hold, Interval, Mismatch, Motion, Order, Orders, Piece, Progress, Region, plan_delays};
 
 /// Numbers of an answer, at most.
 pub const ROOM: usize = 1 << 16;
@@ -189,6 +189,23 @@ impl<'s> Fleet<'s> {
             rows.push([position.x, position.y, pose.heading.0, length, end, motion.time().hi])?;
         }
         Ok(motions.len())
+    }
+
+    /// How far an agent has travelled at so many times from the first on.
+    ///
+    /// # Errors
+    /// [`Fault::Mismatch`] for another agent, [`Fault::Question`], [`Fault::Rows`].
+    pub fn track(&mut self, rows: &mut Rows, ego: usize, from: f64, step: f64, times: usize) -> Result<usize, Fault> {
+        if !(from.is_finite() && step.is_finite()) {
+            return Err(Fault::Question("the time"));
+        }
+        let motions = self.agents.motions()?;
+        let motion = motions.get(ego).ok_or(Fault::Mismatch(Mismatch::NoSuchAgent(ego)))?;
+        rows.used = 0;
+        for place in 0..times {
+            rows.push([motion.length_at(from + step * place as f64)])?;
+        }
+        Ok(times)
     }
 
     /// Start delays without conflicts, a number an agent \[s\]: each as early as those before it allow.

@@ -14,6 +14,7 @@
 //! pcr_map(ego, from, step, times)      -> rows of 4    number of the time, other, lengths that are forbidden then (from, to)
 //! pcr_conflicts()                      -> rows of 10   both agents, times, depth, 1 if they but touch, lengths of both
 //! pcr_places(time)                     -> rows of 6    x, y, heading, travelled length, length of the path, arrival
+//! pcr_track(agent, from, step, times)  -> rows of 1    travelled length at these times
 //! pcr_plan()                           -> rows of 1    delay of each agent's start so that nobody collides
 //! pcr_holds(time)                      -> rows of 1    how far each may go in the order of the motions, if the others stop now
 //! pcr_first(), pcr_last()              -> first start, last arrival; NaN without a fleet
@@ -142,6 +143,12 @@ pub extern "C" fn pcr_conflicts() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_places(time: f64) -> i32 {
     answer(|fleet, _, rows| fleet.places(rows, time))
+}
+
+/// How far an agent has travelled at these times.
+#[unsafe(no_mangle)]
+pub extern "C" fn pcr_track(agent: u32, from: f64, step: f64, times: u32) -> i32 {
+    answer(|fleet, _, rows| fleet.track(rows, agent as usize, from, step, times as usize))
 }
 
 /// Start delays without conflicts.

@@ -80,5 +80,11 @@ fn what_is_no_fleet_is_refused_and_leaves_nobody() {
         assert_eq!(fleet.map(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::Mismatch::NoSuchAgent(2))));
         assert_eq!(fleet.map(rows, 0, f64::NAN, 1.0, 10), Err(Fault::Question("the time")));
         assert_eq!(fleet.map(rows, 0, 5.0, 0.0, usize::MAX >> 40), Err(Fault::Rows));
+        assert_eq!(fleet.track(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::Mismatch::NoSuchAgent(2))));
+        assert_eq!(fleet.track(rows, 0, 0.0, f64::INFINITY, 10), Err(Fault::Question("the time")));
+        assert_eq!(fleet.track(rows, 0, 0.0, 1.0, usize::MAX >> 40), Err(Fault::Rows));
+        // Half the way of 8 m from rest to rest at half the time, and nowhere else before and after.
+        assert_eq!(fleet.track(rows, 0, -5.0, 10.0, 3), Ok(3));
+        assert_eq!(rows.numbers(), [0.0, 4.0, 8.0]);
     });
 }

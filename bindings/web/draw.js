@@ -1,0 +1,172 @@
+// The two pictures and the tables.
+
+function fit(canvas) {
+  const scale = devicePixelRatio || 1, { clientWidth: width, clientHeight: height } = canvas;
+  if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(height * scale)) {
+    canvas.width = Math.round(width * scale);
+    canvas.height = Math.round(height * scale);
+  }
+  const pen = canvas.getContext("2d");
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  pen.font = "12px system-ui, sans-serif";
+  return { pen, width, height };
+}
+
+/** The part of the plane that is shown: kept while something is dragged. */
+function frame(width, height) {
+  if (!grabbed || !view) {
+    const points = scenario.agents.flatMap((agent) => joints(agent).map(({ x, y }) => [x, y, agent.radius]));
+    const low = (axis) => Math.min(...points.map((p) => p[axis] - p[2])), high = (axis) => Math.max(...points.map((p) => p[axis] + p[2]));
+    const [x0, x1, y0, y1] = points.length ? [low(0), high(0), low(1), high(1)] : [-4, 4, -3, 3];
+    view = { x: (x0 + x1) / 2, y: (y0 + y1) / 2, zoom: 0.86 / Math.max((x1 - x0) / width, (y1 - y0) / height, 1e-6) };
+  }
+  return { at: ({ x, y }) => [width / 2 + (x - view.x) * view.zoom, height / 2 - (y - view.y) * view.zoom] };
+}
+
+const TIP = 34;
+
+function handles(agent, at) {
+  const poses = joints(agent), [x, y] = at(poses[0]);
+  const tip = { kind: "heading", x: x + TIP * Math.cos(agent.start.heading), y: y - TIP * Math.sin(agent.start.heading) };
+  return [tip, ...poses.slice(1).map((pose, k) => ({ kind: "leg", leg: k, x: at(pose)[0], y: at(pose)[1] })), { kind: "start", x, y }];
+}
+
+function trace(pen, agent, at) {
+  const poses = joints(agent);
+  pen.beginPath();
+  pen.moveTo(...at(poses[0]));
+  agent.path.forEach((leg, k) => {
+    if (leg.kind === "line") return pen.lineTo(...at(poses[k + 1]));
+    const side = Math.sign(leg.sweep), { x, y, heading } = poses[k], r = leg.radius;
+    const centre = { x: x - side * r * Math.sin(heading), y: y + side * r * Math.cos(heading) };
+    const from = -(heading - side * Math.PI / 2);
+    pen.arc(...at(centre), r * view.zoom, from, from - leg.sweep, side > 0);
+  });
+}
+
+function drawPlane() {
+  const { pen, width, height } = fit($("plane")), { at } = frame(width, height);
+  const spacing = 10 ** Math.ceil(Math.log10(40 / view.zoom));
+  pen.strokeStyle = tint("--grid");
+  for (const [axis, size] of [["x", width], ["y", height]]) {
+    const half = size / 2 / view.zoom;
+    for (let k = Math.ceil((view[axis] - half) / spacing); k * spacing < view[axis] + half; k++) {
+      const [x, y] = at({ x: k * spacing, y: k * spacing });
+      pen.beginPath();
+      if (axis === "x") { pen.moveTo(x, 0); pen.lineTo(x, height); } else { pen.moveTo(0, y); pen.lineTo(width, y); }
+      pen.stroke();
+    }
+  }
+  pen.fillStyle = tint("--dim");
+  pen.fillText(`grid ${spacing} m`, 8, height - 8);
+  const places = answers.valid ? rows(pcr.pcr_places(time), 6) : [];
+  const hit = new Set(answers.conflicts.filter((row) => row[2] <= time && time <= row[3]).flatMap((row) => [row[0], row[1]]));
+  scenario.agents.forEach((agent, k) => {
+    pen.strokeStyle = colour(k);
+    pen.lineWidth = k === chosen ? 3 : 1.5;
+    trace(pen, agent, at);
+    pen.stroke();
+  });
+  places.forEach(([x, y], k) => {
+    const [px, py] = at({ x, y });
+    pen.beginPath();
+    pen.arc(px, py, Math.max(2, scenario.agents[k].radius * view.zoom), 0, 7);
+    pen.globalAlpha = 0.28;
+    pen.fillStyle = hit.has(k) ? tint("--hit") : colour(k);
+    pen.fill();
+    pen.globalAlpha = 1;
+    pen.lineWidth = hit.has(k) ? 3 : 1.2;
+    pen.strokeStyle = hit.has(k) ? tint("--hit") : colour(k);
+    pen.stroke();
+    pen.fillStyle = tint("--ink");
+    // Beside the handle of the agent that is chosen, which would cover it.
+    pen.fillText(String(scenario.agents[k].id), k === chosen ? px + 12 : px - 4, k === chosen ? py - 8 : py + 4);
+    const hold = answers.holds?.[k];
+    if (hold !== undefined && isFinite(hold)) {
+      const pose = along(scenario.agents[k], hold), [hx, hy] = at(pose), nx = Math.sin(pose.heading), ny = Math.cos(pose.heading);
+      pen.beginPath();
+      pen.moveTo(hx - 9 * nx, hy - 9 * ny);
+      pen.lineTo(hx + 9 * nx, hy + 9 * ny);
+      pen.lineWidth = 4;
+      pen.strokeStyle = colour(k);
+      pen.stroke();
+    }
+  });
+  const agent = scenario.agents[chosen];
+  if (!agent) return;
+  pen.strokeStyle = tint("--ink");
+  pen.lineWidth = 1.5;
+  const all = handles(agent, at), [x, y] = at(agent.start);
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.lineTo(all[0].x, all[0].y);
+  pen.stroke();
+  for (const handle of all) {
+    pen.beginPath();
+    if (handle.kind === "leg") pen.rect(handle.x - 6, handle.y - 6, 12, 12);
+    else pen.arc(handle.x, handle.y, handle.kind === "start" ? 8 : 5, 0, 7);
+    pen.fillStyle = tint("--paper");
+    pen.fill();
+    pen.stroke();
+  }
+}
+
+function drawMap() {
+  const { pen, width, height } = fit($("map")), agent = scenario.agents[chosen];
+  const left = 44, bottom = 26, wide = width - left - 10, high = height - bottom - 10;
+  if (!agent || !answers.valid) return;
+  const [, , , , end] = rows(pcr.pcr_places(time), 6)[chosen];
+  const px = (t) => left + wide * (t - answers.first) / (answers.last - answers.first), py = (l) => 10 + high * (1 - (end > 0 ? l / end : 0));
+  // Whole pixels, so that neighbours neither overlap nor leave a gap.
+  const border = (place) => Math.round(left + wide * Math.min(Math.max(place - 0.5, 0) / COLUMNS, 1));
+  for (const [place, other, lo, hi] of answers.map) {
+    pen.fillStyle = colour(other);
+    pen.globalAlpha = 0.55;
+    pen.fillRect(border(place), py(hi), border(place + 1) - border(place), Math.max(1, py(lo) - py(hi)));
+  }
+  pen.globalAlpha = 1;
+  pen.strokeStyle = tint("--own");
+  pen.lineWidth = 2;
+  pen.beginPath();
+  const track = rows(pcr.pcr_track(chosen, answers.first, step(), COLUMNS + 1), 1);
+  for (let k = 0; k <= COLUMNS; k++) {
+    const t = answers.first + k * step();
+    if (k) pen.lineTo(px(t), py(track[k][0])); else pen.moveTo(px(t), py(track[k][0]));
+  }
+  pen.stroke();
+  const hold = answers.holds?.[chosen];
+  if (hold !== undefined && isFinite(hold)) {
+    pen.setLineDash([5, 4]);
+    pen.beginPath();
+    pen.moveTo(left, py(hold));
+    pen.lineTo(left + wide, py(hold));
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+  pen.strokeStyle = tint("--accent");
+  pen.beginPath();
+  pen.moveTo(px(time), 10);
+  pen.lineTo(px(time), 10 + high);
+  pen.stroke();
+  pen.strokeStyle = tint("--edge");
+  pen.lineWidth = 1;
+  pen.strokeRect(left, 10, wide, high);
+  pen.fillStyle = tint("--dim");
+  pen.fillText(`${answers.first.toFixed(0)}`, left, height - 8);
+  pen.fillText(`${answers.last.toFixed(1)} s`, left + wide - 40, height - 8);
+  pen.fillText(`${end.toFixed(1)} m`, 4, 20);
+  pen.fillText("0", 30, 10 + high);
+}
+
+function table(target, head, body) {
+  const row = (cells, kind) => {
+    const line = document.createElement("tr");
+    for (const cell of cells) {
+      const field = line.appendChild(document.createElement(kind));
+      if (cell instanceof Node) field.append(cell); else field.textContent = cell;
+    }
+    return line;
+  };
+  target.replaceChildren(row(head, "th"), ...body.map((cells) => row(cells, "td")));
+}
