@@ -109,7 +109,7 @@ impl Load {
     /// Takes what comes until a time.
     fn wait(&mut self, until: Instant) {
         while let Ok((at, news)) = self.news.recv_timeout(until.saturating_duration_since(Instant::now())) {
-            if let News::Message { topic, payload } = news {
+            if let News::Message { topic, payload, .. } = news {
                 self.take(at, &topic, &payload);
             }
         }

@@ -2,6 +2,11 @@
 
 use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, Turn};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+
+/// Paths begin no further off than this, and are no longer \[m\]: coordinates of maps of the earth are in it, and what they are rounded to is
+/// less than what discs are larger by.
+pub const FAR: f64 = 2e7;
 
 /// Where a path begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -99,6 +104,11 @@ impl Course {
     /// # Errors
     /// [`Invalid`] as the paths of `pcr_core`.
     pub fn new(start: Start, shapes: Vec<Shape>) -> Result<Self, Invalid> {
+        for (name, value) in [("x", start.x), ("y", start.y)] {
+            if value.abs() > FAR {
+                return Err(Invalid::OutOfRange(name));
+            }
+        }
         let pose = Pose { position: Point::new(start.x, start.y), heading: Radians(start.heading) };
         let mut last = Segment::standing(pose)?;
         let (mut segments, mut offsets): (Vec<Segment<f64>>, _) = (Vec::new(), Vec::with_capacity(shapes.len()));
@@ -129,6 +139,9 @@ impl Course {
             segments.push(last);
         }
         let length = PathRef::new(&segments)?.length();
+        if length > FAR {
+            return Err(Invalid::OutOfRange("length"));
+        }
         let phases = if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() };
         Ok(Self { start, shapes, segments, offsets, phases })
     }
@@ -203,7 +216,9 @@ impl Course {
             }
         });
         let kept = kept.chain(shapes.iter().copied()).collect();
-        Ok((Self::new(start, kept)?, dropped))
+        // It does not grow with the turns of all missions before.
+        let heading = (start.heading + PI).rem_euclid(TAU) - PI;
+        Ok((Self::new(Start { heading, ..start }, kept)?, dropped))
     }
 
     /// In which pose a shape begins, after the turns before it: which of two shapes a length belongs to is a matter of rounding there.

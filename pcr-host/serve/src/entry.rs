@@ -111,6 +111,11 @@ pub enum Entry {
         /// Which.
         robot: String,
     },
+    /// Robots that were removed had paths of numbers up to this one.
+    Spent {
+        /// It.
+        path: u64,
+    },
     /// A robot may be allowed to go so far.
     Ceiling {
         /// Which.

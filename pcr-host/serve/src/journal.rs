@@ -4,7 +4,9 @@
 //! A frame that the end of the process, or of the power, has left incomplete is the last one, and nobody has been told what is in it: it
 //! is left out. Anything else that is wrong is damage, and no journal to go on with.
 //!
-//! After the last frame there are zeros: what is written over them is on the disc sooner than what makes a file longer.
+//! After the last frame there are zeros: what is written over them is on the disc sooner than what makes a file longer. So what has not come to
+//! the disc of an incomplete frame is zeros, of which no whole one has any but in its first bytes: a last frame that is wrong otherwise was
+//! whole once, and what is in it told.
 
 use crate::entry::{Entry, Keep};
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -186,19 +188,43 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Entry>, usize), String> {
             // The next frame is begun when this one is on the disc. (None begins inside of another one: the fourth byte of a length is
             // no character of JSON.)
             Err(why) if (1..rest.len()).any(|later| text(&rest[later..]).is_ok()) => return Err(damage(why)),
+            Err(why) if !is_torn(rest, at) => return Err(damage(why)),
             Err(_) => break,
         }
     }
     Ok((entries, at))
 }
 
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes)
+}
+
+/// The length of the frame that begins here, if that is there.
+fn length(bytes: &[u8]) -> Option<usize> {
+    let length = word(bytes, 0)?;
+    (crc32fast::hash(&length.to_le_bytes()) == word(bytes, 4)?).then_some(length as usize)
+}
+
 /// What is in the frame that begins here, if all of it is there.
 fn text(bytes: &[u8]) -> Result<&[u8], &'static str> {
-    let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
-    let (Some(length), Some(check), Some(sum)) = (word(0), word(4), word(8)) else { return Err("no whole frame") };
-    if crc32fast::hash(&length.to_le_bytes()) != check {
-        return Err("a length that is none");
-    }
-    let text = bytes.get(FRAME..FRAME + length as usize).ok_or("no whole frame")?;
+    let sum = word(bytes, 8).ok_or("no whole frame")?;
+    let length = length(bytes).ok_or("a length that is none")?;
+    let text = bytes.get(FRAME..FRAME + length).ok_or("no whole frame")?;
     if crc32fast::hash(text) == sum { Ok(text) } else { Err("entries that are not as they were written") }
+}
+
+/// Whether the frame that begins here, at this byte of the file, has never come to the disc as a whole.
+fn is_torn(bytes: &[u8], at: usize) -> bool {
+    /// What a disc writes as a whole \[bytes\].
+    const SECTOR: usize = 512;
+    let is_missing = |part: &[u8]| part.iter().all(|byte| *byte == 0);
+    match length(bytes) {
+        Some(length) => bytes.get(FRAME..FRAME + length).is_none_or(|text| text.contains(&0)),
+        // Nothing of it but its beginning, or a sector is missing.
+        None => {
+            let (_, after) = bytes.split_at(FRAME.min(bytes.len()));
+            let (head, next) = bytes.split_at((SECTOR - at % SECTOR).min(8).min(bytes.len()));
+            is_missing(after) || is_missing(head) || (head.len() < 8 && is_missing(&next[..8 - head.len()]))
+        }
+    }
 }

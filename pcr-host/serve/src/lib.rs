@@ -8,6 +8,7 @@
 //! fault        why it refuses a request                                 Fault
 //! entry        what has to outlive the process                          Entry, Keep
 //! journal      a file of entries                                        Journal
+//! json         JSON in which no name comes twice                        Once
 //! writer       a journal on a thread of its own                         Writer, Kept
 //! supervisor   robots, missions, positions, holds                       Supervisor
 //! query        what can be asked                                        Question
@@ -34,6 +35,7 @@ pub mod event;
 pub mod fault;
 pub mod http;
 pub mod journal;
+pub mod json;
 pub mod lines;
 pub mod log;
 pub mod metrics;

@@ -5,11 +5,12 @@ use crate::course::Start;
 use crate::entry::Layout;
 use crate::event::Event;
 use crate::fault::Fault;
+use crate::json::Once;
 use crate::query::{self, Question};
 use crate::robot::Abilities;
 use crate::supervisor::{Proposal, Report, Supervisor};
 use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// The version of the protocol: requests may name it, answers and events do.
 pub const VERSION: u64 = 1;
@@ -148,9 +149,9 @@ fn answer(id: Value, done: Result<Value, Fault>) -> Value {
 /// The `id` of a line, if it can be told, and what it asks for.
 fn read(line: &[u8]) -> (Value, Result<Verb, Fault>) {
     let malformed = |why: String| Fault::Malformed { why };
-    let object: Result<Map<String, Value>, _> = serde_json::from_slice(line);
-    let mut object = match object {
-        Ok(object) => object,
+    let mut object = match serde_json::from_slice(line) {
+        Ok(Once(Value::Object(object))) => object,
+        Ok(_) => return (Value::Null, Err(malformed("it is no JSON object".into()))),
         Err(error) => return (Value::Null, Err(malformed(format!("it is no JSON object: {error}")))),
     };
     let id = object.remove("id").unwrap_or(Value::Null);

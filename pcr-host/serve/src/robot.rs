@@ -103,7 +103,7 @@ pub struct Robot {
     pub abilities: Abilities,
     /// The path that it has.
     pub course: Course,
-    /// Its number: 1 for that with which it was added, and one more each time.
+    /// Its number: 1 for that with which it was added, or more if others of any name were removed before; and one more each time.
     pub path: u64,
     /// Where the path begins, as a length of the way since the robot was added \[m\]: what was left out of paths before.
     pub origin: f64,

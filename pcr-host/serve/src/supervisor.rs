@@ -99,6 +99,9 @@ pub struct Supervisor {
     tries: HashMap<String, admission::Try>,
     /// How often a robot was added or removed.
     census: u64,
+    /// The highest number of a path of a robot that was removed: one that comes has a higher one, or late messages of an earlier one of its
+    /// name would be taken for its own.
+    spent: u64,
     /// When it was looked last who gets nowhere \[s\].
     looked: f64,
     /// Whether somebody may be in the way of somebody who has been allowed to go there.
@@ -130,6 +133,7 @@ impl Supervisor {
             turn: 0,
             tries: HashMap::new(),
             census: 0,
+            spent: 0,
             looked: f64::NEG_INFINITY,
             hazards: false,
             counts: Counts::default(),
@@ -207,24 +211,44 @@ impl Supervisor {
     pub fn add(&mut self, name: &str, abilities: Abilities, start: Start) -> Result<(), Fault> {
         self.works()?;
         if let Ok(robot) = self.robot(name) {
-            let same = robot.abilities == abilities && robot.path == 1 && robot.course.start() == start;
+            let same = robot.abilities == abilities && robot.mission.is_none() && robot.course.start() == start;
             return if same { Ok(()) } else { Err(Fault::RobotExists) };
         }
         if name.is_empty() || name.len() > 200 || name.chars().any(char::is_control) {
             return Err(Fault::invalid("the name of a robot is 1 to 200 printable characters"));
         }
         let abilities = abilities.checked().map_err(Fault::invalid)?;
-        let course = Course::new(start, Vec::new()).map_err(Fault::invalid)?;
-        let robot = Robot::new(name.into(), abilities, course);
-        robot.motion().map_err(Fault::invalid)?;
-        self.robots.push(robot);
+        self.insert(standing(name, abilities, start)?)
+    }
+
+    /// A robot stands somewhere else than on its path, without a mission, as somebody has seen: all that it had been allowed to is void. The
+    /// missions that it had are still known as such.
+    ///
+    /// # Errors
+    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`], and nothing has changed.
+    pub fn reseat(&mut self, name: &str, start: Start) -> Result<(), Fault> {
+        self.works()?;
+        let robot = &self.robots[self.place(name)?];
+        let mut new = standing(name, robot.abilities, start)?;
+        new.past.clone_from(&robot.past);
+        let waiting = robot.waiting.as_ref().map(|waiting| &waiting.mission);
+        for mission in robot.mission.iter().chain(waiting) {
+            Robot::outlives(&mut new.past, mission.clone());
+        }
+        self.remove(name)?;
+        self.insert(new)
+    }
+
+    fn insert(&mut self, robot: Robot) -> Result<(), Fault> {
+        let name = robot.name.clone();
+        self.robots.push(Robot { path: self.spent + 1, ..robot });
         let place = self.robots.len() - 1;
         if let Err(full) = self.inserted(place) {
             self.robots.pop();
             return Err(Fault::invalid(full));
         }
         self.census += 1;
-        self.names.insert(name.into(), place);
+        self.names.insert(name, place);
         self.unsaved.push(false);
         self.reaches.push(Reach::EMPTY);
         let known = self.known(place);
@@ -255,7 +279,7 @@ impl Supervisor {
         let Ok(place) = self.place(name) else { return Ok(false) };
         self.orders.erase(&fleet(&self.robots), place).map_err(Fault::invalid)?;
         self.census += 1;
-        self.robots.remove(place);
+        self.spent = self.spent.max(self.robots.remove(place).path);
         self.unsaved.remove(place);
         self.reaches.pop();
         self.tries.remove(name);
@@ -353,6 +377,14 @@ impl Supervisor {
             Fault::Broken { why }
         })
     }
+}
+
+/// A robot that stands, without a mission.
+fn standing(name: &str, abilities: Abilities, start: Start) -> Result<Robot, Fault> {
+    let course = Course::new(start, Vec::new()).map_err(Fault::invalid)?;
+    let robot = Robot::new(name.into(), abilities, course);
+    robot.motion().map_err(Fault::invalid)?;
+    Ok(robot)
 }
 
 /// The robots as the orders take them. Each was built when it was added or admitted; if one were missing, the table would refuse the rest.

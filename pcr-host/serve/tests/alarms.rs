@@ -167,3 +167,72 @@ fn missions_that_are_asked_for_again() {
         own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     }
 }
+
+/// A message from before it was beyond, that came late, ended the alarm: others were let go on.
+#[test]
+fn late_messages_end_no_alarm() {
+    let mut own = crossing(&Disc::new());
+    own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap();
+    assert_eq!(names(&own.settle(3.0).unwrap()), ["alarm north", "stop east"]);
+    own.position(&Report { age: 2.0, ..report("north", 2, 2.0, 2.1) }, 3.1).unwrap();
+    assert_eq!(own.settle(3.1).unwrap(), []);
+    own.position(&Report { age: 0.05, ..report("north", 2, 3.3, 3.4) }, 3.2).unwrap();
+    let events = names(&own.settle(3.2).unwrap());
+    assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
+}
+
+/// A robot that is added again counted its paths from 1 again: a late message of the time before was taken for a place on its new path, which it
+/// had not left, and the other one was let through.
+#[test]
+fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    own.position(&report("east", 2, 2.0, 2.0), 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    for restarted in [false, true] {
+        let before = own.robot("east").unwrap().path;
+        own.remove("east").unwrap();
+        own.settle(2.0).unwrap();
+        if restarted {
+            let entries = own.snapshot();
+            own = Supervisor::restored(Settings::default(), entries, Box::new(disc.clone())).unwrap();
+        }
+        own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
+        let path = own.robot("east").unwrap().path;
+        assert!(path > before, "{path}");
+        own.mission(&mission("east", "again", 6.0), 2.0).unwrap();
+        own.settle(2.0).unwrap();
+        own.position(&report("east", before, 5.0, 5.0), 3.0).unwrap();
+        assert_eq!(own.robot("east").unwrap().at, 0.0);
+        // To add the same one twice is no error, but for one that has had a mission.
+        own.add("new", ABILITIES, place(50.0, 0.0, 0.0)).unwrap();
+        own.add("new", ABILITIES, place(50.0, 0.0, 0.0)).unwrap();
+        own.remove("new").unwrap();
+    }
+}
+
+/// A vehicle off its path was no news where coordinates are those of a map of the earth, and headings grew with each lap.
+#[test]
+fn far_off_and_many_laps() {
+    let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
+    own.add("east", ABILITIES, place(500_000.0, 5_600_000.0, 0.0)).unwrap();
+    own.off("east", [500_003.0, 5_600_000.0], 0.0).unwrap();
+    assert_eq!(names(&own.settle(0.0).unwrap()), ["alarm east"]);
+    own.position(&report("east", 1, 0.0, 0.0), 1.0).unwrap();
+    assert!(own.add("far", ABILITIES, place(3e7, 0.0, 0.0)).is_err());
+    for lap in 0..100 {
+        let path = vec![Shape::Arc { radius: 2.0, sweep: 6.0 }];
+        let proposal = Proposal { path, ..mission("east", &lap.to_string(), 0.0) };
+        let now = 2.0 + 20.0 * f64::from(lap);
+        own.mission(&proposal, now).unwrap();
+        for step in 1..=16 {
+            own.settle(now).unwrap();
+            let robot = own.robot("east").unwrap();
+            let (number, at) = (robot.path, robot.granted);
+            own.position(&report("east", number, at, at), now + f64::from(step)).unwrap();
+        }
+        let robot = own.robot("east").unwrap();
+        assert!(robot.at > 11.9 && robot.course.start().heading.abs() < 3.2, "{lap}: {robot:?}");
+    }
+    assert!(own.mission(&mission("east", "long", 3e7), 9e9).is_err());
+}

@@ -24,7 +24,9 @@ Examples:
   pcr fleet warehouse_graph.geojson --broker localhost:1883                     8 vehicles, until Ctrl-C
   pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager           and a manager that gives them missions
   pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager --record run.txt --time 600 --pace 10
-  pcr fleet --certify run.txt                                                   prove that nobody touched anybody";
+  pcr fleet --certify run.txt                                                   prove that nobody touched anybody
+  pcr fleet warehouse_graph.geojson --alone supervisor --time 3600 --finish      without a broker, as fast as that can be computed
+  pcr fleet warehouse_graph.geojson --alone edge-locks --time 3600 --finish      the same vehicles and missions, kept apart by locks";
 
 /// Simulate VDA 5050 vehicles at a broker, and their fleet manager
 #[derive(Args)]
@@ -32,8 +34,11 @@ Examples:
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
     /// Layout; vehicles stand at its safe ends and go from one to another
-    #[arg(required_unless_present = "certify")]
+    #[arg(required_unless_present_any = ["certify", "streets"])]
     layout: Option<PathBuf>,
+    /// A generated site of so many one-way streets each way, with bays to stand in, instead of a layout
+    #[arg(long, value_name = "N", conflicts_with = "layout")]
+    streets: Option<usize>,
     /// HOST:PORT; user and password from PCR_BROKER_USER and PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
     broker: String,
@@ -52,7 +57,13 @@ pub(super) struct Arguments {
     /// End after so many of their seconds
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Connections lost by each vehicle, an hour of ours
+    /// No more missions then, and end when all that are under way are done, or after an hour of theirs
+    #[arg(long, requires = "time")]
+    finish: bool,
+    /// Without a broker, in steps of time: vehicles, their manager, and what keeps them apart (supervisor, route-locks or edge-locks)
+    #[arg(long, value_name = "METHOD", requires = "time")]
+    alone: Option<String>,
+    /// Connections lost by each vehicle, an hour of ours; of theirs with --alone
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     drops: f64,
     /// Part of the messages that is lost, comes twice, and comes up to 3 s late, each

@@ -9,6 +9,8 @@ mod run;
 
 #[cfg(feature = "serve")]
 pub(super) use bridge::{broker, interfaces};
+#[cfg(feature = "serve")]
+pub(super) use run::AT_BROKERS;
 
 use super::Stop;
 use clap::Args;

@@ -1,6 +1,7 @@
 //! What robots say about where they are.
 
 use super::Supervisor;
+use crate::course::FAR;
 use crate::entry::Entry;
 use crate::event::Event;
 use crate::fault::Fault;
@@ -54,7 +55,10 @@ impl Supervisor {
             self.alarm(place, Some(Alarm::Beyond { told, at: *hi }), now - age);
             return Ok(());
         }
-        self.alarm(place, None, now);
+        // One from before it was seen that something is wrong says nothing of what is so now.
+        if self.robots[place].heard.is_none_or(|heard| now - age >= heard) {
+            self.alarm(place, None, now);
+        }
         let robot = &mut self.robots[place];
         // Whoever stands at its end has not left what is there, whatever rounding says of where that ends.
         let lo = lo.min(robot.told).min(robot.course.length() - ROOM);
@@ -81,7 +85,7 @@ impl Supervisor {
     pub fn off(&mut self, name: &str, at: [f64; 2], now: f64) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
-        if at.iter().any(|value| !value.is_finite() || value.abs() > 1e6) {
+        if at.iter().any(|value| !value.is_finite() || value.abs() > FAR) {
             return Err(Fault::invalid(format!("{at:?} is no place")));
         }
         self.counts.positions += 1;

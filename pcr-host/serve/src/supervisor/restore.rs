@@ -36,6 +36,7 @@ impl From<Mismatch> for Damaged {
 struct State {
     layout: Layout,
     robots: Vec<Known>,
+    spent: u64,
 }
 
 impl State {
@@ -58,12 +59,13 @@ impl State {
                 }
             }
             Entry::Removed { robot } => {
-                self.robot(&robot)?;
+                self.spent = self.spent.max(self.robot(&robot)?.path);
                 self.robots.retain(|other| other.name != robot);
                 for other in &mut self.robots {
                     other.orders.retain(|kept| kept.with != robot);
                 }
             }
+            Entry::Spent { path } => self.spent = self.spent.max(path),
             Entry::Ceiling { robot, path, ceiling } => {
                 let known = self.robot(&robot)?;
                 if known.path == path {
@@ -104,7 +106,10 @@ impl Supervisor {
         let mut state = State::default();
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
         let mut own = Self::new(settings, keeper);
-        own.layout = state.layout;
+        (own.layout, own.spent) = (state.layout, state.spent);
+        if own.spent >= MOST {
+            return Err(Damaged("a number of a path that cannot be".into()));
+        }
         let mut kept: HashMap<[String; 2], Vec<Kept>> = HashMap::new();
         for known in state.robots {
             for order in &known.orders {
@@ -179,7 +184,8 @@ impl Supervisor {
             known.orders.retain(before);
             Entry::Robot(Box::new(known))
         });
-        layout.chain(robots).collect()
+        let spent = (self.spent > 0).then_some(Entry::Spent { path: self.spent });
+        layout.chain(spent).chain(robots).collect()
     }
 }
 

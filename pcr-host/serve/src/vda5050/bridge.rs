@@ -135,6 +135,17 @@ impl Bridge {
         self.collect(&(0..self.lanes.len()).collect());
     }
 
+    /// Takes a message that the broker had kept, from any time before: of most kinds that is none.
+    pub fn receive_kept(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
+        let Settings { manager, vehicles, .. } = &self.settings;
+        let kind = vehicles.parse(topic).or_else(|| manager.parse(topic)).map(|(.., kind)| kind);
+        if kind.is_none_or(Kind::is_lasting) {
+            return self.receive(supervisor, topic, payload, now);
+        }
+        self.counts.refused += 1;
+        self.log.push(format!("{topic}: kept by the broker, from another time"));
+    }
+
     /// Takes a message. What it asks for takes effect when the supervisor has settled.
     pub fn receive(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
         let settings = &self.settings;
@@ -188,8 +199,8 @@ impl Bridge {
             self.touched.extend(0..self.lanes.len());
         }
         let touched = std::mem::take(&mut self.touched);
-        // A vehicle that has never said where it stands may stand anywhere.
-        let is_known = self.seen.unknown.is_empty();
+        // A vehicle that has never said where it stands may stand anywhere, and one that is larger than its disc may be in anybody's way.
+        let is_known = self.seen.unknown.is_empty() && self.lanes.iter().all(|lane| lane.misfit().is_none());
         for &place in &touched {
             let lane = &mut self.lanes[place];
             lane.pause(supervisor, now);
@@ -201,8 +212,13 @@ impl Bridge {
         if !is_known && now >= self.said + REMINDER {
             self.said = now;
             let names: Vec<&str> = self.seen.unknown.iter().map(|&place| self.lanes[place].name()).collect();
-            let names = names.join(", ");
-            self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
+            if !names.is_empty() {
+                let names = names.join(", ");
+                self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
+            }
+            for (name, why) in self.lanes.iter().filter_map(|lane| Some((lane.name(), lane.misfit()?))) {
+                self.log.push(format!("nobody is released anything: {name}: {why}"));
+            }
         }
     }
 

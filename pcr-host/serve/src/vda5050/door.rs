@@ -1,6 +1,7 @@
 //! From bytes to values: what is too large, no JSON, or holds numbers that nobody computes with is refused by name.
 
 use super::bounds::{self, VERBATIM};
+use crate::json::Once;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt;
@@ -49,7 +50,7 @@ pub fn read<T: DeserializeOwned>(bytes: &[u8], limits: Limits) -> Result<T, Refu
     if let Some(message) = (!has_null).then(|| serde_json::from_slice(bytes).ok()).flatten() {
         return Ok(message);
     }
-    let mut value: Value = serde_json::from_slice(bytes).map_err(|error| Refusal::new("", error))?;
+    let Once(mut value) = serde_json::from_slice(bytes).map_err(|error| Refusal::new("", error))?;
     drop_null(&mut value);
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
@@ -107,6 +108,10 @@ mod tests {
                 .starts_with("version: 5000 bytes")
         );
         assert!(refused("{").starts_with("EOF"));
+        let twice = order("1").replace("\"orderId\":\"o\"", "\"orderId\":\"o\",\"orderId\":\"p\"");
+        assert!(refused(&twice).starts_with("\"orderId\" is there twice"), "{}", refused(&twice));
+        let twice = order("1").replace("\"y\":0", "\"y\":0,\"y\":1");
+        assert!(refused(&twice).starts_with("\"y\" is there twice"), "{}", refused(&twice));
         assert!(refused(&"[".repeat(500)).contains("recursion"));
         assert!(refused(&format!("\"{}\"", "x".repeat(5_000))).contains("a text has at most"));
         assert!(refused(&format!("[{}0]", "0,".repeat(3_000))).contains("a list has at most 2000"));

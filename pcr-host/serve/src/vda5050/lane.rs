@@ -76,6 +76,8 @@ pub struct Lane {
     version: Option<Version>,
     newest: BTreeMap<Kind, Newest>,
     state: Option<Arc<State>>,
+    /// When that came \[s\].
+    heard_at: f64,
     job: Option<Job>,
     /// What the manager is told is wrong with its orders, until one is taken.
     errors: Vec<StateError>,
@@ -85,6 +87,8 @@ pub struct Lane {
     pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
+    /// Why its disc is not that of the vehicle, by the vehicle's own words.
+    misfit: Option<String>,
 }
 
 impl Lane {
@@ -95,7 +99,8 @@ impl Lane {
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        Self { profile, name, version, newest, state: None, job, errors, astray: None, pause: None, sent, posts }
+        let (state, heard_at, astray, pause) = (None, 0.0, None, None);
+        Self { profile, name, version, newest, state, heard_at, job, errors, astray, pause, sent, posts, misfit: None }
     }
 
     /// What the supervisor calls it.
@@ -116,6 +121,11 @@ impl Lane {
     /// What it has said last.
     pub fn state_of(&self) -> Option<&State> {
         self.state.as_deref()
+    }
+
+    /// Why its disc is not that of the vehicle, by what the vehicle says of itself.
+    pub fn misfit(&self) -> Option<&str> {
+        self.misfit.as_deref()
     }
 
     /// The messages to be sent.

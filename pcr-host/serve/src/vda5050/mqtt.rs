@@ -45,6 +45,8 @@ pub enum News {
         topic: String,
         /// Bytes.
         payload: Vec<u8>,
+        /// The broker had kept it: it was said before we asked for it, at any time.
+        kept: bool,
     },
 }
 
@@ -195,6 +197,9 @@ impl<F: Fn(News)> Work<F> {
                 Err(error) => {
                     self.asks = false;
                     self.is_down(error.to_string());
+                    // What has not been sent would be old when it can be, and somebody else may supervise by then.
+                    events.clean();
+                    events.pending.clear();
                     tokio::select! {
                         biased;
                         () = stop.notified() => return,
@@ -222,7 +227,8 @@ impl<F: Fn(News)> Work<F> {
                 }
             }
             Event::Incoming(Packet::Publish(message)) => {
-                (self.sink)(News::Message { topic: message.topic, payload: message.payload.to_vec() });
+                let (payload, kept) = (message.payload.to_vec(), message.retain);
+                (self.sink)(News::Message { topic: message.topic, payload, kept });
             }
             _ => {}
         }

@@ -176,6 +176,7 @@ impl Pose {
     pub fn is_known(&self) -> bool {
         self.position_initialized.or(self.localized).unwrap_or(false)
             && self.localization_score.is_none_or(|it| it > 0.0)
+            && self.deviation_range.is_none_or(|it| it >= 0.0)
     }
 }
 

@@ -1,7 +1,8 @@
 //! The bridge at its broker: one at a time.
 //!
 //! Whoever supervises says so in a retained message that its last will takes back. A second one sees it and does nothing. Of two that
-//! begin at once, the one whose message the broker takes first goes on.
+//! begin at once, the one whose message the broker takes first goes on. One that is late by more than that sees no message where one was:
+//! whoever supervises already says so again, and a claim counts when nobody has objected for a while.
 
 use super::bridge::{Bridge, Publish};
 use super::header::Header;
@@ -23,6 +24,9 @@ use std::time::{Duration, Instant};
 /// How long it is waited for the last will of one that may be gone: a little more than the broker does.
 const PATIENCE: Duration = Duration::from_secs(9);
 
+/// How long it is waited for somebody who objects.
+const OBJECTIONS: Duration = Duration::from_secs(1);
+
 /// So many messages are answered together at most.
 const MOST: usize = 1_000;
 
@@ -38,8 +42,18 @@ enum Claim {
     Theirs(Instant, String),
     /// Ours was sent.
     Sent,
+    /// Ours has come back from the broker; since when nobody has objected.
+    Seen(Instant),
     /// Ours.
     Ours,
+}
+
+/// A message.
+struct Heard {
+    topic: String,
+    payload: Vec<u8>,
+    /// Whether the broker had kept it.
+    kept: bool,
 }
 
 /// A bridge at its broker.
@@ -50,6 +64,8 @@ pub struct Station {
     session: String,
     topic: String,
     claim: Claim,
+    /// Who has claimed what is ours, and when we have objected.
+    rival: Option<(Instant, String)>,
     begin: Instant,
     key: Key,
     /// The vehicles are to be asked how things are.
@@ -79,7 +95,7 @@ impl Station {
         })?;
         let now = Instant::now();
         let (session, claim) = (session.into(), Claim::Asking(now));
-        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false, log: Vec::new() })
+        Ok(Self { link, news, session, topic, claim, rival: None, begin: now, key, greets: false, log: Vec::new() })
     }
 
     /// Seconds since it was opened.
@@ -146,14 +162,14 @@ impl Station {
     }
 
     /// What has come; waits for a little while if nothing has. While it is answered more comes, which is answered together then.
-    fn messages(&mut self) -> Result<Vec<(String, Vec<u8>)>, Stopped> {
+    fn messages(&mut self) -> Result<Vec<Heard>, Stopped> {
         let (mut messages, mut patience) = (Vec::new(), TICK);
         while messages.len() < MOST {
             match self.news.recv_timeout(patience) {
                 Ok(News::Up) => self.claim = Claim::Asking(Instant::now()),
                 Ok(News::Down(why)) => self.log.push(format!("no broker: {why}")),
-                Ok(News::Message { topic, payload }) if topic == self.topic => self.heard(&payload)?,
-                Ok(News::Message { topic, payload }) => messages.push((topic, payload)),
+                Ok(News::Message { topic, payload, .. }) if topic == self.topic => self.heard(&payload)?,
+                Ok(News::Message { topic, payload, kept }) => messages.push(Heard { topic, payload, kept }),
                 Err(RecvTimeoutError::Timeout) => break,
                 Err(RecvTimeoutError::Disconnected) => return Err(Stopped("the connection has ended".into())),
             }
@@ -169,20 +185,33 @@ impl Station {
         let text = |field: &str| said.get(field).and_then(Value::as_str).unwrap_or_default();
         let is_online = text("connectionState") == "ONLINE";
         match (&self.claim, text("session") == self.session) {
-            (Claim::Sent, true) if is_online => {
-                self.claim = Claim::Ours;
-                self.greets = true;
-            }
+            (Claim::Sent, true) if is_online => self.claim = Claim::Seen(Instant::now()),
             // It may be gone: the broker will say so.
             (Claim::Asking(_), false) if is_online => {
                 self.claim = Claim::Theirs(Instant::now(), text("session").into())
             }
             (Claim::Theirs(..), _) if !is_online => self.claim = Claim::Asking(Instant::now()),
-            (Claim::Sent, false) if is_online => {
+            (Claim::Sent | Claim::Seen(_), false) if is_online => {
                 return Err(Stopped(format!("another supervisor, {}, was first", text("session"))));
             }
-            // Whoever comes later than we sees ours.
+            (Claim::Ours, false) if is_online => self.object(text("session"))?,
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// Says again what is ours. Whoever has claimed it ends then; of two who were both sure that it is theirs, one of them does.
+    fn object(&mut self, rival: &str) -> Result<(), Stopped> {
+        /// Whoever claims it once more after so long has come anew.
+        const WHILE: Duration = Duration::from_secs(5);
+        self.log.push(format!("another supervisor, {rival}, has come"));
+        let insists = self.rival.as_ref().is_some_and(|(at, name)| name == rival && at.elapsed() < WHILE);
+        if insists && rival < self.session.as_str() {
+            return Err(Stopped(format!("another supervisor, {rival}, is at work")));
+        }
+        if !insists {
+            self.rival = Some((Instant::now(), rival.into()));
+            let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE"));
         }
         Ok(())
     }
@@ -195,6 +224,12 @@ impl Station {
             && since.elapsed() > PATIENCE
         {
             return Err(Stopped(format!("another supervisor, {session}, is at work")));
+        }
+        if let Claim::Seen(since) = self.claim
+            && since.elapsed() > OBJECTIONS
+        {
+            self.claim = Claim::Ours;
+            self.greets = true;
         }
         if let Claim::Asking(since) = self.claim
             && self.link.is_up()
@@ -227,7 +262,7 @@ fn claim(key: &Key, topic: &str, session: &str, state: &str) -> Publish {
 fn answered(
     supervisor: &mut Supervisor,
     bridge: &mut Bridge,
-    messages: &[(String, Vec<u8>)],
+    messages: &[Heard],
     [greets, works]: [bool; 2],
     told: &[Event],
     now: f64,
@@ -235,8 +270,11 @@ fn answered(
     if greets {
         bridge.greet();
     }
-    for (topic, payload) in messages {
-        bridge.receive(supervisor, topic, payload, now);
+    for Heard { topic, payload, kept } in messages {
+        match kept {
+            true => bridge.receive_kept(supervisor, topic, payload, now),
+            false => bridge.receive(supervisor, topic, payload, now),
+        }
     }
     if !works {
         bridge.told(told);

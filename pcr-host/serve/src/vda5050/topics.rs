@@ -103,6 +103,12 @@ impl Kind {
         self == Self::Connection
     }
 
+    /// Whether one that was said at any time before is read: what a vehicle is, and what holds until it is taken back. A state or an order that
+    /// somebody let the broker keep is that of another time.
+    pub fn is_lasting(self) -> bool {
+        matches!(self, Self::Connection | Self::Factsheet | Self::ZoneSet)
+    }
+
     /// Whether the broker keeps the last one.
     pub fn is_retained(self) -> bool {
         matches!(self, Self::Connection | Self::Factsheet)

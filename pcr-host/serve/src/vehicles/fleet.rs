@@ -1,5 +1,6 @@
 //! Simulated vehicles at a broker, each with a connection of its own.
 
+use super::audit::Audit;
 use super::random::Random;
 use super::record::{Record, Recorded};
 use super::vehicle::Vehicle;
@@ -57,6 +58,7 @@ pub struct Fleet<W: Write> {
     time: f64,
     /// Times that connections were lost.
     drops: u64,
+    audit: Audit,
 }
 
 /// Vehicles go on in steps of this at most \[s\].
@@ -98,6 +100,7 @@ impl<W: Write> Fleet<W> {
             last: 0.0,
             time: 0.0,
             drops: 0,
+            audit: Audit::default(),
         })
     }
 
@@ -109,6 +112,11 @@ impl<W: Write> Fleet<W> {
     /// Times that connections were lost on purpose.
     pub fn drops(&self) -> u64 {
         self.drops
+    }
+
+    /// Whether two had the right to one place.
+    pub fn audit(&self) -> &Audit {
+        &self.audit
     }
 
     /// The vehicles.
@@ -139,7 +147,7 @@ impl<W: Write> Fleet<W> {
                     member.vehicle.tell_state();
                 }
                 News::Down(_) => {}
-                News::Message { topic, payload } => {
+                News::Message { topic, payload, .. } => {
                     if let Some((_, key, kind)) = self.settings.interface.parse(&topic)
                         && key == *member.vehicle.key()
                     {
@@ -162,6 +170,7 @@ impl<W: Write> Fleet<W> {
         for k in 0..self.members.len() {
             self.talk(k, now)?;
         }
+        self.audit.look(self.time, self.members.iter().map(|member| &member.vehicle));
         Ok(())
     }
 

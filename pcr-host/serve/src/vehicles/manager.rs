@@ -1,12 +1,14 @@
 //! A fleet manager that gives every vehicle one mission after the other, to goals that nobody else is at or goes to, on ways that
 //! keep clear of all other goals: whoever stands at one is in nobody's way, so that every mission can be done whatever the others do.
+//! A vehicle that has lost its order gets another one, for the rest of the way from where it stands.
 
+use super::locks::{Leg, Locks, Method, to_line};
 use super::random::Random;
 use crate::vda5050::door::{self, Limits};
 use crate::vda5050::header::Header;
 use crate::vda5050::order::{Edge, Node, NodePosition, Order};
 use crate::vda5050::stamp;
-use crate::vda5050::state::State;
+use crate::vda5050::state::{Pose, State};
 use crate::vda5050::topics::Key;
 use crate::vda5050::version::Version;
 use pcr_formats::import::{Layout, Step, cheapest};
@@ -16,15 +18,41 @@ use std::collections::BTreeMap;
 /// What it knows of a vehicle.
 #[derive(Clone, Debug)]
 struct Client {
+    /// Which of them it is.
+    place: usize,
     version: Version,
     /// The node where its last order ends.
     at: usize,
-    /// Of the last order, and how often it was sent.
-    order: Option<(String, Order)>,
+    /// The order that it has or is to take.
+    order: Option<Given>,
     orders: u64,
     done: u64,
     header: u64,
+}
+
+/// An order.
+#[derive(Clone, Debug)]
+struct Given {
+    order: Order,
+    /// The vehicle has had it.
+    had: bool,
+    /// States in a row in which it does not have it any more, and when the first one came \[s\].
+    lost: Option<(u32, f64)>,
+    /// The update that was sent last: its first node, the last one that it releases, and when that was \[s\].
+    from: usize,
+    released: usize,
     sent: f64,
+}
+
+/// A message for a vehicle.
+#[derive(Clone, Debug)]
+pub struct Sent {
+    /// To whom.
+    pub key: Key,
+    /// Of which edition.
+    pub version: Version,
+    /// JSON.
+    pub payload: Vec<u8>,
 }
 
 /// A fleet manager.
@@ -39,10 +67,24 @@ pub struct Manager {
     random: Random,
     /// Tells its orders from those of another run.
     run: u64,
+    /// Where no supervisor keeps vehicles apart.
+    locks: Option<Locks>,
+    /// No more missions.
+    ends: bool,
+    again: u64,
 }
 
 /// An order that was not taken is sent again after so long \[s\].
 const AGAIN: f64 = 2.0;
+
+/// A vehicle that says so often in a row, for so long \[s\], that it has not got the order that it had has lost it.
+const LOST: (u32, f64) = (3, 3.0);
+
+/// Whoever stands nearer to a node than this begins there \[m\].
+const NEAR: f64 = 0.3;
+
+/// With locks vehicles get edges so far ahead of the node that they have reached \[m\].
+const FAR: f64 = 4.0;
 
 impl Manager {
     /// Of vehicles that stand at nodes of a layout, for missions to some of its nodes.
@@ -57,14 +99,14 @@ impl Manager {
         vehicles: Vec<(Key, Version, usize)>,
         seed: u64,
     ) -> Result<Self, String> {
-        let clients = vehicles.into_iter().map(|(key, version, at)| {
-            let sent = f64::NEG_INFINITY;
-            (key, Client { version, at, order: None, orders: 0, done: 0, header: 0, sent })
+        let clients = vehicles.into_iter().enumerate().map(|(place, (key, version, at))| {
+            (key, Client { place, version, at, order: None, orders: 0, done: 0, header: 0 })
         });
         let mut random = Random::new(seed);
         let run = random.bits() & 0xffff_ffff;
         let clients = clients.collect();
-        let own = Self { layout, map_id: map_id.into(), goals, clearance, clients, random, run };
+        let (map_id, locks) = (map_id.into(), None);
+        let own = Self { layout, map_id, goals, clearance, clients, random, run, locks, ends: false, again: 0 };
         for (&from, &to) in own.goals.iter().zip(own.goals.iter().cycle().skip(1)) {
             if own.way([from, to]).is_none() {
                 let [from, to] = [from, to].map(|node| own.layout.nodes.get(node).map(|node| node.id.to_string()));
@@ -73,6 +115,20 @@ impl Manager {
             }
         }
         Ok(own)
+    }
+
+    /// Keeps vehicles apart itself, by locks, or leaves that to a supervisor; before it has sent any order.
+    pub fn by(mut self, method: Method) -> Self {
+        let mut places: Vec<(usize, usize)> = self.clients.values().map(|client| (client.place, client.at)).collect();
+        places.sort_unstable();
+        let standing: Vec<usize> = places.into_iter().map(|(_, at)| at).collect();
+        let locks = |is_whole| Locks::new(&self.layout, self.clearance, FAR, is_whole, &standing);
+        self.locks = match method {
+            Method::Supervisor => None,
+            Method::RouteLocks => Some(locks(true)),
+            Method::EdgeLocks => Some(locks(false)),
+        };
+        self
     }
 
     /// Missions done by all vehicles.
@@ -85,60 +141,162 @@ impl Manager {
         self.clients.iter().map(|(key, client)| (key.to_string(), client.done)).collect()
     }
 
-    /// The order that each vehicle has or is to take, and the node where it ends.
-    pub fn orders(&self) -> impl Iterator<Item = (&Key, Option<&str>, usize)> {
-        self.clients.iter().map(|(key, client)| (key, client.order.as_ref().map(|(id, _)| id.as_str()), client.at))
+    /// Orders that were planned anew, as vehicles had lost them.
+    pub fn planned_anew(&self) -> u64 {
+        self.again
     }
 
-    /// Takes a state; returns an order that the vehicle is to get now.
-    pub fn receive(&mut self, key: &Key, payload: &[u8], now: f64) -> Option<(Version, Vec<u8>)> {
-        let state: State = door::read(payload, Limits::default()).ok()?;
-        let client = self.clients.get_mut(key)?;
-        match &client.order {
-            Some((id, order)) if state.order_id == *id => {
-                let last = order.nodes.last()?;
-                if state.last_node_sequence_id != last.sequence_id || !state.is_idle() {
-                    return None;
+    /// No more missions than those that are under way.
+    pub fn end(&mut self) {
+        self.ends = true;
+    }
+
+    /// The vehicles that have something to do.
+    pub fn busy(&self) -> impl Iterator<Item = &Key> {
+        self.clients.iter().filter(|(_, client)| client.order.is_some()).map(|(key, _)| key)
+    }
+
+    /// The order that each vehicle has or is to take, and the node where it ends.
+    pub fn orders(&self) -> impl Iterator<Item = (&Key, Option<&str>, usize)> {
+        self.clients
+            .iter()
+            .map(|(key, client)| (key, client.order.as_ref().map(|given| given.order.order_id.as_str()), client.at))
+    }
+
+    /// Takes a state; returns what vehicles are to get now.
+    pub fn receive(&mut self, key: &Key, payload: &[u8], now: f64) -> Vec<Sent> {
+        let Ok(state) = door::read::<State>(payload, Limits::default()) else { return Vec::new() };
+        let Some(client) = self.clients.get_mut(key) else { return Vec::new() };
+        let mut due = Vec::new();
+        match &mut client.order {
+            Some(given) if state.order_id == given.order.order_id => {
+                (given.had, given.lost) = (true, None);
+                let Some(last) = given.order.nodes.last() else { return Vec::new() };
+                if state.last_node_sequence_id == last.sequence_id && state.is_idle() {
+                    let edges = given.order.edges.len();
+                    let place = client.place;
+                    (client.order, client.done) = (None, client.done + 1);
+                    self.locks.iter_mut().for_each(|locks| locks.passed(place, edges, now));
+                    due.extend(self.order(key, now));
+                } else if let Some(locks) = &mut self.locks {
+                    locks.passed(client.place, state.last_node_sequence_id as usize / 2, now);
+                    if state.order_update_id < given.order.order_update_id && now - given.sent >= AGAIN {
+                        due.extend(client.send(key, now));
+                    }
                 }
-                client.order = None;
-                client.done += 1;
-                self.order(key, now)
             }
-            Some(_) if now - client.sent >= AGAIN => self.send(key, now),
-            Some(_) => None,
-            None if now - client.sent >= AGAIN => self.order(key, now),
-            None => None,
+            Some(given) if given.had => {
+                let (count, since) = given.lost.unwrap_or((0, now));
+                given.lost = Some((count + 1, since));
+                if count + 1 >= LOST.0 && now - since >= LOST.1 && state.is_idle() && self.locks.is_none() {
+                    due.extend(self.plan_anew(key, &state, now));
+                }
+            }
+            // With locks it is sent for the first time when it has got some of its way.
+            Some(given) if given.sent > f64::NEG_INFINITY && now - given.sent >= AGAIN => {
+                due.extend(client.send(key, now))
+            }
+            Some(_) => {}
+            None => due.extend(self.order(key, now)),
         }
+        due.extend(self.give(key, &state, now));
+        due
+    }
+
+    /// More of the ways for whoever can get it, where there are locks.
+    fn give(&mut self, from: &Key, state: &State, now: f64) -> Vec<Sent> {
+        let Some(locks) = &mut self.locks else { return Vec::new() };
+        locks.give();
+        let mut due = Vec::new();
+        for (key, client) in &mut self.clients {
+            let Some(given) = &mut client.order else { continue };
+            let node = locks.given(client.place);
+            let is_first = given.sent == f64::NEG_INFINITY;
+            // One update at a time; that the vehicle has the one before it is said by its own state.
+            let has_it = key == from
+                && state.order_id == given.order.order_id
+                && state.order_update_id == given.order.order_update_id;
+            if node > given.released && (is_first || has_it) {
+                given.order.order_update_id += u64::from(!is_first);
+                (given.from, given.released) = (given.released, node);
+                due.extend(client.send(key, now));
+            }
+        }
+        due
     }
 
     /// The next mission of a vehicle.
-    fn order(&mut self, key: &Key, now: f64) -> Option<(Version, Vec<u8>)> {
+    fn order(&mut self, key: &Key, now: f64) -> Option<Sent> {
+        if self.ends {
+            return None;
+        }
         let taken: Vec<usize> = self.clients.values().map(|client| client.at).collect();
         let free: Vec<usize> = self.goals.iter().copied().filter(|goal| !taken.contains(goal)).collect();
         let goal = *free.get(self.random.below(free.len()))?;
         let client = self.clients.get(key)?;
-        let steps = self.way([client.at, goal])?;
+        let (place, steps) = (client.place, self.way([client.at, goal])?);
+        let legs = steps.iter().map(|step| {
+            let edge = self.layout.edges.iter().position(|edge| std::ptr::eq(edge, step.edge));
+            Leg { edge: edge.unwrap_or_default(), length: step.edge.length(), to: step.target() }
+        });
+        let legs: Vec<Leg> = legs.collect();
         let mut places = vec![client.at];
         places.extend(steps.iter().map(|step| step.target()));
         let nodes: Option<Vec<Node>> = places.iter().enumerate().map(|(k, &place)| self.node(k, place)).collect();
-        let edges = steps
-            .iter()
-            .enumerate()
-            .map(|(k, step)| self.edge(k, &step.edge.id.to_string(), [places[k], places[k + 1]]));
-        let edges = edges.collect();
-        let order_id = format!("{:08x}-{}-{}", self.run, key.serial_number, client.orders);
-        let order = Order {
-            header: Header::default(),
-            order_id: order_id.clone(),
-            order_update_id: 0,
-            nodes: nodes?,
-            edges,
-            rest: Map::new(),
-        };
+        let names = steps.iter().map(|step| step.edge.id.to_string());
+        let edges = names.enumerate().map(|(k, id)| self.edge(k, &id, [places[k], places[k + 1]])).collect();
+        let nodes = nodes?;
+        if let Some(locks) = &mut self.locks {
+            locks.want(place, legs, now);
+        }
+        self.clients.get_mut(key)?.at = goal;
+        self.begin(key, nodes, edges, now)
+    }
+
+    /// An order over these nodes, all of it released at once where there are no locks.
+    fn begin(&mut self, key: &Key, nodes: Vec<Node>, edges: Vec<Edge>, now: f64) -> Option<Sent> {
         let client = self.clients.get_mut(key)?;
+        let order_id = format!("{:08x}-{}-{}", self.run, key.serial_number, client.orders);
         client.orders += 1;
-        (client.at, client.order) = (goal, Some((order_id, order)));
-        self.send(key, now)
+        let released = if self.locks.is_some() { 0 } else { edges.len() };
+        let order = Order { header: Header::default(), order_id, order_update_id: 0, nodes, edges, rest: Map::new() };
+        let sent = f64::NEG_INFINITY;
+        client.order = Some(Given { order, had: false, lost: None, from: 0, released, sent });
+        if self.locks.is_some() { None } else { client.send(key, now) }
+    }
+
+    /// The rest of the way for a vehicle that has lost its order, from where it stands.
+    fn plan_anew(&mut self, key: &Key, state: &State, now: f64) -> Option<Sent> {
+        let pose = state.position().filter(|pose| pose.is_known())?;
+        let lost = &self.clients.get(key)?.order.as_ref()?.order;
+        let place = |node: &Node| node.node_position.as_ref().map(|position| [position.x, position.y]);
+        let places: Vec<[f64; 2]> = lost.nodes.iter().filter_map(place).collect();
+        let here = [pose.x, pose.y];
+        let off = |leg: &[[f64; 2]]| to_line(here, leg[0], leg[1]);
+        let legs = places.windows(2).enumerate();
+        let nearest = legs.min_by(|a, b| off(a.1).total_cmp(&off(b.1))).map_or(0, |(leg, _)| leg);
+        let near = |node: usize| places.get(node).is_some_and(|at| (at[0] - here[0]).hypot(at[1] - here[1]) <= NEAR);
+        // From the node where it is, or over one where it is to the next one.
+        let (first, is_between) = match [nearest, nearest + 1].into_iter().rfind(|&node| near(node)) {
+            Some(node) => (node, false),
+            None => (nearest, true),
+        };
+        let mut nodes: Vec<Node> = lost.nodes.iter().skip(first).cloned().collect();
+        let mut edges: Vec<Edge> = lost.edges.iter().skip(first).cloned().collect();
+        if is_between {
+            let begin = nodes.first_mut()?;
+            begin.node_id = format!("{}+", begin.node_id);
+            begin.node_position = Some(self.position(pose));
+            edges.first_mut()?.start_node_id = Some(begin.node_id.clone());
+        }
+        for (k, node) in nodes.iter_mut().enumerate() {
+            node.sequence_id = 2 * k as u64;
+        }
+        for (k, edge) in edges.iter_mut().enumerate() {
+            edge.sequence_id = 2 * k as u64 + 1;
+        }
+        self.again += 1;
+        self.begin(key, nodes, edges, now)
     }
 
     /// The shortest way that keeps clear of all other goals.
@@ -148,24 +306,14 @@ impl Manager {
         let others: Vec<[f64; 2]> = others.filter_map(|&goal| place(goal)).collect();
         let cost = |step: Step<'_>| {
             let Some((from, to)) = place(step.origin()).zip(place(step.target())) else { return f64::INFINITY };
-            let is_clear = others.iter().all(|&goal| distance(goal, from, to) >= self.clearance);
+            let is_clear = others.iter().all(|&goal| to_line(goal, from, to) >= self.clearance);
             if is_clear { step.edge.length() } else { f64::INFINITY }
         };
         cheapest(&self.layout, ends, cost)
     }
 
-    fn send(&mut self, key: &Key, now: f64) -> Option<(Version, Vec<u8>)> {
-        let client = self.clients.get_mut(key)?;
-        client.header += 1;
-        client.sent = now;
-        let (_, order) = client.order.as_mut()?;
-        order.header = Header::new(key, client.version, client.header, stamp::now());
-        if client.version == Version::V3_0 {
-            for edge in &mut order.edges {
-                (edge.start_node_id, edge.end_node_id) = (None, None);
-            }
-        }
-        Some((client.version, serde_json::to_vec(order).ok()?))
+    fn position(&self, pose: &Pose) -> NodePosition {
+        NodePosition { x: pose.x, y: pose.y, map_id: self.map_id.clone(), rest: Map::new() }
     }
 
     fn node(&self, k: usize, place: usize) -> Option<Node> {
@@ -192,11 +340,31 @@ impl Manager {
     }
 }
 
-/// From a point to the line between two others.
-fn distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
-    let [x, y] = [point[0] - from[0], point[1] - from[1]];
-    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-    let square = dx * dx + dy * dy;
-    let part = if square > 0.0 { ((x * dx + y * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (x - part * dx).hypot(y - part * dy)
+impl Client {
+    /// The update of its order as it is now.
+    fn send(&mut self, key: &Key, now: f64) -> Option<Sent> {
+        let version = self.version;
+        self.header += 1;
+        let given = self.order.as_mut()?;
+        given.sent = now;
+        let Order { order_id, order_update_id, nodes, edges, .. } = &given.order;
+        let mut order = Order {
+            header: Header::new(key, version, self.header, stamp::now()),
+            order_id: order_id.clone(),
+            order_update_id: *order_update_id,
+            nodes: nodes.iter().skip(given.from).cloned().collect(),
+            edges: edges.iter().skip(given.from).cloned().collect(),
+            rest: Map::new(),
+        };
+        for (k, node) in order.nodes.iter_mut().enumerate() {
+            node.released = given.from + k <= given.released;
+        }
+        for (k, edge) in order.edges.iter_mut().enumerate() {
+            edge.released = given.from + k < given.released;
+            if version == Version::V3_0 {
+                (edge.start_node_id, edge.end_node_id) = (None, None);
+            }
+        }
+        Some(Sent { key: key.clone(), version, payload: serde_json::to_vec(&order).ok()? })
+    }
 }

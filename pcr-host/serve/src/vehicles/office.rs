@@ -1,6 +1,6 @@
 //! The manager at a broker.
 
-use super::manager::Manager;
+use super::manager::{Manager, Sent};
 use crate::vda5050::bridge::Publish;
 use crate::vda5050::mqtt::{Broker, Link, News};
 use crate::vda5050::topics::{Interface, Kind};
@@ -37,9 +37,9 @@ impl Office {
     pub fn step(&mut self) {
         let now = self.begin.elapsed().as_secs_f64();
         while let Ok(news) = self.news.try_recv() {
-            let News::Message { topic, payload } = news else { continue };
+            let News::Message { topic, payload, .. } = news else { continue };
             let Some((_, key, Kind::State)) = self.interface.parse(&topic) else { continue };
-            if let Some((version, payload)) = self.manager.receive(&key, &payload, now) {
+            for Sent { key, version, payload } in self.manager.receive(&key, &payload, now) {
                 let topic = self.interface.topic(version, &key, Kind::Order);
                 // One that is lost is sent again.
                 let _ = self.link.publish(Publish { topic, payload, assured: false, retain: false });

@@ -61,6 +61,8 @@ pub struct Vehicle {
     pub(super) clock: f64,
     pub(super) out: Vec<(Kind, Vec<u8>)>,
     news: bool,
+    /// Orders and updates that it has taken.
+    taken: u64,
 }
 
 impl Vehicle {
@@ -88,6 +90,7 @@ impl Vehicle {
             clock: 0.0,
             out: Vec::new(),
             news: true,
+            taken: 0,
         }
     }
 
@@ -109,6 +112,37 @@ impl Vehicle {
     /// Sets its clock off by so much \[s\].
     pub fn set_clock(&mut self, off: f64) {
         self.clock = off;
+    }
+
+    /// Switched off and on again: it stands where it was, and has lost its order.
+    pub fn forget(&mut self) {
+        let [x, y] = self.place();
+        self.start = Start { x, y, heading: self.heading() };
+        (self.task, self.off, self.acting, self.cancel, self.paused) = (None, 0.0, 0.0, None, false);
+        (self.past, self.actions, self.instant, self.errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        // It counts anew.
+        self.headers.clear();
+        self.news = true;
+    }
+
+    /// Orders and updates that it has taken.
+    pub fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// How far along its way it is, of the order that it has \[m\].
+    pub fn way_done(&self) -> f64 {
+        self.task.as_ref().map_or(0.0, |task| task.drive.at)
+    }
+
+    /// From corner to corner, what it has been released and has not done yet: from where it is to the end of its base.
+    pub fn released(&self) -> Vec<[f64; 2]> {
+        let Some(task) = self.task.as_ref().filter(|task| !task.cancelled) else { return vec![self.place()] };
+        let end = task.way.node(task.held.base).unwrap_or(task.drive.at).max(task.drive.at);
+        let nodes = (0..=task.held.base).filter_map(|node| task.way.node(node));
+        let between = nodes.filter(|length| (task.drive.at..end).contains(length));
+        let lengths = [task.drive.at].into_iter().chain(between).chain([end]);
+        lengths.map(|length| task.way.pose(length)).map(|pose| [pose.x, pose.y]).collect()
     }
 
     /// Does nothing, and says nothing, for a time \[s\].
@@ -157,7 +191,10 @@ impl Vehicle {
                     self.take(order)
                 });
                 match taken {
-                    Ok(true) => (self.errors.clear(), self.news = true).1,
+                    Ok(true) => {
+                        self.errors.clear();
+                        (self.news, self.taken) = (true, self.taken + 1);
+                    }
                     Ok(false) => {}
                     Err(rejected) => self.reject(&rejected, &named),
                 }

@@ -29,16 +29,17 @@ pub(crate) fn supervised(supervisor: &Supervisor, bridge: &Bridge) -> Vec<String
     lines.collect()
 }
 
-/// What vehicles would say now, and what their manager waits for.
-pub(crate) fn driven<'a>(vehicles: impl Iterator<Item = &'a mut Vehicle>, manager: &Manager) -> Vec<String> {
-    let vehicles = vehicles.map(|vehicle| {
-        vehicle.tell_state();
-        let said = vehicle.out().into_iter().rev().find(|(kind, _)| *kind == Kind::State);
-        let state = said.and_then(|(_, payload)| serde_json::from_slice::<State>(&payload).ok());
-        format!("{}: says {:?} at {:?}", vehicle.key(), state.as_ref().map(brief), vehicle.place())
-    });
-    let orders = manager.orders().map(|(key, order, at)| format!("{key}: is to do {order:?} to node {at}"));
-    vehicles.chain(orders).collect()
+/// What a vehicle would say now.
+pub(crate) fn driven(vehicle: &mut Vehicle) -> String {
+    vehicle.tell_state();
+    let said = vehicle.out().into_iter().rev().find(|(kind, _)| *kind == Kind::State);
+    let state = said.and_then(|(_, payload)| serde_json::from_slice::<State>(&payload).ok());
+    format!("{}: says {:?} at {:?}", vehicle.key(), state.as_ref().map(brief), vehicle.place())
+}
+
+/// What the manager waits for.
+pub(crate) fn ordered(manager: &Manager) -> Vec<String> {
+    manager.orders().map(|(key, order, at)| format!("{key}: is to do {order:?} to node {at}")).collect()
 }
 
 fn brief(state: &State) -> String {

@@ -1,6 +1,7 @@
 //! VDA 5050 over a real broker, and what does not need one. The runs with a broker: `.ci/test.sh serve`.
 
 mod broker;
+mod doubt;
 mod dump;
 mod faults;
 mod following;

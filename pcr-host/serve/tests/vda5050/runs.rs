@@ -61,7 +61,7 @@ fn a_fleet_of_all_editions_keeps_apart() {
     desk.close().unwrap();
     ear.close();
     let messages = said.try_iter().filter_map(|news| match news {
-        News::Message { topic, payload } => Some((topic, payload)),
+        News::Message { topic, payload, .. } => Some((topic, payload)),
         _ => None,
     });
     let seen = schemas::check(&messages.collect::<Vec<_>>(), &interfaces());

@@ -46,7 +46,8 @@ pub(crate) fn interfaces() -> [Interface; 2] {
 
 pub(crate) fn settings() -> Settings {
     // Holds as far as the way is free: bases end at nodes that may be far.
-    Settings { lookahead: 1e3, width: 0.3, ..Settings::default() }
+    let lookahead = std::env::var("PCR_LOOKAHEAD").ok().map_or(1e3, |x| x.parse().unwrap());
+    Settings { lookahead, width: 0.3, ..Settings::default() }
 }
 
 /// A supervisor at work.
@@ -158,8 +159,9 @@ impl Site {
                 (done, steps) = (self.office.manager.done(), 0);
             }
             if steps > LONGEST {
-                let driven = dump::driven(self.fleet.vehicles_mut(), &self.office.manager).join("\n");
-                panic!("{done} of {missions} missions, and then nothing:\n{driven}");
+                let orders = dump::ordered(&self.office.manager);
+                let driven: Vec<String> = self.fleet.vehicles_mut().map(dump::driven).chain(orders).collect();
+                panic!("{done} of {missions} missions, and then nothing:\n{}", driven.join("\n"));
             }
         }
     }

@@ -3,175 +3,62 @@
 use crate::dump;
 use crate::runs::FAIR;
 use crate::site::{SAFE, Scene, interfaces, nodes, settings, warehouse};
-use pcr_serve::entry::Nowhere;
+use pcr_serve::entry::{Entry, Keep, Nowhere};
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::{self, Bridge, Publish};
-use pcr_serve::vda5050::door::Limits;
-use pcr_serve::vda5050::lane::Profile;
-use pcr_serve::vda5050::topics::{Interface, Kind};
 use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::manager::Manager;
-use pcr_serve::vehicles::random::Random;
-use pcr_serve::vehicles::record::{Record, Recorded, certify};
-use pcr_serve::vehicles::vehicle::Vehicle;
-use pcr_serve::vehicles::weather::{Climate, Weather};
+use pcr_serve::vehicles::locks::Method;
+use pcr_serve::vehicles::record::certify;
+use pcr_serve::vehicles::weather::Climate;
 use pcr_serve::vehicles::world::World;
-
-/// Of the vehicles \[s\].
-const STEP: f64 = 0.05;
+use pcr_serve::vehicles::yard::{self, Yard};
+use std::io;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
 
 /// Nobody needs longer for a mission, whoever is waited for \[s\].
 const LONGEST: f64 = 1_800.0;
 
-struct Member {
-    vehicle: Vehicle,
-    incoming: Weather<(Kind, Vec<u8>)>,
-    outgoing: Weather<Publish>,
-    /// When it says the next position and state \[s\].
-    next: [f64; 2],
-    /// Until when it is not connected \[s\].
-    away: f64,
+fn open(scene: Scene<'_>, seed: u64, method: Method, keeper: Box<dyn Keep>) -> Yard<Vec<u8>> {
+    let layout = warehouse();
+    let goals = nodes(&layout, &SAFE);
+    let world = World::new(layout, goals, scene.count, scene.versions, scene.abilities, seed).unwrap();
+    let own = yard::Settings { method, climate: scene.climate, drops: scene.drops, step: 0.05, seed };
+    Yard::new(world, interfaces(), own, Supervisor::new(settings(), keeper), Vec::new()).unwrap()
 }
 
-pub(crate) struct Yard {
-    members: Vec<Member>,
-    manager: Manager,
-    /// Between the manager and the supervisor.
-    desks: [Weather<Publish>; 2],
-    supervisor: Supervisor,
-    bridge: Bridge,
-    profiles: Vec<Profile>,
-    record: Record<Vec<u8>>,
-    random: Random,
-    drops: f64,
-    time: f64,
-    log: Vec<String>,
+/// Goes on until so many missions are done; `fails` is what happens where the journal does.
+fn until(yard: &mut Yard<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut Yard<Vec<u8>>)) {
+    let (mut done, mut since) = (yard.manager().done(), yard.time());
+    while done < missions {
+        if yard.step().is_err() {
+            fails(yard);
+        }
+        if yard.manager().done() > done {
+            (done, since) = (yard.manager().done(), yard.time());
+        }
+        if yard.time() > since + LONGEST {
+            let events: Vec<String> = yard.log().iter().rev().take(40).rev().cloned().collect();
+            let (supervisor, bridge) = yard.supervised_by();
+            let mut lines = [events, dump::supervised(supervisor, bridge)].concat();
+            let orders = dump::ordered(yard.manager());
+            lines.extend(yard.vehicles_mut().map(dump::driven));
+            panic!("{done} of {missions} missions, and then nothing:\n{}", [lines, orders].concat().join("\n"));
+        }
+    }
 }
 
-fn bridge(profiles: &[Profile], supervisor: &Supervisor) -> Bridge {
-    let [manager, vehicles] = interfaces();
-    Bridge::new(bridge::Settings { manager, vehicles, limits: Limits::default() }, profiles.to_vec(), supervisor)
+/// The supervisor is killed, and another one goes on with what is in the journal.
+fn restart(yard: &mut Yard<Vec<u8>>) {
+    let entries = yard.supervised_by().0.snapshot();
+    yard.revive(Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap());
 }
 
-impl Yard {
-    pub(crate) fn open(scene: Scene<'_>, seed: u64) -> Self {
-        let layout = warehouse();
-        let goals = nodes(&layout, &SAFE);
-        let World { profiles, vehicles, manager } =
-            World::new(layout, goals, scene.count, scene.versions, scene.abilities, seed).unwrap();
-        let names = vehicles.iter().map(|it| Recorded { name: it.key().to_string(), radius: it.abilities().radius });
-        let record = Record::new(Vec::new(), &names.collect::<Vec<_>>()).unwrap();
-        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let bridge = bridge(&profiles, &supervisor);
-        let members = vehicles.into_iter().enumerate().map(|(k, vehicle)| {
-            let own = 1_000 * seed + 2 * k as u64;
-            let (incoming, outgoing) = (Weather::new(scene.climate, own), Weather::new(scene.climate, own + 1));
-            Member { vehicle, incoming, outgoing, next: [0.1 * k as f64; 2], away: 0.0 }
-        });
-        let desks = [500, 501].map(|k| Weather::new(scene.climate, 1_000 * seed + k));
-        let (members, random) = (members.collect(), Random::new(seed));
-        let (drops, log) = (scene.drops, Vec::new());
-        Self { members, manager, desks, supervisor, bridge, profiles, record, random, drops, time: 0.0, log }
-    }
-
-    fn step(&mut self) {
-        let [manager, vehicles] = interfaces();
-        self.time += STEP;
-        let now = self.time;
-        for (k, member) in self.members.iter_mut().enumerate() {
-            member.vehicle.advance(STEP);
-            self.record.push(k, now, member.vehicle.place()).unwrap();
-            if now >= member.away && self.random.happens(self.drops, STEP) {
-                member.away = now + 30.0 * self.random.unit();
-            }
-            if now >= member.next[0] {
-                member.next[0] = now + 1.0;
-                member.vehicle.tell_position();
-            }
-            if now >= member.next[1] {
-                member.next[1] = now + 5.0;
-                member.vehicle.tell_state();
-            }
-            for (kind, payload) in member.vehicle.out() {
-                let topic = vehicles.topic(member.vehicle.version(), member.vehicle.key(), kind);
-                member.outgoing.send(Publish { topic, payload, assured: false, retain: false }, now);
-            }
-            for message in member.outgoing.come(now) {
-                if now >= member.away {
-                    self.bridge.receive(&mut self.supervisor, &message.topic, &message.payload, now);
-                }
-            }
-        }
-        for message in self.desks[0].come(now) {
-            self.bridge.receive(&mut self.supervisor, &message.topic, &message.payload, now);
-        }
-        let mut events = self.supervisor.settle(now).unwrap();
-        self.bridge.settled(&mut self.supervisor, &events, now);
-        let more = self.supervisor.settle(now).unwrap();
-        self.bridge.told(&more);
-        events.extend(more);
-        self.log.extend(events.iter().map(|event| format!("{now:.2} {event:?}")));
-        self.log.extend(self.bridge.log());
-        for message in self.bridge.out() {
-            self.deliver(message, [&manager, &vehicles]);
-        }
-        for message in self.desks[1].come(now) {
-            let Some((_, key, Kind::State)) = manager.parse(&message.topic) else { continue };
-            if let Some((version, payload)) = self.manager.receive(&key, &message.payload, now) {
-                let topic = manager.topic(version, &key, Kind::Order);
-                self.desks[0].send(Publish { topic, payload, assured: false, retain: false }, now);
-            }
-        }
-        for member in &mut self.members {
-            for (kind, payload) in member.incoming.come(now) {
-                if now >= member.away {
-                    member.vehicle.receive(kind, &payload);
-                }
-            }
-        }
-    }
-
-    fn deliver(&mut self, message: Publish, [manager, vehicles]: [&Interface; 2]) {
-        if manager.parse(&message.topic).is_some() {
-            return self.desks[1].send(message, self.time);
-        }
-        let (_, key, kind) = vehicles.parse(&message.topic).unwrap();
-        let member = self.members.iter_mut().find(|member| *member.vehicle.key() == key).unwrap();
-        member.incoming.send((kind, message.payload), self.time);
-    }
-
-    /// Goes on until so many missions are done.
-    pub(crate) fn until(&mut self, missions: u64) {
-        let (mut done, mut since) = (self.manager.done(), self.time);
-        while done < missions {
-            self.step();
-            if self.manager.done() > done {
-                (done, since) = (self.manager.done(), self.time);
-            }
-            if self.time > since + LONGEST {
-                let events = self.log.iter().rev().take(40).rev();
-                let all = dump::supervised(&self.supervisor, &self.bridge);
-                let driven = dump::driven(self.members.iter_mut().map(|member| &mut member.vehicle), &self.manager);
-                let lines: Vec<&str> = events.chain(&all).chain(&driven).map(String::as_str).collect();
-                panic!("{done} of {missions} missions, and then nothing:\n{}", lines.join("\n"));
-            }
-        }
-    }
-
-    /// The supervisor is killed, and another one goes on with what is in the journal.
-    pub(crate) fn restart(&mut self) {
-        let entries = self.supervisor.snapshot();
-        self.supervisor = Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap();
-        self.bridge = bridge(&self.profiles, &self.supervisor);
-        self.bridge.greet();
-    }
-
-    /// Proves that nobody has touched anybody.
-    pub(crate) fn close(self) {
-        let found = certify(self.record.finish().unwrap().as_slice()).unwrap();
-        assert_eq!(found.verdict, "proved", "{found:?}");
-    }
+/// Proves that nobody has touched anybody, and that nobody ever had the right to.
+fn close(yard: Yard<Vec<u8>>) {
+    assert!(yard.audit().looks > 10 && yard.audit().twice == 0, "{:?}", yard.audit());
+    let found = certify(yard.close().unwrap().as_slice()).unwrap();
+    assert_eq!(found.verdict, "proved", "{found:?}");
 }
 
 pub(crate) const SMALL: Abilities = Abilities { radius: 0.3, speed: 1.5, acceleration: 1.0, ..FAIR.abilities[0] };
@@ -199,15 +86,15 @@ fn work_goes_on_whatever_is_lost() {
         let Climate { lost, twice, late, delay } = MIXED.climate;
         let times = (1 + 3 * (seed % 2)) as f64;
         let climate = Climate { lost: times * lost, twice: times * twice, late: times * late, delay: times * delay };
-        let mut yard = Yard::open(Scene { climate, ..MIXED }, seed);
+        let mut yard = open(Scene { climate, ..MIXED }, seed, Method::Supervisor, Box::new(Nowhere));
         for k in 1..=6 {
-            yard.until(8 * k);
+            until(&mut yard, 8 * k, |_| unreachable!());
             if seed % 2 == 1 {
-                yard.restart();
+                restart(&mut yard);
             }
         }
-        eprintln!("seed {seed}: {} missions in {:.0} s", yard.manager.done(), yard.time);
-        yard.close();
+        eprintln!("seed {seed}: {} missions in {:.0} s", yard.manager().done(), yard.time());
+        close(yard);
     }
 }
 
@@ -218,4 +105,68 @@ fn goals_on_the_ways_of_others_are_refused() {
     let goals = nodes(&layout, &[77, 76, 0]);
     let refused = World::new(layout, goals, 2, &Version::ALL, FAIR.abilities, 1).unwrap_err();
     assert_eq!(refused, "no way from 0 to 77 keeps 0.944 m from all other goals");
+}
+
+/// Vehicles are switched off and on again, wherever they are, and have lost their orders: their manager sends them on.
+#[test]
+fn vehicles_that_lose_their_orders_get_others() {
+    let climate = Climate { lost: 0.02, twice: 0.02, late: 0.0, delay: 0.0 };
+    let mut yard = open(Scene { climate, ..MIXED }, 3, Method::Supervisor, Box::new(Nowhere));
+    for round in 1..=10 {
+        until(&mut yard, 3 * round, |_| unreachable!());
+        yard.vehicles_mut().skip(round as usize % 3).step_by(3).for_each(|vehicle| vehicle.forget());
+    }
+    until(&mut yard, 40, |_| unreachable!());
+    assert!(yard.manager().planned_anew() >= 10, "{}", yard.manager().planned_anew());
+    assert_eq!(yard.drain(LONGEST).unwrap(), 0);
+    close(yard);
+}
+
+/// A journal of which every other write is the last one of its supervisor: what it was to hold is there, or not.
+#[derive(Clone, Default)]
+struct Mortal {
+    entries: Arc<Mutex<Vec<Entry>>>,
+    writes: Arc<AtomicUsize>,
+}
+
+impl Keep for Mortal {
+    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+        let write = self.writes.fetch_add(1, Relaxed);
+        if write % 4 != 1 {
+            self.entries.lock().unwrap().extend_from_slice(entries);
+        }
+        if write % 2 == 0 { Ok(()) } else { Err(io::Error::other("killed")) }
+    }
+}
+
+#[test]
+fn a_supervisor_that_is_killed_at_every_other_write() {
+    let disc = Mortal::default();
+    let mut yard = open(Scene { climate: Climate::default(), ..MIXED }, 4, Method::Supervisor, Box::new(disc.clone()));
+    let mut kills = 0;
+    until(&mut yard, 16, |yard| {
+        let entries = disc.entries.lock().unwrap().clone();
+        yard.revive(Supervisor::restored(settings(), entries, Box::new(disc.clone())).unwrap());
+        kills += 1;
+    });
+    eprintln!("killed {kills} times in {:.0} s", yard.time());
+    assert!(kills > 100, "{kills}");
+    close(yard);
+}
+
+/// What the supervisor is compared with: locks keep vehicles apart, too, and let everybody come to its end.
+#[test]
+fn locks_keep_apart_and_let_everybody_finish() {
+    let mut done = Vec::new();
+    for method in Method::ALL {
+        let mut yard = open(MIXED, 5, method, Box::new(Nowhere));
+        while yard.time() < 900.0 {
+            yard.step().unwrap();
+        }
+        done.push(yard.manager().done());
+        assert_eq!(yard.drain(LONGEST).unwrap(), 0, "{method:?}");
+        eprintln!("{method:?}: {done:?}, nobody stood longer than {:.0} s", yard.longest());
+        close(yard);
+    }
+    assert!(done[0] > done[1] && done.iter().all(|done| *done > 10), "{done:?}");
 }

@@ -1,19 +1,25 @@
 //! Vehicles and their manager at a broker.
 
-use super::super::serve::{broker, interfaces};
+use super::super::serve::{AT_BROKERS, broker, interfaces};
 use super::super::{CONFLICTS, Stop};
 use super::Arguments;
-use pcr_formats::import::{self, Format, Options, Warnings};
-use pcr_planning::lifelong::well_formedness;
+use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_planning::lifelong::{streets, well_formedness};
+use pcr_serve::entry::Nowhere;
+use pcr_serve::fault::Fault;
+use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::mqtt::Broker;
 use pcr_serve::vda5050::topics::Interface;
 use pcr_serve::vda5050::version::Version;
+use pcr_serve::vehicles::audit::Audit;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::fleet::{Fleet, Settings};
+use pcr_serve::vehicles::locks::Method;
 use pcr_serve::vehicles::office::Office;
 use pcr_serve::vehicles::record::certify;
 use pcr_serve::vehicles::weather::Climate;
 use pcr_serve::vehicles::world::{World, profile};
+use pcr_serve::vehicles::yard::{self, Yard};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::Path;
@@ -46,18 +52,32 @@ impl Default for Crew {
 pub(in super::super) fn world(file: &Path, crew: &Crew) -> Result<World, Stop> {
     let text = std::fs::read_to_string(file).map_err(|error| Stop::wrong(file, error))?;
     let format = Format::of(file, &text).ok_or_else(|| Stop::wrong(file, "not a layout"))?;
-    let usual = Abilities::default();
-    let small = Abilities { radius: 0.3, speed: 1.3, acceleration: 0.8, ..usual };
-    // The largest, and what is kept around it.
-    let room = profile_radius(&usual);
-    let options = Options { radius: Some(room), ..Options::default() };
+    let options = Options { radius: Some(profile_radius(&Abilities::default())), ..Options::default() };
     let imported = import::layout(format, &text, &options, &mut Warnings::default());
     let imported = imported.map_err(|error| Stop::wrong(file, error))?;
-    let form = well_formedness(&imported, crew.seed).map_err(|why| Stop::wrong(file, why))?;
+    placed(imported, crew).map_err(|why| Stop::wrong(file, why))
+}
+
+/// The same on a generated site.
+fn generated(count: usize, crew: &Crew) -> Result<World, Stop> {
+    let mut imported = streets(count);
+    imported.vehicle.radius = profile_radius(&Abilities::default());
+    placed(imported, crew).map_err(|why| Stop::arguments(format!("--streets {count}: {why}")))
+}
+
+/// Of a layout whose vehicle is the largest, with what is kept around it.
+fn placed(imported: Imported, crew: &Crew) -> Result<World, String> {
+    let usual = Abilities::default();
+    let small = Abilities { radius: 0.3, speed: 1.3, acceleration: 0.8, ..usual };
+    let form = well_formedness(&imported, crew.seed)?;
     let place = |id: &import::Id| imported.layout.nodes.iter().position(|node| node.id == *id);
     let goals = form.safe_ends.iter().filter_map(place).collect();
-    let world = World::new(imported.layout.clone(), goals, crew.vehicles, &Version::ALL, &[usual, small], crew.seed);
-    world.map_err(|why| Stop::wrong(file, why))
+    World::new(imported.layout.clone(), goals, crew.vehicles, &Version::ALL, &[usual, small], crew.seed)
+}
+
+/// So many messages are lost, come twice and come late.
+fn climate(part: f64) -> Climate {
+    Climate { lost: part, twice: part, late: part, delay: 3.0 }
 }
 
 fn profile_radius(can: &Abilities) -> f64 {
@@ -79,7 +99,6 @@ impl<W: Write> Run<W> {
         crew: &Crew,
         record: W,
     ) -> Result<Self, Stop> {
-        let part = crew.weather;
         let settings = Settings {
             broker: broker.clone(),
             interface: vehicles.clone(),
@@ -87,7 +106,7 @@ impl<W: Write> Run<W> {
             positions: 10.0,
             states: 2.0,
             drops: crew.drops / 3600.0,
-            climate: Climate { lost: part, twice: part, late: part, delay: 3.0 },
+            climate: climate(crew.weather),
             seed: crew.seed,
         };
         let fleet = Fleet::new(settings, world.vehicles, record).map_err(Stop::from)?;
@@ -105,6 +124,10 @@ impl<W: Write> Run<W> {
         self.office.as_ref().map_or(0, |office| office.manager.done())
     }
 
+    fn busy(&self) -> usize {
+        self.office.as_ref().map_or(0, |office| office.manager.busy().count())
+    }
+
     pub(in super::super) fn close(self) -> io::Result<W> {
         self.fleet.close()
     }
@@ -114,7 +137,6 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     if let Some(file) = &arguments.certify {
         return certified(file);
     }
-    let Some(layout) = &arguments.layout else { return Err(Stop::arguments("a layout is needed")) };
     for (name, value, lo, hi) in [
         ("--pace", arguments.pace, 0.1, 100.0),
         ("--drops", arguments.drops, 0.0, 1e4),
@@ -126,7 +148,11 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let Arguments { vehicles, manager, pace, drops, weather, seed, .. } = arguments;
     let crew = Crew { vehicles, manager, pace, drops, weather, seed };
-    let world = world(layout, &crew)?;
+    let world = match (&arguments.layout, arguments.streets) {
+        (Some(layout), _) => world(layout, &crew)?,
+        (None, Some(count @ 2..=100)) => generated(count, &crew)?,
+        _ => return Err(Stop::arguments("a layout, or --streets 2 to 100 is needed")),
+    };
     if let Some(file) = &arguments.profiles {
         let text = profiles(&world);
         super::super::write_to(file, &text)?;
@@ -135,6 +161,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         Some(file) => Box::new(BufWriter::new(File::create(file).map_err(|error| Stop::not_written(file, &error))?)),
         None => Box::new(io::sink()),
     };
+    if let (Some(method), Some(time)) = (&arguments.alone, arguments.time) {
+        return alone(world, &arguments, &crew, method, time, record);
+    }
     let mut run = Run::open(world, &broker(&arguments.broker)?, &interfaces(&arguments.topics)?, &crew, record)?;
     let flag = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]
@@ -143,14 +172,82 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         let _ = signal_hook::flag::register(signal, flag.clone());
     }
     let end = arguments.time.unwrap_or(f64::INFINITY);
-    while !flag.load(Ordering::Relaxed) && run.fleet.time() < end {
-        run.step()?;
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let go_on = |run: &mut Run<_>, until: f64, is_busy: fn(&Run<_>) -> bool| -> io::Result<()> {
+        while !flag.load(Ordering::Relaxed) && run.fleet.time() < until && is_busy(run) {
+            run.step()?;
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        Ok(())
+    };
+    go_on(&mut run, end, |_| true)?;
     let (time, done, drops) = (run.fleet.time(), run.done(), run.fleet.drops());
+    let mut left = None;
+    if let Some(office) = run.office.as_mut().filter(|_| arguments.finish) {
+        office.manager.end();
+        go_on(&mut run, time + LONGEST, |run| run.busy() > 0)?;
+        left = Some((run.busy(), run.fleet.time() - time));
+    }
+    let audit = run.fleet.audit().clone();
     run.close()?;
+    told(vehicles, time, done, drops, &audit, left)
+}
+
+/// Whoever has not come to its end so long after the last mission was given never will \[s\].
+const LONGEST: f64 = 3600.0;
+
+/// The same without a broker.
+fn alone(
+    world: World,
+    arguments: &Arguments,
+    crew: &Crew,
+    method: &str,
+    time: f64,
+    record: Box<dyn Write>,
+) -> Result<ExitCode, Stop> {
+    let method = Method::ALL
+        .into_iter()
+        .find(|known| known.name() == method)
+        .ok_or_else(|| Stop::arguments(format!("--alone: allowed are {}", Method::ALL.map(Method::name).join(", "))))?;
+    let climate = climate(crew.weather);
+    let settings = yard::Settings { method, climate, drops: crew.drops / 3600.0, step: 0.1, seed: crew.seed };
+    let (width, lookahead) = AT_BROKERS;
+    let own = pcr_serve::supervisor::Settings { width, lookahead, ..Default::default() };
+    let supervisor = Supervisor::new(own, Box::new(Nowhere));
+    let interfaces = interfaces(&arguments.topics)?;
+    let mut yard = Yard::new(world, interfaces, settings, supervisor, record)?;
+    let broken = |fault: Fault| Stop::Error(fault.to_string(), super::super::NOT_WRITTEN);
+    while yard.time() < time {
+        yard.step().map_err(broken)?;
+    }
+    let (done, drops) = (yard.manager().done(), yard.drops());
+    let left = match arguments.finish {
+        true => Some((yard.drain(LONGEST).map_err(broken)?, yard.time() - time)),
+        false => None,
+    };
+    let (audit, longest) = (yard.audit().clone(), yard.longest());
+    yard.close()?;
+    let done = told(crew.vehicles, time, done, drops, &audit, left)?;
+    writeln!(io::stdout().lock(), "{}: nobody with an order stood longer than {longest:.0} s", method.name())?;
+    Ok(done)
+}
+
+fn told(
+    vehicles: usize,
+    time: f64,
+    done: u64,
+    drops: u64,
+    audit: &Audit,
+    left: Option<(usize, f64)>,
+) -> Result<ExitCode, Stop> {
     let mut out = io::stdout().lock();
     writeln!(out, "{vehicles} vehicles, {time:.0} s of theirs: {done} missions done, {drops} connections lost")?;
+    writeln!(out, "two with the right to one place: {} times in {} looks", audit.twice, audit.looks)?;
+    if let Some((time, [a, b])) = &audit.first {
+        writeln!(out, "first at {time:.1} s: {a} and {b}")?;
+    }
+    if let Some((left, time)) = left {
+        writeln!(out, "{left} have not come to their ends {time:.0} s later")?;
+    }
     Ok(ExitCode::SUCCESS)
 }
 

@@ -99,6 +99,28 @@ fn profile(value: &Value) -> Result<Profile, String> {
     Ok(Profile { key: Key::new(text("manufacturer")?, text("serialNumber")?)?, abilities: abilities.checked()?, split })
 }
 
+/// Whether the journal knows the vehicles as the file does: orders were made for discs as they were.
+fn known(supervisor: &Supervisor, profiles: &[Profile], log: Log) -> Result<(), Stop> {
+    for robot in supervisor.robots() {
+        match profiles.iter().find(|profile| profile.key.to_string() == robot.name) {
+            Some(profile) if profile.abilities != robot.abilities => {
+                return Err(Stop::arguments(format!(
+                    "{}: radius, margin, speed or acceleration are others in the journal; remove it there (verb `remove`), or begin another \
+                     journal while all vehicles stand",
+                    robot.name
+                )));
+            }
+            Some(_) => {}
+            None => log.write(
+                Level::Warn,
+                "in the journal, but not in the file: it keeps its place",
+                &[("robot", &robot.name)],
+            ),
+        }
+    }
+    Ok(())
+}
+
 /// The bridge at work.
 pub(super) struct Work {
     stop: Arc<AtomicBool>,
@@ -108,6 +130,7 @@ pub(super) struct Work {
 /// Starts the bridge.
 pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log: Log) -> Result<Work, Stop> {
     let Fleet { broker, interfaces: [manager, vehicles], profiles } = fleet;
+    known(supervisor, &profiles, log)?;
     let settings = Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
     let bridge = Bridge::new(settings, profiles, supervisor);
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());

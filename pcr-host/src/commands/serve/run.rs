@@ -29,8 +29,8 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     let at_broker = arguments.broker.is_some() || demo.is_some();
     let settings = Settings {
         // Bases end at nodes, which may be far.
-        width: within("--width", arguments.width, 0.001, 10.0)?.max(if at_broker { STOPS } else { 0.0 }),
-        lookahead: if at_broker { FAR } else { within("--lookahead", arguments.lookahead, 0.1, 600.0)? },
+        width: within("--width", arguments.width, 0.001, 10.0)?.max(if at_broker { AT_BROKERS.0 } else { 0.0 }),
+        lookahead: if at_broker { AT_BROKERS.1 } else { within("--lookahead", arguments.lookahead, 0.1, 600.0)? },
         silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
         ..Settings::default()
     };
@@ -71,11 +71,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Vehicles of VDA 5050 are told to stop, and say where they are, so much before where they may be \[m\].
-const STOPS: f64 = 0.3;
-
-/// As far as anybody may go \[s\].
-const FAR: f64 = 1e6;
+/// Width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
+/// they may be told as far as anybody may go \[s\].
+pub(in super::super) const AT_BROKERS: (f64, f64) = (0.3, 1e6);
 
 fn log_of(arguments: &Arguments) -> Result<Log, Stop> {
     let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;

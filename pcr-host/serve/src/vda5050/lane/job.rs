@@ -3,6 +3,7 @@
 use super::super::held::Held;
 use super::super::order::{Edge, Node, NodePosition};
 use super::super::way::Way;
+use super::orders::BEGINS;
 use crate::course::Start;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -57,6 +58,10 @@ pub struct Job {
     pub cancel: Option<String>,
     /// When that was sent \[s\].
     pub cancelled_at: f64,
+    /// Since when the vehicle has lost it \[s\].
+    pub lost: Option<f64>,
+    /// The node at which the path of an order before ends that the vehicle had lost on its way, and that this one goes on with.
+    pub joins: Option<usize>,
 }
 
 /// What is remembered of the manager's order.
@@ -66,6 +71,8 @@ struct Given {
     start: Start,
     version: String,
     cancel: Option<String>,
+    #[serde(default)]
+    joins: Option<usize>,
 }
 
 /// What is remembered of the vehicle's.
@@ -96,15 +103,17 @@ impl Job {
             changed: true,
             cancel: None,
             cancelled_at: f64::NEG_INFINITY,
+            lost: None,
+            joins: None,
         }
     }
 
     /// What the journal has of it.
     pub(super) fn remembered(robot: &Robot) -> Option<Self> {
         let note = |key: &str| robot.notes.get(key).filter(|note| !note.is_null()).cloned();
-        let Given { held, start, version, cancel } = serde_json::from_value(note("order")?).ok()?;
+        let Given { held, start, version, cancel, joins } = serde_json::from_value(note("order")?).ok()?;
         let way = Way::new(start, &held).ok()?;
-        let mut job = Self { cancel, ..Self::new(held, way, version) };
+        let mut job = Self { cancel, joins, ..Self::new(held, way, version) };
         if let Some(Base { stops, sent }) = note("base").and_then(|note| serde_json::from_value(note).ok()) {
             (job.stops, job.sent) = (stops, sent);
         }
@@ -114,8 +123,9 @@ impl Job {
 
     /// What is to be remembered of the manager's order.
     pub(super) fn given(&self) -> Value {
-        let Self { held, way, version, cancel, .. } = self;
-        let given = Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() };
+        let Self { held, way, version, cancel, joins, .. } = self;
+        let (held, version, cancel, joins) = (held.clone(), version.clone(), cancel.clone(), *joins);
+        let given = Given { held, start: way.start(), version, cancel, joins };
         serde_json::to_value(given).unwrap_or_default()
     }
 
@@ -148,9 +158,45 @@ impl Job {
     /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node. It follows from the
     /// path that the supervisor has now: a mission can be admitted at any time.
     pub(super) fn offset(&self, robot: &Robot) -> f64 {
-        // Until then the vehicle is where the path before ends.
-        let end = if self.is_admitted(robot) { self.way.node(self.planned(robot)).unwrap_or(0.0) } else { 0.0 };
-        end - robot.course.length()
+        let end = if self.is_admitted(robot) { Some(self.planned(robot)) } else { self.joins };
+        // Until then the vehicle is where the path before ends, or on it.
+        end.and_then(|node| self.way.node(node)).unwrap_or(0.0) - robot.course.length()
+    }
+
+    /// Whether the vehicle has had it: an update is sent when the one before it was there, perhaps to another supervisor.
+    pub(super) fn was_there(&self) -> bool {
+        self.acknowledged.is_some() || self.sent.is_some_and(|sent| sent.update > 0)
+    }
+
+    /// The order of a vehicle that has lost this one where it is now, if it goes on with the rest of the way as far as that is admitted; none: it
+    /// goes elsewhere.
+    pub(super) fn rejoined(&self, robot: &Robot, mut held: Held, length: f64, version: String) -> Option<Self> {
+        /// The same node.
+        const SAME: f64 = 1e-6;
+        let place = |node: &Node| node.node_position.as_ref().map(|at| [at.x, at.y]);
+        let end = self.planned(robot);
+        let next = (0..=end).find(|&node| self.way.node(node).is_some_and(|it| it > length + SAME))?;
+        let rest = &self.held.nodes[next..=end];
+        let is_straight = |edges: &[Edge]| edges.iter().all(|edge| edge.trajectory.is_none());
+        let same = |(a, b): (&Node, &Node)| {
+            place(a).zip(place(b)).is_some_and(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) <= SAME)
+        };
+        // It begins at the next node, or over a place where it is before that: on the way, not where the vehicle says that it is beside it.
+        let skip = usize::from(!same((held.nodes.first()?, rest.first()?)));
+        let joins = rest.len() - 1 + skip;
+        let follows = self.is_admitted(robot)
+            && held.base >= joins
+            && held.nodes.get(skip..=joins)?.iter().zip(rest).all(same)
+            && is_straight(held.edges.get(..joins)?)
+            && is_straight(self.held.edges.get(next.checked_sub(1)?..end)?);
+        let start = self.way.pose(length);
+        if skip == 1 {
+            let first = held.nodes.first_mut()?.node_position.as_mut()?;
+            (first.x, first.y) = (start.x, start.y);
+        }
+        let way =
+            Way::new(start, &held).ok().filter(|way| follows && way.node(0).is_some_and(|begins| begins <= BEGINS))?;
+        Some(Self { joins: Some(joins), ..Self::new(held, way, version) })
     }
 
     /// Where the base of the vehicle ends, or may end.

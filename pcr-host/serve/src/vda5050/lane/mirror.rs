@@ -99,11 +99,9 @@ impl Lane {
         let vehicle = vehicle.map_err(|error| Refusal::new("", error))?;
         let own = self.profile.abilities;
         // The disc around the contour; how fast it is matters to nothing that is promised.
-        if vehicle.footprint.is_some() && vehicle.radius > own.radius + 1e-9 {
-            let why = format!("the vehicle needs a disc of {} m, not {}", vehicle.radius, own.radius);
-            return Err(Refusal::new("physicalParameters", why));
-        }
-        Ok(())
+        let needs = (vehicle.footprint.is_some() && vehicle.radius > own.radius + 1e-9).then_some(vehicle.radius);
+        self.misfit = needs.map(|needs| format!("the vehicle needs a disc of {needs} m, not {}", own.radius));
+        self.misfit.clone().map_or(Ok(()), |why| Err(Refusal::new("physicalParameters", why)))
     }
 
     fn translated(&self, mut state: State) -> State {

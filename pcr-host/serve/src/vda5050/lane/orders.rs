@@ -11,7 +11,7 @@ use super::job::{Job, mission};
 use crate::supervisor::{Proposal, Supervisor, Verdict};
 
 /// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
-const BEGINS: f64 = 1.0;
+pub(super) const BEGINS: f64 = 1.0;
 
 impl Lane {
     /// Takes an order or an update of the manager, or tells it why not.
@@ -59,6 +59,7 @@ impl Lane {
         }
         match &self.job {
             Some(job) if job.held.order_id == order.order_id => self.extend(supervisor, order, now),
+            Some(job) if job.lost.is_some() => self.begin_anew(supervisor, order, version, now),
             Some(_) if !self.is_free(supervisor) => {
                 Err(Rejected::new(Error::Order, "orderId", "the vehicle has another order that is not finished"))
             }
@@ -135,16 +136,51 @@ impl Lane {
         Ok(true)
     }
 
+    /// An order for a vehicle that has lost the one that it had: it keeps what it may do where it goes on as before.
+    fn begin_anew(
+        &mut self,
+        supervisor: &mut Supervisor,
+        order: Order,
+        version: Version,
+        now: f64,
+    ) -> Result<bool, Rejected> {
+        let held = Held::new(order.clone())?;
+        let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
+        let rejoined = self.job.as_ref().zip(self.state.as_ref()).and_then(|(lost, state)| {
+            let [length, _] = self.on_its_way(lost, robot, state.position()?)?;
+            lost.rejoined(robot, held, length, version.text().into())
+        });
+        let Some(mut job) = rejoined else {
+            let state = self.state.clone();
+            state.iter().for_each(|state| self.reseat(supervisor, state));
+            return match self.job {
+                None => self.begin(supervisor, order, version, now),
+                Some(_) => {
+                    Err(Rejected::new(Error::Order, "", "the vehicle has lost its order, and does not say where it is"))
+                }
+            };
+        };
+        let from = job.joins;
+        self.ask(supervisor, &mut job, from, now)?;
+        self.note(supervisor, "order", job.given());
+        self.note(supervisor, "base", job.base());
+        (self.job, self.astray) = (Some(job), None);
+        Ok(true)
+    }
+
     fn extend(&mut self, supervisor: &mut Supervisor, order: Order, now: f64) -> Result<bool, Rejected> {
         let Some(job) = &self.job else { return Ok(false) };
         if job.cancel.is_some() {
             return Err(Rejected::new(Error::Order, "orderId", "it is being cancelled"));
         }
+        if job.lost.is_some() {
+            return Err(Rejected::new(Error::Order, "orderId", "the vehicle has lost it"));
+        }
         let mut job = job.clone();
         let Taken::After(after) = job.held.update(order)? else { return Ok(false) };
         job.way.extend(&job.held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
         let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
-        let from = job.is_admitted(robot).then(|| job.planned(robot));
+        let from = if job.is_admitted(robot) { Some(job.planned(robot)) } else { job.joins };
         if job.held.base > job.asked {
             self.ask(supervisor, &mut job, from, now)?;
         }

@@ -30,7 +30,7 @@ impl Lane {
         let Some(job) = &mut self.job else { return };
         // Not `told`: after a restart that is how far the vehicle may have been allowed to go, which is kept free for it but may not be granted.
         let allowed = robot.granted;
-        if job.cancel.is_some() || robot.stopped.is_some() {
+        if job.cancel.is_some() || job.lost.is_some() || robot.stopped.is_some() {
             return;
         }
         if !job.is_acknowledged() {

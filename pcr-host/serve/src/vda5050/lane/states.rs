@@ -5,13 +5,38 @@ use super::super::header::Header;
 use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
-use super::Lane;
-use crate::course::{Course, Start};
+use super::{Job, Lane};
+use crate::course::Start;
+use crate::robot::Robot;
 use crate::supervisor::{Report, Supervisor};
 use std::sync::Arc;
 
 /// A vehicle that says otherwise so often in a row, for so long \[s\], has lost its order or was moved.
 const ASTRAY: (u32, f64) = (3, 2.0);
+
+/// A vehicle that has lost its order keeps its right of way for so long \[s\], in case that another order goes on with the same way.
+const KEPT: f64 = 30.0;
+
+/// The note of the map on which a vehicle is.
+const MAP: &str = "map";
+
+/// A vehicle that is further back than it can have been by so much more than it may be off is not where it was \[m\].
+const BACK: f64 = 0.05;
+
+/// A late message is so much older than the newest one at least, and no older than that \[s\].
+const LATE: f64 = 1e-3;
+const OLDEST: f64 = 1e6;
+
+/// What a position comes with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum With {
+    /// The newest state.
+    Newest,
+    /// A message between states, after the newest one.
+    Between,
+    /// A state that was written before the newest one.
+    Late,
+}
 
 impl Lane {
     /// Takes a state.
@@ -33,13 +58,17 @@ impl Lane {
             self.version = Some(version);
         }
         self.acknowledge(&state);
-        self.locate(supervisor, &state, is_new, now);
+        let located = match is_new {
+            true => self.locate(supervisor, &state, With::Newest, now),
+            false => self.locate(supervisor, &state, With::Late, now),
+        };
         if is_new {
+            self.heard_at = now;
             self.state = Some(Arc::new(state));
             self.finish(supervisor, now);
             self.mirror();
         }
-        Ok(())
+        located
     }
 
     /// The vehicle has the updates up to the one that it names.
@@ -53,22 +82,40 @@ impl Lane {
     }
 
     /// Takes where the vehicle is, as far as it is sure.
-    fn locate(&mut self, supervisor: &mut Supervisor, state: &State, is_new: bool, now: f64) {
-        let Some(pose) = state.position().filter(|pose| pose.is_known()) else { return };
-        let at = [pose.x, pose.y];
+    ///
+    /// # Errors
+    /// [`Refusal`] for a place on another map: nobody knows where that is.
+    fn locate(&mut self, supervisor: &mut Supervisor, state: &State, with: With, now: f64) -> Result<(), Refusal> {
+        let Some(pose) = state.position().filter(|pose| pose.is_known()) else { return Ok(()) };
+        let (at, is_new) = ([pose.x, pose.y], with == With::Newest);
         let Ok(robot) = supervisor.robot(&self.name) else {
             if is_new && self.is_still(state) && self.reach(pose) >= 0.0 {
                 let start = Start { x: pose.x, y: pose.y, heading: pose.theta };
-                // Where it cannot stand, it is asked again with its next state.
-                let _ = supervisor.add(&self.name, self.profile.abilities, start);
+                // Where it cannot stand, it is asked again with its next state. An order that it had is void.
+                if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
+                    (self.job, self.astray) = (None, None);
+                    self.note(supervisor, MAP, pose.map_id.clone().into());
+                }
             }
-            return;
+            return Ok(());
         };
+        if let Some(map) = robot.notes.get(MAP).and_then(|map| map.as_str()).filter(|map| *map != pose.map_id) {
+            let why = format!("{:?}; what is known of it is on {map:?}", pose.map_id);
+            return Err(Refusal::new("position.mapId", why));
+        }
         let reach = self.reach(pose);
         let (path, end) = (robot.path, robot.course.length());
+        let back = robot.at - 2.0 * self.deviation() - BACK;
         let found = match &self.job {
             Some(job) if job.held.order_id == state.order_id => {
-                let Some(place) = job.stop(state.last_node_sequence_id) else { return };
+                let place = job.stop(state.last_node_sequence_id);
+                let Some(place) = place else {
+                    // A node that it was not released yet, or one that it was never told of.
+                    if is_new && state.last_node_sequence_id > job.last().sequence {
+                        let _ = supervisor.off(&self.name, at, now);
+                    }
+                    return Ok(());
+                };
                 let from = job.stops[place].length;
                 let to = job.stops.get(place + 1).map_or(from, |next| next.length);
                 let offset = job.offset(robot);
@@ -76,7 +123,11 @@ impl Lane {
                 let near = job.way.near(at, [from - reach.max(0.0), to], reach);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
-            _ if !is_new => return,
+            _ if !is_new => return Ok(()),
+            Some(job) if job.was_there() => self.on_its_way(job, robot, pose).map(|lengths| {
+                let offset = job.offset(robot);
+                lengths.map(|length| (length - offset).clamp(0.0, end))
+            }),
             Some(job) => {
                 let offset = job.offset(robot);
                 let start = (0.0 - offset).clamp(0.0, end);
@@ -88,15 +139,24 @@ impl Lane {
             }
         };
         match found {
+            // It has rolled or was pushed back, where others may have the right to go by now.
+            Some([_, hi]) if is_new && hi < back => _ = supervisor.off(&self.name, at, now),
             Some(at) => {
+                // Older than the newest one, by how much is not known.
+                let age = if with == With::Late { (now - self.heard_at).max(0.0) + LATE } else { 0.0 };
                 // The path is that of the robot, and the place on it: there is nothing to refuse.
-                let _ = supervisor.position(&Report { robot: self.name.clone(), path, at, age: 0.0 }, now);
+                let _ = supervisor.position(&Report { robot: self.name.clone(), path, at, age: age.min(OLDEST) }, now);
             }
-            None if is_new => {
-                let _ = supervisor.off(&self.name, at, now);
-            }
+            None if is_new => _ = supervisor.off(&self.name, at, now),
             None => {}
         }
+        Ok(())
+    }
+
+    /// Where a vehicle without its order is on the way of it: somewhere from where it was last to where it might go.
+    pub(super) fn on_its_way(&self, job: &Job, robot: &Robot, pose: &Pose) -> Option<[f64; 2]> {
+        let (offset, reach) = (job.offset(robot), self.reach(pose));
+        job.way.near([pose.x, pose.y], [robot.at + offset - reach.max(0.0), robot.told + offset], reach)
     }
 
     /// What is left of the margin for being off the path \[m\].
@@ -115,8 +175,10 @@ impl Lane {
         let Ok(robot) = supervisor.robot(&self.name) else { return };
         let is_off = robot.alarm.is_some();
         let Some(job) = &self.job else {
-            // It was moved by hand: it stands where it says.
-            if self.stays_astray(is_off && self.is_still(&state), now) {
+            // It was moved by hand, or to another map: it stands where it says.
+            let map = state.position().map(|pose| pose.map_id.as_str());
+            let is_elsewhere = robot.notes.get(MAP).is_some_and(|known| map.is_some_and(|map| *known != map));
+            if self.stays_astray((is_off || is_elsewhere) && self.is_still(&state), now) {
                 self.reseat(supervisor, &state);
             }
             return;
@@ -124,8 +186,8 @@ impl Lane {
         let has_it = job.held.order_id == state.order_id;
         if let Some(action) = job.cancel.clone() {
             let status = state.action(&action);
-            let nothing_sent = job.sent.is_none();
-            if (has_it && status == Some("FINISHED") || nothing_sent) && self.is_still(&state) {
+            let has_nothing = job.sent.is_none() || job.lost.is_some();
+            if (has_it && status == Some("FINISHED") || has_nothing) && self.is_still(&state) {
                 self.reseat(supervisor, &state);
             } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
                 // It came before the order.
@@ -136,9 +198,18 @@ impl Lane {
             }
             return;
         }
-        // An update is sent when the one before it was there, perhaps to another supervisor.
-        let had_it = job.acknowledged.is_some() || job.sent.is_some_and(|sent| sent.update > 0);
-        if self.stays_astray(had_it && !has_it && self.is_still(&state), now) {
+        let (is_gone, lost) = (job.was_there() && !has_it && self.is_still(&state), job.lost);
+        let is_astray = self.stays_astray(is_gone, now);
+        let Some(job) = &mut self.job else { return };
+        if has_it {
+            job.lost = None;
+        }
+        if !is_astray {
+            return;
+        }
+        // Its manager sends it on, or it stands there for longer, in nobody's order.
+        let since = *job.lost.get_or_insert(now);
+        if is_off || lost.is_some() && now - since > KEPT {
             self.reseat(supervisor, &state);
         }
     }
@@ -150,19 +221,14 @@ impl Lane {
     }
 
     /// The vehicle stands where it says, without an order: all that it had been allowed to is void.
-    fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
+    pub(super) fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
         let Some(pose) = state.position().filter(|pose| pose.is_known() && self.reach(pose) >= 0.0) else { return };
-        let start = Start { x: pose.x, y: pose.y, heading: pose.theta };
-        // Where it could not be added again it stays what it was: nobody may drive through one that is forgotten.
-        let abilities = self.profile.abilities;
-        let stands = Course::new(start, Vec::new()).and_then(|course| course.motion(abilities.reach()).map(drop));
-        if stands.is_err() || supervisor.remove(&self.name).is_err() {
-            return;
+        let (start, map) = (Start { x: pose.x, y: pose.y, heading: pose.theta }, pose.map_id.clone());
+        // Where it cannot stand it stays what it was: nobody may drive through one that is forgotten.
+        if supervisor.reseat(&self.name, start).is_ok() {
+            (self.job, self.astray) = (None, None);
+            self.note(supervisor, MAP, map.into());
         }
-        self.astray = None;
-        self.job = None;
-        // If that fails it is added with its next state.
-        let _ = supervisor.add(&self.name, abilities, start);
     }
 
     /// Takes a position that comes between states. It says nothing of orders, hence counts only on the stretch that the newest state names.
@@ -192,7 +258,7 @@ impl Lane {
             (state.agv_position, state.mobile_robot_position) = (message.agv_position, message.mobile_robot_position);
             // It may have passed the next node since: no alarm.
             if has_it {
-                self.locate(supervisor, &state, false, now);
+                return self.locate(supervisor, &state, With::Between, now);
             }
         }
         Ok(())

@@ -1,0 +1,74 @@
+//! Whether two vehicles have the right to one place at one time, by what they have themselves: the released ways that are still before them
+//! may come as near to one another as they may themselves, and no nearer.
+
+use super::locks::distance;
+use super::vehicle::Vehicle;
+use serde::Serialize;
+
+/// What was found.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Audit {
+    /// How often all of them were looked at.
+    pub looks: u64,
+    /// Pairs of vehicles whose released ways came too near at such a time.
+    pub twice: u64,
+    /// The first of them: when \[s\], and who.
+    pub first: Option<(f64, [String; 2])>,
+    /// When it was looked last \[s\].
+    #[serde(skip)]
+    last: Option<f64>,
+}
+
+/// Between two looks \[s\].
+const PAUSE: f64 = 1.0;
+
+/// Of what is computed by rounding numbers \[m\].
+const ROUNDING: f64 = 1e-6;
+
+impl Audit {
+    /// Looks at all vehicles, each second of theirs.
+    pub fn look<'a>(&mut self, time: f64, vehicles: impl Iterator<Item = &'a Vehicle>) {
+        if self.last.is_some_and(|last| time < last + PAUSE) {
+            return;
+        }
+        (self.last, self.looks) = (Some(time), self.looks + 1);
+        let ways: Vec<_> = vehicles.map(Way::of).collect();
+        for (k, a) in ways.iter().enumerate() {
+            for b in ways.iter().skip(k + 1).filter(|b| a.meets(b)) {
+                self.twice += 1;
+                self.first.get_or_insert_with(|| (time, [a, b].map(|way| way.vehicle.key().to_string())));
+            }
+        }
+    }
+}
+
+struct Way<'a> {
+    vehicle: &'a Vehicle,
+    points: Vec<[f64; 2]>,
+    /// The least and the largest of both coordinates.
+    span: [[f64; 2]; 2],
+}
+
+impl<'a> Way<'a> {
+    fn of(vehicle: &'a Vehicle) -> Self {
+        let points = vehicle.released();
+        let least = |of: fn(f64, f64) -> f64, start: f64| {
+            [0, 1].map(|axis| points.iter().map(|point| point[axis]).fold(start, of))
+        };
+        let span = [least(f64::min, f64::INFINITY), least(f64::max, f64::NEG_INFINITY)];
+        Self { vehicle, points, span }
+    }
+
+    fn legs(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        let only = self.points.first().filter(|_| self.points.len() == 1).map(|&point| [point; 2]);
+        only.into_iter().chain(self.points.windows(2).map(|leg| [leg[0], leg[1]]))
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        let apart = self.vehicle.abilities().radius + other.vehicle.abilities().radius - ROUNDING;
+        let far = |axis: usize| {
+            self.span[0][axis] > other.span[1][axis] + apart || other.span[0][axis] > self.span[1][axis] + apart
+        };
+        !far(0) && !far(1) && self.legs().any(|leg| other.legs().any(|their| distance(leg, their) < apart))
+    }
+}

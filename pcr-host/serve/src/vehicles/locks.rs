@@ -1,0 +1,226 @@
+//! What fleet managers do without a supervisor, to compare with: locks. A vehicle has the edges that it is on, and gets more of its way if
+//! nobody else has an edge on which they would touch: all of it at once, or one edge after the other if all could still finish one after the
+//! other from there (the banker's check, Dijkstra 1965). Their ends are on nobody else's way, so that who finishes first makes no difference.
+
+use pcr_formats::import::Layout;
+use serde::Serialize;
+
+/// How vehicles are kept apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// The manager releases all of an order, and a supervisor decides how far each vehicle may go.
+    #[default]
+    Supervisor,
+    /// The manager releases an order when nobody else has anything on its way.
+    RouteLocks,
+    /// It releases one edge after the other, if all can still finish then.
+    EdgeLocks,
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Supervisor, Self::RouteLocks, Self::EdgeLocks];
+
+    /// What it is called in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Supervisor => "supervisor",
+            Self::RouteLocks => "route-locks",
+            Self::EdgeLocks => "edge-locks",
+        }
+    }
+}
+
+/// An edge of a way.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    /// Which.
+    pub edge: usize,
+    /// \[m\]
+    pub length: f64,
+    /// The node where it ends.
+    pub to: usize,
+}
+
+/// What a vehicle has of its way.
+#[derive(Clone, Debug, Default)]
+struct Claim {
+    /// Its edges.
+    edges: Vec<Leg>,
+    /// Where it stands before, and at the end.
+    ends: [usize; 2],
+    /// Edges that it has behind it, and those that it was given.
+    passed: usize,
+    given: usize,
+    /// Since when it has been at the end of what it has \[s\].
+    since: f64,
+}
+
+/// Who has what. Pieces of a layout are its nodes, to stand at, and then its edges.
+#[derive(Debug)]
+pub struct Locks {
+    is_whole: bool,
+    nodes: usize,
+    /// Pieces on which discs touch, of each piece.
+    touch: Vec<Vec<usize>>,
+    claims: Vec<Claim>,
+    /// How far ahead of the node that it has reached a vehicle gets edges \[m\].
+    far: f64,
+    /// Since it was looked last who can get what.
+    changed: bool,
+}
+
+/// Places of two discs.
+type Ends = [[f64; 2]; 2];
+
+impl Locks {
+    /// For vehicles that stand at these nodes, whose discs are so far apart \[m\] that they do not touch.
+    pub fn new(layout: &Layout, clearance: f64, far: f64, is_whole: bool, standing: &[usize]) -> Self {
+        let place = |node: usize| layout.nodes.get(node).map_or([f64::NAN; 2], |node| node.at);
+        let nodes = (0..layout.nodes.len()).map(|node| [place(node); 2]);
+        let pieces: Vec<Ends> = nodes.chain(layout.edges.iter().map(|edge| edge.ends.map(place))).collect();
+        let near = |a: &Ends| -> Vec<usize> {
+            let touches = |b: &Ends| distance(*a, *b) < clearance;
+            pieces.iter().enumerate().filter(|(_, b)| touches(b)).map(|(place, _)| place).collect()
+        };
+        let touch = pieces.iter().map(near).collect();
+        let claims = standing.iter().map(|&node| Claim { ends: [node; 2], ..Claim::default() }).collect();
+        Self { is_whole, nodes: layout.nodes.len(), touch, claims, far, changed: true }
+    }
+
+    /// A vehicle that stands wants to go over these edges.
+    pub fn want(&mut self, vehicle: usize, edges: Vec<Leg>, now: f64) {
+        if let Some(claim) = self.claims.get_mut(vehicle) {
+            let from = claim.ends[1];
+            let to = edges.last().map_or(from, |last| last.to);
+            *claim = Claim { edges, ends: [from, to], passed: 0, given: 0, since: now };
+            self.changed = true;
+        }
+    }
+
+    /// A vehicle has so many edges behind it.
+    pub fn passed(&mut self, vehicle: usize, edges: usize, now: f64) {
+        if let Some(claim) = self.claims.get_mut(vehicle)
+            && edges > claim.passed
+        {
+            (claim.passed, claim.since) = (edges.min(claim.given), now);
+            self.changed = true;
+        }
+    }
+
+    /// How many edges of its way a vehicle was given.
+    pub fn given(&self, vehicle: usize) -> usize {
+        self.claims.get(vehicle).map_or(0, |claim| claim.given)
+    }
+
+    /// Gives what can be given, whoever has waited longest first.
+    pub fn give(&mut self) {
+        if !std::mem::take(&mut self.changed) {
+            return;
+        }
+        let mut order: Vec<usize> = (0..self.claims.len()).collect();
+        order.sort_by(|&a, &b| self.claims[a].since.total_cmp(&self.claims[b].since));
+        let mut held = vec![0_usize; self.touch.len()];
+        for claim in &self.claims {
+            claim.held(self.nodes).for_each(|piece| self.count(&mut held, piece, 1));
+        }
+        for vehicle in order {
+            while self.claims[vehicle].wants(self.is_whole, self.far) {
+                let before = self.claims[vehicle].clone();
+                let all = before.edges.len();
+                let given = if self.is_whole { all } else { before.given + 1 };
+                let mut next = held.clone();
+                before.held(self.nodes).for_each(|piece| self.count(&mut next, piece, -1));
+                let own = Claim { given, ..before.clone() };
+                let end = (given == all).then_some(own.ends[1]);
+                let is_free = own.held(self.nodes).chain(end).all(|piece| next[piece] == 0);
+                own.held(self.nodes).for_each(|piece| self.count(&mut next, piece, 1));
+                self.claims[vehicle] = own;
+                if !is_free || !(self.is_whole || self.can_finish(next.clone())) {
+                    self.claims[vehicle] = before;
+                    break;
+                }
+                held = next;
+            }
+        }
+    }
+
+    /// Adds to how many that have a piece touch each other one.
+    fn count(&self, held: &mut [usize], piece: usize, by: isize) {
+        for &near in self.touch.get(piece).into_iter().flatten() {
+            held[near] = held[near].saturating_add_signed(by);
+        }
+    }
+
+    /// Whether all can finish one after the other, each of them alone.
+    fn can_finish(&self, mut held: Vec<usize>) -> bool {
+        let mut left: Vec<&Claim> = self.claims.iter().collect();
+        loop {
+            let before = left.len();
+            left.retain(|claim| {
+                claim.held(self.nodes).for_each(|piece| self.count(&mut held, piece, -1));
+                let finishes = claim.edges.iter().skip(claim.given).all(|leg| held[self.nodes + leg.edge] == 0)
+                    && held[claim.ends[1]] == 0;
+                match finishes {
+                    true => self.count(&mut held, claim.ends[1], 1),
+                    false => claim.held(self.nodes).for_each(|piece| self.count(&mut held, piece, 1)),
+                }
+                !finishes
+            });
+            if left.is_empty() || left.len() == before {
+                return left.is_empty();
+            }
+        }
+    }
+}
+
+impl Claim {
+    /// The pieces that it has: edges, or where it stands.
+    fn held(&self, nodes: usize) -> impl Iterator<Item = usize> {
+        let edges = self.edges.iter().take(self.given).skip(self.passed).map(move |leg| nodes + leg.edge);
+        let stands =
+            self.passed.checked_sub(1).and_then(|last| self.edges.get(last)).map_or(self.ends[0], |leg| leg.to);
+        edges.chain((self.passed == self.given).then_some(stands))
+    }
+
+    fn wants(&self, is_whole: bool, far: f64) -> bool {
+        // What it has beyond the edge that it is on.
+        let has: f64 = self.edges.iter().take(self.given).skip(self.passed + 1).map(|leg| leg.length).sum();
+        self.given < self.edges.len() && (is_whole || has < far)
+    }
+}
+
+/// Between two straight ways.
+pub fn distance([a, b]: Ends, [c, d]: Ends) -> f64 {
+    let cross = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
+    let opposite = |o: [f64; 2], p: [f64; 2], q: [f64; 2], r: [f64; 2]| cross(o, p, q) * cross(o, p, r) < 0.0;
+    if opposite(a, b, c, d) && opposite(c, d, a, b) {
+        return 0.0;
+    }
+    let ends = [to_line(a, c, d), to_line(b, c, d), to_line(c, a, b), to_line(d, a, b)];
+    ends.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// From a point to the line between two others.
+pub fn to_line(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let [x, y] = [point[0] - from[0], point[1] - from[1]];
+    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    let square = dx * dx + dy * dy;
+    let part = if square > 0.0 { ((x * dx + y * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (x - part * dx).hypot(y - part * dy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_of_straight_ways() {
+        let way = |a, b| [a, b];
+        assert_eq!(distance(way([0.0, 0.0], [2.0, 0.0]), way([1.0, -1.0], [1.0, 1.0])), 0.0);
+        assert_eq!(distance(way([0.0, 0.0], [2.0, 0.0]), way([3.0, 1.0], [3.0, 4.0])), 2.0_f64.sqrt());
+        assert_eq!(distance(way([0.0, 0.0], [2.0, 0.0]), way([1.0, 3.0], [1.0, 3.0])), 3.0);
+        assert_eq!(distance(way([0.0, 0.0], [2.0, 0.0]), way([0.5, 0.25], [9.0, 0.25])), 0.25);
+    }
+}

@@ -1,0 +1,261 @@
+//! What vehicles, managers and brokers say that cannot be relied on: nobody is let go on for it.
+
+use crate::lanes::{CAN, key};
+use crate::site::{interfaces, settings};
+use pcr_serve::course::Start;
+use pcr_serve::entry::Nowhere;
+use pcr_serve::supervisor::Supervisor;
+use pcr_serve::vda5050::bridge::{self, Bridge};
+use pcr_serve::vda5050::door::Limits;
+use pcr_serve::vda5050::topics::Kind;
+use pcr_serve::vda5050::version::Version;
+use pcr_serve::vehicles::vehicle::Vehicle;
+use pcr_serve::vehicles::world::profile;
+use serde_json::{Value, json};
+
+/// A vehicle with all of a way of 10 m along the x axis, in two edges.
+struct Lone {
+    vehicle: Vehicle,
+    supervisor: Supervisor,
+    bridge: Bridge,
+    time: f64,
+}
+
+impl Lone {
+    fn standing() -> Self {
+        let [manager, vehicles] = interfaces();
+        let topics = bridge::Settings { manager, vehicles, limits: Limits::default() };
+        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor);
+        let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+        let vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
+        let mut own = Self { vehicle, supervisor, bridge, time: 0.0 };
+        own.lasts(1.0);
+        own
+    }
+
+    fn driving() -> Self {
+        let mut own = Self::standing();
+        own.order("a", 0.0, 1);
+        own.lasts(7.0);
+        let at = own.robot_at();
+        assert!((2.0..5.0).contains(&at) && own.vehicle.taken() >= 1, "{at}");
+        own
+    }
+
+    fn robot_at(&self) -> f64 {
+        self.supervisor.robot("sim/001").unwrap().at
+    }
+
+    fn has_alarm(&self) -> bool {
+        self.supervisor.robot("sim/001").unwrap().alarm.is_some()
+    }
+
+    /// Of nodes 5 m apart, of which so many edges are released.
+    fn order(&mut self, id: &str, x: f64, released: usize) {
+        let node = |k: usize| {
+            json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "released": k <= released, "actions": [],
+                "nodePosition": { "x": x + 5.0 * k as f64, "y": 0.0, "mapId": "map" } })
+        };
+        let edge = |k: usize| {
+            json!({ "edgeId": "e", "sequenceId": 2 * k + 1, "released": k < released, "actions": [],
+                "startNodeId": format!("n{k}"), "endNodeId": format!("n{}", k + 1) })
+        };
+        let order = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0", "manufacturer": "sim",
+            "serialNumber": "001", "orderId": id, "orderUpdateId": 0, "nodes": [node(0), node(1), node(2)], "edges": [edge(0), edge(1)] });
+        self.manager(Kind::Order, &order);
+    }
+
+    fn manager(&mut self, kind: Kind, message: &Value) {
+        let topic = interfaces()[0].topic(Version::V2_1, &key(), kind);
+        self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
+    }
+
+    /// What the vehicle says now.
+    fn state(&mut self) -> Value {
+        self.vehicle.tell_state();
+        let said = self.vehicle.out().into_iter().rev().find(|(kind, _)| *kind == Kind::State).unwrap();
+        serde_json::from_slice(&said.1).unwrap()
+    }
+
+    fn hears(&mut self, kind: Kind, message: &Value) {
+        let topic = interfaces()[1].topic(Version::V2_1, &key(), kind);
+        self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
+    }
+
+    /// What follows; how many orders were sent.
+    fn turn(&mut self) -> usize {
+        let events = self.supervisor.settle(self.time).unwrap();
+        self.bridge.settled(&mut self.supervisor, &events, self.time);
+        let out = self.bridge.out();
+        let mut orders = 0;
+        for message in out {
+            if let Some((_, _, kind)) = interfaces()[1].parse(&message.topic) {
+                orders += usize::from(kind == Kind::Order);
+                self.vehicle.receive(kind, &message.payload);
+            }
+        }
+        orders
+    }
+
+    fn lasts(&mut self, time: f64) -> usize {
+        let (until, mut orders) = (self.time + time, 0);
+        while self.time < until {
+            self.time += 0.1;
+            self.vehicle.advance(0.1);
+            let state = self.state();
+            self.hears(Kind::State, &state);
+            orders += self.turn();
+        }
+        orders
+    }
+}
+
+#[test]
+fn a_late_state_ends_no_alarm() {
+    let mut own = Lone::driving();
+    let before = own.state();
+    let mut off = own.state();
+    off["agvPosition"]["y"] = json!(2.0);
+    own.hears(Kind::State, &off);
+    assert!(own.has_alarm());
+    own.time += 1.0;
+    own.hears(Kind::State, &before);
+    own.turn();
+    assert!(own.has_alarm());
+    own.lasts(0.2);
+    assert!(!own.has_alarm());
+}
+
+/// It rolled back to where others may have been let through.
+#[test]
+fn a_vehicle_that_goes_back_is_not_where_it_may_be() {
+    let mut own = Lone::driving();
+    let at = own.robot_at();
+    for (back, alarm) in [(0.05, false), (1.5, true), (0.0, false)] {
+        let mut state = own.state();
+        state["agvPosition"]["x"] = json!(at - back);
+        own.hears(Kind::State, &state);
+        assert_eq!(own.has_alarm(), alarm, "{back}");
+    }
+    assert_eq!(own.robot_at().max(at), own.robot_at());
+}
+
+/// It was taken for one that has said nothing.
+#[test]
+fn a_vehicle_that_has_passed_its_base_is_not_where_it_may_be() {
+    let mut own = Lone::driving();
+    let mut state = own.state();
+    let ahead = state["nodeStates"].as_array().unwrap().last().unwrap()["sequenceId"].clone();
+    (state["lastNodeId"], state["lastNodeSequenceId"], state["agvPosition"]["x"]) = (json!("n2"), ahead, json!(10.0));
+    state["nodeStates"] = json!([]);
+    own.hears(Kind::State, &state);
+    assert!(own.has_alarm());
+}
+
+/// Its place there was taken for one on its way.
+#[test]
+fn a_place_on_another_map_counts_for_nothing() {
+    let mut own = Lone::driving();
+    let at = own.robot_at();
+    let mut state = own.state();
+    (state["agvPosition"]["mapId"], state["agvPosition"]["x"]) = (json!("upstairs"), json!(4.9));
+    own.hears(Kind::State, &state);
+    assert_eq!(own.robot_at(), at);
+    assert!(own.bridge.log()[0].contains("position.mapId: \"upstairs\""));
+    // One without an order was taken there.
+    let mut own = Lone::standing();
+    for _ in 0..30 {
+        own.time += 0.1;
+        let mut state = own.state();
+        (state["agvPosition"]["mapId"], state["agvPosition"]["x"]) = (json!("upstairs"), json!(40.0));
+        own.hears(Kind::State, &state);
+        own.turn();
+    }
+    assert_eq!(own.supervisor.robot("sim/001").unwrap().course.start().x, 40.0);
+}
+
+/// A vehicle was believed to be on its way within its margin and as much more as it said less than nothing.
+#[test]
+fn a_deviation_below_zero_is_none() {
+    let mut own = Lone::driving();
+    let at = own.robot_at();
+    let mut state = own.state();
+    (state["agvPosition"]["deviationRange"], state["agvPosition"]["y"]) = (json!(-1.0), json!(0.9));
+    state["agvPosition"]["x"] = json!(4.9);
+    own.hears(Kind::State, &state);
+    assert_eq!(own.robot_at(), at);
+}
+
+/// What it had to say was in the log, and it drove on.
+#[test]
+fn a_vehicle_that_is_larger_than_its_disc_is_released_nothing_nor_is_anybody_else() {
+    let mut own = Lone::standing();
+    own.vehicle.tell_factsheet();
+    let sheet = own.vehicle.out().into_iter().find(|(kind, _)| *kind == Kind::Factsheet).unwrap().1;
+    let sheet: Value = serde_json::from_slice(&sheet).unwrap();
+    let mut larger = sheet.clone();
+    larger["agvGeometry"]["envelopes2d"][0]["polygonPoints"][0]["x"] = json!(0.9);
+    own.hears(Kind::Factsheet, &larger);
+    own.order("a", 0.0, 2);
+    assert_eq!(own.lasts(5.0), 0);
+    own.time += 31.0;
+    own.turn();
+    let log = own.bridge.log().join("\n");
+    assert!(log.contains("nobody is released anything: sim/001: the vehicle needs a disc of 0.9"), "{log}");
+    own.hears(Kind::Factsheet, &sheet);
+    assert!(own.lasts(5.0) > 0);
+}
+
+/// A vehicle was put where an old state says that it stands, and an old order was taken.
+#[test]
+fn what_the_broker_has_kept_is_of_another_time() {
+    let mut own = Lone::standing();
+    let [manager, vehicles] = interfaces();
+    let state = own.state().to_string();
+    own.supervisor.remove("sim/001").unwrap();
+    let kept = |own: &mut Lone, topic: String, text: &str| {
+        own.bridge.receive_kept(&mut own.supervisor, &topic, text.as_bytes(), own.time);
+    };
+    kept(&mut own, vehicles.topic(Version::V2_1, &key(), Kind::State), &state);
+    assert!(own.supervisor.robot("sim/001").is_err());
+    let online = String::from_utf8(own.vehicle.connection("ONLINE")).unwrap();
+    kept(&mut own, vehicles.topic(Version::V2_1, &key(), Kind::Connection), &online);
+    kept(&mut own, manager.topic(Version::V2_1, &key(), Kind::Order), "{}");
+    assert_eq!((own.bridge.counts().refused, own.bridge.log().len()), (2, 2));
+}
+
+/// After its order was cancelled the vehicle was another one to the supervisor: the order that came once more, late, was taken as new, the
+/// vehicle refused it, and the manager's next ones were refused for ever.
+#[test]
+fn an_order_that_comes_again_after_it_was_cancelled_is_an_old_one() {
+    let mut own = Lone::driving();
+    let action = json!({ "actionType": "cancelOrder", "actionId": "c", "blockingType": "NONE" });
+    let message = json!({ "headerId": 2, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0", "manufacturer": "sim",
+        "serialNumber": "001", "actions": [action] });
+    own.manager(Kind::InstantActions, &message);
+    own.lasts(10.0);
+    let [x, _] = own.vehicle.place();
+    own.order("a", x, 1);
+    own.lasts(2.0);
+    let taken = own.vehicle.taken();
+    own.order("b", x, 1);
+    own.lasts(5.0);
+    assert!(own.vehicle.taken() > taken);
+    assert_eq!(own.state()["orderId"], "b");
+}
+
+/// It waited for an order to be done that nobody had any more.
+#[test]
+fn a_vehicle_that_was_removed_by_hand_and_comes_back_takes_orders() {
+    let mut own = Lone::driving();
+    own.lasts(10.0);
+    own.supervisor.remove("sim/001").unwrap();
+    own.lasts(1.0);
+    let [x, _] = own.vehicle.place();
+    own.vehicle.forget();
+    own.lasts(1.0);
+    own.order("b", x, 1);
+    own.lasts(5.0);
+    assert_eq!(own.state()["orderId"], "b");
+}
