@@ -162,7 +162,7 @@ fn missions_that_are_passed_over_are_told_with_their_reasons() {
     pcr_planning::report::traffic_table(&traffic, &mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
     assert!(
-        text.contains("4 missions passed over: the way is no path: edge N1-N2: its curve begins 5.000 m"),
+        text.contains("4 missions rejected and drawn again: the way is no path: edge N1-N2: its curve begins 5.000 m"),
         "{text}"
     );
     assert!(

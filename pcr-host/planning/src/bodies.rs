@@ -27,7 +27,7 @@ pub struct Disced {
     /// Place of the agent in its scenario.
     pub agent: usize,
     /// None where the agent is the disc.
-    offset: Option<Offset>,
+    offset: Option<Box<Offset>>,
     stretch: Stretch,
     /// How much larger than in the cover it is \[m\].
     pub growth: f64,
@@ -47,6 +47,12 @@ struct Stretch {
 }
 
 impl Disced {
+    /// An agent that is a disc.
+    fn whole(agent: &Agent, place: usize) -> Self {
+        let stretch = Stretch { from: 0.0, length: agent.length(), first: 0, ends: [true, true] };
+        Self { agent: place, offset: None, stretch, growth: 0.0 }
+    }
+
     /// The same disc of an agent so many places further.
     pub(crate) fn moved(self, places: usize) -> Self {
         Self { agent: self.agent + places, ..self }
@@ -107,6 +113,19 @@ impl<S: Format> Bodies<S> {
         let scenario = Scenario::new(scenario.name.clone(), agents);
         Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
     }
+
+    /// The same without the scenario of the discs: of a large fleet without outlines, it would be a copy of the whole.
+    ///
+    /// # Errors
+    /// As [`Bodies::new`].
+    pub fn moving(scenario: &Scenario) -> Result<(Fleet<S>, Vec<Disced>), Refused> {
+        if scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
+            let Self { fleet, discs, .. } = Self::new(scenario)?;
+            return Ok((fleet, discs));
+        }
+        let discs = scenario.agents.iter().enumerate().map(|(place, agent)| Disced::whole(agent, place)).collect();
+        Ok((Fleet::new(scenario)?, discs))
+    }
 }
 
 /// Where the discs of an agent run, and their radii \[m\].
@@ -150,7 +169,7 @@ fn discs<S: Format>(
             let offset = rounded::<S>(Offset::of(&part, disc, agent.id, precision))?;
             let growth = offset.agent.radius - disc.radius;
             agents.push(offset.agent.clone());
-            discs.push(Disced { agent: place, offset: Some(offset), stretch, growth });
+            discs.push(Disced { agent: place, offset: Some(Box::new(offset)), stretch, growth });
         }
     }
     Ok(())

@@ -85,7 +85,7 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        let Bodies { fleet, discs, .. } = Bodies::<S>::new(scenario)?;
+        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
         let count = pairs.agents.len();

@@ -116,7 +116,8 @@ fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
-        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:?}", S::LEAST),
+        // To the digits of `f32`, in which most formats have it.
+        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:e}", S::LEAST.to_f64() as f32),
         reason => reason.to_string(),
     }
 }

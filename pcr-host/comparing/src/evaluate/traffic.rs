@@ -35,9 +35,9 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let mut text = format!(
         "## Traffic in a warehouse\n\nThe route graph of nav2's warehouse, {nodes} nodes and {edges} edges, and random missions on it (`pcr traffic`, seed 1): \
         shortest ways between nodes, corners rounded with 1 m. Missions that no order of starts lets through together with those before them are \
-        passed over. *Regions*: the table of all pairs, both directions; *plan*: the delays that every pair forbids, and 2000 orders \
+        rejected. *Regions*: the table of all pairs, both directions; *plan*: the delays that every pair forbids, and 2000 orders \
         of priority; *check*: all conflicts of the plan.\n\n\
-        | vehicle | agents | passed over | regions | in | plan in | check in | conflicts if all set off at once | planned | conflicts then | \
+        | vehicle | agents | rejected | regions | in | plan in | check in | conflicts if all set off at once | planned | conflicts then | \
         makespan | missions an hour |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let mut pictures = Vec::new();

@@ -258,7 +258,7 @@ function describe(region) {
     return node;
   };
   if (!region) {
-    add(about, "p", "Point at a region of the map to read its descriptor; click to keep it.");
+    add(about, "p", "Point at a region of the map to read its times and lengths; click to keep it.");
     return;
   }
   const open = [region.before.length > 0 && "from before the other's start", region.after.length > 0 && "on after its arrival"];

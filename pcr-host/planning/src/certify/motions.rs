@@ -47,7 +47,7 @@ impl Proof {
     /// # Errors
     /// [`Refused`] where a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
-        let Bodies { fleet, discs, .. } = Bodies::<S>::new(scenario)?;
+        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let all = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
         let ids: Vec<u64> =

@@ -32,10 +32,10 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
     if *passed_over == 0 {
-        writeln!(out, "no mission passed over")?;
+        writeln!(out, "no mission rejected")?;
     }
     for PassedOver { why, missions } in &traffic.passed_over_because {
-        writeln!(out, "{missions} missions passed over: {}", printable(why))?;
+        writeln!(out, "{missions} missions rejected and drawn again: {}", printable(why))?;
     }
     if placed < asked {
         let without = asked - placed;
