@@ -315,7 +315,7 @@ fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
 
 /// The groups of tokens that several places have, by name.
 pub(crate) fn groups(layout: &Layout, names: &[String], edges: &[Vec<usize>], nodes: &[Vec<usize>]) -> Vec<Group> {
-    let empty = |name: &String| Group { name: name.clone(), edges: Vec::new(), nodes: Vec::new() };
+    let empty = |name: &String| Group { name: name.clone(), ..Group::default() };
     let mut groups: Vec<Group> = names.iter().map(empty).collect();
     for (tokens, edge) in edges.iter().zip(&layout.edges) {
         for token in tokens {

@@ -92,6 +92,11 @@ pub fn write(
     // What cutting is worth.
     let uncut = Settings { split: None, ..settings.clone() };
     let uncut = settings.split.map(|_| write(format, text, options, name, &uncut)).transpose()?;
+    if let (Target::Rmf, Some(graph)) = (target, options.graph) {
+        notes
+            .said
+            .push(format!("lanes of other graphs than {graph} are left as they are, and nothing is said of them"));
+    }
     let prepared = match (target, settings.split) {
         (Target::Nav2, Some(most)) => {
             let (text, whole) = nav2::split(text, most)?;
