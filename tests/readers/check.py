@@ -36,7 +36,7 @@ def forms(kind, text):
     if kind == "nav2":
         yield "-dense", json.dumps(json.loads(text), separators=(",", ":"))
         yield "-tabs", json.dumps(json.loads(text), indent="\t")
-    if kind == "rmf":
+    if kind == "rmf" and len(text) < 100_000:
         root = yaml.safe_load(text)
         for name, flow in (("lines", False), ("mixed", None), ("brackets", True)):
             yield "-" + name, yaml.dump(root, default_flow_style=flow, Dumper=Plain, sort_keys=False)
@@ -55,7 +55,7 @@ def main():
             wanted = [(kind, []), (kind, ["--split", most])]
             if kind == "opentcs":
                 wanted += [(kind, ["--envelopes", "key"]), (kind, ["--envelopes", "key", "--split", most])]
-            if form == "" and "hotel" not in name:
+            if form == "" and ("sample" in name or "office" in name or kind == "opentcs"):
                 wanted += [("vda5050", []), ("vda5050", ["--split", most]), ("pcr", [])]
             for target, more in wanted:
                 what = f"{layout.name} {target} {' '.join(more)}".strip()

@@ -253,7 +253,7 @@ def samples(line, step):
 
 def near_samples(edges, radius, deep):
     """Names and samples of two edges of one level, of which two discs overlap there."""
-    taken = {name: samples(line, radius / 3) for name, (_, line) in edges.items()}
+    taken = {name: samples(line, radius / 2) for name, (_, line) in edges.items()}
     boxes = {name: box(line) for name, (_, line) in edges.items()}
     names, reach = list(edges), 2 * radius - deep
     for i, a in enumerate(names):

@@ -33,8 +33,11 @@ pub struct Audit {
     pub excluded: f64,
     /// Those at which the table of locks excludes it \[m²\].
     pub needed: f64,
-    /// What was read otherwise than it was written.
+    /// What was read otherwise than it was written: of the layout, then of the exclusions.
     pub warnings: Vec<String>,
+    /// How many of these are of the layout.
+    #[serde(skip)]
+    pub of_layout: usize,
 }
 
 /// An edge or a node.
@@ -93,6 +96,7 @@ impl Audit {
             excluded: 0.0,
             needed: 0.0,
             warnings: imported.layout.warnings.iter().chain(&rules.warnings).cloned().collect(),
+            of_layout: imported.layout.warnings.len(),
         };
         let places: HashMap<&Id, usize> =
             imported.layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();

@@ -43,6 +43,9 @@ pub struct Written {
     pub uncut: Option<f64>,
     /// What was left as it is, or replaced, and what was read otherwise than it was written.
     pub warnings: Vec<String>,
+    /// How many of these are of the layout.
+    #[serde(skip)]
+    pub of_layout: usize,
 }
 
 /// Writes exclusions: the text of the new file, the layout in it, and what they are like.
@@ -153,6 +156,7 @@ pub fn write(
         needed: audit.needed,
         uncut,
         warnings: audit.warnings.iter().chain(&notes.said).cloned().collect(),
+        of_layout: audit.of_layout,
     };
     Ok((written, report, audit))
 }
