@@ -68,6 +68,8 @@ def nav2(text):
         for feature in features:
             kind, own = feature["geometry"]["type"], feature["properties"]
             barred = set((own.get("metadata") or {}).get("closed_edges", []))
+            # As the service takes them.
+            assert all(isinstance(edge, int) and 0 <= edge <= 65535 for edge in barred), barred
             if kind == "Point" and of == "Point":
                 nodes[own["id"]] = tuple(feature["geometry"]["coordinates"][:2])
                 closed.setdefault(own["id"], []).append(barred)

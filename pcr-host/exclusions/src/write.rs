@@ -148,7 +148,11 @@ pub fn write(
         exclusions: target.to_string(),
         edges: again.layout.edges.len(),
         nodes: again.layout.nodes.len(),
-        groups: if settings.envelopes.is_some() || notes.groups > 0 { notes.groups } else { audit.groups },
+        groups: if settings.envelopes.is_some() || notes.groups > 0 || notes.at_least.is_some() {
+            notes.groups
+        } else {
+            audit.groups
+        },
         at_least: notes.at_least,
         can_touch: audit.can_touch,
         needless: audit.needless.len(),
