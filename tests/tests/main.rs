@@ -21,6 +21,7 @@ mod documents;
 mod earned;
 mod exclusions;
 mod exclusions_forms;
+mod exclusions_less;
 mod firmware;
 mod footprints;
 mod formats;

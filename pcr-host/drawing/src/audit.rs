@@ -1,7 +1,8 @@
 //! An audit as a picture, and as layers of the page of locks: groups as written, what they leave out, what they exclude in vain.
 
+use super::axis::Frame;
 use super::layout::{Ground, STEPS, path};
-use super::svg::Pixels;
+use super::svg::{Pixels, Svg};
 use pcr_exclusions::{Audit, Gap, Rules, Spot, stretch};
 use pcr_formats::import::Imported;
 use serde_json::{Value, json};
@@ -54,7 +55,8 @@ pub(super) fn layers(imported: &Imported, rules: &Rules, audit: &Audit) -> Value
     let places = places(imported);
     let groups = rules.groups.iter().map(|group| {
         let edges: Vec<&usize> = group.edges.iter().filter_map(|edge| places.get(edge)).collect();
-        json!([group.name, edges, group.nodes])
+        let outline: Vec<[f64; 2]> = group.outline.iter().map(|corner| corner.map(|x| (x * STEPS).round())).collect();
+        json!([group.name, edges, group.nodes, outline, group.level])
     });
     let gaps = audit.gaps.iter().map(|gap| {
         let [x, y] = gap.at.map(|x| x * STEPS);
@@ -74,6 +76,16 @@ pub(super) fn layers(imported: &Imported, rules: &Rules, audit: &Audit) -> Value
     })
 }
 
+/// A zone as it is in the file.
+fn zone(svg: &mut Svg, frame: &Frame, outline: &[[f64; 2]], colour: &str) {
+    let corners: Vec<String> =
+        outline.iter().map(|corner| frame.at(*corner)).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+    let width = Pixels(1.0);
+    let fill: [(&str, &dyn Display); 3] = [("fill", &colour), ("fill-opacity", &"0.12"), ("stroke-opacity", &"0.7")];
+    let points = corners.join(" ");
+    svg.empty("polygon", &[&fill[..], &[("stroke", &colour), ("stroke-width", &width), ("points", &points)]].concat());
+}
+
 /// The picture of a level.
 pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> String {
     let (imported, places) = (ground.imported, places(ground.imported));
@@ -88,6 +100,12 @@ pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> Strin
             [("fill", &"none"), ("stroke-linecap", &"round"), ("stroke-opacity", &"0.45")];
         for (k, group) in rules.groups.iter().enumerate() {
             let colour = COLOURS[k % COLOURS.len()];
+            if !group.outline.is_empty() {
+                if group.level == ground.level {
+                    zone(svg, frame, &group.outline, colour);
+                }
+                continue;
+            }
             svg.start("g", &[&line[..], &[("stroke", &colour), ("stroke-width", &wide)]].concat());
             for edge in group.edges.iter().filter_map(|edge| places.get(edge)).filter(|edge| on_level(**edge)) {
                 let data = path(&layout.edges[*edge].curve, metre, true, |point| frame.at(point));
@@ -124,7 +142,11 @@ pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> Strin
         let legend = [
             format!("colours: {} groups of the file", rules.groups.len()),
             format!("red: {} pairs that can touch; large ones share no node", audit.gaps.len()),
-            format!("orange: {} pairs excluded in vain", audit.needless.len()),
+            format!(
+                "orange: {} pairs excluded in vain{}",
+                audit.needless.len(),
+                if audit.needless.len() > MOST { format!(", {MOST} of them drawn") } else { String::new() }
+            ),
         ];
         for (k, line) in legend.iter().enumerate() {
             let below = super::axis::ROOM_BELOW + 8.0 + LINE * k as f64;

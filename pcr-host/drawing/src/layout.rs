@@ -23,6 +23,9 @@ const LEAST: f64 = 160.0;
 /// Nodes up to which their names are written.
 const NAMED: usize = 60;
 
+/// Size of these names \[px\].
+const NAME_SIZE: f64 = 9.0;
+
 /// A level of a layout that a vehicle travels.
 #[derive(Clone, Copy, Debug)]
 pub struct Ground<'a> {
@@ -142,12 +145,16 @@ impl Ground<'_> {
         svg.end();
         let nodes: Vec<&Node> = layout.nodes.iter().filter(|node| node.level == self.level).collect();
         let radius = Pixels(if names { 2.0 } else { 1.2 });
-        svg.start("g", &[("fill", &"#a94022"), ("font-size", &Pixels(9.0))]);
+        svg.start("g", &[("fill", &"#a94022"), ("font-size", &Pixels(NAME_SIZE))]);
         for node in &nodes {
             let [x, y] = frame.at(node.at);
             svg.empty("circle", &[("cx", &Pixels(x)), ("cy", &Pixels(y)), ("r", &radius)]);
             if names && nodes.len() <= NAMED {
-                svg.label([x + 3.5, y - 3.5], "start", &[], &node.id.to_string());
+                let name = node.id.to_string();
+                // At the right edge names are on the other side, as far as their width is known.
+                let fits = x + 3.5 + NAME_SIZE * 0.65 * name.chars().count() as f64 <= frame.edges[2];
+                let (at, anchor) = if fits { (x + 3.5, "start") } else { (x - 3.5, "end") };
+                svg.label([at, y - 3.5], anchor, &[], &name);
             }
         }
         svg.end();

@@ -33,8 +33,11 @@ pub struct Audit {
     pub excluded: f64,
     /// Those at which the table of locks excludes it \[m²\].
     pub needed: f64,
-    /// What was read otherwise than it was written.
+    /// What was read otherwise than it was written: of the layout, then of the exclusions.
     pub warnings: Vec<String>,
+    /// How many of these are of the layout.
+    #[serde(skip)]
+    pub of_layout: usize,
 }
 
 /// An edge or a node.
@@ -93,6 +96,7 @@ impl Audit {
             excluded: 0.0,
             needed: 0.0,
             warnings: imported.layout.warnings.iter().chain(&rules.warnings).cloned().collect(),
+            of_layout: imported.layout.warnings.len(),
         };
         let places: HashMap<&Id, usize> =
             imported.layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
@@ -315,7 +319,7 @@ fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
 
 /// The groups of tokens that several places have, by name.
 pub(crate) fn groups(layout: &Layout, names: &[String], edges: &[Vec<usize>], nodes: &[Vec<usize>]) -> Vec<Group> {
-    let empty = |name: &String| Group { name: name.clone(), edges: Vec::new(), nodes: Vec::new() };
+    let empty = |name: &String| Group { name: name.clone(), ..Group::default() };
     let mut groups: Vec<Group> = names.iter().map(empty).collect();
     for (tokens, edge) in edges.iter().zip(&layout.edges) {
         for token in tokens {

@@ -163,7 +163,7 @@ impl Claim {
 }
 
 /// A group, block, zone or list of a file.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Group {
     /// As in the file.
     pub name: String,
@@ -171,6 +171,10 @@ pub struct Group {
     pub edges: Vec<String>,
     /// Nodes of its members.
     pub nodes: Vec<String>,
+    /// Corners of a zone \[m\]; none of what is no area.
+    pub outline: Vec<[f64; 2]>,
+    /// Level of a zone.
+    pub level: usize,
 }
 
 /// What vehicles have to keep to.

@@ -64,7 +64,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         };
         if !list.is_empty() {
             let edges = list.iter().map(ToString::to_string).collect();
-            groups.push(Group { name: format!("{what} {id}"), edges, nodes: Vec::new() });
+            groups.push(Group { name: format!("{what} {id}"), edges, ..Group::default() });
         }
         // Of several features with one id, what all of them close.
         let known = lists[usize::from(node)].entry(id).or_insert_with(|| list.clone());

@@ -53,14 +53,43 @@ fn resources(layout: &Layout) -> HashMap<String, usize> {
 /// Reads resources, blocks and envelopes.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
     let document = parse(text)?;
-    let (root, layout) = (document.root_element(), &imported.layout);
+    let layout = &imported.layout;
+    let Held { tokens, names, warnings } = held(document.root_element(), layout, |_| true)?;
+    let blocks: Vec<Vec<usize>> = tokens
+        .iter()
+        .map(|tokens| {
+            let of_blocks =
+                tokens.iter().filter_map(|token| token.checked_sub(layout.edges.len() + layout.nodes.len()));
+            of_blocks.filter(|block| *block < names.len()).collect()
+        })
+        .collect();
+    let (of_paths, of_points) = blocks.split_at(layout.edges.len());
+    let groups = groups(layout, &names, of_paths, of_points);
+    let nodes: Vec<Claim> = tokens[layout.edges.len()..].iter().cloned().map(Claim::exclusive).collect();
+    let edges = layout.edges.iter().enumerate().map(|(place, edge)| {
+        let ends = edge.ends.iter().flat_map(|&end| &tokens[layout.edges.len() + end]);
+        Claim::exclusive(tokens[place].iter().chain(ends).copied().collect())
+    });
+    Ok(Rules { groups, warnings, ..Rules::of_edges(imported, edges.collect(), nodes) })
+}
+
+/// What a vehicle has with each resource, paths first: tokens of the resource, of its blocks, and of envelopes that meet.
+struct Held {
+    tokens: Vec<Vec<usize>>,
+    /// Of the blocks.
+    names: Vec<String>,
+    warnings: Vec<String>,
+}
+
+/// Reads the blocks that are asked for by their names, and envelopes.
+fn held(root: Node<'_, '_>, layout: &Layout, is_asked: impl Fn(&str) -> bool) -> Result<Held, ImportError> {
     let places = resources(layout);
     let count = layout.edges.len() + layout.nodes.len();
     // Each resource is a token of its own.
     let mut tokens: Vec<Vec<usize>> = (0..count).map(|place| vec![place]).collect();
     let (mut names, mut warnings) = (Vec::new(), Vec::new());
     let locations: BTreeSet<&str> = elements(root, "location").map(name).collect();
-    for block in elements(root, "block") {
+    for block in elements(root, "block").filter(|block| is_asked(name(*block))) {
         if block.attribute("type").is_some_and(|kind| kind != "SINGLE_VEHICLE_ONLY") {
             warnings.push(format!(
                 "block {}: {} does not keep vehicles apart that follow one another; it is not counted",
@@ -81,19 +110,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
         names.push(name(block).to_owned());
     }
-    let blocks: Vec<Vec<usize>> = tokens
-        .iter()
-        .map(|tokens| tokens.iter().filter(|token| **token >= count).map(|token| token - count).collect())
-        .collect();
-    let (of_paths, of_points) = blocks.split_at(layout.edges.len());
-    let groups = groups(layout, &names, of_paths, of_points);
     envelopes(root, &places, count + names.len(), &mut tokens, &mut warnings)?;
-    let nodes: Vec<Claim> = tokens[layout.edges.len()..].iter().cloned().map(Claim::exclusive).collect();
-    let edges = layout.edges.iter().enumerate().map(|(place, edge)| {
-        let ends = edge.ends.iter().flat_map(|&end| &tokens[layout.edges.len() + end]);
-        Claim::exclusive(tokens[place].iter().chain(ends).copied().collect())
-    });
-    Ok(Rules { groups, warnings, ..Rules::of_edges(imported, edges.collect(), nodes) })
+    Ok(Held { tokens, names, warnings })
 }
 
 /// Adds a token for every two resources of which the envelopes with the key of all vehicles meet.
@@ -178,7 +196,7 @@ pub(crate) fn write(
     if let Some(key) = &settings.envelopes {
         notes.groups = write_envelopes(root, offset, imported, key, &mut edits)?;
     } else {
-        write_blocks(text, root, offset, layout, locks, notes, &mut edits);
+        write_blocks(text, root, offset, layout, locks, notes, &mut edits)?;
     }
     Ok(edits.made(text))
 }
@@ -229,8 +247,16 @@ fn write_blocks(
     locks: &Locks,
     notes: &mut Notes,
     edits: &mut Edits,
-) {
-    let [needed, allowed] = pairs(layout, locks);
+) -> Result<(), ImportError> {
+    let [mut needed, allowed] = pairs(layout, locks);
+    // What blocks and envelopes of the file exclude already needs no other block.
+    let there = held(root, layout, |name| !is_ours(name))?.tokens;
+    let of = |place: usize| {
+        let ends = layout.edges.get(place).into_iter().flat_map(|edge| edge.ends.map(|end| layout.edges.len() + end));
+        let tokens = ends.chain([place]).flat_map(|place| there[place].iter().copied());
+        Claim::exclusive(tokens.collect())
+    };
+    needed.retain(|[a, b]| !of(*a).excludes(&of(*b)));
     let cover = cover(layout.edges.len() + layout.nodes.len(), &allowed, &needed);
     (notes.groups, notes.at_least) = (cover.cliques.len(), Some(cover.at_least));
     let (old, kept): (Vec<Node<'_, '_>>, Vec<Node<'_, '_>>) =
@@ -244,7 +270,7 @@ fn write_blocks(
     let after =
         |names: &[&str]| root.children().rfind(|child| child.is_element() && names.contains(&child.tag_name().name()));
     let last = kept.last().copied().or_else(|| after(&["location", "locationType", "vehicle", "path", "point"]));
-    let Some(last) = last else { return };
+    let Some(last) = last else { return Ok(()) };
     let at = last.range().end + offset;
     let margin = indent(text, last.range().start + offset).unwrap_or("    ").to_owned();
     let id = |place: usize| match place.checked_sub(layout.edges.len()) {
@@ -263,6 +289,7 @@ fn write_blocks(
         let _ = write!(blocks, "{end}{margin}    <blockLayout color=\"#A94022\"/>{end}{margin}</block>");
     }
     edits.insert(at, blocks);
+    Ok(())
 }
 
 fn escaped(text: &str) -> String {

@@ -124,7 +124,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             others.push(layout.edges[there].id.to_string());
             token += 1;
         }
-        groups.push(Group { name: layout.edges[own].id.to_string(), edges: others, nodes: Vec::new() });
+        groups.push(Group { name: layout.edges[own].id.to_string(), edges: others, ..Group::default() });
     }
     for Entry { node, locks, .. } in file.nodes {
         let node = find(&spots, &node, "node")?;

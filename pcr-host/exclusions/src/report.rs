@@ -64,10 +64,12 @@ pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> 
             times(uncut, written.needed)
         )?;
     }
-    for warning in &written.warnings {
-        writeln!(out, "  {}", printable(warning))?;
-    }
-    Ok(())
+    said(out, &written.warnings[written.of_layout..])
+}
+
+/// What is to be said of the exclusions; what is of the layout has been said when that was read.
+fn said(out: &mut impl Write, warnings: &[String]) -> io::Result<()> {
+    warnings.iter().try_for_each(|warning| writeln!(out, "  {}", printable(warning)))
 }
 
 fn spot(spot: &Spot) -> String {
@@ -131,7 +133,7 @@ pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
         columns.write(out)?;
         more(out, audit.needless.len())?;
     }
-    Ok(())
+    said(out, &audit.warnings[audit.of_layout..])
 }
 
 fn more(out: &mut impl Write, count: usize) -> io::Result<()> {

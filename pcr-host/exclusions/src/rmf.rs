@@ -79,15 +79,18 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         let Some((level, place)) = place_of(id) else { return Ok(Vec::new()) };
         let given = &root["levels"][level][kind][place][parameters]["mutex"];
         let value = if let Value::Array(typed) = given { typed.get(1).unwrap_or(&Value::Null) } else { given };
-        match value {
-            Value::Null => Ok(Vec::new()),
-            Value::String(name) if name.is_empty() => Ok(Vec::new()),
-            Value::String(name) => Ok(vec![*known.entry(name.clone()).or_insert_with(|| {
-                names.push(name.clone());
-                names.len() - 1
-            })]),
-            other => Err(ImportError::new(format!("{kind} {id}, mutex: {other} where a name is expected"))),
-        }
+        let name = match value {
+            Value::Null => return Ok(Vec::new()),
+            Value::String(name) if name.is_empty() => return Ok(Vec::new()),
+            Value::String(name) => name.clone(),
+            // Adapters take any scalar for a name.
+            Value::Number(number) => number.to_string(),
+            other => return Err(ImportError::new(format!("{kind} {id}, mutex: {other} where a name is expected"))),
+        };
+        Ok(vec![*known.entry(name).or_insert_with_key(|name| {
+            names.push(name.clone());
+            names.len() - 1
+        })])
     };
     let layout = &imported.layout;
     let lanes = layout.edges.iter().map(|edge| group("lanes", &edge.id, Form::LANE)).collect::<Result<Vec<_>, _>>()?;

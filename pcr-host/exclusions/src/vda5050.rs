@@ -80,8 +80,9 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             let polygon = corners.filter(|corners| corners.len() >= 3);
             let polygon = polygon.ok_or_else(|| problem("vertices: three or more are expected"))?;
             let token = groups.len();
+            let level = (0..layout.levels.len()).find(|&level| map(layout, level) == id).unwrap_or_default();
+            groups.push(Group { name: name.to_owned(), outline: polygon.clone(), level, ..Group::default() });
             zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", polygon, token });
-            groups.push(Group { name: name.to_owned(), edges: Vec::new(), nodes: Vec::new() });
         }
     }
     let radius = imported.vehicle.radius + imported.vehicle.margin;

@@ -43,6 +43,9 @@ pub struct Written {
     pub uncut: Option<f64>,
     /// What was left as it is, or replaced, and what was read otherwise than it was written.
     pub warnings: Vec<String>,
+    /// How many of these are of the layout.
+    #[serde(skip)]
+    pub of_layout: usize,
 }
 
 /// Writes exclusions: the text of the new file, the layout in it, and what they are like.
@@ -92,6 +95,11 @@ pub fn write(
     // What cutting is worth.
     let uncut = Settings { split: None, ..settings.clone() };
     let uncut = settings.split.map(|_| write(format, text, options, name, &uncut)).transpose()?;
+    if let (Target::Rmf, Some(graph)) = (target, options.graph) {
+        notes
+            .said
+            .push(format!("lanes of other graphs than {graph} are left as they are, and nothing is said of them"));
+    }
     let prepared = match (target, settings.split) {
         (Target::Nav2, Some(most)) => {
             let (text, whole) = nav2::split(text, most)?;
@@ -140,7 +148,11 @@ pub fn write(
         exclusions: target.to_string(),
         edges: again.layout.edges.len(),
         nodes: again.layout.nodes.len(),
-        groups: if settings.envelopes.is_some() || notes.groups > 0 { notes.groups } else { audit.groups },
+        groups: if settings.envelopes.is_some() || notes.groups > 0 || notes.at_least.is_some() {
+            notes.groups
+        } else {
+            audit.groups
+        },
         at_least: notes.at_least,
         can_touch: audit.can_touch,
         needless: audit.needless.len(),
@@ -148,6 +160,7 @@ pub fn write(
         needed: audit.needed,
         uncut,
         warnings: audit.warnings.iter().chain(&notes.said).cloned().collect(),
+        of_layout: audit.of_layout,
     };
     Ok((written, report, audit))
 }

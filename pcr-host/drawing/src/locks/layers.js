@@ -32,7 +32,12 @@ function draw_layers() {
   const at = Number(level.value), here = (k) => data.edges[k].level === at;
   if (on("groups")) {
     const layer = make(layers, "g", { class: "groups", "pointer-events": "none" });
-    groups.forEach(([, edges, names], k) => {
+    groups.forEach(([, edges, names, outline, on], k) => {
+      if (outline.length > 0) {
+        const colour = COLOURS[k % COLOURS.length];
+        if (on === at) make(layer, "polygon", { class: "zone", points: outline.join(" "), style: `stroke: ${colour}; fill: ${colour}` });
+        return;
+      }
       const group = make(layer, "g", { style: "stroke: " + COLOURS[k % COLOURS.length] });
       for (const edge of edges.filter(here)) {
         if (data.edges[edge].path !== "") make(group, "path", { d: data.edges[edge].path, "stroke-width": 0.4 * STEPS * data.radius });

@@ -53,6 +53,7 @@ const overlay = make(world, "g", { "pointer-events": "none" });
 const targets = make(world, "g", {});
 const targets_of = new Map(), nodes = new Map();
 let pinned = null, shown = null;
+const ROWS = 40;
 
 /** A button that shows another edge. */
 function link(parent, other) {
@@ -141,12 +142,15 @@ function show(k) {
   const head = text(text(table, "thead", ""), "tr", "");
   for (const title of ["edge", "on it [m]", "on this one [m]"]) text(head, "th", title);
   const body = text(table, "tbody", "");
-  for (const [other, own, lengths] of blocks) {
+  // An edge that is only pointed at shows as many as are seen: in roadmaps it has hundreds, which take a while.
+  const rows = pinned === null ? blocks.slice(0, ROWS) : blocks;
+  for (const [other, own, lengths] of rows) {
     const row = text(body, "tr", "");
     link(text(row, "td", ""), other);
     text(row, "td", range(lengths));
     text(row, "td", range(own));
   }
+  if (rows.length < blocks.length) text(about, "p", "and " + (blocks.length - rows.length) + " more: click the edge to see all");
 }
 
 function draw() {
