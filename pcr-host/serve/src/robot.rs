@@ -126,6 +126,8 @@ pub struct Robot {
     pub told: f64,
     /// What is in the journal of that: `told` or more.
     pub ceiling: f64,
+    /// It can stop there, and not before \[m\]: less is of no use to it. Not known after a restart.
+    pub next: f64,
     /// How far its orders allow it to go; none: not known.
     pub hold: Option<Wait>,
     /// Something is wrong with it.
@@ -162,6 +164,7 @@ impl Robot {
             granted: 0.0,
             told: 0.0,
             ceiling: 0.0,
+            next: 0.0,
             hold: None,
             alarm: None,
             stopped: None,
@@ -205,7 +208,7 @@ impl Robot {
     /// How far it wants to be allowed to go \[m\]: so that it need not brake for what it will be told within a time \[s\].
     pub fn wanted(&self, lookahead: f64) -> f64 {
         let way = self.abilities.braking() + self.abilities.speed * lookahead;
-        (self.up_to + way).min(self.course.length())
+        (self.up_to + way).max(self.next).min(self.course.length())
     }
 
     /// Whether it has come to the end of its path, within a width \[m\].

@@ -176,7 +176,7 @@ fn late_messages_end_no_alarm() {
     assert_eq!(names(&own.settle(3.0).unwrap()), ["alarm north", "stop east"]);
     own.position(&Report { age: 2.0, ..report("north", 2, 2.0, 2.1) }, 3.1).unwrap();
     assert_eq!(own.settle(3.1).unwrap(), []);
-    own.position(&Report { age: 0.05, ..report("north", 2, 3.3, 3.4) }, 3.2).unwrap();
+    own.position(&Report { age: 0.05, ..report("north", 2, 2.5, 2.6) }, 3.2).unwrap();
     let events = names(&own.settle(3.2).unwrap());
     assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
 }

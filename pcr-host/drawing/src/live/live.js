@@ -82,11 +82,6 @@ function draw() {
     place.set(robot.robot, [px, py]);
     c.beginPath(); c.arc(x(px), y(py), Math.max(3, robot.radius * scale), 0, 7); c.globalAlpha *= 0.8; c.fill();
     c.globalAlpha = 1;
-    c.fillStyle = theme.ink;
-    c.font = "12px system-ui";
-    const beside = Math.max(3, robot.radius * scale) + 2, fits = x(px) + beside + c.measureText(robot.robot).width < width;
-    c.textAlign = fits ? "left" : "right";
-    c.fillText(robot.robot, x(px) + (fits ? beside : -beside), y(py) - 2);
   });
   c.strokeStyle = theme.dim;
   c.lineWidth = 1;
@@ -97,6 +92,25 @@ function draw() {
     c.beginPath(); c.moveTo(ax, ay); c.lineTo(bx, by);
     for (const side of [2.7, -2.7]) { c.moveTo(bx, by); c.lineTo(bx + 9 * Math.cos(angle + side), by + 9 * Math.sin(angle + side)); }
     c.stroke();
+  }
+  names(c, robots.map((robot) => [robot.robot, ...place.get(robot.robot).map((value, axis) => [x, y][axis](value)), Math.max(3, robot.radius * scale) + 2]), width);
+}
+
+/** Names beside their robots, below one another where they would be on one another. */
+function names(c, all, width) {
+  const high = 13, taken = [];
+  c.font = "12px system-ui";
+  c.textAlign = "left";
+  c.lineWidth = 3;
+  c.lineJoin = "round";
+  [c.fillStyle, c.strokeStyle] = [theme.ink, theme.paper];
+  for (const [text, px, py, beside] of all) {
+    const wide = c.measureText(text).width, left = px + beside + wide < width ? px + beside : px - beside - wide;
+    const free = (top) => taken.every(([l, t, w]) => left > l + w || l > left + wide || Math.abs(top - t) >= high);
+    const top = [0, 1, -1, 2, -2, 3, -3].map((k) => py - 2 + k * high).find(free) ?? py - 2;
+    taken.push([left, top, wide]);
+    c.strokeText(text, left, top);
+    c.fillText(text, left, top);
   }
 }
 
@@ -123,16 +137,16 @@ function show() {
     row.className = (robot.alarm || robot.stopped_for || robot.silent ? "bad " : "") + (robot.robot === ego ? "chosen" : "");
   });
   while (body.rows.length > state.robots.length) body.deleteRow(-1);
-  const names = state.robots.map((robot) => robot.robot), options = [...$("ego").options].slice(1).map((option) => option.value);
-  if (names.join("\n") !== options.join("\n")) {
-    $("ego").replaceChildren($("ego").options[0], ...names.map((name) => new Option(name, name)));
-    $("ego").value = names.includes(ego) ? ego : "";
+  const known = state.robots.map((robot) => robot.robot), options = [...$("ego").options].slice(1).map((option) => option.value);
+  if (known.join("\n") !== options.join("\n")) {
+    $("ego").replaceChildren($("ego").options[0], ...known.map((name) => new Option(name, name)));
+    $("ego").value = known.includes(ego) ? ego : "";
   }
   const events = $("events"), texts = state.events.slice(-30).reverse().map(({ time, text }) => `${time.toFixed(1)} s: ${text}`);
   if (events.firstChild?.textContent !== texts[0]) events.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   since ??= { now: state.now, admitted: state.counts.admitted };
   const hours = (state.now - since.now) / 3600, rate = hours > 0.002 ? `, ${((state.counts.admitted - since.admitted) / hours).toFixed(0)} missions an hour` : "";
-  $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${names.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} ${state.counts.alarms === 1 ? "alarm" : "alarms"}`;
+  $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${known.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} ${state.counts.alarms === 1 ? "alarm" : "alarms"}`;
   $("clock").textContent = `${state.now.toFixed(1)} s`;
   draw();
 }

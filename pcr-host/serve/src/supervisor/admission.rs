@@ -126,6 +126,24 @@ impl Supervisor {
         Ok(verdict)
     }
 
+    /// The path that a robot has is that of another mission, which goes the same way: nothing else changes.
+    ///
+    /// # Errors
+    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
+    pub fn adopt(&mut self, name: &str, mission: String) -> Result<(), Fault> {
+        self.works()?;
+        let place = self.place(name)?;
+        let robot = &mut self.robots[place];
+        let waiting = robot.waiting.take().map(|waiting| waiting.mission);
+        for before in robot.mission.replace(mission).into_iter().chain(waiting) {
+            Robot::outlives(&mut robot.past, before);
+        }
+        self.tries.remove(name);
+        let known = self.known(place);
+        self.entries.push(Entry::Robot(Box::new(known)));
+        Ok(())
+    }
+
     /// Whether a path can begin at this length of that of a robot.
     fn joins(&self, robot: &Robot, after: f64, start: Option<Start>) -> Result<(), Fault> {
         if !(0.0..=robot.course.length()).contains(&after) {
@@ -204,6 +222,7 @@ impl Supervisor {
         robot.at = shifted(robot.at);
         robot.up_to = shifted(robot.up_to).max(robot.at);
         (robot.granted, robot.told) = (shifted(robot.granted), shifted(robot.told));
+        robot.next = 0.0;
         // No more than that has been told.
         robot.ceiling = robot.told;
         (robot.moved, robot.stands) = (None, false);

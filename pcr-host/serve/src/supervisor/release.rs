@@ -5,10 +5,21 @@ use super::alarms::Limit;
 use super::{Supervisor, fleet};
 use crate::entry::Entry;
 use crate::event::Event;
+use crate::fault::Fault;
 use crate::robot::Wait;
 use pcr_core::Hold;
 
 impl Supervisor {
+    /// A robot can stop at this length of its path, and not before \[m\]: it is told so far at once, if it may go there.
+    ///
+    /// # Errors
+    /// [`Fault::NoSuchRobot`].
+    pub fn stops_at(&mut self, name: &str, length: f64) -> Result<(), Fault> {
+        let place = self.place(name)?;
+        self.robots[place].next = length;
+        Ok(())
+    }
+
     /// Lets everybody go on who wants to and may.
     pub(super) fn release(&mut self, limits: &[Limit]) {
         let wanting: Vec<usize> = (0..self.robots.len()).filter(|&place| self.wants(place)).collect();

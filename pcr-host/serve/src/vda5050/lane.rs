@@ -87,6 +87,8 @@ pub struct Lane {
     pause: Option<(bool, f64)>,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
+    /// What the manager was told of what is ahead.
+    ahead: Option<mirror::Ahead>,
     /// Why its disc is not that of the vehicle, by the vehicle's own words.
     misfit: Option<String>,
 }
@@ -100,7 +102,22 @@ impl Lane {
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
         let (state, heard_at, astray, pause) = (None, 0.0, None, None);
-        Self { profile, name, version, newest, state, heard_at, job, errors, astray, pause, sent, posts, misfit: None }
+        Self {
+            profile,
+            name,
+            version,
+            newest,
+            state,
+            heard_at,
+            job,
+            errors,
+            astray,
+            pause,
+            sent,
+            posts,
+            ahead: None,
+            misfit: None,
+        }
     }
 
     /// What the supervisor calls it.

@@ -4,6 +4,7 @@
 
 use super::locks::{Leg, Locks, Method, to_line};
 use super::random::Random;
+use crate::course::{Course, Shape, Start};
 use crate::vda5050::door::{self, Limits};
 use crate::vda5050::header::Header;
 use crate::vda5050::order::{Edge, Node, NodePosition, Order};
@@ -11,7 +12,7 @@ use crate::vda5050::stamp;
 use crate::vda5050::state::{Pose, State};
 use crate::vda5050::topics::Key;
 use crate::vda5050::version::Version;
-use pcr_formats::import::{Layout, Step, cheapest};
+use pcr_formats::import::{self, Layout, Step, cheapest};
 use serde_json::Map;
 use std::collections::BTreeMap;
 
@@ -129,6 +130,18 @@ impl Manager {
             Method::EdgeLocks => Some(locks(false)),
         };
         self
+    }
+
+    /// The ways that it sends vehicles on.
+    pub fn lanes(&self) -> Vec<Course> {
+        let lane = |edge: &import::Edge| {
+            let [[x, y], to] =
+                [0, 1].map(|end| self.layout.nodes.get(edge.ends[end]).map(|node| node.at).unwrap_or_default());
+            let [dx, dy] = [to[0] - x, to[1] - y];
+            let start = Start { x, y, heading: dy.atan2(dx) };
+            Course::new(start, vec![Shape::Line { length: dx.hypot(dy) }]).ok()
+        };
+        self.layout.edges.iter().filter_map(lane).collect()
     }
 
     /// Missions done by all vehicles.

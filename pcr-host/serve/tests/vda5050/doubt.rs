@@ -37,7 +37,7 @@ impl Lone {
     fn driving() -> Self {
         let mut own = Self::standing();
         own.order("a", 0.0, 1);
-        own.lasts(7.0);
+        own.lasts(5.5);
         let at = own.robot_at();
         assert!((2.0..5.0).contains(&at) && own.vehicle.taken() >= 1, "{at}");
         own

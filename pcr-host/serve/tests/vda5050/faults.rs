@@ -2,7 +2,7 @@
 
 use crate::broker::{Mosquitto, folder};
 use crate::runs::FAIR;
-use crate::site::{Desk, SAFE, Scene, Site, nodes, settings, warehouse};
+use crate::site::{Desk, SAFE, Scene, Site, at_broker, nodes, warehouse};
 use pcr_serve::entry::Nowhere;
 use pcr_serve::journal::Journal;
 use pcr_serve::supervisor::Supervisor;
@@ -69,7 +69,7 @@ fn a_supervisor_of_its_own() {
     let goals = nodes(&layout, &SAFE);
     let world = World::new(layout, goals, SCENE.count, SCENE.versions, SCENE.abilities, 1).unwrap();
     let (journal, found) = Journal::open(Path::new(&journal)).unwrap();
-    let supervisor = Supervisor::restored(settings(), found.entries, Box::new(journal)).unwrap();
+    let supervisor = Supervisor::restored(at_broker(), found.entries, Box::new(journal)).unwrap();
     let desk = Desk::at(&Broker::new("127.0.0.1", port), world.profiles, &session, supervisor);
     while !desk.is_over() {
         std::thread::sleep(Duration::from_millis(20));

@@ -45,9 +45,13 @@ pub(crate) fn interfaces() -> [Interface; 2] {
 }
 
 pub(crate) fn settings() -> Settings {
-    // Holds as far as the way is free: bases end at nodes that may be far.
-    let lookahead = std::env::var("PCR_LOOKAHEAD").ok().map_or(1e3, |x| x.parse().unwrap());
-    Settings { lookahead, width: 0.3, ..Settings::default() }
+    // Holds as far as the way is free.
+    Settings { lookahead: 1e3, ..at_broker() }
+}
+
+/// As `pcr serve` has them.
+pub(crate) fn at_broker() -> Settings {
+    Settings { lookahead: 8.0, width: 0.3, ..Settings::default() }
 }
 
 /// A supervisor at work.
@@ -60,7 +64,7 @@ pub(crate) struct Desk {
 
 impl Desk {
     pub(crate) fn open(broker: &Mosquitto, profiles: Vec<Profile>, session: &str, keep: Box<dyn Keep>) -> Self {
-        Self::at(&broker.address(), profiles, session, Supervisor::new(settings(), keep))
+        Self::at(&broker.address(), profiles, session, Supervisor::new(at_broker(), keep))
     }
 
     pub(crate) fn at(broker: &Broker, profiles: Vec<Profile>, session: &str, mut supervisor: Supervisor) -> Self {

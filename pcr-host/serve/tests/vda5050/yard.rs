@@ -2,7 +2,7 @@
 
 use crate::dump;
 use crate::runs::FAIR;
-use crate::site::{SAFE, Scene, interfaces, nodes, settings, warehouse};
+use crate::site::{SAFE, Scene, at_broker, interfaces, nodes, warehouse};
 use pcr_serve::entry::{Entry, Keep, Nowhere};
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::version::Version;
@@ -24,7 +24,7 @@ fn open(scene: Scene<'_>, seed: u64, method: Method, keeper: Box<dyn Keep>) -> Y
     let goals = nodes(&layout, &SAFE);
     let world = World::new(layout, goals, scene.count, scene.versions, scene.abilities, seed).unwrap();
     let own = yard::Settings { method, climate: scene.climate, drops: scene.drops, step: 0.05, seed };
-    Yard::new(world, interfaces(), own, Supervisor::new(settings(), keeper), Vec::new()).unwrap()
+    Yard::new(world, interfaces(), own, Supervisor::new(at_broker(), keeper), Vec::new()).unwrap()
 }
 
 /// Goes on until so many missions are done; `fails` is what happens where the journal does.
@@ -51,7 +51,7 @@ fn until(yard: &mut Yard<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut Yar
 /// The supervisor is killed, and another one goes on with what is in the journal.
 fn restart(yard: &mut Yard<Vec<u8>>) {
     let entries = yard.supervised_by().0.snapshot();
-    yard.revive(Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap());
+    yard.revive(Supervisor::restored(at_broker(), entries, Box::new(Nowhere)).unwrap());
 }
 
 /// Proves that nobody has touched anybody, and that nobody ever had the right to.
@@ -146,7 +146,7 @@ fn a_supervisor_that_is_killed_at_every_other_write() {
     let mut kills = 0;
     until(&mut yard, 16, |yard| {
         let entries = disc.entries.lock().unwrap().clone();
-        yard.revive(Supervisor::restored(settings(), entries, Box::new(disc.clone())).unwrap());
+        yard.revive(Supervisor::restored(at_broker(), entries, Box::new(disc.clone())).unwrap());
         kills += 1;
     });
     eprintln!("killed {kills} times in {:.0} s", yard.time());

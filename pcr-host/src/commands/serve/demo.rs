@@ -4,6 +4,7 @@ use super::super::Stop;
 use super::super::fleet::{self, Crew};
 use super::Arguments;
 use super::bridge::{Fleet, interfaces};
+use pcr_serve::entry::Layout as Drawn;
 use pcr_serve::log::{Level, Log};
 use pcr_serve::vda5050::lane::Profile;
 use pcr_serve::vda5050::mqtt::Broker;
@@ -23,6 +24,7 @@ pub(super) struct Demo {
     folder: PathBuf,
     interfaces: [Interface; 2],
     profiles: Vec<Profile>,
+    drawn: Drawn,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<Result<(), String>>>,
 }
@@ -35,7 +37,9 @@ impl Demo {
         let (child, broker, folder) = mosquitto()?;
         log.write(Level::Info, "broker", &[("port", &broker.port)]);
         let profiles = world.profiles.clone();
-        let mut demo = Self { broker, child, folder, interfaces, profiles, stop: Arc::default(), thread: None };
+        let name = layout.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let drawn = Drawn { name, lanes: world.manager.lanes() };
+        let mut demo = Self { broker, child, folder, interfaces, profiles, drawn, stop: Arc::default(), thread: None };
         let mut run = fleet::Run::open(world, &demo.broker, &demo.interfaces, &crew, std::io::sink())?;
         let stop = demo.stop.clone();
         demo.thread = Some(thread::spawn(move || {
@@ -52,6 +56,11 @@ impl Demo {
     pub(super) fn fleet(&self) -> Fleet {
         let Self { broker, interfaces, profiles, .. } = self;
         Fleet { broker: broker.clone(), interfaces: interfaces.clone(), profiles: profiles.clone() }
+    }
+
+    /// What the page draws.
+    pub(super) fn drawn(&self) -> &Drawn {
+        &self.drawn
     }
 
     pub(super) fn end(mut self) -> Result<(), Stop> {

@@ -28,15 +28,21 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         arguments.demo.as_deref().map(|layout| Demo::start(layout, &arguments, log_of(&arguments)?)).transpose()?;
     let at_broker = arguments.broker.is_some() || demo.is_some();
     let settings = Settings {
-        // Bases end at nodes, which may be far.
         width: within("--width", arguments.width, 0.001, 10.0)?.max(if at_broker { AT_BROKERS.0 } else { 0.0 }),
-        lookahead: if at_broker { AT_BROKERS.1 } else { within("--lookahead", arguments.lookahead, 0.1, 600.0)? },
+        lookahead: within("--lookahead", arguments.lookahead, 0.1, 600.0)?.max(if at_broker {
+            AT_BROKERS.1
+        } else {
+            0.0
+        }),
         silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
         ..Settings::default()
     };
     let log = log_of(&arguments)?;
     let (handle, inputs) = queue();
     let (mut supervisor, kept) = open(&arguments, settings, &handle, log)?;
+    if let Some(demo) = &demo {
+        supervisor.draw(demo.drawn().clone()).map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
+    }
     let ends = match &demo {
         Some(demo) => Some(bridge::start(&handle, &supervisor, demo.fleet(), log)?),
         None => {
@@ -71,9 +77,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
-/// they may be told as far as anybody may go \[s\].
-pub(in super::super) const AT_BROKERS: (f64, f64) = (0.3, 1e6);
+/// Least width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
+/// they say so less often \[s\].
+pub(in super::super) const AT_BROKERS: (f64, f64) = (0.3, 8.0);
 
 fn log_of(arguments: &Arguments) -> Result<Log, Stop> {
     let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;

@@ -60,8 +60,6 @@ pub struct Job {
     pub cancelled_at: f64,
     /// Since when the vehicle has lost it \[s\].
     pub lost: Option<f64>,
-    /// The node at which the path of an order before ends that the vehicle had lost on its way, and that this one goes on with.
-    pub joins: Option<usize>,
 }
 
 /// What is remembered of the manager's order.
@@ -71,8 +69,6 @@ struct Given {
     start: Start,
     version: String,
     cancel: Option<String>,
-    #[serde(default)]
-    joins: Option<usize>,
 }
 
 /// What is remembered of the vehicle's.
@@ -82,9 +78,9 @@ struct Base {
     sent: Option<Sent>,
 }
 
-/// The mission of a base, as the supervisor knows it.
-pub(super) fn mission(held: &Held) -> String {
-    format!("{}#{}", held.order_id, held.nodes.get(held.base).map_or(0, |node| node.sequence_id))
+/// The mission to a node, as the supervisor knows it.
+pub(super) fn mission(held: &Held, node: usize) -> String {
+    format!("{}#{}", held.order_id, held.nodes.get(node).map_or(0, |node| node.sequence_id))
 }
 
 impl Job {
@@ -104,16 +100,15 @@ impl Job {
             cancel: None,
             cancelled_at: f64::NEG_INFINITY,
             lost: None,
-            joins: None,
         }
     }
 
     /// What the journal has of it.
     pub(super) fn remembered(robot: &Robot) -> Option<Self> {
         let note = |key: &str| robot.notes.get(key).filter(|note| !note.is_null()).cloned();
-        let Given { held, start, version, cancel, joins } = serde_json::from_value(note("order")?).ok()?;
+        let Given { held, start, version, cancel } = serde_json::from_value(note("order")?).ok()?;
         let way = Way::new(start, &held).ok()?;
-        let mut job = Self { cancel, joins, ..Self::new(held, way, version) };
+        let mut job = Self { cancel, ..Self::new(held, way, version) };
         if let Some(Base { stops, sent }) = note("base").and_then(|note| serde_json::from_value(note).ok()) {
             (job.stops, job.sent) = (stops, sent);
         }
@@ -123,9 +118,8 @@ impl Job {
 
     /// What is to be remembered of the manager's order.
     pub(super) fn given(&self) -> Value {
-        let Self { held, way, version, cancel, joins, .. } = self;
-        let (held, version, cancel, joins) = (held.clone(), version.clone(), cancel.clone(), *joins);
-        let given = Given { held, start: way.start(), version, cancel, joins };
+        let Self { held, way, version, cancel, .. } = self;
+        let given = Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() };
         serde_json::to_value(given).unwrap_or_default()
     }
 
@@ -158,9 +152,9 @@ impl Job {
     /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node. It follows from the
     /// path that the supervisor has now: a mission can be admitted at any time.
     pub(super) fn offset(&self, robot: &Robot) -> f64 {
-        let end = if self.is_admitted(robot) { Some(self.planned(robot)) } else { self.joins };
-        // Until then the vehicle is where the path before ends, or on it.
-        end.and_then(|node| self.way.node(node)).unwrap_or(0.0) - robot.course.length()
+        // Until then the vehicle is where the path before ends.
+        let end = if self.is_admitted(robot) { self.way.node(self.planned(robot)).unwrap_or(0.0) } else { 0.0 };
+        end - robot.course.length()
     }
 
     /// Whether the vehicle has had it: an update is sent when the one before it was there, perhaps to another supervisor.
@@ -168,9 +162,15 @@ impl Job {
         self.acknowledged.is_some() || self.sent.is_some_and(|sent| sent.update > 0)
     }
 
-    /// The order of a vehicle that has lost this one where it is now, if it goes on with the rest of the way as far as that is admitted; none: it
-    /// goes elsewhere.
-    pub(super) fn rejoined(&self, robot: &Robot, mut held: Held, length: f64, version: String) -> Option<Self> {
+    /// The order of a vehicle that has lost this one where it is now, if it goes on with the rest of the way as far as that is admitted, and the
+    /// place of the node up to there; none: it goes elsewhere.
+    pub(super) fn rejoined(
+        &self,
+        robot: &Robot,
+        mut held: Held,
+        length: f64,
+        version: String,
+    ) -> Option<(Self, usize)> {
         /// The same node.
         const SAME: f64 = 1e-6;
         let place = |node: &Node| node.node_position.as_ref().map(|at| [at.x, at.y]);
@@ -196,7 +196,7 @@ impl Job {
         }
         let way =
             Way::new(start, &held).ok().filter(|way| follows && way.node(0).is_some_and(|begins| begins <= BEGINS))?;
-        Some(Self { joins: Some(joins), ..Self::new(held, way, version) })
+        Some((Self::new(held, way, version), joins))
     }
 
     /// Where the base of the vehicle ends, or may end.

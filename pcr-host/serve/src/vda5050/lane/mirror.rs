@@ -4,12 +4,37 @@ use super::super::ahead::{EdgeAhead, NodeAhead};
 use super::super::door::{self, Limits, Refusal};
 use super::super::header::Header;
 use super::super::messages::{Connection, Factsheet, Responses};
-use super::super::state::{Listed, State};
+use super::super::state::{EdgeState, Listed, NodeState, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
-use super::{Lane, Post, To};
+use super::{Job, Lane, Post, To};
 use pcr_formats::import::{self, Options, Warnings};
 use serde_json::Value;
+
+/// What is ahead of an order from a node on, written: most states of a vehicle are between the same two nodes.
+#[derive(Clone, Debug)]
+pub(super) struct Ahead {
+    order: String,
+    update: u64,
+    node: usize,
+    has_base: bool,
+    nodes: Listed<NodeState>,
+    edges: Listed<EdgeState>,
+}
+
+impl Ahead {
+    fn of(job: &Job, node: usize) -> Self {
+        let nodes: Vec<NodeAhead<'_>> = job.held.nodes.iter().skip(node + 1).map(NodeAhead::from).collect();
+        let edges: Vec<EdgeAhead<'_>> = job.held.edges.iter().skip(node).map(EdgeAhead::from).collect();
+        let has_base = nodes.iter().any(|node| node.released);
+        let (order, update) = (job.held.order_id.clone(), job.held.update_id);
+        Self { order, update, node, has_base, nodes: Listed::written(&nodes), edges: Listed::written(&edges) }
+    }
+
+    fn is_of(&self, job: &Job, node: usize) -> bool {
+        self.node == node && self.update == job.held.update_id && self.order == job.held.order_id
+    }
+}
 
 impl Lane {
     /// Tells the manager the newest state.
@@ -104,7 +129,7 @@ impl Lane {
         self.misfit.clone().map_or(Ok(()), |why| Err(Refusal::new("physicalParameters", why)))
     }
 
-    fn translated(&self, mut state: State) -> State {
+    fn translated(&mut self, mut state: State) -> State {
         state.errors.extend(self.errors.iter().cloned());
         let Some(job) = self.job.as_ref().filter(|job| job.held.order_id == state.order_id) else { return state };
         let Some(stop) = job.stop(state.last_node_sequence_id).and_then(|place| job.stops.get(place)) else {
@@ -127,13 +152,14 @@ impl Lane {
             return state;
         }
         let waits = state.node_states.iter().any(|node| node.released);
-        let nodes: Vec<NodeAhead<'_>> = job.held.nodes.iter().skip(stop.node + 1).map(NodeAhead::from).collect();
-        let edges: Vec<EdgeAhead<'_>> = job.held.edges.iter().skip(stop.node).map(EdgeAhead::from).collect();
+        if self.ahead.as_ref().is_none_or(|ahead| !ahead.is_of(job, stop.node)) {
+            self.ahead = Some(Ahead::of(job, stop.node));
+        }
+        let Some(ahead) = &self.ahead else { return state };
+        (state.node_states, state.edge_states) = (ahead.nodes.clone(), ahead.edges.clone());
         // Whether more base is needed depends on what the manager has released, not on what the vehicle has of that.
-        let has_base = nodes.iter().any(|node| node.released);
-        (state.node_states, state.edge_states) = (Listed::written(&nodes), Listed::written(&edges));
         if let Some(request) = &mut state.new_base_request {
-            *request &= waits || !has_base;
+            *request &= waits || !ahead.has_base;
         }
         state
     }

@@ -150,7 +150,7 @@ impl Lane {
             let [length, _] = self.on_its_way(lost, robot, state.position()?)?;
             lost.rejoined(robot, held, length, version.text().into())
         });
-        let Some(mut job) = rejoined else {
+        let Some((mut job, joins)) = rejoined else {
             let state = self.state.clone();
             state.iter().for_each(|state| self.reseat(supervisor, state));
             return match self.job {
@@ -160,8 +160,12 @@ impl Lane {
                 }
             };
         };
-        let from = job.joins;
-        self.ask(supervisor, &mut job, from, now)?;
+        let known = mission(&job.held, joins);
+        supervisor.adopt(&self.name, known).map_err(|fault| Rejected::new(Error::Order, "orderId", fault))?;
+        job.asked = joins;
+        if job.held.base > joins {
+            self.ask(supervisor, &mut job, Some(joins), now)?;
+        }
         self.note(supervisor, "order", job.given());
         self.note(supervisor, "base", job.base());
         (self.job, self.astray) = (Some(job), None);
@@ -180,7 +184,7 @@ impl Lane {
         let Taken::After(after) = job.held.update(order)? else { return Ok(false) };
         job.way.extend(&job.held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
         let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
-        let from = if job.is_admitted(robot) { Some(job.planned(robot)) } else { job.joins };
+        let from = job.is_admitted(robot).then(|| job.planned(robot));
         if job.held.base > job.asked {
             self.ask(supervisor, &mut job, from, now)?;
         }
@@ -193,8 +197,13 @@ impl Lane {
     /// Asks the supervisor for the way from a node, or from where the vehicle stands, to the end of the base.
     fn ask(&self, supervisor: &mut Supervisor, job: &mut Job, from: Option<usize>, now: f64) -> Result<(), Rejected> {
         let path = job.way.shapes(from, job.held.base).to_vec();
-        let proposal =
-            Proposal { robot: self.name.clone(), mission: mission(&job.held), after: None, start: None, path };
+        let proposal = Proposal {
+            robot: self.name.clone(),
+            mission: mission(&job.held, job.held.base),
+            after: None,
+            start: None,
+            path,
+        };
         let verdict = supervisor.mission(&proposal, now);
         if verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))? == Verdict::Past {
             // An old message that comes late: nothing would ever come of it.

@@ -48,6 +48,10 @@ impl Lane {
             return;
         }
         let next = job.next(robot, allowed, self.profile.split);
+        let stop = job.stop_after(robot, next.last().copied(), self.profile.split);
+        if let Some(stop) = stop.filter(|stop| *stop != robot.next) {
+            let _ = supervisor.stops_at(&self.name, stop);
+        }
         if next.is_empty() && !job.changed {
             return;
         }
@@ -127,6 +131,14 @@ impl Job {
             push(&mut stops, hold, reached, true);
         }
         stops
+    }
+
+    /// Where on the supervisor's path the vehicle can stop next after a stop, if it can do so at a node only \[m\].
+    fn stop_after(&self, robot: &Robot, stop: Option<Stop>, split: bool) -> Option<f64> {
+        let node = stop.unwrap_or(self.last()).node;
+        let is_free = split && self.can_split(node);
+        let next = self.way.node(node + 1).filter(|_| !is_free && node < self.planned(robot))?;
+        Some(next - self.offset(robot))
     }
 
     /// Writes nodes and edges from a stop on: released up to the last one, then the horizon.
