@@ -371,8 +371,8 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
         }
     }
 
-    /// Inverse of λ: last time since the start at which `length` \[m\] is not exceeded, after any wait there. O(log
-    /// phases).
+    /// Inverse of λ: last time since the start at which `length` \[m\] is not exceeded, after any wait there.
+    /// O(log phases).
     #[cfg_attr(feature = "std", inline(always))]
     pub fn last_time_at(self, length: S) -> S {
         let index = self.phases.partition_point(|phase| phase.length.lo <= length);
