@@ -1,4 +1,5 @@
-//! A server that owns its robots: each gets missions, one after the other, and its regions alone are computed anew.
+//! A server that owns its robots. Each robot gets one mission after the other, and only its own regions are computed
+//! again.
 //!
 //! ```text
 //! cargo run -p pcr-core --features std --example fleet_server
@@ -8,8 +9,8 @@ use pcr_core::{Ecm, Full, Invalid, Limits, Motion, Path, Piece, Point, Pose, Pro
 use pcr_core::{earliest_start, first_overlap};
 use std::error::Error;
 
-/// What is kept of a robot. A [`Motion`] borrows its path and its profile, so it is made when it is needed: that costs a pass over
-/// the segments.
+/// The data of a robot. A [`Motion`] borrows its path and its profile, so it is made when it is needed; that costs a
+/// pass over the segments.
 struct Robot {
     path: Path<f64, 16>,
     profile: Profile<f64, 8>,
@@ -20,19 +21,19 @@ const LIMITS: Limits<f64> = Limits { speed: 1.0, acceleration: 0.5 };
 const RADIUS: f64 = 0.4;
 
 impl Robot {
-    /// From rest to rest along a path, from a time on \[s\].
+    /// A robot that drives from rest to rest along a path, starting at a time \[s\].
     fn new(path: Path<f64, 16>, start: f64) -> Result<Self, Invalid> {
         let profile = Profile::rest_to_rest(path.as_path().length(), LIMITS)?;
         Ok(Self { path, profile: Profile::copied(profile.as_profile())?, start })
     }
 
     fn motion(&self) -> Result<Motion<'_, f64>, Invalid> {
-        // Larger by the rounding of a check, so that robots that are planned to touch are apart.
+        // The disc is larger by the tolerance of a check, so that robots that touch in the plan do not touch in fact.
         Motion::new(self.path.as_path(), self.profile.as_profile(), RADIUS, self.start)?.for_plan()
     }
 }
 
-/// The robots and the table of their regions: always those of one another.
+/// The robots and the table of their regions; both are always changed together.
 struct Server {
     robots: Vec<Robot>,
     table: Ecm<f64, Vec<Region>, Vec<Piece<f64>>>,
@@ -42,7 +43,7 @@ fn motions(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, Invalid> {
     robots.iter().map(Robot::motion).collect()
 }
 
-/// Tries again with more room until there is enough of it.
+/// Repeats a call, with more room each time, until the result fits.
 fn with_room<T>(
     table: &mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>,
     mut act: impl FnMut(&mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>) -> Result<T, Unchanged>,
@@ -72,7 +73,8 @@ impl Server {
         added.map(|()| number)
     }
 
-    /// Another path for a robot, as late as the others make it; `None` if there is no start late enough. Returns its delay \[s\].
+    /// Gives a robot another path and the least start delay that the other robots allow; `None` if no start is late
+    /// enough. Returns the delay \[s\].
     fn send(&mut self, number: usize, mut mission: Robot) -> Result<Option<f64>, Box<dyn Error>> {
         let mut fleet = motions(&self.robots)?;
         let before = fleet[number];
@@ -80,11 +82,11 @@ impl Server {
         with_room(&mut self.table, |table| table.replace(&mut fleet, number, motion))?;
         let delay = earliest_start(self.table.row(&fleet, number)?, 0.0);
         let Some(delay) = delay else {
-            // As it was.
+            // Restores the old mission.
             with_room(&mut self.table, |table| table.replace(&mut fleet, number, before))?;
             return Ok(None);
         };
-        // A start shifts nothing in the table. Never trust a plan unseen.
+        // A delay does not change the table. The plan is checked before it is used.
         let late = motion.delayed(delay)?;
         let whole = pcr_core::Interval::new(0.0, Motion::span(&fleet).hi + delay);
         assert!(first_overlap(&late, self.table.row(&fleet, number)?, whole).is_none());

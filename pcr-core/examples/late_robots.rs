@@ -1,4 +1,4 @@
-//! Two robots that are late at random, and never touch: each goes only as far as its hold allows.
+//! Two robots that are late at random and never touch: each goes only as far as its hold allows.
 //!
 //! ```text
 //! cargo run -p pcr-core --features std --example late_robots
@@ -7,7 +7,7 @@
 use pcr_core::{Brakes, Hold, Interval, Limits, Motion, Order, Orders, Path, Piece, Point, Pose, Profile, Progress};
 use pcr_core::{Radians, Reach, Region, Tolerances};
 
-/// Seconds between two looks at where the others are.
+/// Seconds between two control steps, in which robots report where they are.
 const STEP: f64 = 0.1;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -18,11 +18,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
     let motion = |path, start| Motion::new(path, profile.as_profile(), 0.25, start);
-    // A plan without conflicts, as by `plan_delays`: its orders count, its times do not.
+    // A plan without conflicts, as from `plan_delays`. Its orders are used, its times are not.
     let fleet = [motion(paths[0].as_path(), 0.0)?, motion(paths[1].as_path(), 2.0)?];
     let mut orders = Orders::build([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 4], &fleet)?;
     orders.as_planned(&fleet)?;
-    // Whoever is late: all arrive.
+    // Whatever the delays, all robots arrive.
     let start = [Progress::at_rest(0.0); 2];
     orders.check(&fleet, &start, Tolerances { width: 0.01, gain: 0.001 }, &mut [Reach::EMPTY; 2])?;
 
@@ -40,9 +40,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 Hold::At(length) => length.min(end),
                 Hold::Inside => at[robot],
             };
-            // Robot 0 is held up by somebody for 20 seconds.
+            // Something holds up robot 0 for 20 seconds.
             let held_up = robot == 0 && (10..210).contains(&step);
-            // No faster than it can brake before its hold from where it will be next.
+            // The speed must allow it to stop before its hold from the place where it will be in the next step.
             let allowed = brakes.speed((hold - at[robot] - 1.0 * STEP * STEP).max(0.0));
             speed[robot] = if held_up { 0.0 } else { (speed[robot] + STEP).min(1.0).min(allowed) };
             at[robot] = (at[robot] + speed[robot] * STEP).min(hold);

@@ -1,18 +1,19 @@
-//! Rows of bits: which of a few neighbours have something in common. Tests whose outcome is as good as random to a processor
-//! are written as bits first, without a branch, and looked at then. And a checksum of numbers by their bits.
+//! Rows of bits, one for each of a few neighbours. Tests whose outcome a processor cannot predict are first collected
+//! as bits, without a branch, and then evaluated. Also a checksum of numbers.
 
-/// A row of flags as bits, the first one the lowest.
+/// Packs flags into bits; the first flag becomes the lowest bit.
 pub(crate) fn row(flags: impl DoubleEndedIterator<Item = bool>) -> u32 {
     flags.rev().fold(0, |row, flag| row << 1 | u32::from(flag))
 }
 
-/// A checksum with one more number in it: a product with an odd constant carries a change upward, the shift down again.
+/// Adds a number to a checksum: multiplying by an odd constant spreads a change to higher bits, the shift spreads it to
+/// lower bits.
 pub(crate) fn digest(sum: u32, number: u32) -> u32 {
     let product = (sum.rotate_left(5) ^ number).wrapping_mul(0x9E37_79B9);
     product ^ (product >> 15)
 }
 
-/// The places of the ones in a row, the lowest first.
+/// Indices of the bits that are set, the lowest first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ones(pub(crate) u32);
 
@@ -26,12 +27,12 @@ impl Iterator for Ones {
     }
 }
 
-/// The runs of a row, each as the bits of it alone, the lowest first.
+/// The runs of consecutive set bits, each as a word with only its bits, the lowest first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Runs(pub(crate) u32);
 
 impl Runs {
-    /// The row without its lowest run: adding the lowest bit carries that away.
+    /// The row without its lowest run: adding the lowest set bit carries through the run.
     pub(crate) fn rest(self) -> u32 {
         self.0 & self.0.wrapping_add(self.0 & self.0.wrapping_neg())
     }

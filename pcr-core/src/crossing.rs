@@ -1,7 +1,7 @@
 //! Crossings of two paths, and the paper's descriptor of the region at each (Tables III, IV and VII).
 //!
-//! The regions themselves do not need crossings: paths that only come near each other collide as well (paper
-//! Fig. 14a). The descriptor is for those who want to print, compare or transmit what the paper prints.
+//! Regions do not depend on crossings: paths that come close to each other without crossing have regions, too (paper,
+//! Fig. 14a). The descriptor is for programs that print, compare or transmit the quantities of the paper.
 
 use crate::geometry::Direction;
 use crate::motion::Motion;
@@ -13,8 +13,8 @@ use crate::region::PieceType;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
-/// An intersection of the paths of an ordered pair of agents, with the parameters of its collision region:
-/// `CR(T, L, r̂, v, θ, ς_ego, ς_other, dir)` in Table VII.
+/// An intersection of the paths of an ordered pair of agents, and the parameters of the collision region there:
+/// `CR(T, L, r̂, v, θ, ς_ego, ς_other, dir)` of Table VII.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -28,9 +28,9 @@ use crate::segment::{Curve, Segment};
 pub struct Crossing<S: Scalar> {
     /// Shapes of the segments that cross.
     pub piece_type: PieceType,
-    /// Places of the segments in the ego's and in the other's path.
+    /// Indices of the segments in the ego's path and in the other's.
     pub segments: [usize; 2],
-    /// T: when the other agent passes, for the first time \[s\].
+    /// T: the first time at which the other agent passes the crossing \[s\].
     pub time: S,
     /// L: length along the ego's path \[m\].
     pub length: S,
@@ -40,23 +40,23 @@ pub struct Crossing<S: Scalar> {
     pub combined_radius: S,
     /// v: speed of the other agent as it passes \[m/s\].
     pub speed: S,
-    /// θ: heading of the other less heading of the ego. Both accumulate along their paths; formats whose
-    /// angles do not hold more than one turn give it modulo one turn.
+    /// θ: heading of the other agent minus heading of the ego. Both headings accumulate along their paths; formats
+    /// whose angles hold at most one turn give θ modulo one turn.
     pub theta: S::Angle,
-    /// Shape of the ego's segment, with ς and dir of an arc.
+    /// Shape of the ego's segment; an arc has ς and dir.
     pub ego_curve: Curve<S>,
-    /// Shape of the other's segment, with ς and dir of an arc.
+    /// Shape of the other's segment; an arc has ς and dir.
     pub other_curve: Curve<S>,
 }
 
-/// The crossings of two paths, in the order of the other's segments. Each end of a segment belongs to one of
-/// its neighbours, so that a crossing at a joint counts once. Where paths touch, or run on one another, they do not
+/// The crossings of two paths, in the order of the other's segments. Each end of a segment belongs to only one of the
+/// two segments that meet there, so that a crossing at a joint counts once. Paths that only touch or overlap do not
 /// cross: the angle has to move the paths apart by more than four slacks over the length of a combined radius.
 ///
-/// Where paths cross at an angle whose sine is 1/4 or more, a crossing at a joint counts once; below, rounding may make it two or
-/// none (`docs/errors.md`).
+/// A crossing at a joint counts once if the sine of the angle between the paths is 1/4 or more; below that, rounding
+/// may count it twice or not at all (`docs/errors.md`).
 ///
-/// Cost: a box test a pair of segments; a square root and a few arctangents where they overlap.
+/// Cost: a box test for each pair of segments; a square root and a few arctangents if the boxes overlap.
 pub fn crossings<'a, S: Scalar>(
     ego: &'a Motion<'a, S>,
     other: &'a Motion<'a, S>,
@@ -70,20 +70,21 @@ pub fn crossings<'a, S: Scalar>(
             let mut roots = Lengths::new(S::ZERO);
             Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, &mut roots);
             let [a, b] = [0, 1].map(|place| roots.as_slice().get(place).copied());
-            // Two equal roots are one crossing.
+            // A double root is one crossing.
             let roots = a.into_iter().chain(b.filter(|_| a != b));
             roots.filter_map(move |s| Crossing::at(ego, other, [i, j], own, their, s))
         })
     })
 }
 
-/// The segments of a path with their places. `enumerate` would check its counter for overflow.
+/// The segments of a path with their indices. `enumerate` would check its counter for overflow.
 fn numbered<'a, S: Scalar>(motion: &'a Motion<'_, S>) -> impl Iterator<Item = (usize, &'a Segment<S>)> {
     let segments = motion.path().segments();
     (0..segments.len()).zip(segments)
 }
 
-/// How far rounding may move a crossing along a segment: what distances are off by the sine of the angle, down to 1/4.
+/// How far rounding may move a crossing along a segment: the error of a distance divided by the sine of the angle,
+/// taken as 1/4 at least.
 fn margin<S: Scalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> S {
     Pair::new(ego, other).slack.double().double()
 }
@@ -155,7 +156,7 @@ mod tests {
         }
     }
 
-    /// Two arcs that meet at the origin in this heading, after 1.7 m.
+    /// Two arcs that meet at the origin with this heading, after 1.7 m.
     fn arcs(heading: f64, turn: Turn) -> Path<f64, 2> {
         let side = if turn == Turn::Left { 1.0 } else { -1.0 };
         let begin = heading - side * 1.7 / 2.0;

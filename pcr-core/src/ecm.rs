@@ -1,4 +1,4 @@
-//! The extended collision map: all collision regions of a fleet, both directions of every pair.
+//! The extended collision map: the table of all collision regions of a fleet, for both directions of every pair.
 
 mod fill;
 #[cfg(feature = "std")]
@@ -13,23 +13,23 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use known::Known;
 
-/// Entry of the table: a region of an unordered pair of agents. 8 bytes.
+/// An entry of the table [`Ecm`]: one region of an unordered pair of agents. 8 bytes.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Region {
     /// The pair, lower index first.
     agents: [u16; 2],
-    /// First of its pieces.
+    /// Index of the first piece of the region.
     head: u32,
 }
 
 const _: () = assert!(size_of::<Region>() == 8, "the documented size of an entry");
 
 impl Region {
-    /// A free entry, to fill a storage with.
+    /// An unused entry, to fill the storage of a table with.
     pub const EMPTY: Self = Self { agents: [0; 2], head: NONE };
 
-    // Called for each region of a table that is searched.
+    // Called for every region of the table in a search.
     #[inline]
     fn agents(self) -> [usize; 2] {
         self.agents.map(usize::from)
@@ -42,18 +42,19 @@ impl Default for Region {
     }
 }
 
-/// Fixed-capacity table of the collision regions of a fleet: the paper's extended collision map (Section 3.1), in
-/// which every agent, the one of the highest priority included, finds its regions with every other.
+/// Table of the collision regions of a fleet, of fixed capacity: the paper's extended collision map (Section 3.1). It
+/// has the regions of every agent with every other one, also those of the agent with the highest priority.
 ///
-/// The storage is the caller's: arrays (`[Region; R]`, `[Piece<S>; P]`), mutable slices or, on a host, vectors.
-/// A region is stored once for both directions of a pair, in coordination space; its times follow from the
-/// motions when they are asked for. Hence a later start of an agent changes nothing in the table: shift its
-/// [`Motion`] and go on.
+/// The caller provides the storage: arrays (`[Region; R]`, `[Piece<S>; P]`), mutable slices or, on a host, vectors. A
+/// region is stored once for both directions of a pair, in coordination space; its times are computed from the motions
+/// at each query. Hence the table does not change when an agent starts later: pass its delayed [`Motion`] to the next
+/// query.
 ///
-/// The fleet itself is handed to each method, always the same one: another one is refused, by a checksum of the number of
-/// agents, their paths and radii. Start times, profiles, margins and lateness may change. [`Ecm::replace`] exchanges one agent,
-/// [`Ecm::insert`] and [`Ecm::remove`] are for fleets that grow or shrink at their end. On a host, with the feature `std`, a table
-/// over vectors makes room for itself: `Ecm::grown`.
+/// Every method takes the fleet as an argument and refuses a fleet other than that of the table. It compares a checksum
+/// of the number of agents, their paths and their radii; start times, profiles, margins and lateness may change.
+/// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
+/// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:
+/// see `Ecm::grown`.
 ///
 /// ```
 /// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
@@ -75,12 +76,12 @@ impl Default for Region {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Ecm<S, R, P> {
-    /// Sorted by the pair; regions of one pair in the order of their first pieces along the second path.
+    /// Sorted by pair; regions of the same pair are in the order of their first pieces along the second path.
     regions: R,
     len: usize,
     pieces: Pieces<S, P>,
     fleet: Known,
-    /// The agent whose regions these are, if they are those of one.
+    /// The agent of a table that holds one row only ([`Ecm::fill_row`]).
     only: Option<usize>,
 }
 
@@ -92,23 +93,23 @@ impl<S: Scalar, R, P> defmt::Format for Ecm<S, R, P> {
 }
 
 impl<S: Scalar, R, P> Ecm<S, R, P> {
-    /// The table of a fleet without agents.
+    /// An empty table, for a fleet without agents.
     pub const fn new(regions: R, pieces: P) -> Self {
         Self { regions, len: 0, pieces: Pieces::new(pieces), fleet: Known::NOBODY, only: None }
     }
 
-    /// Forgets all regions and all agents.
+    /// Removes all regions; the table is then that of a fleet without agents.
     pub fn clear(&mut self) {
         self.pieces.clear();
         (self.len, self.fleet, self.only) = (0, Known::NOBODY, None);
     }
 
-    /// Number of regions stored; each counts for both directions of its pair.
+    /// Number of regions stored; each one serves both directions of its pair.
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are no regions.
+    /// Whether the table has no regions.
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -120,7 +121,7 @@ impl<S: Scalar, R, P> Ecm<S, R, P> {
 }
 
 impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
-    /// The regions of all ordered pairs, by the ego, then by the other agent. O(agents × regions).
+    /// The regions of all ordered pairs, sorted by the ego, then by the other agent. O(agents × regions).
     ///
     /// # Errors
     /// [`Mismatch::OtherFleet`], [`Mismatch::OnlyRow`].
@@ -132,10 +133,10 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         Ok((0..fleet.len()).flat_map(move |ego| self.of(fleet, ego)))
     }
 
-    /// The regions that an agent has to keep out of, by the other agent. O(agents + regions).
+    /// The regions of one agent, which it has to keep out of, sorted by the other agent. O(agents + regions).
     ///
     /// # Errors
-    /// [`Mismatch`]: none is an answer.
+    /// [`Mismatch`]. If there is no error, an empty iterator means that the agent has no regions.
     pub fn row<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
@@ -145,7 +146,7 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         Ok(self.of(fleet, ego))
     }
 
-    /// The regions that an agent has with another one. O(agents + log regions).
+    /// The regions of the agent `ego` with the agent `other`. O(agents + log regions).
     ///
     /// # Errors
     /// As [`Ecm::row`].
@@ -162,18 +163,19 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         Ok(entries.filter_map(move |region| self.view(fleet, region, ego)))
     }
 
-    /// Whether this is the table of the fleet.
+    /// Checks that this is the table of the fleet.
     fn check(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
         if self.fleet == Known::all(fleet) { Ok(()) } else { Err(Mismatch::OtherFleet) }
     }
 
-    /// Whether the table tells of all agents of the fleet.
+    /// Checks that the table holds the regions of all agents of the fleet.
     pub(crate) fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
         self.check(fleet)?;
         self.only.map_or(Ok(()), |only| Err(Mismatch::OnlyRow(only)))
     }
 
-    /// Whether the table tells of two agents of the fleet, or of all regions of one.
+    /// Checks that the table holds the regions of these two agents, or, if both are the same, all regions of that
+    /// agent.
     pub(crate) fn holds(&self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Mismatch> {
         self.check(fleet)?;
         if let Some(agent) = agents.into_iter().find(|&agent| agent >= fleet.len()) {
@@ -186,17 +188,17 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     }
 
     fn of<'a>(&'a self, fleet: &'a [Motion<'a, S>], ego: usize) -> impl Iterator<Item = RegionRef<'a, S>> + Clone {
-        // In the order of the entries, those of lower partners come first and in order, then those of higher ones.
+        // Entries are sorted by pair: partners with lower indices come first, in order, then those with higher ones.
         let entries = self.entries().iter().filter(move |region| region.agents().contains(&ego));
         entries.filter_map(move |region| self.view(fleet, region, ego))
     }
 
-    /// The agents of the region in a place of the table.
+    /// The agents of the region at this index of the table.
     pub(crate) fn agents_at(&self, place: usize) -> Option<[usize; 2]> {
         self.entries().get(place).map(|region| region.agents())
     }
 
-    /// The region in a place of the table, as one of its agents sees it.
+    /// The region at this index of the table, seen by one of its agents.
     pub(crate) fn at<'a>(&'a self, fleet: &'a [Motion<'a, S>], place: usize, ego: usize) -> Option<RegionRef<'a, S>> {
         self.view(fleet, self.entries().get(place)?, ego)
     }
@@ -218,43 +220,44 @@ where
     R: AsRef<[Region]> + AsMut<[Region]>,
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
 {
-    /// The table of a whole fleet of at most 65535 agents.
+    /// Computes the table of a whole fleet of at most 65535 agents.
     ///
-    /// Cost: a box test a pair of agents, and a few hundred operations a pair of segments that meet.
+    /// Cost: a box test for each pair of agents, and a few hundred operations for each pair of segments that meet.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small.
+    /// [`Full`] if the storage is too small.
     pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let mut ecm = Self::new(regions, pieces);
         ecm.fill(fleet).map(|()| ecm)
     }
 
-    /// Becomes the table of a whole fleet, as [`Ecm::build`], in the storage that it has.
+    /// Computes the table of a whole fleet, like [`Ecm::build`], in the existing storage.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    /// [`Full`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
     pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
         self.compute(fleet, |ecm| {
             (0..fleet.len()).try_for_each(|agent| ecm.add_pairs(fleet, agent, agent.saturating_add(1)..fleet.len()))
         })
     }
 
-    /// Becomes a table of the regions of one agent with all others only, in the storage that it has. It answers for that agent.
+    /// Computes the regions of one agent with all others, in the existing storage. The table can then be queried for
+    /// that agent only.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    /// [`Full`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
     pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
         self.compute(fleet, |ecm| ecm.add_row(fleet, agent))?;
         self.only = Some(agent);
         Ok(())
     }
 
-    /// Adds the regions of one agent with all others of the fleet, whose table this is but for that agent: the last one, of a
-    /// fleet that has grown, or one that was removed.
+    /// Adds the regions of one agent with all others of the fleet. The table must be that of the same fleet without
+    /// this agent: either the agent is new, at the end of the fleet, or it was taken out by [`Ecm::remove`].
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small, and [`Mismatch`], also for an agent that the table has already; the table is then
-    /// as it was.
+    /// [`Full`] if the storage is too small, and [`Mismatch`], also if the table has the agent already; the table is
+    /// then unchanged.
     pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
         let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
         let known = Known::all(fleet);
@@ -266,8 +269,8 @@ where
         Ok(())
     }
 
-    /// Removes one agent, with its regions. The table answers again when it is inserted again, or, after the last one, for a fleet
-    /// without it. O(agents + regions).
+    /// Removes the regions of one agent. Afterwards the table can be used again when the agent has been inserted again,
+    /// or, if it was the last one of the fleet, for the fleet without it. O(agents + regions).
     ///
     /// # Errors
     /// [`Mismatch`].
@@ -279,8 +282,8 @@ where
         Ok(())
     }
 
-    /// Removes one agent for good, with its regions: those behind it move up by one number, and the table is that of the fleet
-    /// without it. O(agents + regions).
+    /// Removes one agent for good, with its regions. The index of every agent behind it decreases by one, and the table
+    /// is then that of the fleet without the agent. O(agents + regions).
     ///
     /// # Errors
     /// As [`Ecm::remove`].
@@ -294,10 +297,11 @@ where
         Ok(())
     }
 
-    /// Exchanges the motion of one agent and computes its regions anew; those of the others are not touched.
+    /// Replaces the motion of one agent and computes its regions again; the regions between other agents are not
+    /// touched.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small, and [`Mismatch`]; the fleet and the table are then as they were.
+    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged.
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -314,7 +318,7 @@ where
         if outcome.is_err()
             && let Some(place) = fleet.get_mut(agent)
         {
-            // What was there fits: it is the same computation on the same motions.
+            // The old regions fit: they are computed again from the same motions.
             *place = before;
             self.add_row(fleet, agent)?;
         }

@@ -1,35 +1,35 @@
-//! What the constructors refuse, and why.
+//! The error types of the crate.
 
 use core::fmt;
 
-/// Why a path, a profile or a motion was refused. The string names the offending quantity.
+/// Why a path, a profile or a motion was refused. The string names the invalid quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Invalid {
-    /// It is NaN or infinite.
+    /// The quantity is NaN or infinite.
     NonFinite(&'static str),
-    /// It is below zero.
+    /// The quantity is below zero.
     Negative(&'static str),
-    /// It must be above zero.
+    /// The quantity must be above zero.
     NonPositive(&'static str),
-    /// Its magnitude is above [`Scalar::LIMIT`](crate::Scalar::LIMIT).
+    /// The magnitude of the quantity is above [`Scalar::LIMIT`](crate::Scalar::LIMIT).
     OutOfRange(&'static str),
-    /// It is below [`Scalar::LEAST`](crate::Scalar::LEAST).
+    /// The quantity is below [`Scalar::LEAST`](crate::Scalar::LEAST).
     TooSmall(&'static str),
-    /// An arc may sweep one full turn; split longer ones.
+    /// The arc sweeps more than one full turn. Split it into several arcs.
     SweepOverOneTurn,
-    /// It does not begin where its predecessor ends.
+    /// The segment or phase does not begin where its predecessor ends.
     Disconnected(&'static str),
-    /// The profile does not end where the path does: their lengths, rounded down \[mm\].
+    /// The profile is longer or shorter than the path. Lengths are rounded down \[mm\].
     LengthMismatch {
-        /// That of the path.
+        /// Length of the path \[mm\].
         path: u32,
-        /// What the profile travels.
+        /// Length that the profile travels \[mm\].
         profile: u32,
     },
-    /// The capacity is used up.
+    /// The fixed capacity is used up.
     Full(&'static str),
 }
 
@@ -58,25 +58,26 @@ impl fmt::Display for Invalid {
 
 impl core::error::Error for Invalid {}
 
-/// There is no room for what was to be stored. What was there is intact.
+/// There is not enough room for the result. What was stored before is intact, unless the function says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Full {
-    /// More pieces are needed.
+    /// The table needs more pieces.
     Pieces,
-    /// More regions are needed.
+    /// The table needs more regions.
     Regions,
-    /// These two agents have more than 32767 pieces with each other; no storage is large enough.
+    /// These two agents have more than 32767 pieces with each other; more storage does not help.
     Pair([usize; 2]),
     /// The fleet has more than 65535 agents.
     Agents,
-    /// Each agent of a [`BroadPhase`](crate::BroadPhase) needs two boxes at least.
+    /// A [`BroadPhase`](crate::BroadPhase) needs at least two boxes for each agent.
     Boxes,
-    /// Each region of [`Orders`](crate::Orders) needs an order; an agent that is admitted needs as many more as it has regions.
+    /// [`Orders`](crate::Orders) needs one order for each region, and, to admit an agent, as many more as that agent
+    /// has regions.
     Orders,
-    /// Each agent of a check of [`Orders`](crate::Orders) needs a [`Reach`](crate::Reach).
+    /// A check of [`Orders`](crate::Orders) needs one [`Reach`](crate::Reach) for each agent.
     Reaches,
 }
 
@@ -96,7 +97,7 @@ impl fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
-/// What was asked for does not go with the fleet, or the fleet not with its table.
+/// The arguments do not belong together: agent and fleet, or fleet and table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -104,11 +105,11 @@ impl core::error::Error for Full {}
 pub enum Mismatch {
     /// The fleet has no such agent.
     NoSuchAgent(usize),
-    /// The table was made of other agents: in number, paths, radii or order.
+    /// The table was computed for another fleet: the number of agents, their paths, radii or order differ.
     OtherFleet,
     /// The table holds the regions of this agent only ([`Ecm::fill_row`](crate::Ecm::fill_row)).
     OnlyRow(usize),
-    /// In this place of the table there is no region of the agent.
+    /// The agent has no region at this index of the table.
     NoSuchRegion(usize),
 }
 
@@ -125,14 +126,14 @@ impl fmt::Display for Mismatch {
 
 impl core::error::Error for Mismatch {}
 
-/// Why a table was not changed.
+/// Why a table could not be changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Unchanged {
-    /// There is no room.
+    /// There is not enough room.
     Full(Full),
-    /// It is not the table of the fleet, but for the agent.
+    /// The table is not that of the fleet without the agent.
     Mismatch(Mismatch),
 }
 
@@ -159,34 +160,35 @@ impl fmt::Display for Unchanged {
 
 impl core::error::Error for Unchanged {}
 
-/// `value` if it is finite and within the limits of its format.
+/// Returns `value` if it is finite and within the limits of its format.
 pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if !value.is_finite() {
         return Err(Invalid::NonFinite(what));
     }
-    // Not by its magnitude, which the least number of a fixed-point format does not have.
+    // Compared without `abs`, because the least number of a fixed-point format has no magnitude.
     if value > S::LIMIT || value < -S::LIMIT {
         return Err(Invalid::OutOfRange(what));
     }
     Ok(value)
 }
 
-/// NaN: it is neither above nor below anything. A query must not take that for "not in contact".
+/// Whether the value is NaN, which compares neither as above nor as below anything. A query must not answer "not in
+/// contact" for it.
 pub(crate) fn is_no_number<S: crate::Scalar>(value: S) -> bool {
     !(value <= S::ZERO || value > S::ZERO)
 }
 
-/// `value` if it is in range and not negative.
+/// Returns `value` if it is in range and not negative.
 pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }
 }
 
-/// The radius of a disc or an arc.
+/// Checks the radius of a disc or an arc.
 pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
     if positive(value, "radius")? < S::LEAST { Err(Invalid::TooSmall("radius")) } else { Ok(value) }
 }
 
-/// `value` if it is in range and above zero.
+/// Returns `value` if it is in range and above zero.
 pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
     if in_range(value, what)? > S::ZERO { Ok(value) } else { Err(Invalid::NonPositive(what)) }
 }

@@ -1,36 +1,36 @@
-//! A few things in a fixed room.
+//! A list of a few values, with a fixed capacity.
 //!
-//! Whether a root lies on its segment is as good as random to a processor: a thing is written first and counted then, so
-//! that no branch depends on it.
+//! A processor cannot predict whether a root lies on its segment. So a value is always written, and counted only if it
+//! is valid, which needs no branch.
 
-/// At most `N` things.
+/// A list of at most `N` values.
 pub(crate) struct Few<T, const N: usize> {
     places: [T; N],
     count: usize,
 }
 
 impl<T: Copy, const N: usize> Few<T, N> {
-    /// None yet; the room is filled with `anything`.
+    /// An empty list; its storage is filled with `anything`.
     pub(crate) fn new(anything: T) -> Self {
         Self { places: [anything; N], count: 0 }
     }
 
-    /// Adds a thing if it `counts`. There is room for all that count: whoever sets `N` has counted them.
+    /// Adds a value if it `counts`. `N` is chosen so that there is room for all values that count.
     pub(crate) fn add(&mut self, thing: T, counts: bool) {
         debug_assert!(!counts || self.count < N, "one more than {N}");
         if let Some(place) = self.places.get_mut(self.count) {
             *place = thing;
-            // There is a place at it: no overflow.
+            // The index was in range, so this does not overflow.
             self.count = self.count.wrapping_add(usize::from(counts));
         }
     }
 
-    /// Those that were added.
+    /// The values that were added.
     pub(crate) fn as_slice(&self) -> &[T] {
         self.places.get(..self.count).unwrap_or_default()
     }
 
-    /// Those that were added.
+    /// The values that were added.
     pub(crate) fn as_mut_slice(&mut self) -> &mut [T] {
         self.places.get_mut(..self.count).unwrap_or_default()
     }

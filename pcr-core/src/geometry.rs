@@ -1,4 +1,4 @@
-//! Points, directions, poses, intervals and boxes of the plane.
+//! Points, directions, poses, intervals and boxes in the plane.
 //!
 //! One sign convention for the whole library: `x` along the direction of travel, `y` to its left, angles and
 //! turns counter-clockwise positive.
@@ -6,14 +6,14 @@
 use crate::scalar::{Angle, Scalar, Unit};
 use core::ops::{Add, Sub};
 
-/// Point of the plane \[m\].
+/// A point in the plane \[m\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Point<S> {
-    /// Abscissa \[m\].
+    /// x-coordinate \[m\].
     pub x: S,
-    /// Ordinate \[m\].
+    /// y-coordinate \[m\].
     pub y: S,
 }
 
@@ -97,7 +97,7 @@ impl<S: Scalar> Direction<S> {
         Self { cos, sin: S::Unit::combine(self.sin, by.cos, self.cos, by.sin) }
     }
 
-    /// The direction after a turn that is so small that its square does not count.
+    /// The direction after a turn by an angle whose square is negligible.
     pub(crate) fn turned_by(self, angle: S::Angle) -> Self {
         let (sin, _) = angle.sin_cos();
         Self { cos: self.cos - self.sin.times(sin), sin: self.sin + self.cos.times(sin) }
@@ -137,7 +137,7 @@ pub struct Pose<S: Scalar> {
     pub heading: S::Angle,
 }
 
-/// Closed interval, `lo <= hi`.
+/// A closed interval, `lo <= hi`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -154,18 +154,18 @@ impl<S: Scalar> Interval<S> {
         Self { lo, hi }
     }
 
-    /// Whether `x` lies in it, ends included.
+    /// Whether `x` lies in the interval, ends included.
     pub fn contains(self, x: S) -> bool {
         self.lo <= x && x <= self.hi
     }
 
-    /// Whether the two have a point in common.
+    /// Whether two intervals have a point in common.
     pub fn meets(self, other: Self) -> bool {
-        // `&`: most tests of boxes end here, and one branch is better foreseen than two.
+        // `&` instead of `&&`: most box tests end here, and one branch is predicted better than two.
         (self.lo <= other.hi) & (other.lo <= self.hi)
     }
 
-    /// The smallest interval that holds both.
+    /// The smallest interval that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
@@ -175,12 +175,13 @@ impl<S: Scalar> Interval<S> {
         self.hi - self.lo
     }
 
-    /// The point halfway.
+    /// The midpoint.
     pub fn middle(self) -> S {
         self.lo + (self.hi - self.lo).half()
     }
 
-    /// The ends limited to what constructors accept, beyond which nobody moves, in order; one that is no number is without limit.
+    /// Both ends clamped to the range that constructors accept, in which all motions are; an end that is NaN becomes
+    /// unlimited.
     pub(crate) fn limited(self) -> Self {
         let end = |end: S, beyond: S| if -S::LIMIT <= end && end <= S::LIMIT { end } else { beyond };
         let (lo, hi) = (
@@ -191,12 +192,12 @@ impl<S: Scalar> Interval<S> {
         Self { lo: lo.min(hi), hi: hi.max(lo) }
     }
 
-    /// What it shares with one that it meets.
+    /// The intersection with an interval that meets this one.
     pub(crate) fn common(self, other: Self) -> Self {
         Self { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
     }
 
-    /// Both ends moved apart by `by`, but not out of `[lo, hi]` of `within`.
+    /// Moves both ends apart by `by`, but not out of `[lo, hi]` of `within`.
     #[cfg_attr(not(feature = "std"), inline(never))]
     pub(crate) fn widen(self, by: S, within: Self) -> Self {
         Self { lo: (self.lo - by).clamp(within.lo, within.hi), hi: (self.hi + by).clamp(within.lo, within.hi) }
@@ -208,9 +209,9 @@ impl<S: Scalar> Interval<S> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Bounds<S> {
-    /// Abscissas.
+    /// Range of x-coordinates.
     pub x: Interval<S>,
-    /// Ordinates.
+    /// Range of y-coordinates.
     pub y: Interval<S>,
 }
 
@@ -220,7 +221,7 @@ impl<S: Scalar> Bounds<S> {
         Self { x: Interval::new(a.x.min(b.x), a.x.max(b.x)), y: Interval::new(a.y.min(b.y), a.y.max(b.y)) }
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self { x: self.x.hull(other.x), y: self.y.hull(other.y) }
     }
@@ -230,7 +231,7 @@ impl<S: Scalar> Bounds<S> {
         Self { x: Interval::new(self.x.lo - by, self.x.hi + by), y: Interval::new(self.y.lo - by, self.y.hi + by) }
     }
 
-    /// Whether the two have a point in common.
+    /// Whether two boxes have a point in common.
     pub fn meets(self, other: Self) -> bool {
         self.x.meets(other.x) & self.y.meets(other.y)
     }

@@ -1,4 +1,4 @@
-//! Kernels that tests hold to their bounds, number by number: no part of the interface, and subject to change.
+//! Internal kernels, for tests of their error bounds. Not part of the interface, and subject to change.
 
 use crate::error::Full;
 use crate::geometry::{Interval, Point};
@@ -11,7 +11,7 @@ use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
-/// Tells `event` the events along the second segment, and `turn` the turning lengths of the first one \[m\].
+/// Calls `event` with the events along the second segment, and `turn` with the turning lengths of the first one \[m\].
 pub fn events<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
@@ -26,10 +26,10 @@ pub fn events<S: Scalar>(
     turning.as_slice().iter().copied().for_each(turn);
 }
 
-/// Tells `found` the pieces of two segments: from where to where they lie along the first and the second \[m\].
+/// Calls `found` with the pieces of two segments: their ranges along the first and the second one \[m\].
 ///
 /// # Errors
-/// [`Full`] for more than 16.
+/// [`Full`] for more than 16 pieces.
 pub fn pieces<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
@@ -46,7 +46,7 @@ pub fn pieces<S: Scalar>(
     Ok(())
 }
 
-/// Tells `found` the lengths of a segment at which P3 finds a contact from inside an arc \[m\].
+/// Calls `found` with the lengths of a segment at which P3 finds a contact from inside an arc \[m\].
 pub fn inward<S: Scalar>(other: &Segment<S>, segment: &Segment<S>, radius: S, found: impl FnMut(S)) {
     let mut lengths = Lengths::new(S::ZERO);
     let start = Footprint::of(other.start, segment);
@@ -55,7 +55,7 @@ pub fn inward<S: Scalar>(other: &Segment<S>, segment: &Segment<S>, radius: S, fo
     lengths.as_slice().iter().copied().for_each(found);
 }
 
-/// P1: the lateral distance of a point from a segment, and the ends of what is within the radius of it \[m\].
+/// P1: the lateral distance of a point from a segment, and the ends of the part within the radius of it \[m\].
 pub fn covered<S: Scalar>(point: Point<S>, segment: &Segment<S>, radius: S) -> (S, Option<[S; 2]>) {
     let footprint = Footprint::of(point, segment);
     let ends = match footprint.reach(segment, radius) {

@@ -1,10 +1,10 @@
-//! Sets of intervals that are computed when they are asked for, without storage.
+//! Unions and gaps of intervals, computed on demand and without storage.
 
 use crate::geometry::Interval;
 use crate::scalar::Scalar;
 
-/// The union of intervals in any order: disjoint intervals in increasing order. Cost: for each of them, the
-/// intervals once to find it and once more whenever it grows.
+/// The union of intervals, which may be in any order, as disjoint intervals in increasing order. Cost of each interval
+/// of the union: one pass over the intervals to find it, and one more each time that it grows.
 ///
 /// ```
 /// use pcr_core::{Interval, gaps, union};
@@ -17,8 +17,8 @@ pub fn union<S: Scalar, I: Iterator<Item = Interval<S>> + Clone>(intervals: I) -
     Union { intervals, after: None }
 }
 
-/// What disjoint intervals in increasing order leave of `within`. The ends of a gap are ends of its neighbours; gaps
-/// of length 0 are left out.
+/// The gaps between disjoint intervals, which are in increasing order, within the interval `within`. The ends of a gap
+/// are equal to ends of its neighbours; gaps of length 0 are left out.
 pub fn gaps<S: Scalar, I: Iterator<Item = Interval<S>>>(intervals: I, within: Interval<S>) -> Gaps<S, I> {
     Gaps { intervals, rest: Some(within) }
 }
@@ -65,7 +65,7 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
 #[derive(Clone, Debug)]
 pub struct Gaps<S, I> {
     intervals: I,
-    /// What has not been looked at yet.
+    /// The part that has not been examined yet.
     rest: Option<Interval<S>>,
 }
 

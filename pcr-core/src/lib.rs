@@ -1,27 +1,28 @@
-//! Exact collision regions of discs that move on lines and arcs: `no_std`, allocation-free, panic-free.
+//! Exact collision regions of discs that move on lines and arcs: `no_std`, no allocation, no panics.
 //!
-//! Agents are discs on given paths. For every ordered pair, the set of (time, travelled length) at which the two
-//! overlap is a union of *collision regions* with a boundary in closed form. This crate computes them without
-//! sampling, iteration or meshes: no speed assumption, every degenerate case included.
+//! Agents are discs that move along given paths. For every ordered pair of agents, the set of (time, travelled length)
+//! at which the two discs overlap is a union of *collision regions*, whose boundary has a closed form. This crate
+//! computes the regions from these closed forms: it does not sample, iterate or build meshes, it assumes nothing about
+//! speeds, and it handles every degenerate case.
 //!
-//! Data flows one way through the modules:
+//! The modules, in the order in which they depend on one another:
 //!
 //! ```text
-//! scalar     numbers: f32, f64, or your own format          Scalar, Wide, Unit, Angle
+//! scalar     number formats: f32, f64, or your own          Scalar, Wide, Unit, Angle
 //! geometry   points, directions, intervals, boxes           Point, Pose, Interval
-//! intervals  unions and gaps without storage                union, gaps
-//! segment    lines and arcs, placed in the plane            Segment, Curve, Turn
-//! path       chains of them, turns between (ρ of Eq. 1)     Path, PathRef
-//! profile    speed over time (λ of Eq. 1-3), and inverse    Profile, ProfileRef, Limits
-//! motion     disc + path + profile + start (Eq. 2)          Motion
+//! intervals  unions and gaps of intervals, without storage  union, gaps
+//! segment    lines and arcs placed in the plane             Segment, Curve, Turn
+//! path       chains of segments, turns in place (ρ, Eq. 1)  Path, PathRef
+//! profile    length over time (λ, Eq. 1-3) and its inverse  Profile, ProfileRef, Limits
+//! motion     disc + path + profile + start time (Eq. 2)     Motion
 //! pair       closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)
-//! pieces     their fixed-capacity store                     Piece
+//! pieces     storage of region pieces, fixed capacity       Piece
 //! region     connected regions in path-time space (t, l)    RegionRef
-//! ecm        all regions of a fleet                         Ecm
-//! overlaps   those of two agents alone                      overlaps
+//! ecm        table of all regions of a fleet                Ecm
+//! overlaps   regions of two agents, without a table         overlaps
 //! query      conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
-//! orders     who passes whom, kept whatever the delays     Orders, Hold
-//! plan       start delays and speeds by priorities          plan_delays, plan_speed, plan_speeds
+//! orders     passing orders, safe under any delays          Orders, Hold
+//! plan       start delays and speed plans by priority       plan_delays, plan_speed, plan_speeds
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
 //!
@@ -29,11 +30,11 @@
 //! counter-clockwise positive. Units: metres, seconds, radians.
 //!
 //! # Features
-//! - `libm` (default): `f32` and `f64`;
-//! - `std`: square roots by the standard library, and copies of what is called often, for which a host has room: the same bits in
-//!   less time;
-//! - `micromath`: `scalar::Micro`, `f32` on the refined approximations of that crate;
-//! - `defmt`, `serde`: their traits on the public data types.
+//! - `libm` (default): implements [`Scalar`] for `f32` and `f64`;
+//! - `std`: takes square roots from the standard library and inlines functions that are called often, for which a host
+//!   has enough memory; results have the same bits and take less time;
+//! - `micromath`: adds `scalar::Micro`, an `f32` that uses the approximations of the crate micromath and refines them;
+//! - `defmt`, `serde`: implement the traits of these crates for the public data types.
 #![no_std]
 
 pub mod scalar;

@@ -1,4 +1,4 @@
-//! An agent in motion: a disc, its path, and when it is where on it (Eq. 2, ρ ∘ λ).
+//! An agent in motion: a disc, its path, and its travelled length over time (Eq. 2, ρ ∘ λ).
 
 use crate::bits::digest;
 use crate::error::{self, Invalid, in_range, not_negative};
@@ -8,13 +8,14 @@ use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
 use crate::segment::Curve;
 
-/// Logarithm to the base 2 of the part of a path's length by which a profile may miss the end of the path: 2⁻²⁰, 1 mm in a kilometre.
-/// Profiles that people write with seven digits miss it by as much, and files are read with the same number. Where rounding may be more,
-/// [`Scalar::slack`] of the extent, a profile may miss it by that.
+/// The end of a profile may differ from the end of the path by this fraction of the path's length, given as its
+/// logarithm to the base 2: 2⁻²⁰, 1 mm in a kilometre. Profiles that people write with seven digits differ by as much.
+/// The fraction is the same for all number formats, so that they accept the same files. If [`Scalar::slack`] of the
+/// extent is larger than that, it is the limit.
 pub const LENGTH_TOLERANCE_LOG2: i32 = -20;
 
-/// A disc on a path with a speed profile. It stands at the start of the path before it sets off, and at the
-/// end of it after its arrival.
+/// A disc on a path with a speed profile. It stands at the start of the path before it sets off, and at the end of the
+/// path after its arrival.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion<'a, S: Scalar> {
@@ -34,12 +35,12 @@ pub struct Motion<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> Motion<'a, S> {
-    /// The motion of a disc of this radius \[m\] that sets off at the time `start` \[s\].
+    /// The motion of a disc with this radius \[m\] that sets off at the time `start` \[s\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius) and
-    /// [`Invalid::LengthMismatch`] where the profile does not travel the length of the path, by more than [`LENGTH_TOLERANCE_LOG2`] or
-    /// rounding. What it misses counts: [`Motion::lag`] is larger by it, and so is ε, by twice as much
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius), and
+    /// [`Invalid::LengthMismatch`] if the lengths of profile and path differ by more than [`LENGTH_TOLERANCE_LOG2`] or
+    /// rounding allow. A smaller difference is added to [`Motion::lag`], and twice the difference to ε
     /// ([`excess`](crate::excess)).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
         error::radius(radius)?;
@@ -60,15 +61,15 @@ impl<'a, S: Scalar> Motion<'a, S> {
             });
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        // The agent is nowhere by more than that from where its profile says.
+        // The agent is nowhere further than this from the place that its profile gives.
         let lag = S::lag(top_speed, profile.duration()) + gap;
         let (margin, lateness) = (S::ZERO, S::ZERO);
         let digest = path.digest();
         Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed, digest })
     }
 
-    /// The same motion with a margin \[m\] to be kept around the disc: for errors of localization, for latency, for comfort.
-    /// It changes no region; those of [`Motion::inflated`] motions tell where margins overlap.
+    /// The same motion with a margin \[m\] around the disc, for localization errors, latency or comfort. Margins do not
+    /// change regions of contact; regions in which margins overlap are those of [`Motion::inflated`] motions.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for radius and margin together), [`Invalid::Negative`].
@@ -78,10 +79,10 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { margin, ..self })
     }
 
-    /// The same motion of an agent that may be late by up to so much \[s\]: at any time it is somewhere where by the motion it
-    /// has been during so long before. What is asked for plans takes it into account on both sides, of the ego and of
-    /// others: blocked windows and safe intervals, forbidden delays, durations and waits, speed plans. Regions, conflicts and
-    /// the closest approach are those of the motion as it is.
+    /// The same motion of an agent that may be late by up to `lateness` \[s\]: at any time it is at a place where the
+    /// motion has been at some time within the last `lateness` seconds. Queries for planning take this into account,
+    /// for the ego and for the others: blocked windows and safe intervals, forbidden delays, durations and waits, speed
+    /// plans. Regions, conflicts and the closest approach are still those of the motion itself.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
@@ -90,13 +91,13 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { lateness, ..self })
     }
 
-    /// By how much the agent may be late \[s\].
+    /// Largest lateness of the agent \[s\].
     pub fn lateness(&self) -> S {
         self.lateness
     }
 
-    /// The same motion of a disc that is larger by the margin, without a margin of its own: a table of such motions
-    /// holds the regions in which margins overlap, apart from those of contact.
+    /// The same motion of a disc that is larger by the margin, with a margin of 0. A table of such motions holds the
+    /// regions in which margins overlap; keep it beside the table of contacts.
     ///
     /// ```
     /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
@@ -136,7 +137,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { time: travel_time(self.profile, self.time.lo + delay)?, ..self })
     }
 
-    /// From the first start to the last arrival of a fleet \[s\]: the time in which anything changes. From 0 to 0 for nobody.
+    /// The interval from the first start to the last arrival of a fleet \[s\]; outside of it nothing moves. From 0 to 0
+    /// for an empty fleet.
     ///
     /// ```
     /// # use pcr_core::{Interval, Motion, Path, Point, Pose, Profile, Radians};
@@ -168,61 +170,62 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.radius
     }
 
-    /// Margin to be kept around the disc \[m\].
+    /// Margin around the disc \[m\].
     pub fn margin(&self) -> S {
         self.margin
     }
 
-    /// From setting off to arrival, that rounded up \[s\].
+    /// The interval from the start to the arrival \[s\]; the arrival is rounded up.
     pub fn time(&self) -> Interval<S> {
         self.time
     }
 
-    /// Box around the path \[m\], radius not included.
+    /// Box around the path \[m\], without the radius.
     pub fn bounds(&self) -> Bounds<S> {
         self.bounds
     }
 
-    /// A checksum of the path and the radius, on which regions depend, in this place of a fleet.
+    /// A checksum of all that the regions of this agent depend on: path, radius, and its index in the fleet.
     pub(crate) fn digest(&self, place: usize) -> u32 {
         digest(digest(self.digest, place as u32), self.radius.digest())
     }
 
-    /// Box around all that the disc sweeps, twice what rounding may do to a distance included \[m\]: agents whose boxes do
-    /// not meet have no region.
+    /// Box around the area that the disc sweeps, expanded by twice the rounding error of a distance \[m\]. Agents whose
+    /// boxes do not meet have no region.
     pub(crate) fn swept(&self) -> Bounds<S> {
         let slack = S::slack(self.extent) + self.drift + self.lag;
         self.bounds.expanded(self.radius + slack.double())
     }
 
-    /// Largest coordinate or length that belongs to the motion, plus the diameter of the disc \[m\]: what errors grow with.
+    /// Largest coordinate or length of the motion, plus the diameter of the disc \[m\]. Rounding errors grow with it.
     pub fn extent(&self) -> S {
         self.extent
     }
 
-    /// How far rounding, arc by arc, may have taken the path from where it should be \[m\].
+    /// Largest distance of the path from its exact place because of rounding, which accumulates arc by arc \[m\].
     pub(crate) fn drift(&self) -> S {
         self.drift
     }
 
-    /// How far the agent is from where it should be at a time, for the rounding of times, and for what the profile's length
-    /// differs from the path's \[m\].
+    /// Largest distance of the agent from its exact place at a time \[m\], because of the rounding of times and the
+    /// difference between the lengths of profile and path.
     pub fn lag(&self) -> S {
         self.lag
     }
 
-    /// How far the agent may be from both ends of a segment that it passes at one time: a quarter of the way at its top speed
-    /// in what a time may be off. Nothing in a format of relative precision, whose times `reach` is for \[m\].
+    /// Largest distance of the agent from both ends of a segment that it passes at a single time \[m\]: a quarter of
+    /// the distance that it goes at top speed in the rounding error of a time. 0 in a format of relative precision,
+    /// where `reach` covers the error of times.
     pub(crate) fn leap(&self) -> S {
         self.top_speed.times(S::slack(S::ZERO)).narrow().half().half()
     }
 
-    /// How far the agent goes at its top speed in a time that holds all of its motion and the time 0 \[m\].
+    /// Distance that the agent goes at its top speed during a time that contains its motion and the time 0 \[m\].
     pub(crate) fn reach(&self) -> S {
         self.top_speed.times(self.latest()).narrow()
     }
 
-    /// λ: length travelled at a time \[m\], limited to the length of the path.
+    /// λ: length travelled at a time \[m\], clamped to the length of the path.
     #[cfg_attr(feature = "std", inline(always))]
     pub fn length_at(&self, time: S) -> S {
         let end = self.path.length();
@@ -240,8 +243,9 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.path.point_at(self.length_at(time))
     }
 
-    /// When the travelled length lies in `length` \[s\]: rounded outward by [`Motion::time_excess`] at most and, where the agent all
-    /// but stands, by the time that it needs for what its lengths are off, but not beyond [`Motion::time`].
+    /// The times \[s\] at which the travelled length is in the interval `length`. They are rounded outward by at most
+    /// [`Motion::time_excess`], plus, where the agent almost stands, the time that it needs for the rounding error of
+    /// its lengths; but not beyond [`Motion::time`].
     pub fn time_in(&self, length: Interval<S>) -> Interval<S> {
         let Interval { lo: start, hi: arrival } = self.time;
         let lo = if length.lo > S::ZERO { start + self.profile.first_time_at(length.lo) } else { start };
@@ -249,12 +253,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Interval::new(lo, hi).widen(self.time_slack(), self.time)
     }
 
-    /// By how much a time of [`Motion::time_in`] is further out than the exact one of the lengths that it has, at most \[s\].
+    /// Largest excess of a time of [`Motion::time_in`] over the exact time of the lengths of the motion \[s\].
     pub fn time_excess(&self) -> S {
         self.time_slack().double()
     }
 
-    /// What the sum of the start time and a time since then may be off.
+    /// Bound on the rounding error of the sum of the start time and the time since the start.
     fn time_slack(&self) -> S {
         let rounding = S::rounding(self.latest());
         rounding.double() + rounding
@@ -266,7 +270,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 }
 
-/// From setting off to arrival, that rounded up.
+/// The interval from the start to the arrival; the arrival is rounded up.
 fn travel_time<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Result<Interval<S>, Invalid> {
     in_range(start, "start time")?;
     in_range(start + profile.duration(), "end time")?;

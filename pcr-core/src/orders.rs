@@ -1,4 +1,5 @@
-//! Passing orders: who passes a collision region first. Kept, nobody collides, whatever the delays (docs/theory.md).
+//! Passing orders: which agent passes a collision region first. Agents that keep them never collide, whatever their
+//! delays (docs/theory.md).
 //!
 //! ```text
 //! hold        how far the second may go past one region             Hold, RegionRef::hold

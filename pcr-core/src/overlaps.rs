@@ -1,4 +1,4 @@
-//! The regions of two agents alone, without a table.
+//! The regions of two agents, without a table.
 
 use crate::error::Full;
 use crate::motion::Motion;
@@ -7,12 +7,13 @@ use crate::pieces::{List, Piece, Pieces};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Tells `found` the regions of two agents, as the first one sees them, with numbers 0 and 1: those that a table of the two
-/// holds. Nothing is kept, and `storage`, which is any memory for as many pieces as they have, is overwritten.
+/// Calls `found` with each region of two agents. The first agent is the ego; the indices are 0 and 1. The regions are
+/// those that a table of the two agents would hold. `storage` needs room for the pieces of the pair and is overwritten;
+/// nothing in it is kept.
 ///
-/// For solvers and for tables of millions of pairs: what [`Ecm`](crate::Ecm) knows of its fleet need not be made for each.
+/// Meant for solvers and for millions of pairs: it avoids the bookkeeping that [`Ecm`](crate::Ecm) does for its fleet.
 ///
-/// Cost: that of the pair in a table.
+/// Cost: that of one pair in a table.
 ///
 /// ```
 /// use pcr_core::{Motion, Path, Piece, Point, Pose, Profile, Radians, overlaps};
@@ -30,7 +31,8 @@ use crate::scalar::Scalar;
 /// ```
 ///
 /// # Errors
-/// [`Full::Pieces`] where the storage is too small, [`Full::Pair`] where none is large enough; then nothing was told.
+/// [`Full::Pieces`] if the storage is too small, [`Full::Pair`] if no storage is large enough; `found` was not called
+/// then.
 pub fn overlaps<S: Scalar>(
     first: &Motion<'_, S>,
     second: &Motion<'_, S>,

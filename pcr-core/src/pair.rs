@@ -1,8 +1,9 @@
-//! A pair of agents in coordination space: all pieces of their collision regions, joined.
+//! A pair of agents in coordination space: computes all pieces of their collision regions and joins those that are
+//! connected.
 //!
-//! Coordination space (l₁, l₂) holds the lengths along both paths. The set of colliding lengths there depends
-//! on the paths and the combined radius alone, so it serves both directions of the pair and every motion on the paths
-//! (but for what the rounding of times adds to the radius).
+//! A point (l₁, l₂) of coordination space holds the lengths along both paths. The set of points at which the agents
+//! collide depends only on the paths and the combined radius. So it serves both directions of the pair and all motions
+//! on the paths (except that the rounding of times adds to the radius).
 
 pub(crate) mod cells;
 pub(crate) mod events;
@@ -23,14 +24,14 @@ use core::hint::select_unpredictable as select;
 use events::wraps;
 use footprint::Footprint;
 
-/// Two agents, seen as a pair.
+/// Two agents as an unordered pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<'a, S: Scalar> {
     pub(crate) first: &'a Motion<'a, S>,
     pub(crate) second: &'a Motion<'a, S>,
-    /// Residual that rounding may cause \[m\].
+    /// Bound on the rounding error of a distance \[m\].
     pub(crate) slack: S,
-    /// Sum of the radii plus slack \[m\]: what is computed with contains what is asked for.
+    /// Sum of the radii plus slack \[m\]. Regions are computed with it, so that they contain the exact ones.
     pub(crate) radius: S,
 }
 
@@ -41,16 +42,16 @@ impl<'a, S: Scalar> Pair<'a, S> {
         Self { first, second, slack, radius: first.radius() + second.radius() + slack }
     }
 
-    /// What is computed with is larger than the combined radius by one slack, and distances are off by another one at
-    /// most \[m\].
+    /// Error bound of the regions \[m\]: they are computed with a radius that is larger by one slack, and distances are
+    /// off by at most another slack.
     pub(crate) fn excess(&self) -> S {
         self.slack.double()
     }
 
-    /// Adds the pieces of the pair to the pending ones, joined where they are connected, as lengths along the paths. Whether the
-    /// boxes of both paths meet has been asked before ([`Motion::swept`]).
+    /// Adds the pieces of the pair to the pending list and joins those that are connected. Lengths are along the paths.
+    /// The caller has checked that the boxes of both paths meet ([`Motion::swept`]).
     ///
-    /// Cost: a box test a pair of segments, and a few hundred operations a pair of segments that meet.
+    /// Cost: a box test for each pair of segments, and a few hundred operations for each pair of segments that meet.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
         let reach = self.radius + self.slack;
         let first = self.first.bounds().expanded(reach);
@@ -75,11 +76,12 @@ impl<'a, S: Scalar> Pair<'a, S> {
         Ok(())
     }
 
-    /// Joins pieces across the joints of either path (paper Fig. 14c).
+    /// Joins pieces across the joints of either path (paper, Fig. 14c).
     fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
         let mut a = pieces.first_pending();
         while let Some(&before) = pieces.slots().get(a as usize) {
-            // They are in the order of the second segments, then of the first ones: joints lie ahead, one row at most.
+            // Pieces are sorted by the second segment, then by the first: neighbours across a joint follow at most one
+            // row later.
             let mut b = before.next;
             while let Some(&after) = pieces.slots().get(b as usize) {
                 if after.second_segment.saturating_sub(before.second_segment) > 1 {
@@ -94,7 +96,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// At a joint of the second path both pieces end in slices about the same point. They meet if they share one.
+    /// At a joint of the second path both pieces end in slices of the first path around the same point. They meet if
+    /// they share a slice.
     fn meet_at_joint_of_second(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
         let neighbours = after.first_segment == before.first_segment
             && after.second_segment.checked_sub(1) == Some(before.second_segment)
@@ -109,7 +112,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if before.second.hi != other.length {
             return false;
         }
-        // Where one interval at most is covered both pieces hold it.
+        // If at most one interval is covered, both pieces contain it.
         if !wraps(own, self.radius, self.slack) {
             return true;
         }
@@ -118,8 +121,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         before.into_iter().flatten().any(|slice| after.contains(&Some(slice)))
     }
 
-    /// At a joint of the first path the pieces share intervals of the second segment: those within reach of
-    /// the joint. They meet if the middle of one of them belongs to both.
+    /// At a joint of the first path the pieces share intervals of the second segment: those within reach of the joint.
+    /// The pieces meet if the middle of one of these intervals belongs to both.
     fn meet_at_joint_of_first(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
         let neighbours = after.second_segment == before.second_segment
             && after.first_segment.checked_sub(1) == Some(before.first_segment)
@@ -138,7 +141,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if before.first.hi != own.length {
             return false;
         }
-        // One interval at most of the second segment is within reach of the joint: both pieces hold it.
+        // At most one interval of the second segment is within reach of the joint, so both pieces contain it.
         if !wraps(other, self.radius, self.slack) {
             return true;
         }
@@ -154,7 +157,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         })
     }
 
-    /// Turns lengths along segments into lengths along paths.
+    /// Converts lengths along segments into lengths along paths.
     fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
         let mut index = pieces.first_pending();
         while let Some(piece) = pieces.get_mut(index) {
@@ -168,7 +171,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// The parts of the first path that a piece covers at the length `s` of the second one.
+    /// The parts of the first path that a piece covers at the length `s` of the second path.
     pub(crate) fn slices_of_first(&self, piece: &Piece<S>, s: S) -> [Option<Interval<S>>; 2] {
         let (Some(own), Some(other)) = self.segments(piece) else {
             return [None; 2];
@@ -181,7 +184,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         slices.map(|slice| slice.map(|slice| along_path(slice, own)))
     }
 
-    /// The parts of the second path that a piece covers at the length `l` of the first one.
+    /// The parts of the second path that a piece covers at the length `l` of the first path.
     pub(crate) fn slices_of_second(&self, piece: &Piece<S>, l: S) -> [Option<Interval<S>>; 2] {
         let (Some(own), Some(other)) = self.segments(piece) else {
             return [None; 2];
@@ -190,8 +193,9 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         }
         let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
-        // An interval is connected, hence part of one region, that of each piece that it meets. But where two laps of the
-        // first segment may be covered, the next part of it may be that of the other lap: then each piece has its own part.
+        // An interval is connected, hence belongs to one region, that of every piece that it meets. But if two laps of
+        // the first segment may be covered, the neighbouring part of the interval may belong to the other lap; then
+        // each piece has its own part.
         covered.map(|slice| {
             let slice = Some(along_path(slice?, other)).filter(|slice| slice.meets(piece.second))?;
             if !wraps(own, self.radius, self.slack) {
@@ -199,13 +203,14 @@ impl<'a, S: Scalar> Pair<'a, S> {
             }
             let part = slice.common(piece.second);
             let footprint = Footprint::of(other.point_at(part.middle() - other.from), own);
-            // What only just is covered of the second segment may not seem to be from here.
+            // With a slack: a part of the second segment that is barely covered may seem uncovered when computed from
+            // here.
             let laps = footprint.reach(own, self.radius + self.slack).intervals(own);
             piece.share.holds(l - own.from, laps, own, self.hull(piece, own)).then_some(part)
         })
     }
 
-    /// Where a piece lies along its first segment, and a slack more.
+    /// Range of a piece along its first segment, extended by a slack.
     fn hull(&self, piece: &Piece<S>, own: &Segment<S>) -> Interval<S> {
         Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack)
     }
@@ -215,7 +220,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 }
 
-/// A part of a segment as lengths of the path. Its ends stay ends: neighbours meet in the same number.
+/// Converts a part of a segment to lengths of the path. An end of the segment becomes exactly an end in the path, so
+/// that neighbours meet.
 #[cfg_attr(not(feature = "std"), inline(never))]
 fn along_path<S: Scalar>(part: Interval<S>, segment: &Segment<S>) -> Interval<S> {
     let at = |u: S| select(u < segment.length, (u + segment.from).min(segment.to), segment.to);

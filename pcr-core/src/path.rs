@@ -1,4 +1,5 @@
-//! Paths: chains of lines and arcs (Eq. 1, the map ρ from travelled length to position), G1 but for turns in place.
+//! Paths: chains of lines and arcs (the map ρ from travelled length to position, Eq. 1). The heading is continuous,
+//! except at turns in place.
 
 use crate::bits::digest;
 use crate::error::{Invalid, in_range};
@@ -7,11 +8,11 @@ use crate::scalar::{Angle, Scalar, Wide};
 use crate::segment::{Curve, Segment, Turn};
 use heapless::Vec;
 
-/// Segments of a path, at most: pieces number them with 16 bits.
+/// Largest number of segments of a path: pieces store their indices in 16 bits.
 const MOST_SEGMENTS: usize = u16::MAX as usize;
 
-/// A path of at most `N` lines and arcs, and `N` at most 65535. Each begins in the pose in which the one before it ends, or after a turn in place
-/// there.
+/// A path of at most `N` lines and arcs; `N` is at most 65535. Each segment begins at the end of the one before it,
+/// with the same heading unless the agent turns in place there.
 ///
 /// ```
 /// use pcr_core::{Path, Point, Pose, Radians, Turn};
@@ -22,7 +23,7 @@ const MOST_SEGMENTS: usize = u16::MAX as usize;
 /// assert!((end.x - 4.0).abs() < 1e-15 && (end.y - 1.0).abs() < 1e-15);
 /// # Ok::<(), pcr_core::Invalid>(())
 /// ```
-/// More segments than a table can number are refused by the compiler:
+/// The compiler refuses more segments than a table can number:
 /// ```compile_fail,E0080
 /// # use pcr_core::{Path, Point, Pose, Radians};
 /// let _ = Path::<f64, 65536>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) });
@@ -35,17 +36,17 @@ pub struct Path<S: Scalar, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Path<S, N> {
-    /// The path of length 0 at `pose`: an agent that stands.
+    /// The path of length 0 at `pose`, of an agent that stands.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
     pub fn starting_at(pose: Pose<S>) -> Result<Self, Invalid> {
-        // Pieces number segments with 16 bits.
+        // Pieces store indices of segments in 16 bits.
         const { assert!(N <= MOST_SEGMENTS, "a path has at most 65535 segments") };
         Ok(Self { origin: Segment::standing(pose)?, segments: Vec::new() })
     }
 
-    /// Continued by a line of this length \[m\]; a length of 0 adds nothing.
+    /// Appends a line of this length \[m\]; a length of 0 adds nothing.
     ///
     /// # Errors
     /// As [`Segment::then_line`], and [`Invalid::Full`] if there are `N` segments already.
@@ -54,7 +55,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         self.with(next)
     }
 
-    /// Continued by an arc of this radius \[m\] and length \[m\], at most a full turn; a length of 0 adds nothing.
+    /// Appends an arc of this radius \[m\] and length \[m\], at most a full turn; a length of 0 adds nothing.
     ///
     /// # Errors
     /// As [`Segment::then_arc`], and [`Invalid::Full`] if there are `N` segments already.
@@ -63,12 +64,12 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         self.with(next)
     }
 
-    /// Continued by an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if it is positive, at most a full turn
-    /// either way: as files say it. Its length is radius · |sweep|, rounded once. Binary turns, which end at half a turn, are
-    /// not asked for: `sweep` is a number of the format.
+    /// Appends an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if positive, by at most a full
+    /// turn in either direction. Many file formats describe arcs this way. The length is radius · |sweep|, rounded
+    /// once. `sweep` is a scalar and not an angle of the format, because binary angles only reach half a turn.
     ///
     /// # Errors
-    /// As [`Path::arc`], [`Invalid::NonFinite`] and [`Invalid::OutOfRange`] for the sweep.
+    /// As [`Path::arc`], and [`Invalid::NonFinite`] and [`Invalid::OutOfRange`] for the sweep.
     ///
     /// ```
     /// # use pcr_core::{Path, Point, Pose, Radians};
@@ -84,7 +85,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         self.arc(radius, turn, sweep.abs().times(radius).narrow())
     }
 
-    /// Continued by a turn in place, to the left if the angle is positive. It takes no segment and no length.
+    /// Appends a turn in place, to the left if the angle is positive. It needs no segment and has no length.
     ///
     /// # Errors
     /// As [`Segment::turned`].
@@ -94,7 +95,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         Ok(self)
     }
 
-    /// The path as the algorithms take it.
+    /// The path in the form that algorithms take.
     pub fn as_path(&self) -> PathRef<'_, S> {
         let segments = if self.segments.is_empty() { core::slice::from_ref(&self.origin) } else { &self.segments[..] };
         PathRef { segments }
@@ -112,7 +113,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     }
 }
 
-/// A path of any capacity, borrowed: at least one segment, each beginning where the one before it ends.
+/// A path of any capacity, borrowed: at least one segment, and each begins where the one before it ends.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PathRef<'a, S: Scalar> {
@@ -120,10 +121,10 @@ pub struct PathRef<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> PathRef<'a, S> {
-    /// A path of segments that were built one after the other.
+    /// A path of segments that were built one from the other.
     ///
     /// # Errors
-    /// [`Invalid::Disconnected`] if they were not, or if there are none; [`Invalid::Full`] above 65535 segments.
+    /// [`Invalid::Disconnected`] if they were not, or if there are no segments; [`Invalid::Full`] above 65535 segments.
     pub fn new(segments: &'a [Segment<S>]) -> Result<Self, Invalid> {
         if segments.len() > MOST_SEGMENTS {
             return Err(Invalid::Full("segment"));
@@ -153,7 +154,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         self.segments.last().map_or(S::ZERO, |last| last.to)
     }
 
-    /// Position and heading at a travelled length \[m\], limited to `[0, length]`. O(log segments).
+    /// Position and heading at a travelled length \[m\], which is clamped to `[0, length]`. O(log segments).
     pub fn pose_at(self, length: S) -> Pose<S> {
         let Some((segment, u)) = self.locate(length) else {
             return Pose { position: Point::default(), heading: S::Angle::ZERO };
@@ -161,7 +162,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         Pose { position: segment.point_at(u), heading: segment.heading_at(u) }
     }
 
-    /// Position at a travelled length \[m\], limited to `[0, length]`. O(log segments).
+    /// Position at a travelled length \[m\], which is clamped to `[0, length]`. O(log segments).
     pub fn point_at(self, length: S) -> Point<S> {
         self.locate(length).map_or_else(Point::default, |(segment, u)| segment.point_at(u))
     }
@@ -178,7 +179,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         rest.fold(first, Bounds::hull)
     }
 
-    /// A checksum of where the path leads and how.
+    /// A checksum of the geometry of the path.
     pub(crate) fn digest(self) -> u32 {
         let origin = self.segments.first().map_or_else(Point::default, |first| first.start);
         self.segments.iter().fold(digest(origin.x.digest(), origin.y.digest()), |sum, segment| {
@@ -193,7 +194,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         })
     }
 
-    /// The segment at a travelled length, and the length along it. There is one: no path is without segments.
+    /// The segment at a travelled length, and the length along it. It always exists, because every path has a segment.
     fn locate(self, length: S) -> Option<(&'a Segment<S>, S)> {
         let after = self.segments.partition_point(|segment| segment.from <= length);
         let segment = self.segments.get(after.saturating_sub(1))?;

@@ -1,9 +1,10 @@
-//! Fixed-capacity store of region pieces: the part of a region that one pair of segments makes.
+//! Storage of region pieces with a fixed capacity. A piece is the part of a region that belongs to one pair of
+//! segments.
 //!
-//! Pieces of one region are a linked list inside the storage, so that a region of any number of pieces can be
-//! added and removed without moving others. While a pair of agents is being computed its pieces form one
-//! *pending* list in which joined pieces carry the same group; it becomes regions at the end, or is taken
-//! back as a whole when the storage is full.
+//! The pieces of a region are a linked list inside the storage, so a region of any number of pieces can be added or
+//! removed without moving others. While a pair of agents is computed, its pieces are in one *pending* list, in which
+//! pieces that are joined have the same group. At the end the list is split into regions; if the storage is full, the
+//! whole list is freed.
 
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -12,19 +13,19 @@ use crate::scalar::Scalar;
 use crate::segment::Segment;
 use core::marker::PhantomData;
 
-/// No piece: the end of a list.
+/// End of a list.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Set in the group of a piece that has been joined: others are in it.
+/// Bit in the group of a piece that says that other pieces have the same group.
 const JOINED: u16 = 1 << 15;
 
-/// Most groups of a pair.
+/// Largest number of groups of a pair.
 const GROUPS: u16 = JOINED - 1;
 
-/// The part of a collision region that one closed form describes: one segment against one segment.
+/// A piece: the part of a collision region that belongs to one pair of segments and has one closed form.
 ///
-/// It holds the lengths along both paths between which it lies; between them it is bounded by the slices
-/// of [`RegionRef`](crate::RegionRef). 28 bytes for `f32`, 48 for `f64`.
+/// It stores its ranges of lengths along both paths; within these it is bounded by the slices of
+/// [`RegionRef`](crate::RegionRef). 28 bytes for `f32`, 48 for `f64`.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Piece<S> {
@@ -32,7 +33,7 @@ pub struct Piece<S> {
     pub(crate) second: Interval<S>,
     pub(crate) first_segment: u16,
     pub(crate) second_segment: u16,
-    /// Lap of the first segment, from slab to slab.
+    /// Lap of the first segment; it connects neighbouring slabs.
     pub(crate) lap: Lap,
     pub(crate) share: Share,
     group: u16,
@@ -43,7 +44,7 @@ const _: () = assert!(size_of::<Piece<f32>>() == 28, "the documented size of a p
 const _: () = assert!(size_of::<Piece<f64>>() == 48, "the documented size of a piece");
 
 impl<S: Scalar> Piece<S> {
-    /// A free slot, to fill a storage with.
+    /// An unused slot, to fill a storage with.
     pub const EMPTY: Self = Self {
         first: Interval::new(S::ZERO, S::ZERO),
         second: Interval::new(S::ZERO, S::ZERO),
@@ -60,8 +61,9 @@ impl<S: Scalar> Piece<S> {
         Self { first, second, first_segment, second_segment, lap, share, group: 0, next: NONE }
     }
 
-    /// The intervals that it is about at a joint, lengths being those along segments. Of two it is the longer one: the other
-    /// one is thin, made by rounding alone. But a whole circle rounding may cut anywhere.
+    /// The intervals at a joint that belong to this piece, as lengths along segments. Of two, only the longer one: the
+    /// shorter one is thin and due to rounding. If the whole circle is covered, both, because rounding may cut the
+    /// circle anywhere.
     pub(crate) fn at_joint(&self, covered: [Option<Interval<S>>; 2], segment: &Segment<S>) -> [Option<Interval<S>>; 2] {
         match self.share.of(covered, segment, self.first) {
             [Some(a), Some(b)] if self.lap != Lap::Whole => [Some(if a.length() < b.length() { b } else { a }), None],
@@ -76,13 +78,13 @@ impl<S: Scalar> Default for Piece<S> {
     }
 }
 
-/// The store: slots of the caller, used ones in lists, free ones in a list of their own.
+/// The storage: slots of the caller; slots in use are in lists, free ones in a list of their own.
 #[derive(Clone, Debug)]
 pub(crate) struct Pieces<S, P> {
     slots: P,
-    /// Slots from here on were never used.
+    /// Index of the first slot that was never used.
     fresh: u32,
-    /// The slots that were given back.
+    /// Head of the list of freed slots.
     free: u32,
     /// Number of slots in use.
     used: u32,
@@ -95,7 +97,7 @@ pub(crate) struct Pieces<S, P> {
 struct Pending {
     first: u32,
     last: u32,
-    /// Number of groups handed out.
+    /// Number of groups used so far.
     groups: u16,
 }
 
@@ -108,12 +110,12 @@ impl<S, P> Pieces<S, P> {
         Self { slots, fresh: 0, free: NONE, used: 0, pending: Pending::NOTHING, scalar: PhantomData }
     }
 
-    /// Gives all pieces back.
+    /// Frees all pieces.
     pub(crate) fn clear(&mut self) {
         (self.fresh, self.free, self.used, self.pending) = (0, NONE, 0, Pending::NOTHING);
     }
 
-    /// What holds the slots: more of them may be added at the end.
+    /// The container of the slots; more slots may be added at its end.
     #[cfg(feature = "std")]
     pub(crate) fn storage(&mut self) -> &mut P {
         &mut self.slots
@@ -129,7 +131,7 @@ impl<S, P> Pieces<S, P> {
         self.pending.first
     }
 
-    /// Whether no more pieces of this pair can be told apart.
+    /// Whether the groups of this pair are used up.
     pub(crate) const fn pair_is_full(&self) -> bool {
         self.pending.groups == GROUPS
     }
@@ -141,19 +143,19 @@ impl<S, P> Pieces<S, P> {
 }
 
 impl<S, P: AsRef<[Piece<S>]>> Pieces<S, P> {
-    /// The slots, to follow a list in.
+    /// The slots, for following a list.
     pub(crate) fn slots(&self) -> &[Piece<S>] {
         self.slots.as_ref()
     }
 
-    /// The pending piece after this one; the first after [`NONE`].
+    /// The pending piece after this one; the first one for [`NONE`].
     pub(crate) fn pending_after(&self, index: u32) -> u32 {
         self.slots().get(index as usize).map_or(self.pending.first, |piece| piece.next)
     }
 }
 
 impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
-    /// Adds a piece to the pending list, in a group of its own.
+    /// Adds a piece to the pending list, with a group of its own.
     pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, Full> {
         let Pending { first, last, groups } = self.pending;
         let index = if self.free == NONE { self.fresh } else { self.free };
@@ -164,7 +166,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         let slots = self.slots.as_mut();
         let slot = slots.get_mut(index as usize).ok_or(Full::Pieces)?;
         if self.free == NONE {
-            // There is a slot at this index, so it cannot saturate; nor can the number of used ones.
+            // A slot with this index exists, so neither this nor the number of used slots saturates.
             self.fresh = self.fresh.saturating_add(1);
         } else {
             self.free = slot.next;
@@ -178,13 +180,13 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         Ok(index)
     }
 
-    /// The pending piece at an index that [`Pieces::push`] gave out.
+    /// The pending piece at an index returned by [`Pieces::push`].
     pub(crate) fn get_mut(&mut self, index: u32) -> Option<&mut Piece<S>> {
         self.slots.as_mut().get_mut(index as usize)
     }
 
-    /// Makes two pending pieces, and all that were joined with them, parts of one region; [`NONE`] is joined with nothing.
-    /// O(1) where one of them is alone as yet, else O(pending pieces).
+    /// Puts two pending pieces, and all pieces that were joined with them, into one region. [`NONE`] is ignored. O(1)
+    /// if one of them has not been joined yet, otherwise O(pending pieces).
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let slots = self.slots.as_mut();
         let group = |index: u32| slots.get(index as usize).map(|piece| piece.group);
@@ -212,8 +214,8 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         }
     }
 
-    /// Takes the pieces that were joined with the first pending one out of the pending list, as a list of
-    /// their own. O(pending pieces).
+    /// Moves the first pending piece, and those that were joined with it, from the pending list to a list of their own.
+    /// O(pending pieces).
     pub(crate) fn take_region(&mut self) -> Option<u32> {
         let slots = self.slots.as_mut();
         let head = self.pending.first;
@@ -239,7 +241,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         Some(head)
     }
 
-    /// Gives the pieces of a list back.
+    /// Frees the pieces of a list.
     pub(crate) fn release(&mut self, head: u32) {
         let mut index = head;
         while let Some(piece) = self.slots.as_mut().get_mut(index as usize) {
@@ -250,7 +252,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
         }
     }
 
-    /// Gives all pending pieces back.
+    /// Frees all pending pieces.
     pub(crate) fn take_back(&mut self) {
         let head = self.pending.first;
         self.pending = Pending::NOTHING;

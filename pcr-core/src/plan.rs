@@ -1,4 +1,4 @@
-//! Plans without collisions: start delays and speed profiles, by priorities.
+//! Plans without collisions, agent by agent in the order of their priorities: start delays and speed profiles.
 //!
 //! ```text
 //! order       agents one after the other, and who moves up       Unsolved

@@ -1,15 +1,15 @@
-//! Speed profiles: the map λ from time to travelled length (Eq. 1-3), and its inverse, in closed form.
+//! Speed profiles: the map λ from time to travelled length (Eq. 1-3) and its inverse, in closed form.
 //!
-//! A profile is a chain of phases of constant acceleration; a phase at speed 0 is a wait. Time is measured
-//! from the start of the motion, so that a delay changes nothing here. Both maps are evaluated from the slow
-//! end of a phase, where the square root of the inverse does not cancel (docs/equations.md, time map).
+//! A profile is a chain of phases of constant acceleration; a phase at speed 0 is a wait. Times count from the start of
+//! the motion, so a delay does not change a profile. Both maps are evaluated from the slow end of a phase, where the
+//! square root of the inverse does not cancel (docs/equations.md, time map).
 
 use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::geometry::Interval;
 use crate::scalar::{Ramp, Scalar, Wide};
 use heapless::Vec;
 
-/// Motion at constant acceleration.
+/// A phase of a motion at constant acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Phase<S> {
@@ -24,24 +24,24 @@ pub struct Phase<S> {
 }
 
 impl<S: Scalar> Phase<S> {
-    /// The first phase of a profile: from speed `speed` \[m/s\], `duration` \[s\] at `acceleration` \[m/s²\].
+    /// The first phase of a profile: from the speed `speed` \[m/s\], for `duration` \[s\] at `acceleration` \[m/s²\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] for the duration and either speed.
-    /// A final speed that is negative by rounding only is taken as 0.
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] for the duration and either speed. A
+    /// final speed that is negative only because of rounding is set to 0.
     pub fn starting_at(speed: S, duration: S, acceleration: S) -> Result<Self, Invalid> {
         not_negative(speed, "initial speed")?;
         Self::origin(speed).then(duration, acceleration)
     }
 
-    /// What comes before the first phase: no time, no length.
+    /// An empty phase before the first one: no time, no length.
     pub(crate) fn origin(speed: S) -> Self {
         let origin = Interval::new(S::ZERO, S::ZERO);
         Self { time: origin, length: origin, speed: [speed, speed], acceleration: S::ZERO }
     }
 
-    /// The phase that follows `self`, to the length `to` and the speed `speed`, which are told rather than computed, so that
-    /// no rounding adds up.
+    /// The phase that follows `self`, up to the length `to` and the speed `speed`. These are arguments and not
+    /// computed, so that rounding errors do not add up.
     pub(crate) fn until(&self, duration: S, to: S, speed: S, acceleration: S) -> Self {
         Self {
             time: Interval::new(self.time.hi, self.time.hi + duration),
@@ -51,7 +51,7 @@ impl<S: Scalar> Phase<S> {
         }
     }
 
-    /// Both phases as one, if they follow one another at the same acceleration.
+    /// Merges both phases if they follow one another at the same acceleration.
     pub(crate) fn joined(&self, next: &Self) -> Option<Self> {
         (self.acceleration == next.acceleration).then(|| Self {
             time: Interval::new(self.time.lo, next.time.hi),
@@ -72,7 +72,7 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            // The last digit of the acceleration counts for the whole duration.
+            // The rounding error of the acceleration counts multiplied by the duration.
             if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
                 return Err(Invalid::Negative("speed"));
             }
@@ -116,7 +116,7 @@ impl<S: Scalar> Phase<S> {
         self.acceleration < S::ZERO
     }
 
-    /// From the start of a phase that speeds up, from the end of one that slows.
+    /// The ramp that begins at the start of a phase that speeds up, or at the end of one that slows down.
     fn ramp(&self) -> Ramp<S> {
         let [before, after] = self.speed;
         let (slow, fast) = if self.slows() { (after, before) } else { (before, after) };
@@ -169,8 +169,8 @@ pub struct Profile<S: Scalar, const N: usize> {
 }
 
 impl<S: Scalar> Profile<S, 3> {
-    /// The trapezoid over `length` \[m\] from rest to rest in the least time (Eq. 3); a triangle where the
-    /// largest speed is not reached.
+    /// The trapezoid profile over `length` \[m\] from rest to rest in the least time (Eq. 3); a triangle if the largest
+    /// speed is not reached.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] (length), [`Invalid::NonPositive`] (limits).
@@ -181,7 +181,7 @@ impl<S: Scalar> Profile<S, 3> {
         let mut phases = Vec::new();
         if length > S::ZERO {
             let peak = limits.speed.min(length.times(limits.acceleration).sqrt());
-            // The divisions of this constructor: a speed by an acceleration, a length by a speed.
+            // The only divisions of this constructor: a speed by an acceleration, a length by a speed.
             let ramp = peak.quotient(limits.acceleration);
             let ramp_length = peak.times(ramp).narrow().half().min(length.half());
             let cruise_length = (length - ramp_length.double()).max(S::ZERO);
@@ -199,7 +199,7 @@ impl<S: Scalar> Profile<S, 3> {
                     speed: [speeds[k], speeds[k + 1]],
                     acceleration: accelerations[k],
                 };
-                // The length of what takes no time belongs to a neighbour: nobody jumps.
+                // The length of a phase without duration is added to a neighbour, so that the agent does not jump.
                 if phase.time.lo < phase.time.hi {
                     phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
                     from = lengths[k + 1];
@@ -214,7 +214,7 @@ impl<S: Scalar> Profile<S, 3> {
 }
 
 impl<S: Scalar, const N: usize> Profile<S, N> {
-    /// Speed `speed` \[m/s\] at the start, then each acceleration \[m/s²\] for its duration \[s\].
+    /// A profile that begins with the speed `speed` \[m/s\] and has each acceleration \[m/s²\] for its duration \[s\].
     ///
     /// # Errors
     /// As [`Phase::starting_at`], and [`Invalid::Full`] for more than `N` pieces.
@@ -230,8 +230,9 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(Self { phases })
     }
 
-    /// The profile, slower or faster as a whole so that it takes `duration` \[s\]: with D its own duration, times are
-    /// `duration` / D as long, speeds D / `duration` as large, accelerations the square of that. Lengths stay.
+    /// The profile, made slower or faster as a whole so that it takes `duration` \[s\]. If D is its own duration, times
+    /// are multiplied by `duration` / D, speeds by D / `duration`, and accelerations by the square of that. Lengths do
+    /// not change.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for speeds and accelerations), [`Invalid::NonPositive`]
@@ -246,7 +247,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         for phase in profile.phases() {
             let to = if phase.time.hi < whole { duration.portion(phase.time.hi, whole) } else { duration };
             let (time, [_, before], after) = (to - last.time.hi, last.speed, speed(phase.speed[1])?);
-            // The length of what takes no time belongs to a neighbour: nobody jumps.
+            // The length of a phase without duration is added to a neighbour, so that the agent does not jump.
             if time > S::ZERO {
                 let acceleration = in_range((after - before).quotient(time), "acceleration")?;
                 last = Phase {
@@ -262,7 +263,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(Self { phases })
     }
 
-    /// The same profile with room for another number of phases: those of a fleet have to be of one type to be kept in one place.
+    /// The same profile with another capacity, for example to store the profiles of a fleet as one type.
     ///
     /// # Errors
     /// [`Invalid::Full`] for more than `N` phases.
@@ -280,13 +281,13 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(Self { phases: Vec::from_slice(profile.phases()).map_err(|_| Invalid::Full("phase"))? })
     }
 
-    /// The profile of an agent that stands: no phases.
+    /// The profile of an agent that stands: it has no phases.
     pub const fn standing() -> Self {
         Self { phases: Vec::new() }
     }
 
-    /// Appends the phase `next` that follows `phase`, which it then is; to the last one it is joined where both are of the
-    /// same acceleration. What takes no time adds nothing: its length belongs to what follows `phase` then.
+    /// Appends `next`, which follows `phase`, and sets `phase` to it. If the last phase has the same acceleration, the
+    /// two are merged. A phase without duration adds nothing; its length is added to the phase that follows.
     pub(crate) fn extend(&mut self, phase: &mut Phase<S>, next: Phase<S>) -> Result<(), Invalid> {
         if next.time.length() <= S::ZERO {
             return Ok(());
@@ -299,13 +300,13 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(())
     }
 
-    /// The profile as the algorithms take it.
+    /// The profile in the form that algorithms take.
     pub fn as_profile(&self) -> ProfileRef<'_, S> {
         ProfileRef { phases: &self.phases }
     }
 }
 
-/// A profile of any capacity, borrowed: phases that follow one another; none for an agent that stands.
+/// A profile of any capacity, borrowed: phases that follow one another, or none for an agent that stands.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ProfileRef<'a, S> {
@@ -313,7 +314,7 @@ pub struct ProfileRef<'a, S> {
 }
 
 impl<'a, S: Scalar> ProfileRef<'a, S> {
-    /// A profile of phases that were built one after the other.
+    /// A profile of phases that were built one from the other.
     ///
     /// # Errors
     /// [`Invalid::Disconnected`] if they were not.
@@ -348,12 +349,12 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
         self.phases.iter().flat_map(|phase| phase.speed).fold(S::ZERO, S::max)
     }
 
-    /// λ: length travelled at a time since the start \[m\]; standing before 0 and after the end. O(log phases).
+    /// λ: length travelled at a time since the start \[m\]. It is constant before 0 and after the end. O(log phases).
     pub fn length_at(self, time: S) -> S {
         self.at(time).map_or(S::ZERO, |phase| phase.length_at(time.clamp(phase.time.lo, phase.time.hi)))
     }
 
-    /// Speed at a time since the start \[m/s\]; 0 before 0 and after the end. O(log phases).
+    /// Speed at a time since the start \[m/s\]; 0 before the start and after the end. O(log phases).
     pub fn speed_at(self, time: S) -> S {
         if time < S::ZERO || time > self.duration() {
             return S::ZERO;
@@ -370,7 +371,8 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
         }
     }
 
-    /// Inverse of λ: last time since the start at which `length` \[m\] is not exceeded; waits are over. O(log phases).
+    /// Inverse of λ: last time since the start at which `length` \[m\] is not exceeded, after any wait there.
+    /// O(log phases).
     #[cfg_attr(feature = "std", inline(always))]
     pub fn last_time_at(self, length: S) -> S {
         let index = self.phases.partition_point(|phase| phase.length.lo <= length);

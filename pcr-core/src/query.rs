@@ -1,4 +1,5 @@
-//! Using motions and regions: do two agents collide, when, and what is free.
+//! Queries on motions and regions: whether and when two agents collide, and which times, lengths, delays and waits are
+//! free.
 //!
 //! ```text
 //! legs        a motion, cut where its formula changes          (internal)

@@ -1,8 +1,9 @@
-//! The kernels, recorded as scripts for Gappa: a number that writes down what is done with it. `proofs/` proves bounds about
-//! the very lines that are written here; a kernel that has changed is not the one that was proved, and fails the test.
+//! Records the kernels as scripts for Gappa, with a number type that writes down the operations done with it. `proofs/`
+//! proves bounds about exactly the lines that are written here. If a kernel changes, it is no longer the one that was
+//! proved, and the test fails.
 //!
-//! A line is an operation and its exact twin, in capitals: `t3 rnd= t1 * c; T3 = T1 * C;`. Named are the inputs; those with a
-//! twin of their own are not exact.
+//! A line is an operation and its exact twin, in capitals: `t3 rnd= t1 * c; T3 = T1 * C;`. Inputs have names; an input
+//! with a twin is not exact.
 
 extern crate std;
 
@@ -16,7 +17,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 use std::{eprintln, format, fs, path::Path};
 
-/// A value, which decides branches, and the place of its name.
+/// A value, which decides branches, and the index of its name.
 #[derive(Clone, Copy, Debug, Default)]
 struct N(f64, usize);
 
@@ -38,7 +39,7 @@ impl Tape {
         self.names.push([rounded.to_string(), exact.to_string()]);
         self.names.len() - 1
     }
-    /// Forgets all lines, so that what is given to a kernel counts as its input.
+    /// Removes all lines, so that numbers which are passed to a kernel count as its inputs.
     fn clear(&mut self) {
         self.names.clear();
         self.lines.clear();
@@ -46,17 +47,17 @@ impl Tape {
     }
 }
 
-/// An exact input of this value.
+/// An exact input with this value.
 fn input(name: &str, value: f64) -> N {
     N(value, on_tape(|tape| tape.name(name, name)))
 }
 
-/// An input that is rounded.
+/// A rounded input.
 fn rounded(name: &str, value: f64) -> N {
     N(value, on_tape(|tape| tape.name(name, &name.to_uppercase())))
 }
 
-/// An operation: its result, and how it is written with `{0}` and `{1}` for what it is made of.
+/// An operation: its result, and its text with `{0}` and `{1}` in place of the operands.
 fn operation(value: f64, text: &str, of: &[N], rounds: bool) -> N {
     on_tape(|tape| {
         let written = |twin: usize| {
@@ -71,7 +72,7 @@ fn operation(value: f64, text: &str, of: &[N], rounds: bool) -> N {
     })
 }
 
-/// What is not part of a kernel that is recorded.
+/// For operations that no recorded kernel uses.
 fn left_out() -> ! {
     panic!("not recorded")
 }
@@ -82,7 +83,7 @@ impl PartialEq for N {
     }
 }
 impl PartialOrd for N {
-    /// Branches are part of what was proved.
+    /// Comparisons that decide branches are recorded, because they are part of the proof.
     fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
         let order = self.0.partial_cmp(&other.0);
         on_tape(|tape| {
@@ -111,7 +112,7 @@ impl Neg for N {
     }
 }
 
-/// The bodies of `float.rs`.
+/// The function bodies of `float.rs`.
 impl Scalar for N {
     type Wide = N;
     type Unit = N;
@@ -171,7 +172,7 @@ impl Scalar for N {
     fn ramp_time(_: Ramp<Self>, _: Self) -> Self {
         left_out()
     }
-    // Of what constructors accept, not of a kernel.
+    // Used by constructors, not by a kernel.
     fn slack(_: Self) -> Self {
         <Self as Scalar>::ZERO
     }
@@ -237,12 +238,12 @@ fn arc() -> Segment<N> {
     arc
 }
 
-/// The lines of the tape from one place to another, where the numbers at some places are called otherwise.
+/// The lines of the tape between two indices; some numbers are renamed.
 fn lines(from: usize, to: usize, inputs: &[(usize, &str)]) -> String {
     let mut text = on_tape(|tape| tape.lines[from..to].join("\n")) + "\n";
     for (place, name) in inputs {
         for old in [format!("t{place}"), format!("T{place}")] {
-            // Whole words.
+            // Replaces whole words only.
             let words = text.split_inclusive(|c: char| !c.is_alphanumeric()).map(|word| {
                 let end = word.trim_end_matches(|c: char| !c.is_alphanumeric());
                 if end == old { word.replace(&old, name) } else { word.to_string() }
@@ -257,7 +258,7 @@ fn length() -> usize {
     on_tape(|tape| tape.lines.len())
 }
 
-/// What is in `proofs/recorded` is what the kernels do. `PCR_RECORD=1` writes it.
+/// Compares a recording with the file in `proofs/recorded`. `PCR_RECORD=1` writes the file.
 fn assert_recorded(name: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../proofs/recorded").join(format!("{name}.g"));
     if std::env::var_os("PCR_RECORD").is_some() {
@@ -268,7 +269,7 @@ fn assert_recorded(name: &str, text: &str) {
     assert!(proved == text, "{name} is not the kernel that proofs/ is about; it is now\n{text}");
 }
 
-/// Where a line of the tape is that makes this number.
+/// Index of the line of the tape that computes this number.
 fn place(of: N) -> usize {
     on_tape(|tape| tape.names[of.1][0].trim_start_matches('t').parse().expect("a number that was computed"))
 }
@@ -292,7 +293,7 @@ fn the_kernels_are_those_that_were_proved() {
     let (before, footprint_y) = (length(), y.0);
     let radius = input("r", 1.75);
     footprint.reach(&arc, radius);
-    // What follows the last root are angles.
+    // The lines after the last root compute angles.
     let roots = on_tape(|tape| tape.lines.iter().rposition(|line| line.contains("sqrt")).expect("a root")) + 1;
     let distance = on_tape(|tape| tape.lines.iter().position(|line| line.contains("sqrt")).expect("a root")) + 1;
     assert_recorded("reach", &lines(before, roots, &[(offset, "n"), (distance, "d")]));
@@ -308,7 +309,7 @@ fn the_kernels_are_those_that_were_proved() {
     let way = N::ramp_length(ramp, input("e", 1.25));
     assert_recorded("ramp", &lines(0, length(), &[]));
 
-    // The bodies of `float.rs` above are still those: the same operations have the same bits.
+    // Checks that the bodies of `float.rs` above are still the same: the same operations give the same bits.
     let floats = Ramp { slow: 1.1, fast: 2.0, acceleration: 0.3, duration: 2.0, length: 3.0 };
     assert_eq!(way.0.to_bits(), f64::ramp_length(floats, 1.25).to_bits());
     let below: f64 = 3.1 - footprint_y;

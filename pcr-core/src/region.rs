@@ -1,4 +1,4 @@
-//! Collision regions in path-time space: what an agent must keep out of (Eq. 38).
+//! Collision regions in path-time space, which an agent must keep out of (Eq. 38).
 
 use crate::error::is_no_number;
 use crate::geometry::Interval;
@@ -13,54 +13,55 @@ use crate::segment::{Curve, Segment};
 /// One collision region of an ordered pair of agents: the connected set of (time, length along the path of
 /// the *ego*) in which the ego's disc overlaps that of the *other* agent.
 ///
-/// It contains the exact region of the combined radius and lies within the exact region of a radius that is larger by
-/// [`RegionRef::excess`]: no collision is lost, whatever the number format. `docs/errors.md` derives the bound and names
-/// the tests.
+/// It contains the exact region for the sum of the radii R, and lies within the exact region for R +
+/// [`RegionRef::excess`]. So rounding never hides a collision, in any number format. `docs/errors.md` derives the bound
+/// and names the tests.
 #[derive(Clone, Debug)]
 pub struct RegionRef<'a, S: Scalar> {
     pair: Pair<'a, S>,
     pieces: List<'a, S>,
     agents: [usize; 2],
-    /// Whether the ego is the second agent of the pair.
+    /// Whether the ego is the second agent of the stored pair.
     transposed: bool,
 }
 
-/// One segment of the ego against one segment of the other: the part of a region that one closed form describes.
+/// A piece of a region: the part that belongs to one segment of the ego and one of the other agent, described by one
+/// closed form.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PieceRef<'a, S: Scalar> {
     /// Segment of the ego's path.
     pub ego: &'a Segment<S>,
-    /// Segment of the other's path.
+    /// Segment of the other agent's path.
     pub other: &'a Segment<S>,
-    /// Places of both segments in their paths.
+    /// Indices of both segments in their paths.
     pub segments: [usize; 2],
-    /// Length range along the ego's path \[m\].
+    /// Range of lengths along the ego's path \[m\].
     pub length: Interval<S>,
-    /// Length range along the other's path \[m\].
+    /// Range of lengths along the other agent's path \[m\].
     pub other_length: Interval<S>,
-    /// Which of the intervals that are covered of the segment of the first agent of the pair, that of the lower index, it stands
-    /// for.
+    /// The other disc can cover two intervals of a segment at once; this says which of them belongs to the piece. It
+    /// refers to the segment of the agent with the lower index.
     pub share: Share,
 }
 
-/// The types of Section 3.3 of the paper; the first letter is the ego's.
+/// Types of pieces (paper, Section 3.3); the first letter stands for the ego's segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum PieceType {
-    /// Straight against straight.
+    /// Straight ego, straight other.
     SS,
-    /// Straight ego against an arc.
+    /// Straight ego, other on an arc.
     SA,
-    /// Ego on an arc against straight.
+    /// Ego on an arc, straight other.
     AS,
-    /// Arc against arc.
+    /// Both on arcs.
     AA,
 }
 
 impl PieceType {
-    /// The type of a pair of shapes.
+    /// The type for these shapes of segments.
     pub fn of<S>(ego: Curve<S>, other: Curve<S>) -> Self {
         match (ego, other) {
             (Curve::Line, Curve::Line) => Self::SS,
@@ -111,71 +112,72 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         self.agents[usize::from(!self.transposed)]
     }
 
-    /// The same region as the other agent sees it, which is then the ego.
+    /// The same region seen by the other agent, which becomes the ego.
     #[must_use]
     pub fn swapped(self) -> Self {
         Self { transposed: !self.transposed, ..self }
     }
 
-    /// Length range along the ego's path \[m\], rounded outward.
+    /// Range of lengths along the ego's path \[m\], rounded outward.
     pub fn length(&self) -> Interval<S> {
         self.hull(self.transposed)
     }
 
-    /// Length range along the other's path \[m\], rounded outward.
+    /// Range of lengths along the other agent's path \[m\], rounded outward.
     pub fn other_length(&self) -> Interval<S> {
         self.hull(!self.transposed)
     }
 
-    /// Time range \[s\], rounded outward: the other agent is then in [`RegionRef::other_length`].
+    /// Range of times \[s\] at which the other agent is in [`RegionRef::other_length`], rounded outward.
     pub fn time(&self) -> Interval<S> {
         self.other_motion().time_in(self.other_length())
     }
 
-    /// The bound ε of this region, [`excess`] of its pair \[m\].
+    /// Error bound ε of this region \[m\]: [`excess`] of its pair.
     pub fn excess(&self) -> S {
         self.pair.excess()
     }
 
-    /// What rounding may do to a distance \[m\].
+    /// Bound on the rounding error of a distance \[m\].
     pub(crate) fn slack(&self) -> S {
         self.pair.slack
     }
 
-    /// Whether the region begins with the other agent standing at its start: it then reaches back as a strip
-    /// of constant slice.
+    /// Whether the region begins while the other agent stands at its start. The lengths that are covered then are also
+    /// covered at all earlier times.
     pub fn is_open_at_start(&self) -> bool {
         self.other_length().lo <= S::ZERO
     }
 
-    /// Whether the region ends with the other agent standing at its end: it then goes on as a strip of
-    /// constant slice.
+    /// Whether the region ends while the other agent stands at its end. The lengths that are covered then are also
+    /// covered at all later times.
     pub fn is_open_at_end(&self) -> bool {
         self.other_length().hi >= self.other_motion().path().length()
     }
 
-    /// The lengths along the ego's path inside the region at a time \[m\], as disjoint intervals in increasing
-    /// order, rounded outward. Before the other agent sets off and after its arrival this is the strip of the
-    /// agent standing there. At a time that is no number it is all of the region.
+    /// The lengths of the ego's path \[m\] that are inside the region at a time \[s\]: disjoint intervals in increasing
+    /// order, rounded outward. Before the other agent sets off, they are those that it covers at its start; after its
+    /// arrival, those that it covers at its end. If the time is NaN, the result is the whole length range of the
+    /// region.
     ///
-    /// Cost: two to three times the pieces of the region, for each interval.
+    /// Cost for each interval: two to three times the number of pieces of the region.
     pub fn slice_at(&self, time: S) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        // Intervals of neighbouring segments meet at the joint.
+        // Intervals of neighbouring segments meet at the joint of the segments.
         union(self.intervals(self.other_motion().length_at(time)))
     }
 
-    /// Whether the ego at this length of its path \[m\] overlaps the other agent at this time \[s\] in this region. What is no
-    /// number cannot be told to be free.
+    /// Whether, in this region, the ego at this length of its path \[m\] overlaps the other agent at this time \[s\].
+    /// `true` if either is NaN.
     pub fn contains(&self, time: S, length: S) -> bool {
         is_no_number(length) || self.covers(length, self.other_motion().length_at(time))
     }
 
-    /// Whether a length of the ego's path and one of the other's belong to the region.
+    /// Whether a length of the ego's path and a length of the other's path lie in the region.
     pub(crate) fn covers(&self, length: S, other_length: S) -> bool {
         self.intervals(other_length).any(|interval| interval.contains(length))
     }
 
-    /// Points inside the region, as lengths of the ego's path and the other's; none where it is all but empty.
+    /// Points inside the region, as lengths of the ego's path and of the other's; none if the region is almost empty.
     pub(crate) fn inner_points(&self) -> impl Iterator<Item = [S; 2]> {
         let places = self.pieces().flat_map(|piece| {
             let Interval { lo, hi } = piece.other_length;
@@ -185,7 +187,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         places.flat_map(|at| self.intervals(at).map(move |interval| [interval.middle(), at]))
     }
 
-    /// The pieces, at least one.
+    /// The pieces of the region; there is at least one.
     pub fn pieces(&self) -> impl Iterator<Item = PieceRef<'a, S>> + Clone + use<'a, S> {
         let (pair, transposed) = (self.pair, self.transposed);
         self.pieces.clone().filter_map(move |piece| {
@@ -219,18 +221,18 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         if self.transposed { self.pair.first } else { self.pair.second }
     }
 
-    /// Length range along the path of the first agent of the pair, or of the second.
+    /// Range of lengths along the path of the first agent of the pair, or of the second.
     fn hull(&self, of_second: bool) -> Interval<S> {
         let mut parts = self.pieces.clone().map(|piece| if of_second { piece.second } else { piece.first });
         let first = parts.next().unwrap_or_default();
         parts.fold(first, Interval::hull)
     }
 
-    /// The intervals of all pieces at a length of the other's path, in no order, overlapping where pieces do.
+    /// The intervals of all pieces at a length of the other's path: unordered, and overlapping where pieces overlap.
     fn intervals(&self, at: S) -> Slices<'a, S> {
         let Self { pair, ref pieces, transposed, .. } = *self;
         let range = self.length();
-        // Of what is no number nothing can be told: no part of the region is free.
+        // At NaN the whole region counts as covered.
         Slices { pair, pieces: pieces.clone(), transposed, at, range, rest: is_no_number(at).then_some(range) }
     }
 }
@@ -242,16 +244,16 @@ struct Slices<'a, S: Scalar> {
     pieces: List<'a, S>,
     transposed: bool,
     at: S,
-    /// Length range of the region.
+    /// Range of lengths of the region.
     range: Interval<S>,
-    /// The second interval of the last piece, or what is there whatever the pieces are.
+    /// The second interval of the last piece; at NaN the whole range.
     rest: Option<Interval<S>>,
 }
 
 impl<S: Scalar> Iterator for Slices<'_, S> {
     type Item = Interval<S>;
 
-    // Adaptors make many copies of what they inline, and this is large.
+    // Not inlined: iterator adaptors would copy this large function many times.
     #[inline(never)]
     fn next(&mut self) -> Option<Interval<S>> {
         loop {
@@ -270,7 +272,7 @@ impl<S: Scalar> Iterator for Slices<'_, S> {
                     first
                 }
             };
-            // Both are rounded outward; what they share is the better bound.
+            // Both are rounded outward, so their intersection is the tighter bound.
             if slice.meets(self.range) {
                 return Some(slice.common(self.range));
             }
@@ -278,12 +280,12 @@ impl<S: Scalar> Iterator for Slices<'_, S> {
     }
 }
 
-/// By how much the combined radius of two agents may seem larger than it is \[m\]: the bound ε on what rounding adds to
-/// their regions, derived in `docs/errors.md`. Times have one of their own, [`Motion::time_excess`].
+/// Error bound ε of the regions of two agents \[m\]: rounding makes a region look as if the sum of the radii were
+/// larger, by ε at most. `docs/errors.md` derives it. Times have a bound of their own, [`Motion::time_excess`].
 ///
-/// It depends on the number format and on the larger [`Motion::extent`]; in floating point also on the way that an agent
-/// would go at its top speed in the whole time of its motion, in fixed point on the number of arcs. Neither the number of
-/// lines or phases nor the start times count.
+/// ε depends on the number format and on the larger [`Motion::extent`]. In floating point it also depends on the
+/// distance that an agent would go at its top speed during its whole motion, in fixed point on the number of arcs. It
+/// does not depend on the number of lines or phases, or on start times.
 pub fn excess<S: Scalar>(first: &Motion<'_, S>, second: &Motion<'_, S>) -> S {
     Pair::new(first, second).excess()
 }

@@ -1,13 +1,13 @@
 //! Lines and arcs, placed in the plane.
 //!
-//! A segment knows where it starts, its heading there, its curvature and its length; everything else of it is
-//! derived here, once, when it is built. A point of an arc is reached over the half chord,
+//! A segment is defined by its start, the heading there, its curvature and its length; everything else is derived once,
+//! when it is built. A point of an arc is computed from half the chord,
 //!
 //! ```text
 //! p(u) = p₀ + 2ϱ sin(h) e(ϑ + h),   h = u / 2ϱ  to the left,
 //! ```
 //!
-//! which keeps its relative accuracy for every radius, nearly straight arcs included.
+//! which keeps its relative accuracy for every radius, also for almost straight arcs.
 
 mod boxes;
 mod near;
@@ -55,24 +55,25 @@ pub struct Segment<S: Scalar> {
     heading: S::Angle,
     heading_at_end: S::Angle,
     pub(crate) curve: Curve<S>,
-    /// Length of the whole circle of an arc \[m\].
+    /// Circumference of the full circle of an arc \[m\].
     pub(crate) circumference: S,
     pub(crate) length: S,
-    /// Direction of the middle of an arc as seen from its centre, from that of its start; to the left.
+    /// Angle from the start to the middle of an arc, seen from its centre, as a direction; counted to the left.
     half_turn: Direction<S>,
-    /// Length of the path before this segment and up to its end \[m\].
+    /// Lengths of the path at the start and at the end of this segment \[m\].
     pub(crate) from: S,
     pub(crate) to: S,
     rest: Rest<S>,
     pub(crate) bounds: Bounds<S>,
-    /// Direction of the chord, and of the tightest box: its middle, and its half extents along and across \[m\].
+    /// The smallest box along the chord: direction of the chord, middle of the box, and its half extents along and
+    /// across \[m\].
     axis: Direction<S>,
     middle: Point<S>,
     half: [S; 2],
 }
 
-/// What rounding left out at the end of a segment: the next one takes it into account, so that errors do not add up
-/// along a path.
+/// Rounding errors at the end of a segment. The next segment takes them into account, so that they do not add up along
+/// a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Rest<S: Scalar> {
@@ -87,11 +88,11 @@ impl<S: Scalar> Rest<S> {
 }
 
 impl<S: Scalar> Segment<S> {
-    /// The line of length 0 at which a path begins.
+    /// The line of length 0 with which a path begins.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], also for a heading of so many turns that its direction is no longer right:
-    /// beyond 1024 rad in `f32`, 2²⁴ rad in `f64`.
+    /// [`Invalid::NonFinite`]; [`Invalid::OutOfRange`], also for a heading of so many turns that its direction is
+    /// inaccurate: beyond 1024 rad in `f32`, 2²⁴ rad in `f64`.
     pub fn standing(pose: Pose<S>) -> Result<Self, Invalid> {
         in_range(pose.position.x, "x")?;
         in_range(pose.position.y, "y")?;
@@ -137,15 +138,15 @@ impl<S: Scalar> Segment<S> {
     /// The arc of this radius \[m\] and length \[m\] that continues the path at the end of `self`.
     ///
     /// # Errors
-    /// As [`Segment::then_line`], [`Invalid::OutOfRange`] also for the diameter, the box of the arc (from half a turn
-    /// on that of its circle) and the heading at its end, as in [`Segment::standing`], [`Invalid::NonPositive`] and [`Invalid::TooSmall`] for the radius and
-    /// [`Invalid::SweepOverOneTurn`].
+    /// As [`Segment::then_line`]; [`Invalid::OutOfRange`] also for the diameter, the box of the arc (from half a turn
+    /// on that of its circle) and the heading at its end, as in [`Segment::standing`]; [`Invalid::NonPositive`] and
+    /// [`Invalid::TooSmall`] for the radius; [`Invalid::SweepOverOneTurn`].
     pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
         error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
         not_negative(length, "length")?;
         let circumference = S::Angle::circumference(radius);
-        // A full turn may come in with the rounding of `sweep * radius`.
+        // The length of a full turn may be a product `sweep * radius` with a rounding error.
         if length > circumference + S::slack(circumference) {
             return Err(Invalid::SweepOverOneTurn);
         }
@@ -164,11 +165,11 @@ impl<S: Scalar> Segment<S> {
         arc.checked()
     }
 
-    /// The same segment, at whose end the agent turns in place by an angle, to the left if it is positive: what continues the
-    /// path sets off in another heading. A disc does not move while it turns, so that a turn takes no length.
+    /// The same segment, followed by a turn in place by an angle, to the left if it is positive: the next segment
+    /// begins with the new heading. A disc does not move while it turns, so a turn has no length.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] for the heading after it, as in [`Segment::standing`].
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] for the heading after the turn, as in [`Segment::standing`].
     pub fn turned(mut self, by: S::Angle) -> Result<Self, Invalid> {
         if !by.is_finite() {
             return Err(Invalid::NonFinite("turn"));
@@ -179,7 +180,7 @@ impl<S: Scalar> Segment<S> {
         Ok(self)
     }
 
-    /// A segment of this shape at the end of `self`, as far as its end does not matter.
+    /// A segment of this shape at the end of `self`; its end is not valid yet.
     fn then(&self, curve: Curve<S>, circumference: S, length: S) -> Self {
         let (to, rounding) = self.to.sum(length);
         let (to, rest) = to.sum(rounding + self.rest.length);
@@ -204,7 +205,7 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
-    /// Puts the end where the length leads from the start, over the chord.
+    /// Computes the end from the start, over the chord.
     fn advance(&mut self) {
         let length = match self.curve {
             Curve::Line => self.length,
@@ -221,7 +222,7 @@ impl<S: Scalar> Segment<S> {
     }
 
     fn checked(self) -> Result<Self, Invalid> {
-        // All of it, not only its end: an arc may leave the arena and come back.
+        // The whole arc is checked, not only its end, because an arc may leave the range and come back.
         in_range(self.bounds.x.lo.min(-self.bounds.x.hi), "x")?;
         in_range(self.bounds.y.lo.min(-self.bounds.y.hi), "y")?;
         in_range(self.to, "length of the path")?;
@@ -244,12 +245,13 @@ impl<S: Scalar> Segment<S> {
         self.from
     }
 
-    /// Box around it \[m\].
+    /// Box around the segment \[m\].
     pub fn bounds(&self) -> Bounds<S> {
         self.bounds
     }
 
-    /// The point after `u` metres of this segment, `u` limited to `[0, length]`. One sine and cosine on an arc.
+    /// The point after `u` metres of this segment; `u` is clamped to `[0, length]`. Cost: one sine and cosine on an
+    /// arc.
     pub fn point_at(&self, u: S) -> Point<S> {
         if u >= self.length {
             self.end
@@ -260,7 +262,8 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
-    /// Angle of the direction of travel after `u` metres, `u` limited to `[0, length]`; at the end after a turn there.
+    /// Angle of the direction of travel after `u` metres; `u` is clamped to `[0, length]`. At the end it is the heading
+    /// after the turn there.
     pub fn heading_at(&self, u: S) -> S::Angle {
         if u >= self.length {
             return self.heading_at_end;
@@ -272,7 +275,8 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
-    /// How far so long a part of it may be from its chord: `w² / 8ϱ` at most, the error of linear interpolation over length.
+    /// Largest distance of a part of this length from its chord: `w² / 8ϱ`, the error of linear interpolation over
+    /// length.
     pub(crate) fn bulge(&self, way: S) -> S {
         match self.curve {
             Curve::Line => S::ZERO,
@@ -280,22 +284,22 @@ impl<S: Scalar> Segment<S> {
         }
     }
 
-    /// Centre of an arc of this radius.
+    /// Centre of an arc with this radius.
     pub(crate) fn centre(&self, radius: S) -> Point<S> {
         self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()))
     }
 
-    /// Whether it bends to the right: coordinates along it are then mirrored, so that all arcs turn left.
+    /// Whether the segment bends to the right. Coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
         matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })
     }
 
-    /// Direction at the end of an arc from that at its start; to the left.
+    /// Angle from the start to the end of an arc, as a direction; counted to the left.
     pub(crate) fn turn_at_end(&self) -> Direction<S> {
         self.half_turn.plus(self.half_turn)
     }
 
-    /// Where an arc lies as seen from its centre, for angles that are counted from the (mirrored) direction `from`.
+    /// The angles at which an arc lies, seen from its centre and counted from the (mirrored) direction `from`.
     pub(crate) fn sector(&self, from: Direction<S>) -> Sector<S::Unit> {
         let least = self.half_turn.cos - S::Unit::COARSE;
         Sector { from: [from.cos, from.sin], middle: [self.half_turn.cos, self.half_turn.sin], least }

@@ -1,10 +1,12 @@
-//! Sines, cosines and arctangents of every input there is, against those of `f64`, for the bounds of docs/errors.md:
+//! Compares the sine, cosine and arctangent of every possible input with those of `f64`, for the bounds of
+//! docs/errors.md:
 //!
 //! ```text
 //! cargo run --profile checked -p pcr-fixed --example exhaust -- [turns-sine] [f32-arctangent] [f32-sine]
 //! ```
 //!
-//! Prints the largest errors; the exit status is 1 if one is beyond its bound, or if a bound is idle. Two minutes of a core.
+//! Prints the largest errors. The exit status is 1 if one exceeds its bound, or if a bound is much too large. Takes two
+//! minutes on one core.
 
 use pcr_core::Radians;
 use pcr_core::scalar::Angle;
@@ -16,30 +18,30 @@ use std::process::ExitCode;
 /// Unit roundoff of `f32`.
 const U: f64 = 0.5 * f32::EPSILON as f64;
 
-/// The largest of each figure.
+/// The largest value of each figure.
 type Worst = [f64; 3];
 
-/// A run over all inputs: name, unit of the figures, what they are, their bounds, and the inputs, by number.
+/// A run over all inputs.
 struct Run {
-    /// Its name in the ledger.
+    /// Name in the ledger.
     name: &'static str,
-    /// What the figures are, with their unit.
+    /// What the figures are, with their units.
     figures: [&'static str; 3],
-    /// What they may be.
+    /// Bounds of the figures.
     bounds: Worst,
-    /// The numbers of the inputs.
+    /// The inputs, by number.
     inputs: Range<u32>,
-    /// The figures of one input.
+    /// Computes the figures of one input.
     at: fn(u32) -> Worst,
 }
 
-/// All of them.
+/// All runs.
 const RUNS: [Run; 3] = [
     Run {
         name: "turns-sine",
         figures: ["sine [2^-30]", "cosine [2^-30]", "both as a vector [2^-30]"],
         bounds: [1.18, 1.12, 1.51],
-        // A quarter turn about 0: the others are its swaps and signs.
+        // A quarter turn around 0: the other quarters follow by swaps and signs.
         inputs: 0..1 << 30,
         at: turns_sine,
     },
@@ -90,7 +92,7 @@ fn float_sine(bits: u32) -> Worst {
 }
 
 impl Run {
-    /// The largest figures, on all processors.
+    /// The largest figures, computed on all processors.
     fn worst(&self) -> Worst {
         let threads = std::thread::available_parallelism().map_or(1, |count| count.get() as u32);
         std::thread::scope(|scope| {
@@ -106,7 +108,7 @@ impl Run {
     }
 }
 
-/// What is not a number is beyond every bound.
+/// NaN exceeds every bound.
 fn larger(a: Worst, b: Worst) -> Worst {
     [0, 1, 2].map(|k| {
         if a[k] >= b[k] {
@@ -119,7 +121,7 @@ fn larger(a: Worst, b: Worst) -> Worst {
     })
 }
 
-/// Whether all are within their bounds, and no bound is idle.
+/// Whether all figures are within their bounds, and no bound is much too large.
 fn within(worst: Worst, bounds: Worst) -> bool {
     worst.iter().zip(bounds).all(|(worst, bound)| 0.95 * bound < *worst && *worst <= bound)
 }

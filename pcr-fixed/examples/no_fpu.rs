@@ -1,4 +1,4 @@
-//! What a controller without an FPU does: all memory is there from the beginning, and every number is fixed-point. The same
+//! A program for a controller without an FPU: all memory is static, and every number is in fixed point. The same
 //! program runs on a desktop:
 //!
 //! ```text
@@ -8,18 +8,18 @@
 use pcr_core::{Ecm, Invalid, Limits, Motion, Path, Piece, Point, Pose, Profile, Region, Turn, earliest_start};
 use pcr_fixed::{Q16, Turns};
 
-/// What the controller decided: all that it has to say.
+/// The decision of the controller; it outputs nothing else.
 #[derive(Debug)]
 enum Decision {
-    /// Set off so many seconds later.
+    /// Set off later by this time \[s\].
     Start(Q16),
     /// No start is late enough.
     Never,
-    /// The table is too small, or a path is not what it should be: stop, and say so.
+    /// The table is too small, or a path is invalid: stop and report it.
     Fault,
 }
 
-/// The numbers of a format come from `f64` in tests and tables only; a controller is sent the bits.
+/// Conversion from `f64` is for tests and tables only; a controller receives the bits.
 fn q(metres: f64) -> Q16 {
     Q16::from_f64(metres).expect("within 32768 m")
 }
@@ -36,7 +36,7 @@ fn decide(table: &mut Ecm<Q16, [Region; 8], [Piece<Q16>; 16]>) -> Result<Decisio
     let profile = Profile::rest_to_rest(paths[0].as_path().length(), limits)?;
     let motion = |path| Motion::new(path, profile.as_profile(), q(0.4), q(0.0));
     let fleet = [motion(paths[0].as_path())?.for_plan()?, motion(paths[1].as_path())?.for_plan()?];
-    // A table that is full, or that of another fleet, is a fault, never an empty answer.
+    // A table that is full, or that of another fleet, is a fault and never an empty answer.
     if table.fill(&fleet).is_err() {
         return Ok(Decision::Fault);
     }
@@ -47,7 +47,7 @@ fn decide(table: &mut Ecm<Q16, [Region; 8], [Piece<Q16>; 16]>) -> Result<Decisio
 }
 
 fn main() {
-    // On a controller: a `static`, as it should not be on the stack.
+    // On a controller this would be a `static`, to keep it off the stack.
     let mut table = Ecm::new([Region::EMPTY; 8], [Piece::EMPTY; 16]);
     match decide(&mut table).unwrap_or(Decision::Fault) {
         Decision::Start(delay) => {

@@ -1,11 +1,11 @@
-//! Conversions from floating point, rounded to nearest, and back, exact.
+//! Conversions from floating point, rounded to nearest, and back, which are exact.
 
 use crate::q::Q;
 use crate::sine::Sine;
 use crate::turns::Turns;
 use core::fmt;
 
-/// The value is not a number of the format: NaN, or too large.
+/// The value cannot be represented in the format: it is NaN or too large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OutOfRange;
@@ -20,7 +20,7 @@ impl core::error::Error for OutOfRange {}
 
 /// The integer nearest to `value`, halves away from 0, if it fits into 32 bits.
 const fn nearest(value: f64) -> Option<i32> {
-    // NaN fails this as well.
+    // NaN fails this test as well.
     if !(value > i32::MIN as f64 - 0.5 && value < i32::MAX as f64 + 0.5) {
         return None;
     }
@@ -34,13 +34,13 @@ const fn nearest(value: f64) -> Option<i32> {
 impl<const F: u32> Q<F> {
     const DIGITS_OF_ONE: f64 = (1_i64 << F) as f64;
 
-    /// The nearest number of the format, halves away from 0.
+    /// The nearest number of the format; halves are rounded away from 0.
     ///
     /// # Errors
-    /// [`OutOfRange`] for NaN and for what is beyond the 32 bits. The constructors of `pcr-core` accept an eighth
-    /// of that range, [`Scalar::LIMIT`](pcr_core::Scalar::LIMIT).
+    /// [`OutOfRange`] for NaN and for values beyond the 32 bits. The constructors of `pcr-core` accept an eighth of
+    /// that range, [`Scalar::LIMIT`](pcr_core::Scalar::LIMIT).
     pub const fn from_f64(value: f64) -> Result<Self, OutOfRange> {
-        // A power of two: the product is exact.
+        // The factor is a power of two, so the product is exact.
         match nearest(value * Self::DIGITS_OF_ONE) {
             Some(bits) => Ok(Self::from_bits(bits)),
             None => Err(OutOfRange),
@@ -94,17 +94,17 @@ impl Sine {
 }
 
 impl Turns {
-    /// The nearest angle, whole turns taken off; right to 10⁻⁹ rad up to a million turns.
+    /// The nearest angle, without whole turns; right to 10⁻⁹ rad up to a million turns.
     ///
     /// # Errors
-    /// [`OutOfRange`] for NaN and above 10⁹ turns, where an `f64` does not know the angle any more.
+    /// [`OutOfRange`] for NaN and above 10⁹ turns, where an `f64` is too coarse for an angle.
     pub const fn from_radians(radians: f64) -> Result<Self, OutOfRange> {
         const MOST_TURNS: f64 = 1e9;
         let turns = radians / core::f64::consts::TAU;
         if !(turns > -MOST_TURNS && turns < MOST_TURNS) {
             return Err(OutOfRange);
         }
-        // The part of a turn first, so that no digit of it is lost.
+        // The fraction of a turn is taken first, so that none of its digits is lost.
         let part = turns - (turns as i64) as f64;
         let bits = part * (1_i64 << 32) as f64;
         let whole = bits as i64;
@@ -159,14 +159,14 @@ mod tests {
         for quarters in [1.0, 5.0, 401.0, -3.0, -403.0] {
             assert_eq!(Turns::from_radians(quarters * FRAC_PI_2), Ok(Turns::QUARTER), "{quarters}");
         }
-        // An exact half of the last place, whose quotient by 2π is exact as well.
+        // An exact half of the last place; its quotient by 2π is exact as well.
         assert_eq!(
             [TAU, -TAU].map(|turn| Turns::from_radians(turn * 1.25).map(Turns::to_bits)),
             [Ok(1 << 30), Ok(-1 << 30)]
         );
         assert_eq!([0.5, 1.5, 2.5].map(turn), [Ok(1), Ok(2), Ok(3)]);
         assert_eq!([-0.5, -1.5, -2.5].map(turn), [Ok(-1), Ok(-2), Ok(-3)]);
-        // As far as an `f64` knows an angle.
+        // As accurately as an `f64` represents the angle.
         for k in 1..1000 {
             let radians = TAU * (1_048_576.0 + f64::from(k) / 4_294_967_296.0);
             let digits = ((radians / TAU).fract() * 4_294_967_296.0).round() as i32;

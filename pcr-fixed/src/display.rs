@@ -1,19 +1,19 @@
-//! Numbers as decimals, without floating point.
+//! Formats numbers as decimals, without floating point.
 
 use crate::q::Q;
 use crate::turns::Turns;
 use core::fmt;
 
-/// Most decimals that a binary fraction of 24 bits has.
+/// Largest number of decimals of a binary fraction of 24 bits.
 const MOST: usize = 24;
 
-/// Writes `magnitude / 2^places` with a sign; all decimals, or those of the precision asked for, the last one rounded,
-/// halves up.
+/// Writes `magnitude / 2^places` with a sign: all decimals, or as many as the requested precision; the last one is
+/// rounded, halves up.
 fn decimal(f: &mut fmt::Formatter<'_>, negative: bool, magnitude: u32, places: u32) -> fmt::Result {
     let mask = (1_u64 << places) - 1;
     let mut whole = u64::from(magnitude) >> places;
     let mut rest = u64::from(magnitude) & mask;
-    // The point and the decimals.
+    // The decimal point and the decimals.
     let mut text = [b'0'; MOST + 1];
     text[0] = b'.';
     let asked = f.precision();
@@ -48,21 +48,21 @@ fn decimal(f: &mut fmt::Formatter<'_>, negative: bool, magnitude: u32, places: u
     f.write_str(core::str::from_utf8(shown).unwrap_or_default())
 }
 
-/// All decimals, or as many as asked for.
+/// Writes all decimals, or as many as requested.
 impl<const F: u32> fmt::Display for Q<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         decimal(f, self.to_bits() < 0, self.to_bits().unsigned_abs(), F)
     }
 }
 
-/// As [`Display`](fmt::Display): a number is its value.
+/// As [`Display`](fmt::Display): the value of the number.
 impl<const F: u32> fmt::Debug for Q<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
-/// The bits: they tell all angles apart.
+/// Writes the bits, which differ for different angles.
 impl fmt::Debug for Turns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Turns({} / 2^32)", self.to_bits())
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(all, ["0", "-1.5", "4096", "0.0625"]);
         assert_eq!(format!("{:?} {:+}", Q16::LAST_DIGIT, Q16::ONE), "0.0000152587890625 +1");
         assert_eq!(format!("{} {}", Q12::from_bits(-1), Q12::from_bits(i32::MIN)), "-0.000244140625 -524288");
-        // Halves up; what carries over goes on to the digit before, and to the whole.
+        // Halves are rounded up; a carry propagates to the digit before, and to the integer part.
         let one = [0.25, 0.75, 0.249, 0.96, 9.96, -9.96].map(|x| format!("{:.1}", number(x)));
         assert_eq!(one, ["0.3", "0.8", "0.2", "1.0", "10.0", "-10.0"]);
         let two = [0.125, 0.994, 0.996, 1.5, 0.495_1].map(|x| format!("{:.2}", number(x)));

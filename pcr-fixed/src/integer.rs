@@ -1,8 +1,8 @@
-//! The integer operations that are more than one instruction, each in one place.
+//! Integer operations that take more than one instruction.
 
 /// `√square`, rounded to nearest.
 ///
-/// The root of a number below 2⁶² is below 2³¹; larger ones do not come out of the kernels and saturate.
+/// The root of a number below 2⁶² is below 2³¹. Larger numbers do not occur in the kernels; they saturate.
 pub(crate) fn sqrt(square: u64) -> u32 {
     let floor = square.isqrt();
     // (r + 1/2)² = r² + r + 1/4
@@ -10,15 +10,15 @@ pub(crate) fn sqrt(square: u64) -> u32 {
     u32::try_from(root).unwrap_or(u32::MAX)
 }
 
-/// `dividend / divisor`, rounded down; saturates, also for a divisor of 0.
+/// `dividend / divisor`, rounded down. Saturates, also for a divisor of 0.
 ///
-/// The one division of this crate. It has no instruction on a small processor; those who call it say why they do.
+/// The only division of this crate. Small processors have no instruction for it; the callers say why they need it.
 pub(crate) fn divide(dividend: u64, divisor: u32) -> u32 {
     let quotient = dividend.checked_div(u64::from(divisor)).unwrap_or(u64::MAX);
     u32::try_from(quotient).unwrap_or(u32::MAX)
 }
 
-/// `a · b / 2^SHIFT`, rounded to nearest, for a result that fits.
+/// `a · b / 2^SHIFT`, rounded to nearest. The result must fit.
 pub(crate) fn multiply<const SHIFT: u32>(a: i32, b: i32) -> i32 {
     ((i64::from(a) * i64::from(b) + (1 << (SHIFT - 1))) >> SHIFT) as i32
 }
@@ -30,7 +30,7 @@ mod tests {
     #[test]
     fn roots_are_rounded_to_nearest() {
         for root in [1, 2, 1000, 46_341, (1 << 31) - 1, u64::from(u32::MAX) - 1] {
-            // r - 1/2 and r + 1/2 squared are r² ∓ r + 1/4.
+            // (r - 1/2)² and (r + 1/2)² are r² ∓ r + 1/4.
             let square = root * root;
             let found = [square - root, square - root + 1, square, square + root, square + root + 1].map(sqrt);
             assert_eq!(found.map(u64::from), [root - 1, root, root, root, root + 1]);

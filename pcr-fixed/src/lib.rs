@@ -1,7 +1,7 @@
 //! Fixed-point number types for [`pcr_core`]: the same closed forms on processors without a floating-point unit.
 //!
-//! Number types and nothing else; the algorithm is that of `pcr-core`. No floating-point operation is made unless a
-//! value is converted from or to one.
+//! This crate contains number types only; the algorithms are those of `pcr-core`. It uses floating-point operations
+//! only to convert values from or to floating point.
 //!
 //! | type | last digit | arena and times up to | meant for |
 //! |---|---|---|---|
@@ -9,10 +9,11 @@
 //! | [`Q16`] | 2⁻¹⁶ m = 15 µm | ±4096 m, 68 min | halls, yards |
 //! | [`Q12`] | 2⁻¹² m = 0.24 mm | ±65 km, 18 h | ports, fields, mines |
 //!
-//! Speeds and accelerations have the same digits, in m/s and m/s². Angles are [`Turns`]: 32-bit fractions of a turn, which
-//! wrap as angles do. Whatever does not fit is refused by the constructors of `pcr-core`; afterwards nothing overflows.
-//! `docs/errors-fixed.md` has the bounds of its sums, `docs/errors.md` that on the regions: they contain the exact ones,
-//! and lie within those of a radius that is larger by 16 last digits and one for each arc ([`pcr_core::excess`]).
+//! Speeds and accelerations have the same resolution, in m/s and m/s². Angles are [`Turns`]: 32-bit fractions of a
+//! turn, which wrap around as angles do. The constructors of `pcr-core` refuse values that do not fit; after that
+//! nothing overflows. `docs/errors-fixed.md` bounds the sums. `docs/errors.md` bounds the regions: they contain the
+//! exact ones, and lie within those for a radius that is larger by 16 last digits plus one for each arc
+//! ([`pcr_core::excess`]).
 //!
 //! ```
 //! use pcr_core::{Limits, Motion, Path, Point, Pose, Profile};
@@ -29,7 +30,8 @@
 //! ```
 //!
 //! # Features
-//! `serde`, `defmt`: their traits on the number types; on the wire a number is its bits, an `i32`.
+//! `serde`, `defmt`: implement the traits of these crates for the number types. A number is serialized as its bits, an
+//! `i32`.
 #![no_std]
 
 mod convert;

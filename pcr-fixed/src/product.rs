@@ -1,11 +1,11 @@
-//! Products of two numbers, not narrowed.
+//! The product of two numbers in twice the width.
 
 use crate::integer::sqrt;
 use crate::q::Q;
 use core::ops::{Add, Neg, Sub};
 use pcr_core::scalar::Wide;
 
-/// Product of two [`Q`]: 64 bits, `2 F` of them after the binary point, nothing lost.
+/// Product of two [`Q`]: 64 bits, `2 F` of them after the binary point; exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Product<const F: u32>(i64);
@@ -52,9 +52,9 @@ impl<const F: u32> Wide<Q<F>> for Product<F> {
         Q::from_bits(root.min(i32::MAX as u32) as i32)
     }
     fn narrow(self) -> Q<F> {
-        /// Twice the limit, as a quotient: three such numbers can be added.
+        /// Results saturate at twice the limit, like quotients, so that three of them can be added.
         const MOST: i64 = 1 << 29;
-        // Half a last digit is added after all other digits are gone, where it cannot overflow.
+        // Half a last digit is added after the other digits are dropped, so that it cannot overflow.
         let nearest = ((self.0 >> (F - 1)) + 1) >> 1;
         Q::from_bits(nearest.clamp(-MOST, MOST) as i32)
     }

@@ -1,11 +1,11 @@
-//! The number type, and its sums.
+//! The fixed-point number type, and its addition and subtraction.
 
 use core::ops::{Add, Neg, Sub};
 
 /// Fixed-point number of 32 bits, `F` of them after the binary point: a length \[m\], time \[s\], speed \[m/s\] or
 /// acceleration \[m/s²\]. `F` is 8 to 24.
 ///
-/// Sums and differences are plain: they overflow where an integer would, which the constructors of `pcr-core` exclude.
+/// Addition and subtraction overflow like those of integers; the constructors of `pcr-core` prevent that.
 ///
 /// ```compile_fail
 /// let _ = pcr_fixed::Q::<32>::from_bits(1) + pcr_fixed::Q::<32>::from_bits(1); // no room for a metre

@@ -1,8 +1,8 @@
-//! Time and length of a motion at constant acceleration, from its slow end.
+//! Time and length of a motion at constant acceleration, counted from its slow end.
 //!
-//! Through both ends of the ramp, with 31 significant bits: the acceleration itself, with the digits of the format, would
-//! miss the far end by half its last digit times half the square of the duration, and the speed at the fast end by half
-//! its last digit times half the duration.
+//! The maps go through both ends of the ramp, with 31 significant bits. With the acceleration instead, rounded to the
+//! format, they would miss the far end by half a last digit times half the square of the duration; with the speed at
+//! the fast end, by half a last digit times half the duration.
 
 use crate::q::Q;
 use crate::scaled::Scaled;
@@ -12,17 +12,17 @@ fn scaled<const F: u32>(number: Q<F>) -> Scaled {
     Scaled::new(i64::from(number.to_bits()), -(F as i32))
 }
 
-/// A number whose integer part counts last digits.
+/// Converts a number whose unit is the last digit of the format.
 fn rounded<const F: u32>(number: Scaled) -> Q<F> {
     Q::from_bits(number.times(Scaled::new(1, F as i32)).round())
 }
 
-/// By how much the mean speed of the ramp is above that of its slow end.
+/// Mean speed of the ramp minus the speed at its slow end.
 fn gain<const F: u32>(ramp: Ramp<Q<F>>) -> Scaled {
     scaled(ramp.length).over(scaled(ramp.duration)).plus(scaled(ramp.slow).minus())
 }
 
-/// `(v + (L/T - v) t/T) t`. Two divisions.
+/// `(v + (L/T - v) t/T) t`. Cost: two divisions.
 pub(crate) fn length<const F: u32>(ramp: Ramp<Q<F>>, elapsed: Q<F>) -> Q<F> {
     if elapsed.to_bits() <= 0 {
         return Q::from_bits(0);
@@ -32,7 +32,7 @@ pub(crate) fn length<const F: u32>(ramp: Ramp<Q<F>>, elapsed: Q<F>) -> Q<F> {
     rounded(mean.times(time))
 }
 
-/// `2 s / (v + √(v² + 4 (L/T - v) s/T))` for a length `s` of `L`. A root, and three divisions.
+/// `2 s / (v + √(v² + 4 (L/T - v) s/T))` for a length `s` of `L`. Cost: a root and three divisions.
 pub(crate) fn time<const F: u32>(ramp: Ramp<Q<F>>, length: Q<F>) -> Q<F> {
     if length.to_bits() <= 0 {
         return Q::from_bits(0);
@@ -53,7 +53,7 @@ mod tests {
     }
 
     fn ramp(slow: f64, fast: f64, duration: f64) -> Ramp<Q16> {
-        // The acceleration is not looked at.
+        // The acceleration is not used.
         let length = q((slow + fast) / 2.0 * duration);
         Ramp { slow: q(slow), fast: q(fast), acceleration: q(0.0), duration: q(duration), length }
     }
@@ -87,14 +87,14 @@ mod tests {
         }
     }
 
-    /// A length that was rounded down, so that the mean speed is below that of the slow end.
+    /// The length is rounded down, so that the mean speed is below that of the slow end.
     #[test]
     fn a_ramp_that_falls_by_rounding_has_an_end() {
         let digit = Q16::LAST_DIGIT.to_f64();
         let falling = Ramp { length: q(1.0 - digit), ..ramp(1.0, 1.0, 1.0) };
         assert_eq!(time(falling, falling.length), falling.duration);
         let stopping = Ramp { length: Q16::LAST_DIGIT, ..ramp(1.0, 1.0, 1.0) };
-        // v² + 4 (L/T - v) s/T is below 0: as at the constant speed, twice the mean of which is left.
+        // v² + 4 (L/T - v) s/T is below 0 and counts as 0; the result is that of a constant speed of v/2.
         assert_eq!(time(stopping, q(0.5)), q(1.0));
     }
 }

@@ -1,4 +1,4 @@
-//! Where an arc runs at an offset from a line or circle: a quadratic in the tangent of half the angle.
+//! Roots of a quadratic in the tangent of half the angle: where an arc runs at an offset from a line or circle.
 
 use crate::scaled::Scaled;
 use crate::sine::Sine;
@@ -6,12 +6,13 @@ use crate::trigonometry::atan2;
 use crate::turns::Turns;
 use pcr_core::scalar::Sector;
 
-/// The angles `φ + 2 atan τ` with `a τ² + 2 b τ + g = 0`, φ where the sector counts from, for equations `[a, b, g, doubt]`: where
-/// they are real, or would be for an `a` and a `g` that are off by `doubt`.
+/// The angles `φ + 2 atan τ` with `a τ² + 2 b τ + g = 0`, for equations `[a, b, g, doubt]`; φ is the angle from which
+/// the sector counts. Roots that would be real with an error of up to `doubt` in `a` and `g` are included.
 ///
-/// The coefficients are products of 64 bits, of three different sizes if the two circles are: each keeps 31 bits of its
-/// own, which is a relative error of 2⁻³⁰ in each, and no product of more than 64 bits is formed. The angles are right to
-/// 2⁻³⁰ of a turn for the coefficients so perturbed. One root an equation, and a division an angle.
+/// The coefficients are products of 64 bits. If the two circles differ in size, they have three different magnitudes.
+/// Each one keeps 31 bits of its own, which is a relative error of 2⁻³⁰ in each, and no product has more than 64 bits.
+/// The angles are right to 2⁻³⁰ of a turn for coefficients with these errors. Cost: one root for each equation, and a
+/// division for each angle.
 pub(crate) fn half_tangent(
     equations: impl Iterator<Item = [i64; 4]>,
     sector: Sector<Sine>,
@@ -20,7 +21,7 @@ pub(crate) fn half_tangent(
     let mut from = None;
     for equation in equations {
         for [n, m] in half_tangents(equation).into_iter().flatten() {
-            // Not both below 0, where the sum of their squares would not fit.
+            // Both must not be below 0, because the sum of their squares would not fit.
             let (n, m) = if m.is_negative() { (n.minus(), m.minus()) } else { (n, m) };
             let [n, m] = n.aligned(m);
             if may_lie_in(sector, n, m) {
@@ -32,23 +33,23 @@ pub(crate) fn half_tangent(
     }
 }
 
-/// The real `τ` with `a τ² + 2 b τ + g = 0`, as fractions: a = 0 is half a turn.
+/// The real `τ` with `a τ² + 2 b τ + g = 0`, as fractions; a = 0 gives half a turn.
 fn half_tangents(equation: [i64; 4]) -> [Option<[Scaled; 2]>; 2] {
     let [a, b, g, doubt] = equation.map(|coefficient| Scaled::new(coefficient, 0));
     let discriminant = b.times(b).plus(a.times(g).minus());
     if discriminant.is_negative() {
         let within_doubt = !discriminant.plus(doubt.times(a.plus(g).magnitude())).is_negative();
-        // τ = -b/a = -g/b, by the larger one of the coefficients that are in doubt.
+        // τ = -b/a = -g/b, computed with the larger of the two uncertain coefficients.
         let larger = !a.magnitude().plus(g.magnitude().minus()).is_negative();
         return [within_doubt.then_some(if larger { [b.minus(), a] } else { [g, b.minus()] }), None];
     }
-    // τ = q/a and τ = g/q with the sign that adds magnitudes.
+    // τ = q/a and τ = g/q, with the sign that adds magnitudes.
     let root = discriminant.sqrt();
     let q = if b.is_negative() { root.plus(b.minus()) } else { root.plus(b).minus() };
     [Some([q, a]), Some([g, q])]
 }
 
-/// Whether the angle may lie in the sector. In so few bits that no product has more than 32: cosines are off by less
+/// Whether the angle may lie in the sector. Uses so few bits that no product has more than 32; cosines are off by less
 /// than 2⁻⁹.
 fn may_lie_in(sector: Sector<Sine>, n: i32, m: i32) -> bool {
     let [n, m] = [n, m].map(|term| term >> 16);
@@ -68,7 +69,7 @@ mod tests {
     use pcr_core::scalar::Unit;
     use std::vec::Vec;
 
-    /// Between two different ones there would be a gap that is none.
+    /// Two different roots would have a gap between them that does not exist.
     #[test]
     fn roots_that_are_real_by_doubt_alone_are_one() {
         let (unit, off) = (1_i64 << 30, 1_i64 << 12);
@@ -81,14 +82,15 @@ mod tests {
                 roots
             };
             let [root] = roots(2 * off)[..] else { panic!("not one root: {a} {b} {g}") };
-            // τ = ±1, right to what the doubt of a coefficient is worth.
+            // τ = ±1, within the effect of the doubt of a coefficient.
             let quarter = if (a < 0) == (b < 0) { -Turns::QUARTER } else { Turns::QUARTER };
             assert!((root - quarter).to_bits().abs() <= 1 << 14, "{root:?}");
             assert_eq!(roots(off / 4), []);
         }
     }
 
-    /// (τ - 1)(τ + 2); and equations that are real by doubt alone, of which the larger coefficient tells the root.
+    /// (τ - 1)(τ + 2); and equations that are real only because of the doubt, whose root is computed with the larger
+    /// coefficient.
     #[test]
     fn roots_are_those_of_the_equation() {
         let one = f64::from(1 << 30);
@@ -118,7 +120,8 @@ mod tests {
         near(turned, &[-2.0, 1.0]);
     }
 
-    /// Both terms with 15 digits of 1 after the sign: negative, their squares would be 2³⁰ each, and the sum overflow.
+    /// Both terms have 15 leading ones: if they stayed negative, their squares would be 2³⁰ each, and the sum would
+    /// overflow.
     #[test]
     fn a_denominator_is_positive_so_that_squares_fit() {
         let (a, b) = ((1 << 31) - 2, 1 - (1 << 30));
@@ -135,7 +138,7 @@ mod tests {
         assert!(!may_lie_in(half_circle, (1 << 30) + (1 << 22), 1 << 30));
     }
 
-    /// Whatever is left out lies outside: an angle a little inside of the sector never is.
+    /// Angles that are left out lie outside; an angle a little inside of the sector is never left out.
     #[test]
     fn sectors_leave_out_what_lies_outside_and_nothing_else() {
         let sine = |x: f64| Sine::from_bits((x * f64::from(1 << 30)) as i32);

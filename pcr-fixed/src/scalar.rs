@@ -1,4 +1,4 @@
-//! How the number type fulfils the contract of `pcr-core`.
+//! Implements the traits of `pcr-core` for the number type.
 
 use crate::integer::divide;
 use crate::product::Product;
@@ -9,16 +9,16 @@ use crate::{ramp, roots};
 use pcr_core::Scalar;
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 
-/// Largest bits that constructors accept: eight times that is what the kernels need (docs/errors-fixed.md).
+/// Largest bits that constructors accept: the kernels need eight times as much (docs/errors-fixed.md).
 const LIMIT: i32 = 1 << 28;
 
-/// At which quotients saturate.
+/// Quotients saturate at this.
 const MOST: u64 = 2 * LIMIT as u64;
 
-/// The residual that rounding may cause, in last digits, in a small arena: 7.2 by docs/errors.md, and 0.8 for what
+/// Bound on rounding errors in a small arena, in last digits: 7.2 by docs/errors.md, plus 0.8 for the part that
 /// [`Scalar::drift`] leaves out.
 const SLACK: i32 = 8;
-/// Directions and angles are right to a few 2⁻³⁰: the residual grows by 16 of these parts of the extent, of which 11.6 are
+/// Directions and angles are right to a few 2⁻³⁰: the bound grows by 16 times 2⁻³⁰ of the extent, of which 11.6 are
 /// needed.
 const SLACK_SHIFT: u32 = 26;
 
@@ -29,7 +29,7 @@ impl<const F: u32> Scalar for Q<F> {
 
     const ZERO: Self = Self::from_bits(0);
     const LIMIT: Self = Self::from_bits(LIMIT);
-    /// Products keep all their digits.
+    /// Products keep all their digits, so the least radius is a last digit.
     const LEAST: Self = Self::LAST_DIGIT;
 
     fn is_finite(self) -> bool {
@@ -39,7 +39,7 @@ impl<const F: u32> Scalar for Q<F> {
         self.0 as u32
     }
     fn millimetres(self) -> u32 {
-        // Not above 2³¹ for 12 digits and more behind the point.
+        // At most 2³¹ for 12 or more fraction bits.
         (i64::from(self.0.max(0)).wrapping_mul(1000) >> F) as u32
     }
     fn times(self, rhs: Self) -> Product<F> {
@@ -54,7 +54,7 @@ impl<const F: u32> Scalar for Q<F> {
     fn half(self) -> Self {
         Self(self.0 >> 1)
     }
-    /// A length by a speed, a speed by an acceleration: what the constructor of a profile divides.
+    /// A length by a speed, or a speed by an acceleration: the divisions of the constructor of a profile.
     fn quotient(self, divisor: Self) -> Self {
         let (dividend, by) = (u64::from(self.0.unsigned_abs()) << F, divisor.0.unsigned_abs());
         let magnitude = if dividend == 0 {
@@ -73,7 +73,7 @@ impl<const F: u32> Scalar for Q<F> {
             if product >= MOST * u64::from(by) { MOST as u32 } else { divide(product + u64::from(by >> 1), by) };
         Self(signed(magnitude, (self.0 < 0) != (part.0 < 0)))
     }
-    /// The one division of two lines that cross: their distance by the sine of their angle.
+    /// The only division for two lines that cross: their distance by the sine of their angle.
     fn quotient_unit(self, divisor: Sine) -> Option<Self> {
         let (bits, by) = (divisor.to_bits(), divisor.to_bits().unsigned_abs());
         let dividend = u64::from(self.0.unsigned_abs()) << Sine::FRACTION_BITS;
@@ -83,11 +83,11 @@ impl<const F: u32> Scalar for Q<F> {
     fn unit_vector(x: Self, y: Self, _: Self) -> [Sine; 2] {
         Sine::unit_vector(x.0, y.0)
     }
-    /// The difference itself: what cancels in floating point is exact here, and `b` is a root rounded to nearest.
+    /// The plain difference: it cancels in floating point but is exact here, and `b` is a root rounded to nearest.
     fn difference(a: Self, b: Self, _: Product<F>) -> Self {
         a - b
     }
-    /// `-b ± √(b² - g)`: either is off by the rounding of the root, half a last digit.
+    /// `-b ± √(b² - g)`: both are off by the rounding error of the root, half a last digit.
     fn quadratic_roots(b: Self, g: Product<F>, doubt: Product<F>) -> Option<[Self; 2]> {
         let discriminant = b.times(b) - g;
         if discriminant < -doubt {
@@ -127,8 +127,9 @@ impl<const F: u32> Scalar for Q<F> {
     fn rounding(of: Self) -> Self {
         Self(1 + (of.0 >> 28))
     }
-    /// Half a last digit of the chord of each arc; the rounding of its angles, 3 · 2⁻³⁰ of the span; twice that for the points
-    /// of an arc, whose angles are rounded anew. Up to 0.4 of a last digit are left out: part of the slack.
+    /// Half a last digit of the chord for each arc; the rounding of its angles, 3 · 2⁻³⁰ of the span; and twice that
+    /// for the points of an arc, whose angles are rounded again. Up to 0.4 of a last digit are left out here and
+    /// included in the slack.
     fn drift(arcs: usize, span: Self) -> Self {
         const UNIT: i64 = 1 << 30;
         if arcs == 0 {
@@ -139,7 +140,7 @@ impl<const F: u32> Scalar for Q<F> {
     }
 }
 
-/// A number of this magnitude, below 2³¹.
+/// The number with this magnitude, which is below 2³¹, and this sign.
 fn signed(magnitude: u32, negative: bool) -> i32 {
     if negative { -(magnitude as i32) } else { magnitude as i32 }
 }
@@ -158,7 +159,7 @@ mod tests {
         Q16::from_bits(bits as i32)
     }
 
-    /// Of either sign, up to the limit.
+    /// Numbers of either sign, up to the limit.
     fn numbers() -> Vec<i64> {
         let random = (1..30_i64).map(|k| (k * k * 7_919_777) % (L >> (k % 20)));
         [1, 2, 3, 7, 65_535, 65_536, 65_537, L - 1, L].into_iter().chain(random).flat_map(|x| [x, -x]).collect()
@@ -203,7 +204,7 @@ mod tests {
         assert_eq!([0, L - 1, L].map(|of| Q16::rounding(q(of)).0), [1, 1, 2]);
         assert_eq!(Q16::tolerance(q(L)).0, 16 * 12);
         assert_eq!(Q16::lag(q(1 << 16), q(L)).0, 0);
-        // Half a digit for each arc and 3/2^30 of the span for it and two more, and 0.6.
+        // Half a digit for each arc, 3/2^30 of the span for each arc and two more, and 0.6.
         assert_eq!([0, 1, 2, 3, 8, 9].map(|arcs| Q16::drift(arcs, q(0)).0), [0, 1, 1, 2, 4, 5]);
         assert_eq!([0, 1, 2, 3].map(|arcs| Q16::drift(arcs, q(L)).0), [0, 3, 4, 5]);
     }
@@ -232,7 +233,7 @@ mod tests {
         for _ in 0..1000 {
             (at, rest) = at.advance(rest, q(1), by);
         }
-        // A third of 2^30, less a third of a digit.
+        // A third of 2^30, minus a third of a digit.
         assert_eq!((i64::from(at.0 - 7) << 30) + i64::from(rest.0), 357_913_941_000);
         assert_eq!((at, q(3).advance(q(0), q(2), Sine::from_bits(1 << 30))), (q(340), (q(5), q(0))));
         let half = Sine::from_bits(1 << 29);

@@ -1,9 +1,9 @@
-//! A number of 31 significant bits and an exponent, for the three formulas whose intermediate results have no common
-//! scale. Rounding to nearest throughout: every operation is right to 2⁻³⁰ of its result.
+//! A floating-point number of 31 significant bits and an exponent, for the three formulas whose intermediate results
+//! have no common scale. All operations round to nearest: their relative error is 2⁻³⁰.
 
 use crate::integer::{divide, sqrt};
 
-/// `mantissa · 2^exponent`, the magnitude of the mantissa from 2³⁰ to 2³¹ - 1; or 0, with the least exponent.
+/// `mantissa · 2^exponent`. The magnitude of the mantissa is 2³⁰ to 2³¹ - 1; 0 has the least exponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scaled {
     mantissa: i32,
@@ -11,7 +11,7 @@ pub(crate) struct Scaled {
 }
 
 impl Scaled {
-    /// Far below the exponent of any number, and its double is one too.
+    /// The exponent is far below that of any other number, also when it is doubled.
     const ZERO: Self = Self { mantissa: 0, exponent: -1024 };
 
     /// `value · 2^exponent`.
@@ -19,7 +19,8 @@ impl Scaled {
         if value == 0 {
             return Self::ZERO;
         }
-        // 33 leading zeros make 31 bits. One place is left to round by, which may not carry into bit 32.
+        // With 33 leading zeros, 31 bits are left. One more bit is kept for rounding, and the carry must not reach bit
+        // 32.
         let shift = 33 - value.unsigned_abs().leading_zeros() as i32;
         let mantissa = if shift > 0 { ((value >> (shift - 1)) + 1) >> 1 } else { value << -shift };
         let most = i64::from(i32::MAX);
@@ -40,7 +41,7 @@ impl Scaled {
 
     pub(crate) fn plus(self, rhs: Self) -> Self {
         let exponent = self.exponent.max(rhs.exponent);
-        // 62 bits each: nothing is lost of the smaller one that the result could hold.
+        // 62 bits each: no bit of the smaller term that the result could hold is lost.
         let aligned = |term: Self| (i64::from(term.mantissa) << 31) >> (exponent - term.exponent).min(63);
         Self::new(aligned(self) + aligned(rhs), exponent - 31)
     }
@@ -49,7 +50,7 @@ impl Scaled {
         Self::new(i64::from(self.mantissa) * i64::from(rhs.mantissa), self.exponent + rhs.exponent)
     }
 
-    /// `self / divisor`; a divisor of 0 gives something large.
+    /// `self / divisor`; for a divisor of 0 the result is some large number.
     pub(crate) fn over(self, divisor: Self) -> Self {
         let by = divisor.mantissa.unsigned_abs();
         let magnitude = i64::from(divide((u64::from(self.mantissa.unsigned_abs()) << 31) + u64::from(by >> 1), by));
@@ -59,23 +60,23 @@ impl Scaled {
 
     /// Square root of a number that is not negative.
     pub(crate) fn sqrt(self) -> Self {
-        // An even exponent is left, and 62 or 63 bits.
+        // The exponent becomes even, and the mantissa has 62 or 63 bits.
         let shift = 31 + ((self.exponent + 1) & 1);
         let root = sqrt(u64::from(self.mantissa.unsigned_abs()) << shift);
         Self::new(i64::from(root), (self.exponent - shift) >> 1)
     }
 
-    /// The nearest integer below 2²⁹, and 2³⁰ from there on.
+    /// The nearest integer if the magnitude is below 2²⁹; 2³⁰ from there on.
     pub(crate) fn round(self) -> i32 {
         const MOST: i32 = 1 << 30;
         match self.exponent {
-            // Half of the last place is added before that is dropped: in 31 bits there is room for it.
+            // Half of the last place is added before that place is dropped; 31 bits leave room for it.
             ..-1 => ((self.mantissa >> (-1 - self.exponent).min(31)) + 1) >> 1,
             _ => self.mantissa.signum() * MOST,
         }
     }
 
-    /// Two numbers on one scale, the larger one of 31 bits.
+    /// Two numbers with a common exponent; the larger one has 31 bits.
     pub(crate) fn aligned(self, rhs: Self) -> [i32; 2] {
         let exponent = self.exponent.max(rhs.exponent);
         [self, rhs].map(|term| term.mantissa >> (exponent - term.exponent).min(31))
@@ -91,7 +92,7 @@ mod tests {
 
     const DIGITS: i64 = 1 << 30;
 
-    /// Mantissas of either sign, of which the ends of their range.
+    /// Mantissas of either sign, including the ends of their range.
     fn mantissas() -> Vec<i64> {
         let random = (1..40_i64).map(|k| DIGITS + (k * 988_765_433) % DIGITS);
         let ends = [DIGITS, DIGITS + 1, DIGITS + 2, 2 * DIGITS - 2, 2 * DIGITS - 1];
@@ -102,7 +103,7 @@ mod tests {
         mantissas().into_iter().flat_map(|a| mantissas().into_iter().map(move |b| (a, b)))
     }
 
-    /// `found · 2^exponent`, a whole number.
+    /// `found · 2^exponent`, which is an integer.
     fn whole(found: Scaled, exponent: i32) -> i128 {
         i128::from(found.mantissa) << (found.exponent + exponent)
     }
@@ -118,7 +119,7 @@ mod tests {
             ((DIGITS << 2) + 2, DIGITS + 1, 2),
             (-((DIGITS << 2) + 2), -DIGITS, 2),
             (-((DIGITS << 2) + 3), -DIGITS - 1, 2),
-            // A carry would be a digit more.
+            // A carry would add a digit.
             ((DIGITS << 10) - 1, 2 * DIGITS - 1, 9),
             (1 - (DIGITS << 10), 1 - 2 * DIGITS, 9),
             (i64::MAX, 2 * DIGITS - 1, 32),
@@ -141,7 +142,7 @@ mod tests {
                 let exact = Scaled::new((a << apart) + b, -9);
                 assert_eq!([larger.plus(smaller), smaller.plus(larger)], [exact; 2]);
             }
-            // Beside a power of 2 a sum that is a little less has other digits.
+            // Next to a power of 2, a sum that is a little less has other digits.
             for apart in [40, 62, 63, 64, 65, 100].into_iter().filter(|_| a.abs() != DIGITS) {
                 let (larger, smaller) = (Scaled::new(a, apart), Scaled::new(b, 0));
                 assert_eq!([larger.plus(smaller), smaller.plus(larger)], [larger; 2]);

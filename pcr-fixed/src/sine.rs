@@ -4,7 +4,7 @@ use crate::integer::{divide, multiply, sqrt};
 use core::ops::{Add, Neg, Sub};
 use pcr_core::scalar::Unit;
 
-/// Number between -2 and 2 in 32 bits, 30 of them after the binary point: a direction is right to 10⁻⁹ rad.
+/// A number between -2 and 2 in 32 bits, 30 of them after the binary point. Directions are right to 10⁻⁹ rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
@@ -29,7 +29,7 @@ impl Sine {
         multiply::<{ Self::FRACTION_BITS }>(number, self.0)
     }
 
-    /// `self · number` and a number of 2⁻³⁰ more, rounded to nearest, and what that leaves in 2⁻³⁰.
+    /// `self · number` plus `rest` in units of 2⁻³⁰, rounded to nearest, and the new rest in units of 2⁻³⁰.
     pub(crate) fn of_with_rest(self, number: i32, rest: i32) -> (i32, i32) {
         let sum = i64::from(number) * i64::from(self.0) + i64::from(rest);
         let whole = (sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS;
@@ -43,11 +43,11 @@ impl Sine {
         ((sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32
     }
 
-    /// The direction of `(x, y)`, which is not zero, right to 2 · 2⁻³⁰.
+    /// The direction of `(x, y)`, which must not be zero; right to 2 · 2⁻³⁰.
     ///
-    /// One root, and one division: multiplying by the reciprocal of the norm saves the other.
+    /// Cost: one root and one division: multiplying by the reciprocal of the norm avoids a second division.
     pub(crate) fn unit_vector(x: i32, y: i32) -> [Self; 2] {
-        // The larger component fills 31 bits, so that the norm has as many, and 1/2 more.
+        // The larger component fills 31 bits, so that the norm has 31 or 31.5 bits.
         let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
         let (x, y) = (x << shift, y << shift);
         let square = |x: i32| i64::from(x).unsigned_abs().pow(2);
@@ -81,7 +81,7 @@ impl Neg for Sine {
 impl Unit for Sine {
     const ZERO: Self = Self(0);
     const ONE: Self = Self(1 << Self::FRACTION_BITS);
-    /// Sectors are compared in 12 bits at least.
+    /// Sectors are compared with at least 12 bits.
     const COARSE: Self = Self(1 << (Self::FRACTION_BITS - 9));
 
     fn times(self, rhs: Self) -> Self {
@@ -101,7 +101,7 @@ mod tests {
 
     const ONE: i64 = 1 << 30;
 
-    /// Numbers of all 32 bits, the same in every run.
+    /// Numbers that use all 32 bits, the same in every run.
     fn numbers() -> impl Iterator<Item = i32> {
         iter::successors(Some(1_u32), |x| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223))).map(|x| x as i32)
     }
@@ -113,7 +113,7 @@ mod tests {
             let [a, b, u, v, rest] = [(); 5].map(|()| numbers.next().unwrap_or(0) >> 2);
             let (sine, other) = (Sine(u), Sine(v));
             let exact = i64::from(a) * i64::from(u);
-            // Twice the error, of which a half is the most; up where it is a half.
+            // Twice the error, which is at most a half; halves are rounded up.
             let off = |found: i32, exact: i64| 2 * ((i64::from(found) << 30) - exact);
             let nearest = |found: i32, exact: i64| -ONE < off(found, exact) && off(found, exact) <= ONE;
             assert!(nearest(sine.of(a), exact) && nearest(sine.times(Sine(a)).0, exact));

@@ -1,19 +1,19 @@
-//! Sine, cosine and arctangent of binary angles, in 64-bit products.
+//! Sine, cosine and arctangent of binary angles, with 64-bit products.
 //!
-//! Angles are taken to an eighth of a turn, where polynomials in the square hold: those that interpolate at the
-//! Chebyshev nodes, which is within a few per cent of the best. At the axes, where the remaining angle is 0, they leave
-//! the exact value.
+//! Angles are reduced to an eighth of a turn, where polynomials in the square are used. They interpolate at the
+//! Chebyshev nodes, which is within a few per cent of the best polynomials. At the axes, where the reduced angle is 0,
+//! results are exact.
 
 use crate::integer::divide;
 
-/// Fraction bits of the coefficients after the first two or three: they are small.
+/// Fraction bits of the small coefficients, after the first two or three.
 const INNER: u32 = 36;
 
-/// `sin(π/4 u) / u = S₀ + S₁ z + …`, `z = u²`, the first two in 2⁻³¹.
+/// `sin(π/4 u) / u = S₀ + S₁ z + …`, `z = u²`; the first two in units of 2⁻³¹.
 pub(crate) const SINE: [i32; 5] = [1_686_629_713, -173_399_667, 171_138_518, -2_513_236, 21_234];
-/// `(cos(π/4 u) - 1) / z = C₀ + C₁ z + …`, the first one in 2⁻³¹.
+/// `(cos(π/4 u) - 1) / z = C₀ + C₁ z + …`; the first one in units of 2⁻³¹.
 pub(crate) const COSINE: [i32; 4] = [-662_337_939, 1_089_501_821, -22_399_895, 243_401];
-/// `atan(t) / 2πt = A₀ + A₁ z + …`, `z = t²`, in 2⁻³³.
+/// `atan(t) / 2πt = A₀ + A₁ z + …`, `z = t²`, in units of 2⁻³³.
 pub(crate) const ARCTANGENT: [i32; 6] =
     [1_367_130_550, -455_709_819, 273_401_098, -194_669_824, 144_479_685, -82_326_426];
 
@@ -22,11 +22,12 @@ fn scaled<const SHIFT: u32>(a: i32, z: u32) -> i32 {
     ((i64::from(a) * i64::from(z) + (1 << (SHIFT - 1))) >> SHIFT) as i32
 }
 
-/// Sine and cosine of an angle in 2⁻³² of a turn, times 2³⁰: right to 1.18 · 2⁻³⁰, and to 1.51 · 2⁻³⁰ as a vector (all angles: docs/errors.md).
+/// Sine and cosine, times 2³⁰, of an angle in units of 2⁻³² of a turn. Right to 1.18 · 2⁻³⁰, and to 1.51 · 2⁻³⁰ as a
+/// vector (all angles: docs/errors.md).
 ///
-/// Ten products.
+/// Cost: ten products.
 pub(crate) fn sin_cos(angle: i32) -> (i32, i32) {
-    // The nearest quarter turn, and what is left: u = ±1 is an eighth of a turn.
+    // The nearest quarter turn, and the rest: u = ±1 is an eighth of a turn.
     let quarter = angle.wrapping_add(1 << 29) >> 30;
     let u = angle << 2;
     let z = ((i64::from(u) * i64::from(u)) >> 31) as u32;
@@ -46,28 +47,29 @@ pub(crate) fn sin_cos(angle: i32) -> (i32, i32) {
     }
 }
 
-/// Angle of the vector `(x, y)` in 2⁻³² of a turn, right to 0.93 of that; half a turn is -2³¹, and 0 for the zero vector.
+/// Angle of the vector `(x, y)` in units of 2⁻³² of a turn, right to 0.93 units. Half a turn is -2³¹; the zero vector
+/// gives 0.
 ///
-/// The polynomial is off by 0.21, what is rounded in it by 0.13, the tangent and its square by 0.09, and the result is rounded. A
-/// component of -2³¹ loses its last bit.
+/// The polynomial is off by 0.21 units, its rounding by 0.13, the tangent and its square by 0.09, and the result is
+/// rounded. A component of -2³¹ loses its last bit.
 ///
-/// Eight products and a division: a tangent is a quotient.
+/// Cost: eight products and a division, for the tangent.
 pub(crate) fn atan2(y: i32, x: i32) -> i32 {
-    /// In 2⁻⁷: a little less than tan(π/8). Above, the angle is counted from an eighth of a turn.
+    /// In units of 2⁻⁷: a little less than tan(π/8). Above it, the angle is counted from an eighth of a turn.
     const SPLIT: u32 = 53;
     let (ax, ay) = (x.unsigned_abs(), y.unsigned_abs());
     let (small, large) = if ay > ax { (ax, ay) } else { (ay, ax) };
     if large == 0 {
         return 0;
     }
-    // Below 2³¹, so that their sum fits, and as large as that allows.
+    // Shifted to be as large as possible below 2³¹, so that their sum fits.
     let zeros = large.leading_zeros();
     let (small, large) =
         if zeros == 0 { (small >> 1, large >> 1) } else { (small << (zeros - 1), large << (zeros - 1)) };
     let from_eighth = small > (large >> 7) * SPLIT;
     let (n, m) = if from_eighth { (large - small, large + small) } else { (small, large) };
 
-    // t in 2⁻³², below 0.4145, and z in 2⁻³⁴, below 0.1719
+    // t in units of 2⁻³², below 0.4145; z in units of 2⁻³⁴, below 0.1719.
     let t = divide((u64::from(n) << 32) + u64::from(m >> 1), m);
     let z = ((u64::from(t) * u64::from(t)) >> 30) as u32;
     let mut sum = 0;
@@ -92,7 +94,7 @@ mod tests {
     const TURN: f64 = 4_294_967_296.0;
     const EIGHTH: i32 = 1 << 29;
 
-    /// Odd, so that the low bits differ, too.
+    /// The step is odd, so that the low bits differ, too.
     fn angles() -> impl Iterator<Item = i32> {
         (0..200_000_u32).map(|k| k.wrapping_mul(2_654_435_761) as i32)
     }
@@ -104,7 +106,7 @@ mod tests {
             let ((sin, cos), exact) = (sin_cos(angle), (f64::from(angle) * (TAU / TURN)).sin_cos());
             let off = |found: i32, exact: f64| (f64::from(found) - exact * f64::from(1 << 30)).abs();
             worst = worst.max(off(sin, exact.0)).max(off(cos, exact.1));
-            // The quarters are swaps and signs of one another.
+            // The quarters follow from one another by swaps and signs.
             assert_eq!(sin_cos(angle.wrapping_add(2 * EIGHTH)), (cos, -sin));
             assert_eq!(sin_cos(angle.wrapping_sub(2 * EIGHTH)), (-cos, sin));
             assert_eq!(sin_cos(angle ^ i32::MIN), (-sin, -cos));
@@ -118,7 +120,7 @@ mod tests {
         let mut worst = 0.0_f64;
         for (k, angle) in (0_u32..).zip(angles()) {
             let (sin, cos) = (f64::from(angle) * (TAU / TURN)).sin_cos();
-            // Down to a few digits, and in the last one of 32 bits.
+            // Down to a few digits, and also in the last one of 32 bits.
             let length = TURN / 2.0 * 0.75_f64.powi((k % 60) as i32);
             let [y, x] = [sin, cos].map(|part| (length * part) as i32);
             let exact = f64::from(y).atan2(f64::from(x)) * (TURN / TAU);
@@ -141,7 +143,7 @@ mod tests {
         assert_eq!(atan2(0, 0), 0);
     }
 
-    /// Far inside of their bounds, too, a result has the same bits on every machine.
+    /// Results have the same bits on every machine, which is stronger than being within their bounds.
     #[test]
     fn results_have_the_same_bits_everywhere() {
         let sum = |sum: u64, value: i32| sum.wrapping_mul(0x0000_0100_0000_01b3) ^ u64::from(value as u32);

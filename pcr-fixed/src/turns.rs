@@ -1,4 +1,4 @@
-//! Angles as 32-bit fractions of a turn, which wrap as angles do.
+//! Angles as 32-bit fractions of a turn, which wrap around as angles do.
 
 use crate::integer::{divide, multiply};
 use crate::q::Q;
@@ -7,7 +7,7 @@ use crate::trigonometry::{atan2, sin_cos};
 use core::ops::{Add, Neg, Sub};
 use pcr_core::scalar::Angle;
 
-/// Angle, counter-clockwise positive, modulo one turn: 2³² is a turn, the last digit 1.5·10⁻⁹ rad.
+/// Angle, counter-clockwise positive, modulo one turn: 2³² units are a turn, one unit is 1.5·10⁻⁹ rad.
 ///
 /// ```
 /// use pcr_fixed::Turns;
@@ -32,7 +32,7 @@ impl Turns {
         Self(bits)
     }
 
-    /// The angle in 2⁻³² of a turn, from -2³¹ (half a turn) to 2³¹ - 1.
+    /// The angle in units of 2⁻³² of a turn, from -2³¹ (half a turn) to 2³¹ - 1.
     pub const fn to_bits(self) -> i32 {
         self.0
     }
@@ -61,13 +61,13 @@ impl Neg for Turns {
 
 /// `length / radius` \[rad\] times 2²⁹, up to one turn.
 ///
-/// The division of an arc: an angle is a length by a radius.
+/// The division for an arc: its angle is a length divided by a radius.
 fn sweep<const F: u32>(length: Q<F>, radius: Q<F>) -> u64 {
     let (length, radius) = (length.to_bits().unsigned_abs(), radius.to_bits().unsigned_abs());
     u64::from(divide((u64::from(length) << 29) + u64::from(radius >> 1), radius))
 }
 
-/// `2³² · 2 / π`: from radians times 2²⁹ to 2⁻³³ of a turn, times 2³².
+/// `2³² · 2 / π`: converts radians times 2²⁹ to units of 2⁻³³ of a turn, times 2³².
 const TURNS: u64 = 2_734_261_102;
 
 impl<const F: u32> Angle<Q<F>> for Turns {
@@ -76,7 +76,7 @@ impl<const F: u32> Angle<Q<F>> for Turns {
     fn is_finite(self) -> bool {
         true
     }
-    /// A sweep to the left: the length is not negative.
+    /// A turn to the left: the length is not negative.
     fn subtended(length: Q<F>, radius: Q<F>) -> Self {
         Self(((sweep(length, radius) * TURNS + (1 << 30)) >> 31) as i32)
     }

@@ -1,5 +1,5 @@
-// C++17 over the C interface: memory is owned, errors are exceptions. pcr::Fleet is in double, pcr::FleetF32 in float,
-// pcr::FleetQ16 in 1/65536. Indices and units are those of pcr.h.
+// C++17 wrapper of the C interface: it owns the memory and reports errors as exceptions. pcr::Fleet uses double,
+// pcr::FleetF32 float, pcr::FleetQ16 fixed point in 1/65536. Indices and units are those of pcr.h.
 #ifndef PCR_HPP
 #define PCR_HPP
 
@@ -15,7 +15,7 @@
 
 namespace pcr {
 
-// What a call came to that did not come to PCR_STATUS_OK, and who is in the way.
+// A call did not return PCR_STATUS_OK.
 struct Error : std::runtime_error {
   Error(const char *call, PcrStatus status)
       : std::runtime_error(std::string(call) + ": pcr status " + std::to_string(static_cast<int>(status))),
@@ -23,13 +23,13 @@ struct Error : std::runtime_error {
   const PcrStatus status;
 };
 
-// PCR_STATUS_REFUSED.
+// PCR_STATUS_REFUSED, with the reason and the agents concerned.
 struct Refused : Error {
   Refused(const char *call, PcrRefused why) : Error(call, PCR_STATUS_REFUSED), why(why) {}
   const PcrRefused why;
 };
 
-// PCR_STATUS_NO_PLAN.
+// PCR_STATUS_NO_PLAN, with the reason and the agents concerned.
 struct Unsolved : Error {
   Unsolved(const char *call, PcrUnsolved why) : Error(call, PCR_STATUS_NO_PLAN), why(why) {}
   const PcrUnsolved why;
@@ -39,12 +39,12 @@ inline void check(const char *call, PcrStatus status) {
   if (status != PCR_STATUS_OK) throw Error(call, status);
 }
 
-// How much a fleet has room for. Segments and phases need room for those of an agent that is replaced twice.
+// Capacities of a fleet. While an agent is replaced, its old and new segments and phases need room at the same time.
 struct Capacity {
   std::size_t agents = 16, segments = 96, phases = 64, regions = 256, pieces = 512, orders = 512;
 };
 
-// The types and functions of a number format by the names that they have in pcr.h.
+// Gives the types and functions of a number format the names that they have in pcr.h, without prefixes.
 #define PCR_FORMAT(Format, Types, functions, Number)                                                                   \
   struct Format {                                                                                                      \
     using Real = Number; using Agent = Types##Agent; using Conflict = Types##Conflict; using Handle = Types##Fleet;    \
@@ -87,13 +87,13 @@ PCR_FORMAT(Double, PcrF64, pcr_f64_fleet_, double);
 PCR_FORMAT(Fixed, PcrQ16, pcr_q16_fleet_, std::int32_t);
 #undef PCR_FORMAT
 
-// A fleet with its memory; it may be moved. Every method throws an Error where the C function of its name fails.
+// A fleet with its memory; it may be moved. Every method throws an Error if the C function of the same name fails.
 template <class F> class BasicFleet {
   std::unique_ptr<typename F::Storage> own;
   typename F::Handle *at() { return &own->handle; }
   const typename F::Handle *at() const { return &own->handle; }
 
-  // How many there are, then all of them.
+  // Asks for the count first, then for all results.
   template <class T, class Ask> static std::vector<T> list(const char *call, Ask ask) {
     std::size_t count = 0;
     PcrStatus status = ask(static_cast<T *>(nullptr), std::size_t{0}, &count);
@@ -152,7 +152,7 @@ public:
     Real found = 0;
     return pcr::check("earliest_start", F::earliest_start(at(), agent, from, &found)), found;
   }
-  // The order in which the agents were planned.
+  // Returns the order in which the agents were planned.
   std::vector<std::size_t> plan_delays(std::vector<std::size_t> order) {
     PcrUnsolved why{};
     const auto status = F::plan_delays(at(), order.data(), order.size(), own->room.data(), own->room.size(), &why);
@@ -180,7 +180,7 @@ public:
     PcrRefused why{};
     settle("check", F::check(at(), &accepted, &why), why);
   }
-  // `prefer` is empty, or has PCR_FIRST or PCR_SECOND of every agent.
+  // `prefer` is empty, or has PCR_FIRST or PCR_SECOND for every agent.
   void admit(std::size_t agent, const Agent &by, const Progress &where, const Tolerances &accepted,
              const std::vector<std::uint8_t> &prefer = {}) {
     if (!prefer.empty() && prefer.size() != size()) throw Error("admit", PCR_STATUS_BAD_ORDER);

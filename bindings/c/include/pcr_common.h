@@ -1,4 +1,4 @@
-/* What the interface of pcr has in all number formats.
+/* The parts of the C interface of pcr that all number formats share.
    Made by cbindgen from bindings/c/src: see bindings/c/tests/header.rs. */
 
 #ifndef PCR_COMMON_H
@@ -24,7 +24,7 @@
 #define PCR_RIGHT 2
 
 /*
- `PcrPassing.pass` of a region that nothing is decided about: neither agent may enter it.
+ `PcrPassing.pass` of a region that is undecided: neither agent may enter it.
  */
 #define PCR_UNDECIDED 0
 
@@ -34,21 +34,21 @@
 #define PCR_FIRST 1
 
 /*
- The agent waits until the other one is through.
+ The agent waits until the other one has left the region.
  */
 #define PCR_SECOND 2
 
 /*
- One of the two has left the region behind.
+ One of the two agents has left the region.
  */
 #define PCR_OVER 3
 
 /*
- What a call comes to. Whatever fails leaves the fleet as it was; a table that became full is empty.
+ Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full is empty.
  */
 typedef enum PcrStatus {
   /*
-   Done.
+   The call succeeded.
    */
   PCR_STATUS_OK = 0,
   /*
@@ -60,32 +60,32 @@ typedef enum PcrStatus {
    */
   PCR_STATUS_NON_FINITE,
   /*
-   A number is below 0 that must not be.
+   A number is below 0 but must not be.
    */
   PCR_STATUS_NEGATIVE,
   /*
-   A number must be above 0.
+   A number is not above 0 but must be.
    */
   PCR_STATUS_NON_POSITIVE,
   /*
-   A number is beyond the range of the format, or a path or a motion gets there; the lower end of an interval is above the
-   upper one.
+   A number is beyond the range of the format, or a path or a motion leaves it; or the lower end of an interval is
+   above the upper one.
    */
   PCR_STATUS_OUT_OF_RANGE,
   /*
-   An arc sweeps more than one turn: split it.
+   An arc sweeps more than one turn. Split it.
    */
   PCR_STATUS_SWEEP_OVER_ONE_TURN,
   /*
-   The profile does not travel the length of the path.
+   The profile is longer or shorter than the path.
    */
   PCR_STATUS_LENGTH_MISMATCH,
   /*
-   A leg is neither a line nor an arc.
+   The curve of a leg is neither PCR_LINE, PCR_LEFT nor PCR_RIGHT.
    */
   PCR_STATUS_NO_SUCH_CURVE,
   /*
-   There is no agent of that number.
+   There is no agent with this number.
    */
   PCR_STATUS_NO_SUCH_AGENT,
   /*
@@ -97,31 +97,31 @@ typedef enum PcrStatus {
    */
   PCR_STATUS_TABLE_FULL,
   /*
-   The buffer is too small; the count that is needed is told.
+   The buffer is too small. The required count was written.
    */
   PCR_STATUS_BUFFER_TOO_SMALL,
   /*
-   The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
+   The table does not belong to the agents: `pcr_fleet_build` was not called since the last agent was added.
    */
   PCR_STATUS_NOT_BUILT,
   /*
-   The order does not list each agent once.
+   The order does not list every agent exactly once.
    */
   PCR_STATUS_BAD_ORDER,
   /*
-   There is no such plan: whoever waits, for however long, meets another one.
+   There is no plan: an agent meets another one, however long it waits.
    */
   PCR_STATUS_NO_PLAN,
   /*
-   A number is above 0, but less than the format can work with.
+   A number is above 0, but too small for the format.
    */
   PCR_STATUS_TOO_SMALL,
   /*
-   The table is that of the row of another agent only (`pcr_fleet_build_row`).
+   The table holds the row of another agent only (`pcr_fleet_build_row`).
    */
   PCR_STATUS_ONLY_ROW,
   /*
-   There is no region of the agent in that place of the table.
+   The agent has no region at this index of the table.
    */
   PCR_STATUS_NO_SUCH_REGION,
   /*
@@ -129,29 +129,29 @@ typedef enum PcrStatus {
    */
   PCR_STATUS_NO_ORDERS,
   /*
-   It is neither PCR_FIRST nor PCR_SECOND.
+   The value is neither PCR_FIRST nor PCR_SECOND.
    */
   PCR_STATUS_NO_SUCH_PASS,
   /*
-   Orders are refused; `why` tells who is in the way.
+   Orders are refused; `why` names the agent in the way.
    */
   PCR_STATUS_REFUSED,
 } PcrStatus;
 
 /*
- How far an agent may go.
+ Kind of a limit on how far an agent may go.
  */
 typedef enum PcrHoldKind {
   /*
-   Nowhere: where it is the other one will pass. It can only be first.
+   The agent stands where the other agent will pass. It can only go first.
    */
   PCR_HOLD_KIND_INSIDE,
   /*
-   Up to a length of its path, where it may stand.
+   The agent may go up to a length of its path, and may stand there.
    */
   PCR_HOLD_KIND_AT,
   /*
-   To the end of its path.
+   The agent may go to the end of its path.
    */
   PCR_HOLD_KIND_FREE,
 } PcrHoldKind;
@@ -161,27 +161,27 @@ typedef enum PcrHoldKind {
  */
 typedef enum PcrReason {
   /*
-   The two overlap at the starts of their paths.
+   The two agents overlap at the starts of their paths.
    */
   PCR_REASON_STARTS,
   /*
-   The two overlap at the ends of their paths.
+   The two agents overlap at the ends of their paths.
    */
   PCR_REASON_ENDS,
   /*
-   The two meet however late either sets off.
+   The two agents meet however late either of them starts.
    */
   PCR_REASON_ALWAYS,
   /*
-   The first cannot go because of the second, with the orders that were tried.
+   The first agent cannot go because of the second, with the priorities that were tried.
    */
   PCR_REASON_ORDER,
   /*
-   The check of the plan found that the two overlap.
+   The check of the plan found that the two agents overlap.
    */
   PCR_REASON_OVERLAP,
   /*
-   The times of the first are out of range.
+   The times of the first agent are out of range.
    */
   PCR_REASON_TIMES,
 } PcrReason;
@@ -199,17 +199,17 @@ typedef enum PcrRefusal {
    */
   PCR_REFUSAL_LATE,
   /*
-   The second agent is in the way of the first, whoever of them goes first.
+   The second agent is in the way of the first, whichever of them goes first.
    */
   PCR_REFUSAL_BLOCKED,
   /*
-   By their motions the two meet, or pass so near that it cannot be told who is first.
+   According to their motions the two agents meet, or pass so close that it cannot be decided which one is first.
    */
   PCR_REFUSAL_MEETING,
 } PcrRefusal;
 
 /*
- Why there is no plan, and of whom.
+ Why there is no plan, and the agents concerned.
  */
 typedef struct PcrUnsolved {
   /*
@@ -217,13 +217,13 @@ typedef struct PcrUnsolved {
    */
   enum PcrReason reason;
   /*
-   The agents; twice the same where it is one.
+   The agents; twice the same number if only one is concerned.
    */
   size_t agents[2];
 } PcrUnsolved;
 
 /*
- Why orders are refused, and who is in the way.
+ Why orders are refused, and the agents concerned.
  */
 typedef struct PcrRefused {
   /*

@@ -1,8 +1,8 @@
 /* Collision regions of discs on line/arc paths, in double precision: numbers up to a trillion in magnitude.
-   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus, and whatever fails changes nothing.
-   Pointers are null, which is told, or point to as many values as is said. What is in a memory belongs to the fleet from
-   fleet_init on, for as long as it is used; all other pointers are used during the call only. Nothing is allocated. A fleet is
-   used by one thread at a time, and is not moved or copied.
+   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus; a call that fails changes nothing.
+   A pointer is null, which is reported, or points to as many values as the function says. The memory given to
+   fleet_init belongs to the fleet as long as the fleet is used; all other pointers are used during the call only. The library does
+   not allocate. A fleet is used by one thread at a time, and is not moved or copied.
    Made by cbindgen from bindings/c/src: see bindings/c/tests/header.rs. */
 
 #ifndef PCR_F64_H
@@ -21,21 +21,21 @@ typedef struct PcrF64Fleet {
 } PcrF64Fleet;
 
 /*
- Room for a segment of a path: one a leg, or one for an agent that stands.
+ Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
 typedef struct PcrF64Segment {
   double opaque[30];
 } PcrF64Segment;
 
 /*
- Room for a phase of a profile: three an agent, or one a stretch.
+ Memory for a phase of a profile: three for each agent, or one for each stretch.
  */
 typedef struct PcrF64Phase {
   double opaque[7];
 } PcrF64Phase;
 
 /*
- Room for the motion of an agent.
+ Memory for the motion of an agent.
  */
 typedef struct PcrF64Motion {
   size_t pointers[4];
@@ -43,28 +43,28 @@ typedef struct PcrF64Motion {
 } PcrF64Motion;
 
 /*
- Room for a region in the table; each serves both agents of its pair.
+ Memory for a region in the table; each one serves both agents of its pair.
  */
 typedef struct PcrF64Entry {
   uint32_t opaque[2];
 } PcrF64Entry;
 
 /*
- Room for a piece of a region: what one segment of either path has to do with it.
+ Memory for a piece of a region: the part that belongs to one segment of each path.
  */
 typedef struct PcrF64Piece {
   double opaque[6];
 } PcrF64Piece;
 
 /*
- Room for the order of a region.
+ Memory for the order of a region.
  */
 typedef struct PcrF64Order {
   double opaque[5];
 } PcrF64Order;
 
 /*
- Room for what is known of an agent, and for a check.
+ Memory for the progress of an agent, and for a check.
  */
 typedef struct PcrF64Robot {
   double opaque[7];
@@ -75,62 +75,62 @@ typedef struct PcrF64Robot {
  */
 typedef struct PcrF64Memory {
   /*
-   For the paths.
+   Memory for the paths.
    */
   struct PcrF64Segment *segments;
   /*
-   Number of them.
+   Number of segments.
    */
   size_t segment_count;
   /*
-   For the profiles.
+   Memory for the profiles.
    */
   struct PcrF64Phase *phases;
   /*
-   Number of them.
+   Number of phases.
    */
   size_t phase_count;
   /*
-   For the agents.
+   Memory for the agents.
    */
   struct PcrF64Motion *motions;
   /*
-   Number of them: the most agents.
+   Number of motions, which limits the number of agents.
    */
   size_t motion_count;
   /*
-   For the regions.
+   Memory for the regions.
    */
   struct PcrF64Entry *entries;
   /*
-   Number of them.
+   Number of entries.
    */
   size_t entry_count;
   /*
-   For the pieces of the regions.
+   Memory for the pieces of the regions.
    */
   struct PcrF64Piece *pieces;
   /*
-   Number of them.
+   Number of pieces.
    */
   size_t piece_count;
   /*
-   For passing orders: as many as regions; as many more as an agent has that is admitted or replaced. Null where no orders
-   are used.
+   Memory for passing orders: one for each region, and as many more as an agent has that is admitted or replaced.
+   Null if no orders are used.
    */
   struct PcrF64Order *orders;
   /*
-   Number of them; 0 where no orders are used.
+   Number of orders; 0 if no orders are used.
    */
   size_t order_count;
   /*
-   For what is known of the agents, as many as `motions`; null where no orders are used.
+   Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
   struct PcrF64Robot *robots;
 } PcrF64Memory;
 
 /*
- A line or an arc of a path; it begins in the pose in which the one before it ends.
+ A line or an arc of a path. It begins where the one before it ends, with the same heading.
  */
 typedef struct PcrF64Leg {
   /*
@@ -138,55 +138,55 @@ typedef struct PcrF64Leg {
    */
   uint8_t curve;
   /*
-   Length (m), of an arc at most one turn; 0 adds nothing.
+   Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
    */
   double length;
   /*
-   Radius of an arc (m), above 0; of a line it is not looked at.
+   Radius of an arc (m), above 0; ignored for a line.
    */
   double radius;
 } PcrF64Leg;
 
 /*
- Motion at constant acceleration, part of a profile.
+ A part of a profile with constant acceleration.
  */
 typedef struct PcrF64Stretch {
   /*
-   In s.
+   Duration (s).
    */
   double duration;
   /*
-   In m/s².
+   Acceleration (m/s²).
    */
   double acceleration;
 } PcrF64Stretch;
 
 /*
- A disc, its path and its motion along it.
+ A disc, its path and its motion along the path.
  */
 typedef struct PcrF64Agent {
   /*
-   Position at the start of the path (m).
+   x-coordinate of the start of the path (m).
    */
   double x;
   /*
-   In m.
+   y-coordinate of the start of the path (m).
    */
   double y;
   /*
-   Direction of travel there (rad).
+   Direction of travel at the start (rad).
    */
   double heading;
   /*
-   Of the disc (m), above 0.
+   Radius of the disc (m), above 0.
    */
   double radius;
   /*
-   When it sets off (s); it stands before, and after its arrival.
+   Time at which the agent sets off (s). It stands before that, and after its arrival.
    */
   double start;
   /*
-   The path; none for an agent that stands.
+   Legs of the path; none for an agent that stands.
    */
   const struct PcrF64Leg *legs;
   /*
@@ -194,15 +194,15 @@ typedef struct PcrF64Agent {
    */
   size_t leg_count;
   /*
-   Largest speed of a motion from rest to rest (m/s); with a profile, the speed at its start.
+   Largest speed of a motion from rest to rest (m/s). With a profile, the speed at its start.
    */
   double speed;
   /*
-   Largest acceleration of a motion from rest to rest (m/s²); with a profile it is not looked at.
+   Largest acceleration of a motion from rest to rest (m/s²); ignored with a profile.
    */
   double acceleration;
   /*
-   Profile that travels the length of the path; none for a motion from rest to rest in the least time.
+   Profile, which must have the length of the path; none for the fastest motion from rest to rest.
    */
   const struct PcrF64Stretch *stretches;
   /*
@@ -230,7 +230,7 @@ typedef struct PcrF64Interval {
  */
 typedef struct PcrF64Region {
   /*
-   The agent that keeps out.
+   The agent that has to keep out of the region.
    */
   uint16_t ego;
   /*
@@ -238,37 +238,39 @@ typedef struct PcrF64Region {
    */
   uint16_t other;
   /*
-   Time range (s).
+   Range of times (s).
    */
   struct PcrF64Interval time;
   /*
-   Length range along the path of the ego (m).
+   Range of lengths along the path of the ego (m).
    */
   struct PcrF64Interval length;
   /*
-   Whether it reaches back to before the other sets off, as a strip.
+   Whether the region begins while the other agent stands at its start; the lengths that are covered then are so at
+   all earlier times.
    */
   bool open_start;
   /*
-   Whether it goes on after the other's arrival, as a strip.
+   Whether the region ends while the other agent stands at its end; the lengths that are covered then are so at all
+   later times.
    */
   bool open_end;
 } PcrF64Region;
 
 /*
- A contact of two agents on their given motions.
+ A contact of two agents that move by their motions.
  */
 typedef struct PcrF64Conflict {
   /*
-   From when to when (s).
+   Interval of time (s).
    */
   struct PcrF64Interval time;
   /*
-   Lengths along the path of the ego meanwhile (m).
+   Lengths along the path of the ego during the contact (m).
    */
   struct PcrF64Interval length;
   /*
-   Lengths along the path of the other meanwhile (m).
+   Lengths along the path of the other agent during the contact (m).
    */
   struct PcrF64Interval other_length;
   /*
@@ -276,13 +278,13 @@ typedef struct PcrF64Conflict {
    */
   double depth;
   /*
-   Whether they do no more than touch.
+   Whether the discs only touch.
    */
   bool touching;
 } PcrF64Conflict;
 
 /*
- A conflict, and with whom.
+ A conflict with another agent.
  */
 typedef struct PcrF64Met {
   /*
@@ -296,11 +298,11 @@ typedef struct PcrF64Met {
 } PcrF64Met;
 
 /*
- A region of an agent, and who passes it first.
+ A region of an agent, and the order in which the agent passes it.
  */
 typedef struct PcrF64Passing {
   /*
-   The place of the region in the table, for `pcr_f64_fleet_decide_at`.
+   Index of the region in the table, for `pcr_f64_fleet_decide_at`.
    */
   size_t place;
   /*
@@ -308,58 +310,58 @@ typedef struct PcrF64Passing {
    */
   uint16_t other;
   /*
-   PCR_UNDECIDED, PCR_FIRST, PCR_SECOND or PCR_OVER, of the agent that was asked for.
+   PCR_UNDECIDED, PCR_FIRST, PCR_SECOND or PCR_OVER, for the agent of the query.
    */
   uint8_t pass;
   /*
-   Length range along the path of the agent (m).
+   Range of lengths along the path of the agent (m).
    */
   struct PcrF64Interval length;
   /*
-   Length range along the path of the other (m).
+   Range of lengths along the path of the other agent (m).
    */
   struct PcrF64Interval other_length;
 } PcrF64Passing;
 
 /*
- What is known of where an agent is on its path.
+ What is known about the progress of an agent.
  */
 typedef struct PcrF64Progress {
   /*
-   Where it is (m). The lower end may be old: it counts for what the agent has passed.
+   Place of the agent (m). The lower end may be out of date; it decides which regions the agent has left.
    */
   struct PcrF64Interval at;
   /*
-   Where it can be at rest at the latest (m), the upper end of `at` or more. What it has promised not to go beyond
-   counts, too.
+   The furthest length at which the agent can come to rest (m), at least the upper end of `at`. If it has promised
+   not to go beyond a length, it is that length.
    */
   double stop;
 } PcrF64Progress;
 
 /*
- How far an agent may go, and may stand there.
+ How far an agent may go; it may stand there.
  */
 typedef struct PcrF64Hold {
   /*
-   Whether there is a limit.
+   Kind of the limit.
    */
   PcrHoldKind kind;
   /*
-   The limit (m): of PCR_HOLD_KIND_AT the length along its path, of PCR_HOLD_KIND_FREE the end of it.
+   The limit (m): for PCR_HOLD_KIND_AT a length along the path, for PCR_HOLD_KIND_FREE the end of the path.
    */
   double length;
 } PcrF64Hold;
 
 /*
- What a check of orders takes into account.
+ Parameters of a check of orders.
  */
 typedef struct PcrF64Tolerances {
   /*
-   So far the lower end of an agent's place may be behind it when it stands (m).
+   When an agent stands, the known lower end of its place may be behind it by up to this (m).
    */
   double width;
   /*
-   Less way than this (m) is no progress; above 0.
+   A gain below this (m) does not count as progress; above 0.
    */
   double gain;
 } PcrF64Tolerances;
@@ -373,7 +375,8 @@ typedef struct PcrF64Brakes {
    */
   double deceleration;
   /*
-   Reaction time (s) during which it may go on at its speed: what passes between two controls, and until one takes effect.
+   Reaction time (s) during which the agent may continue at its speed: the time between two control steps plus the
+   delay until a command takes effect.
    */
   double reaction;
 } PcrF64Brakes;
@@ -383,14 +386,15 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- Makes a fleet without agents in the caller's memory.
+ Creates a fleet without agents in the memory of the caller.
  */
 PcrStatus pcr_f64_fleet_init(struct PcrF64Fleet *place, const struct PcrF64Memory *memory);
 
 /*
- Adds an agent; agents are numbered from 0. The table does not know it before `pcr_f64_fleet_build`.
+ Adds an agent; agents are numbered from 0. The table does not include it before `pcr_f64_fleet_build`.
  */
-PcrStatus pcr_f64_fleet_add(struct PcrF64Fleet *place, const struct PcrF64Agent *agent);
+PcrStatus pcr_f64_fleet_add(struct PcrF64Fleet *place,
+                            const struct PcrF64Agent *agent);
 
 /*
  Number of agents; 0 for a null pointer.
@@ -398,43 +402,46 @@ PcrStatus pcr_f64_fleet_add(struct PcrF64Fleet *place, const struct PcrF64Agent 
 size_t pcr_f64_fleet_agents(const struct PcrF64Fleet *place);
 
 /*
- Computes the regions of all pairs of agents; nothing is decided then about who passes them first. Where the table is
- full it is empty afterwards.
+ Computes the regions of all pairs of agents; all their orders are undecided then. If the table is too small, it is
+ empty afterwards.
  */
 PcrStatus pcr_f64_fleet_build(struct PcrF64Fleet *place);
 
 /*
- Computes the regions of one agent with all others only: all that a robot needs that looks after itself. What is asked about
- others is refused with PCR_STATUS_ONLY_ROW.
+ Computes the regions of one agent with all others only, which is enough for a robot that computes its own hold.
+ Queries about other agents return PCR_STATUS_ONLY_ROW.
  */
 PcrStatus pcr_f64_fleet_build_row(struct PcrF64Fleet *place,
                                   size_t agent);
 
 /*
- Lets an agent set off later by `delay` (s). The table serves on as it is: lengths do not change, times follow.
+ Delays the start of an agent by `delay` (s). The table stays valid: its lengths do not change, and times are
+ computed when queried.
  */
 PcrStatus pcr_f64_fleet_delay(struct PcrF64Fleet *place,
                               size_t agent,
                               double delay);
 
 /*
- Puts another agent in the place of one, and its regions into the table if that was built. The memory needs room for the
- segments and phases of the new one beside those of the old one, which become free. It is at the start of its path, and
- nothing is decided about its regions; the orders that the others have with one another stay. Whatever fails leaves all as it
- was.
+ Replaces an agent and, if the table was built, computes its regions. The memory needs room for the segments and
+ phases of the new agent in addition to those of the old one, which become free. The new agent is at the start of its
+ path, and its regions are undecided; the orders between the other agents stay. A call that fails leaves everything
+ unchanged.
  */
 PcrStatus pcr_f64_fleet_replace(struct PcrF64Fleet *place,
                                 size_t agent,
                                 const struct PcrF64Agent *by);
 
 /*
- Removes an agent; those behind it move up by one number, with their orders. A table that was built is so afterwards.
+ Removes an agent; the number of every agent behind it decreases by one, orders included. A table that was built
+ stays built.
  */
 PcrStatus pcr_f64_fleet_remove(struct PcrF64Fleet *place,
                                size_t agent);
 
 /*
- The regions that an agent has to keep out of, by the other agent, and their count. Ranges are rounded outward.
+ The regions that an agent has to keep out of, sorted by the other agent, and their count. Ranges are rounded
+ outward.
  */
 PcrStatus pcr_f64_fleet_regions(const struct PcrF64Fleet *place,
                                 size_t ego,
@@ -443,8 +450,8 @@ PcrStatus pcr_f64_fleet_regions(const struct PcrF64Fleet *place,
                                 size_t *count);
 
 /*
- The lengths along the path of the ego at which it overlaps the other agent at a time, and how many intervals there
- are: those of one region after the other, rounded outward.
+ The lengths along the path of the ego at which it overlaps the other agent at a time, and the number of intervals.
+ Intervals are sorted by region and rounded outward.
  */
 PcrStatus pcr_f64_fleet_slices(const struct PcrF64Fleet *place,
                                size_t ego,
@@ -455,8 +462,8 @@ PcrStatus pcr_f64_fleet_slices(const struct PcrF64Fleet *place,
                                size_t *count);
 
 /*
- The conflicts of two agents on their motions, in order of time from the first start of any agent to the last arrival,
- and their count. It asks the motions, not the table.
+ The conflicts of two agents on their motions, in order of time from the first start of any agent to the last
+ arrival, and their count. It uses the motions and not the table.
  */
 PcrStatus pcr_f64_fleet_conflicts(const struct PcrF64Fleet *place,
                                   size_t ego,
@@ -467,7 +474,7 @@ PcrStatus pcr_f64_fleet_conflicts(const struct PcrF64Fleet *place,
 
 /*
  The earliest conflict of an agent with any other, from the first start of any agent to the last arrival, and whether
- there is one. Mere touches are passed over, unless they are asked for: plans make agents touch on purpose.
+ there is one. Mere touches are skipped unless `touches` is set, because plans make agents touch on purpose.
  */
 PcrStatus pcr_f64_fleet_first_conflict(const struct PcrF64Fleet *place,
                                        size_t ego,
@@ -476,8 +483,8 @@ PcrStatus pcr_f64_fleet_first_conflict(const struct PcrF64Fleet *place,
                                        bool *found);
 
 /*
- The least delay of an agent's start, from `from` on (s), with which it meets none of the others, each moving as it does
- now. `PCR_STATUS_NO_PLAN` where no delay helps. `pcr_f64_fleet_delay` makes it so.
+ The least delay of an agent's start, from `from` on (s), with which it meets none of the others, which move as they
+ do now. `PCR_STATUS_NO_PLAN` if no delay helps. Apply it with `pcr_f64_fleet_delay`.
  */
 PcrStatus pcr_f64_fleet_earliest_start(const struct PcrF64Fleet *place,
                                        size_t agent,
@@ -485,8 +492,8 @@ PcrStatus pcr_f64_fleet_earliest_start(const struct PcrF64Fleet *place,
                                        double *delay);
 
 /*
- The times in an interval (s) at which no other agent is in the way on a part of the ego's path (m), wherever on it the ego
- is, and how many intervals there are. It asks the motions, not the table.
+ The times in an interval (s) at which no other agent blocks any of these lengths of the ego's path (m), and the
+ number of intervals. It uses the motions and not the table.
  */
 PcrStatus pcr_f64_fleet_safe_intervals(const struct PcrF64Fleet *place,
                                        size_t ego,
@@ -497,9 +504,10 @@ PcrStatus pcr_f64_fleet_safe_intervals(const struct PcrF64Fleet *place,
                                        size_t *count);
 
 /*
- Delays the starts of all agents so that none overlaps another, each as little as those before it in the order allow.
- `order` lists each agent once, the highest priority first, and comes back as it was used. `room` is for a motion an agent,
- and free afterwards. Where there is no plan, nobody is delayed and `why` tells who is in the way; it may be null.
+ Delays the starts of all agents so that none overlap; each delay is as small as the agents before it in the order
+ allow. `order` lists each agent once, the highest priority first, and returns the order that was used. `room` needs
+ one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed and `why` names the
+ agent in the way. `why` may be null.
  */
 PcrStatus pcr_f64_fleet_plan_delays(struct PcrF64Fleet *place,
                                     size_t *order,
@@ -509,7 +517,7 @@ PcrStatus pcr_f64_fleet_plan_delays(struct PcrF64Fleet *place,
                                     PcrUnsolved *why);
 
 /*
- The regions of an agent, who passes them first, and their count.
+ The regions of an agent, the order in which it passes them, and their count.
  */
 PcrStatus pcr_f64_fleet_passings(const struct PcrF64Fleet *place,
                                  size_t agent,
@@ -518,16 +526,17 @@ PcrStatus pcr_f64_fleet_passings(const struct PcrF64Fleet *place,
                                  size_t *count);
 
 /*
- Takes the orders in which the motions of the fleet pass their regions, those of a plan without collisions. Decisions that
- were made before are overwritten. PCR_STATUS_REFUSED where two meet, or pass so near that it cannot be told who is first;
- `why` tells who, and may be null.
+ Takes the orders from the motions of the fleet, which must be those of a plan without collisions. Earlier decisions
+ are overwritten. PCR_STATUS_REFUSED if two agents meet, or pass so close that it cannot be decided which one is
+ first; `why` then names them. `why` may be null.
  */
 PcrStatus pcr_f64_fleet_orders_as_planned(struct PcrF64Fleet *place,
                                           PcrRefused *why);
 
 /*
- Decides about all regions of two agents that are not decided yet: whether the ego passes them first (PCR_FIRST) or second
- (PCR_SECOND). What is behind the second is passed. `pcr_f64_fleet_check` tells whether everybody can finish then.
+ Decides the order of all undecided regions of two agents: whether the ego passes them first (PCR_FIRST) or second
+ (PCR_SECOND). Parts of a region behind the second agent count as passed. `pcr_f64_fleet_check` checks that all agents
+ can still finish.
  */
 PcrStatus pcr_f64_fleet_decide(struct PcrF64Fleet *place,
                                size_t ego,
@@ -535,8 +544,8 @@ PcrStatus pcr_f64_fleet_decide(struct PcrF64Fleet *place,
                                uint8_t pass);
 
 /*
- The same for the region in one place of the table (`PcrF64Passing.place`), whether it is decided or not.
- PCR_STATUS_NO_SUCH_REGION where the agent has none there.
+ Decides the order of the region at one index of the table (`PcrF64Passing.place`). An order that exists is overwritten.
+ PCR_STATUS_NO_SUCH_REGION if the agent has no region there.
  */
 PcrStatus pcr_f64_fleet_decide_at(struct PcrF64Fleet *place,
                                   size_t region,
@@ -544,36 +553,38 @@ PcrStatus pcr_f64_fleet_decide_at(struct PcrF64Fleet *place,
                                   uint8_t pass);
 
 /*
- Takes in where an agent is. Reports may come late, twice and in any order: none takes back what another one has said. It must be
- about the path that the agent has now.
+ Updates the progress of an agent. Reports may come late, twice and in any order; an older report does not undo a
+ newer one. The report must be about the present path of the agent.
  */
 PcrStatus pcr_f64_fleet_report(struct PcrF64Fleet *place,
                                size_t agent,
                                const struct PcrF64Progress *report);
 
 /*
- How far an agent may go, given what was reported of the others: it has to brake so that it stays there
- (`pcr_f64_stopping_speed`). Old reports give a hold that is too low, never one that is too high.
+ How far an agent may go, given the reports of the others. The agent has to brake so that it does not exceed this
+ (`pcr_f64_stopping_speed`). Reports that are out of date give a hold that is too low, never one that is too high.
  */
 PcrStatus pcr_f64_fleet_hold(const struct PcrF64Fleet *place,
                              size_t agent,
                              struct PcrF64Hold *out);
 
 /*
- Whether everybody can get to the end of its path, from where all were reported, without breaking an order.
- PCR_STATUS_REFUSED where somebody would wait for ever, or is where it should have waited; `why` tells who, and may be null.
+ Checks that every agent can reach the end of its path, from the place that was reported last, without breaking an
+ order. PCR_STATUS_REFUSED if an agent would wait for ever, or is where it should have waited; `why` then names it.
+ `why` may be null.
  */
 PcrStatus pcr_f64_fleet_check(struct PcrF64Fleet *place,
                               const struct PcrF64Tolerances *accepted,
                               PcrRefused *why);
 
 /*
- Gives an agent a new path, with orders for all its regions so that everybody can finish; the orders that the others have with
- one another stay as they are. `report` is where it is on the new path, which goes on along the old one up to where the agent
- can stop. `prefer` says of every agent whether the admitted one should pass it first (PCR_FIRST) or second, where both are
- possible; null for all second. The table must be built, and the memory needs room as for `pcr_f64_fleet_replace`.
+ Gives an agent a new path and orders for all its regions, with which every agent can finish. The orders between the
+ other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
+ least up to where the agent can stop. `prefer` says for every other agent whether the admitted one should pass it
+ first (PCR_FIRST) or second, where both are possible; if it is null, second. The table must be built, and the memory
+ needs room as for `pcr_f64_fleet_replace`.
 
- PCR_STATUS_REFUSED leaves everything as it was; `why` tells who is in the way, and may be null.
+ PCR_STATUS_REFUSED leaves everything unchanged; `why` then names the agent in the way. `why` may be null.
  */
 PcrStatus pcr_f64_fleet_admit(struct PcrF64Fleet *place,
                               size_t agent,
@@ -584,19 +595,22 @@ PcrStatus pcr_f64_fleet_admit(struct PcrF64Fleet *place,
                               PcrRefused *why);
 
 /*
- Drops the orders of regions that the first agent has left: they cost no time any more.
+ Drops the orders of regions that the first agent has left, so that they are not evaluated any more.
  */
 PcrStatus pcr_f64_fleet_passed(struct PcrF64Fleet *place);
 
 /*
- The way that is needed to stop from a speed (m/s), rounded up (m).
+ The stopping distance from a speed (m/s), rounded up (m).
  */
 PcrStatus pcr_f64_stopping_way(const struct PcrF64Brakes *how, double speed, double *way);
 
 /*
- The speed from which this way (m) is enough to stop, rounded down (m/s); 0 where there is no way.
+ The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above
+ 0.
  */
-PcrStatus pcr_f64_stopping_speed(const struct PcrF64Brakes *how, double way, double *speed);
+PcrStatus pcr_f64_stopping_speed(const struct PcrF64Brakes *how,
+                                 double way,
+                                 double *speed);
 
 #ifdef __cplusplus
 }  // extern "C"

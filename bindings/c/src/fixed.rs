@@ -6,7 +6,7 @@ macro_rules! name {
     };
 }
 
-/// Numbers as C has them, and as the library has them.
+/// Conversion between numbers of C and numbers of the library.
 mod number {
     use pcr_fixed::{Q16, Turns};
 

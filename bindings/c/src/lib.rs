@@ -1,4 +1,5 @@
-//! C interface of [`pcr_core`]: plain C types, the caller's memory, error codes. In three number formats, made of one source.
+//! C interface of [`pcr_core`]: plain C types, memory of the caller, error codes; in three number formats that are
+//! built from one source.
 //!
 //! | header | numbers | names | |
 //! |---|---|---|---|
@@ -6,7 +7,7 @@
 //! | `pcr_f64.h` | `double` | `PcrF64Fleet`, `pcr_f64_fleet_...` | [`double`] |
 //! | `pcr_q16.h` | `int32_t`, 1/65536 m, s, m/s, m/s² | `PcrQ16Fleet`, `pcr_q16_fleet_...` | [`fixed`] |
 //!
-//! The headers are made from this crate; `c/crossing.c` is a program to begin with. In short:
+//! The headers are generated from this crate; `c/crossing.c` is an example to begin with. In short:
 //!
 //! ```c
 //! static PcrSegment segments[16]; static PcrPhase phases[12]; static PcrMotion motions[4];
@@ -19,20 +20,20 @@
 //! pcr_fleet_regions(&fleet, 0, regions, 8, &count);
 //! ```
 //!
-//! What resolves conflicts is in `c/resolve.c`: `pcr_fleet_first_conflict`, `pcr_fleet_earliest_start`,
-//! `pcr_fleet_safe_intervals`, `pcr_fleet_plan_delays`, `pcr_fleet_replace`, `pcr_fleet_remove`. Passing orders, kept whatever the
-//! delays, are in `c/passing.c`: `pcr_fleet_orders_as_planned`, `pcr_fleet_admit`, `pcr_fleet_report`, `pcr_fleet_hold`,
-//! `pcr_fleet_check`. After an agent was added, what asks the table is refused until `pcr_fleet_build`
-//! (`PCR_STATUS_NOT_BUILT`).
+//! `c/resolve.c` shows the functions that resolve conflicts: `pcr_fleet_first_conflict`, `pcr_fleet_earliest_start`,
+//! `pcr_fleet_safe_intervals`, `pcr_fleet_plan_delays`, `pcr_fleet_replace`, `pcr_fleet_remove`. `c/passing.c` shows
+//! passing orders, which robots keep whatever their delays: `pcr_fleet_orders_as_planned`, `pcr_fleet_admit`,
+//! `pcr_fleet_report`, `pcr_fleet_hold`, `pcr_fleet_check`. After an agent was added, functions that read the table
+//! return `PCR_STATUS_NOT_BUILT` until `pcr_fleet_build` is called.
 //!
-//! Nothing is allocated, nothing panics (on a microcontroller the link fails if anything could), and a call that fails
-//! leaves the fleet as it was.
+//! The library does not allocate and does not panic (on a microcontroller a program fails to link if it could). A call
+//! that fails leaves the fleet unchanged.
 //!
 //! # What the caller promises
-//! Pointers are null, which is an error that is told, or point to as many values as is said; the memory of
-//! [`PcrMemory`](single::PcrMemory) belongs to the fleet from `pcr_fleet_init` on, for as long as it is used; all other pointers
-//! are used during the call only. A fleet is used by one thread at a time, only after `pcr_fleet_init` has succeeded on it,
-//! and is not moved or copied.
+//! A pointer is null, which is reported as an error, or points to as many values as the function says. The memory in
+//! [`PcrMemory`](single::PcrMemory) belongs to the fleet from `pcr_fleet_init` on, as long as the fleet is used. All
+//! other pointers are used during the call only. A fleet is used by one thread at a time, only after `pcr_fleet_init`
+//! has succeeded on it, and is not moved or copied.
 #![cfg_attr(target_os = "none", no_std)]
 // One source for all number formats.
 #![allow(clippy::duplicate_mod)]
@@ -46,7 +47,7 @@ pub mod single;
 
 pub use status::*;
 
-/// A panic is an undefined symbol: a program links only if none can be reached.
+/// A panic calls an undefined symbol, so a program links only if no panic can be reached.
 #[cfg(target_os = "none")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
@@ -54,6 +55,6 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
         #[link_name = "pcr: a panic can be reached"]
         fn a_panic_can_be_reached() -> !;
     }
-    // SAFETY: it does not exist, so that nothing that calls it is ever run.
+    // SAFETY: the function does not exist, so a program that calls it does not link and never runs.
     unsafe { a_panic_can_be_reached() }
 }

@@ -1,13 +1,13 @@
-//! From C's pointers to Rust's references: all of the crate's dealings with raw memory.
+//! Converts pointers of C to references of Rust. All accesses to raw memory are in this module.
 //!
-//! Sound under what the crate's documentation asks of the caller, and no more is assumed.
+//! It is sound if the caller keeps the promises in the documentation of the crate; it assumes nothing else.
 
 use core::cell::Cell;
 use core::mem::{align_of, size_of};
 use core::ptr::NonNull;
 use core::slice;
 
-/// Memory for values of type `R`, the first ones of which are there.
+/// Memory for values of type `R`, of which the first `len` are initialized.
 pub(crate) struct Stack<R> {
     first: NonNull<R>,
     room: usize,
@@ -15,23 +15,23 @@ pub(crate) struct Stack<R> {
 }
 
 impl<R: Copy + 'static> Stack<R> {
-    /// In C records that have room for an `R` each; `None` for a null pointer.
+    /// Uses C records that have room for an `R` each; `None` for a null pointer.
     pub(crate) fn new<C>(first: *mut C, room: usize) -> Option<Self> {
         const { assert!(size_of::<C>() == size_of::<R>() && align_of::<C>() >= align_of::<R>()) };
         NonNull::new(first.cast::<R>()).map(|first| Self { first, room, len: 0 })
     }
 
-    /// No memory.
+    /// A stack without memory.
     pub(crate) const fn none() -> Self {
         Self { first: NonNull::dangling(), room: 0, len: 0 }
     }
 
-    /// Adds a value; `false` where there is no room.
+    /// Adds a value; `false` if there is no room.
     pub(crate) fn push(&mut self, value: R) -> bool {
         if self.is_full() {
             return false;
         }
-        // SAFETY: the caller promises this much room, for good and for the fleet alone.
+        // SAFETY: the caller promises that this memory exists as long as the fleet, and that only the fleet uses it.
         unsafe { self.first.add(self.len).write(value) };
         self.len += 1;
         true
@@ -42,7 +42,7 @@ impl<R: Copy + 'static> Stack<R> {
         self.len >= self.room
     }
 
-    /// Takes a value out; those behind it move down.
+    /// Removes a value; the values behind it move down.
     pub(crate) fn remove(&mut self, index: usize) {
         if index >= self.len {
             return;
@@ -56,33 +56,34 @@ impl<R: Copy + 'static> Stack<R> {
         self.len = self.len.saturating_sub(1);
     }
 
-    /// The values that are there.
+    /// The initialized values.
     pub(crate) fn values(&self) -> &[R] {
-        // SAFETY: this many were written.
+        // SAFETY: the first `len` values were written.
         unsafe { slice::from_raw_parts(self.first.as_ptr(), self.len) }
     }
 
-    /// The value at a place.
+    /// The value at an index.
     pub(crate) fn get_mut(&mut self, index: usize) -> Option<&mut R> {
         // SAFETY: as above.
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }.get_mut(index)
     }
 
-    /// The values that are there, to be changed.
+    /// The initialized values, mutable.
     pub(crate) fn values_mut(&mut self) -> &mut [R] {
         // SAFETY: as above.
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }
     }
 
-    /// All of the memory, filled up with this value.
+    /// All of the memory; the rest is filled with this value.
     pub(crate) fn filled(mut self, value: R) -> &'static mut [R] {
         while self.push(value) {}
-        // SAFETY: as above, and nothing else keeps the pointer.
+        // SAFETY: as above, and no other copy of the pointer is kept.
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr(), self.len) }
     }
 }
 
-/// C records that have room for an `A` and a `B` each: first all of the one, then all of the other. `None` for a null pointer.
+/// Divides C records that have room for an `A` and a `B` each into memory for all `A`, then for all `B`. `None` for a
+/// null pointer.
 pub(crate) fn both<C, A: Copy + 'static, B: Copy + 'static>(
     first: *mut C,
     room: usize,
@@ -92,73 +93,76 @@ pub(crate) fn both<C, A: Copy + 'static, B: Copy + 'static>(
         assert!(align_of::<C>() >= align_of::<A>() && align_of::<C>() >= align_of::<B>());
     };
     let first = NonNull::new(first.cast::<A>())?;
-    // SAFETY: the caller promises room for as many of both.
+    // SAFETY: the caller promises room for this number of both.
     let behind = unsafe { first.add(room) }.cast::<B>();
     Some((Stack { first, room, len: 0 }, Stack { first: behind, room, len: 0 }))
 }
 
-/// Memory of which one part after the other is taken for good, until it is given back.
+/// Memory from which consecutive parts are taken; they stay in use until they are given back.
 pub(crate) struct Arena<R> {
     first: NonNull<R>,
     room: usize,
-    /// How much is taken.
+    /// Number of values that are in use.
     len: usize,
 }
 
 impl<R: Copy + 'static> Arena<R> {
-    /// All of it free, and filled with this value.
+    /// An arena that is filled with this value and not in use.
     pub(crate) fn new(all: Stack<R>, value: R) -> Self {
         let (first, room) = (all.first, all.room);
         for place in 0..room {
-            // SAFETY: the caller promises this much room, for good and for the fleet alone.
+            // SAFETY: the caller promises that this memory exists as long as the fleet, and that only the fleet uses
+            // it.
             unsafe { first.add(place).write(value) };
         }
         Self { first, room, len: 0 }
     }
 
-    /// What is free.
+    /// The values that are not in use.
     pub(crate) fn free(&mut self) -> &mut [R] {
-        // SAFETY: it was filled, and no part of it is taken.
+        // SAFETY: the memory was filled, and no part of this range is in use.
         unsafe { slice::from_raw_parts_mut(self.first.as_ptr().add(self.len), self.room.saturating_sub(self.len)) }
     }
 
-    /// The part that comes next. It is not taken before [`Arena::take`]: until then, [`Arena::free`] ends its use.
+    /// The next part, which is not in use until [`Arena::take`] is called. The reference must not be used after a call
+    /// of [`Arena::free`].
     pub(crate) fn next(&self, count: usize) -> &'static [R] {
         self.part(self.len, count)
     }
 
-    /// Takes the part that comes next.
+    /// Marks the next part as in use.
     pub(crate) fn take(&mut self, count: usize) {
         self.len = self.len.saturating_add(count).min(self.room);
     }
 
-    /// Where a part begins.
+    /// Index at which a part begins.
     pub(crate) fn place(&self, part: &[R]) -> usize {
         (part.as_ptr() as usize).wrapping_sub(self.first.as_ptr() as usize) / const { size_of::<R>() }
     }
 
-    /// Moves a part down, and gives where it is now. Whatever lies there or borrows the part is not used any more.
+    /// Moves a part down, and returns it at its new place. The caller no longer uses the part, or the values at its new
+    /// place.
     pub(crate) fn moved(&mut self, from: usize, to: usize, count: usize) -> &'static [R] {
         if from.max(to).checked_add(count).is_some_and(|end| end <= self.room) {
-            // SAFETY: both are within the memory.
+            // SAFETY: both ranges are within the memory.
             unsafe { self.first.add(from).copy_to(self.first.add(to), count) };
         }
         self.part(to, count)
     }
 
-    /// Gives back all from a place on.
+    /// Gives back all values from an index on.
     pub(crate) fn give_back(&mut self, from: usize) {
         self.len = self.len.min(from);
     }
 
     fn part(&self, from: usize, count: usize) -> &'static [R] {
         let count = count.min(self.room.saturating_sub(from));
-        // SAFETY: it was filled; whoever changes it knows of what borrows it.
+        // SAFETY: the memory was filled; callers that change it know what borrows it.
         unsafe { slice::from_raw_parts(self.first.as_ptr().add(from.min(self.room)), count) }
     }
 }
 
-/// The values at a pointer; `None` for a null pointer, unless there are none.
+/// The values at a pointer; `None` if the pointer is null and `count` is not 0.
 pub(crate) fn values<'a, T>(first: *const T, count: usize) -> Option<&'a [T]> {
     match NonNull::new(first.cast_mut()) {
         // SAFETY: the caller promises `count` values.
@@ -167,38 +171,38 @@ pub(crate) fn values<'a, T>(first: *const T, count: usize) -> Option<&'a [T]> {
     }
 }
 
-/// The places at a pointer; `None` for a null pointer, unless there are none.
+/// The values at a pointer, mutable; `None` if the pointer is null and `count` is not 0.
 pub(crate) fn places<'a, T>(first: *mut T, count: usize) -> Option<&'a mut [T]> {
     match NonNull::new(first) {
-        // SAFETY: the caller promises `count` places.
+        // SAFETY: the caller promises `count` values.
         Some(first) => Some(unsafe { slice::from_raw_parts_mut(first.as_ptr(), count) }),
         None => (count == 0).then_some(&mut []),
     }
 }
 
-/// A place that C has for a value of the library.
+/// A C type whose memory holds a value of the library.
 ///
 /// # Safety
-/// All bytes of it may be anything, and nothing but this module looks at them.
+/// Any bytes are valid for the type, and only this module reads them.
 pub(crate) unsafe trait Place {
-    /// What is put there.
+    /// Type of the value that is stored.
     type Value;
 }
 
-/// Puts a value in its place.
+/// Stores a value.
 pub(crate) fn put<P: Place>(place: &mut P, value: P::Value) {
     const { assert!(size_of::<P::Value>() <= size_of::<P>() && align_of::<P::Value>() <= align_of::<P>()) };
-    // SAFETY: there is room, as asserted above; what was there needs no drop.
+    // SAFETY: it fits, as asserted above, and the bytes that it overwrites need no drop.
     unsafe { core::ptr::from_mut(place).cast::<P::Value>().write(value) };
 }
 
-/// The value that was put there.
+/// The stored value.
 pub(crate) fn get<P: Place>(place: &P) -> &P::Value {
     // SAFETY: the caller promises that it was initialized.
     unsafe { &*core::ptr::from_ref(place).cast::<P::Value>() }
 }
 
-/// The value that was put there.
+/// The stored value, mutable.
 pub(crate) fn get_mut<P: Place>(place: &mut P) -> &mut P::Value {
     // SAFETY: as above.
     unsafe { &mut *core::ptr::from_mut(place).cast::<P::Value>() }

@@ -1,55 +1,55 @@
-//! The C types that all number formats share.
+//! The C types that are the same in all number formats.
 
 use pcr_core::{Full, Invalid, Mismatch, Pass, Refused, Unchanged, Unsolved};
 
-/// What a call comes to. Whatever fails leaves the fleet as it was; a table that became full is empty.
+/// Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full is empty.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PcrStatus {
-    /// Done.
+    /// The call succeeded.
     Ok = 0,
     /// A pointer is null.
     Null,
     /// A number is NaN or infinite.
     NonFinite,
-    /// A number is below 0 that must not be.
+    /// A number is below 0 but must not be.
     Negative,
-    /// A number must be above 0.
+    /// A number is not above 0 but must be.
     NonPositive,
-    /// A number is beyond the range of the format, or a path or a motion gets there; the lower end of an interval is above the
-    /// upper one.
+    /// A number is beyond the range of the format, or a path or a motion leaves it; or the lower end of an interval is
+    /// above the upper one.
     OutOfRange,
-    /// An arc sweeps more than one turn: split it.
+    /// An arc sweeps more than one turn. Split it.
     SweepOverOneTurn,
-    /// The profile does not travel the length of the path.
+    /// The profile is longer or shorter than the path.
     LengthMismatch,
-    /// A leg is neither a line nor an arc.
+    /// The curve of a leg is neither PCR_LINE, PCR_LEFT nor PCR_RIGHT.
     NoSuchCurve,
-    /// There is no agent of that number.
+    /// There is no agent with this number.
     NoSuchAgent,
     /// The memory has no room for another agent, or for its segments or phases.
     NoRoom,
     /// The table has no room for the entries, the pieces or the orders of all regions.
     TableFull,
-    /// The buffer is too small; the count that is needed is told.
+    /// The buffer is too small. The required count was written.
     BufferTooSmall,
-    /// The table is not that of the agents: `pcr_fleet_build` was not called since the last was added.
+    /// The table does not belong to the agents: `pcr_fleet_build` was not called since the last agent was added.
     NotBuilt,
-    /// The order does not list each agent once.
+    /// The order does not list every agent exactly once.
     BadOrder,
-    /// There is no such plan: whoever waits, for however long, meets another one.
+    /// There is no plan: an agent meets another one, however long it waits.
     NoPlan,
-    /// A number is above 0, but less than the format can work with.
+    /// A number is above 0, but too small for the format.
     TooSmall,
-    /// The table is that of the row of another agent only (`pcr_fleet_build_row`).
+    /// The table holds the row of another agent only (`pcr_fleet_build_row`).
     OnlyRow,
-    /// There is no region of the agent in that place of the table.
+    /// The agent has no region at this index of the table.
     NoSuchRegion,
     /// The fleet was given no memory for orders.
     NoOrders,
-    /// It is neither PCR_FIRST nor PCR_SECOND.
+    /// The value is neither PCR_FIRST nor PCR_SECOND.
     NoSuchPass,
-    /// Orders are refused; `why` tells who is in the way.
+    /// Orders are refused; `why` names the agent in the way.
     Refused,
 }
 
@@ -111,16 +111,16 @@ pub const PCR_LEFT: u8 = 1;
 /// `PcrLeg.curve` of an arc that turns right, clockwise.
 pub const PCR_RIGHT: u8 = 2;
 
-/// `PcrPassing.pass` of a region that nothing is decided about: neither agent may enter it.
+/// `PcrPassing.pass` of a region that is undecided: neither agent may enter it.
 pub const PCR_UNDECIDED: u8 = 0;
 /// The agent passes the region first.
 pub const PCR_FIRST: u8 = 1;
-/// The agent waits until the other one is through.
+/// The agent waits until the other one has left the region.
 pub const PCR_SECOND: u8 = 2;
-/// One of the two has left the region behind.
+/// One of the two agents has left the region.
 pub const PCR_OVER: u8 = 3;
 
-/// A pass as C has it.
+/// Converts a pass to C.
 pub(crate) fn pass(pass: Pass) -> u8 {
     match pass {
         Pass::Undecided => PCR_UNDECIDED,
@@ -130,7 +130,7 @@ pub(crate) fn pass(pass: Pass) -> u8 {
     }
 }
 
-/// A decision.
+/// Converts a decision from C.
 pub(crate) fn decision(pass: u8) -> Result<Pass, PcrStatus> {
     match pass {
         PCR_FIRST => Ok(Pass::First),
@@ -139,16 +139,16 @@ pub(crate) fn decision(pass: u8) -> Result<Pass, PcrStatus> {
     }
 }
 
-/// How far an agent may go.
+/// Kind of a limit on how far an agent may go.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PcrHoldKind {
-    /// Nowhere: where it is the other one will pass. It can only be first.
+    /// The agent stands where the other agent will pass. It can only go first.
     #[default]
     Inside,
-    /// Up to a length of its path, where it may stand.
+    /// The agent may go up to a length of its path, and may stand there.
     At,
-    /// To the end of its path.
+    /// The agent may go to the end of its path.
     Free,
 }
 
@@ -156,27 +156,27 @@ pub enum PcrHoldKind {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PcrReason {
-    /// The two overlap at the starts of their paths.
+    /// The two agents overlap at the starts of their paths.
     Starts,
-    /// The two overlap at the ends of their paths.
+    /// The two agents overlap at the ends of their paths.
     Ends,
-    /// The two meet however late either sets off.
+    /// The two agents meet however late either of them starts.
     Always,
-    /// The first cannot go because of the second, with the orders that were tried.
+    /// The first agent cannot go because of the second, with the priorities that were tried.
     Order,
-    /// The check of the plan found that the two overlap.
+    /// The check of the plan found that the two agents overlap.
     Overlap,
-    /// The times of the first are out of range.
+    /// The times of the first agent are out of range.
     Times,
 }
 
-/// Why there is no plan, and of whom.
+/// Why there is no plan, and the agents concerned.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PcrUnsolved {
     /// The reason.
     pub reason: PcrReason,
-    /// The agents; twice the same where it is one.
+    /// The agents; twice the same number if only one is concerned.
     pub agents: [usize; 2],
 }
 
@@ -203,13 +203,13 @@ pub enum PcrRefusal {
     Stuck,
     /// The first agent is where it should have waited for the second.
     Late,
-    /// The second agent is in the way of the first, whoever of them goes first.
+    /// The second agent is in the way of the first, whichever of them goes first.
     Blocked,
-    /// By their motions the two meet, or pass so near that it cannot be told who is first.
+    /// According to their motions the two agents meet, or pass so close that it cannot be decided which one is first.
     Meeting,
 }
 
-/// Why orders are refused, and who is in the way.
+/// Why orders are refused, and the agents concerned.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PcrRefused {
@@ -220,7 +220,7 @@ pub struct PcrRefused {
 }
 
 impl PcrRefused {
-    /// What there is to tell; nothing of what the status says by itself.
+    /// The reason for C; `None` if the status alone says it.
     pub(crate) fn of(refused: Refused) -> Option<Self> {
         let (reason, agents) = match refused {
             Refused::Stuck { agent, by, .. } => (PcrRefusal::Stuck, [agent, by]),

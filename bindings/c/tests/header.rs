@@ -1,10 +1,10 @@
-//! The headers in the repository are those that the code makes.
+//! Checks that the headers in the repository are those that the code generates.
 //!
-//! `PCR_UPDATE=1 cargo test -p pcr-ffi --test header` writes them anew.
+//! `PCR_UPDATE=1 cargo test -p pcr-ffi --test header` writes them.
 
 use std::path::{Path, PathBuf};
 
-/// A number format: its header, what its names begin with, and its numbers.
+/// A number format: its header, the prefixes of its names, and its number types.
 struct Format {
     header: &'static str,
     types: &'static str,
@@ -51,13 +51,13 @@ const FORMATS: [Format; 3] = [
     },
 ];
 
-/// What all formats share is in a header of its own.
+/// The header of everything that all formats share.
 const COMMON: &str = "pcr_common.h";
 
-const PROMISES: &str = "   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus, and whatever fails changes nothing.
-   Pointers are null, which is told, or point to as many values as is said. What is in a memory belongs to the fleet from
-   fleet_init on, for as long as it is used; all other pointers are used during the call only. Nothing is allocated. A fleet is
-   used by one thread at a time, and is not moved or copied.";
+const PROMISES: &str = "   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus; a call that fails changes nothing.
+   A pointer is null, which is reported, or points to as many values as the function says. The memory given to
+   fleet_init belongs to the fleet as long as the fleet is used; all other pointers are used during the call only. The library does
+   not allocate. A fleet is used by one thread at a time, and is not moved or copied.";
 
 fn config(title: &str, guard: &str) -> cbindgen::Config {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -68,7 +68,7 @@ fn config(title: &str, guard: &str) -> cbindgen::Config {
     config
 }
 
-/// The text that cbindgen reads, with the names and numbers of a format.
+/// The source for cbindgen, with the names and number types of a format.
 fn rust_of(format: &Format, shared: &[String]) -> String {
     let mut text = String::new();
     for file in ["types", "table", "plans", "orders"] {
@@ -100,7 +100,7 @@ fn name(word: &str, format: &Format, shared: &[String]) -> String {
     }
 }
 
-/// A line word by word, with what is between them.
+/// Splits a line into words and the text between them.
 fn words(line: &str, mut each: impl FnMut(&str)) {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut rest = line;
@@ -118,7 +118,7 @@ fn made(config: cbindgen::Config, source: &Path) -> String {
     String::from_utf8(made).expect("UTF-8")
 }
 
-/// All headers and what is to be in them.
+/// All headers with their contents.
 fn headers() -> Vec<(&'static str, String)> {
     let status = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src/status.rs");
     let text = std::fs::read_to_string(&status).expect("a source");
@@ -127,8 +127,8 @@ fn headers() -> Vec<(&'static str, String)> {
         Some(name.trim_end_matches([' ', '{']).to_owned())
     };
     let shared: Vec<String> = text.lines().filter_map(declared).collect();
-    let mut common = config("What the interface of pcr has in all number formats.", "PCR_COMMON_H");
-    // No function names them there.
+    let mut common = config("The parts of the C interface of pcr that all number formats share.", "PCR_COMMON_H");
+    // No function in that source uses these types.
     common.export.include = shared.clone();
     let mut headers = vec![(COMMON, made(common, &status))];
     for format in &FORMATS {

@@ -1,8 +1,9 @@
-//! What Python needs of Rust: scenarios in, rows of numbers and JSON out. `python/pcr/__init__.py` makes arrays, objects and
-//! errors of it, and documents them; nothing else imports this module.
+//! The Rust part of the Python package: reads scenarios, and returns rows of numbers and JSON. `python/pcr/__init__.py`
+//! turns these into arrays, objects and errors, and documents them; nothing else imports this module.
 //!
-//! Rows are bytes of `f64` in the machine's order, so that NumPy takes them as they are and the standard library reads them
-//! without it: the stable interface of CPython 3.9 has no buffers of foreign types. The interpreter is released meanwhile.
+//! Rows are bytes of `f64` in the byte order of the machine. NumPy uses them without a copy, and the standard library
+//! can read them without NumPy; the stable interface of CPython 3.9 has no buffers of foreign types. Computations
+//! release the interpreter lock.
 
 use pcr_core::{Encounter, Hold, Interval, Order, Orders, Piece, Progress, Region, safe_intervals};
 use pcr_formats::import::{Imported, Options};
@@ -27,14 +28,14 @@ fn refused(reason: impl Display) -> PyErr {
     Error::new_err(reason.to_string())
 }
 
-/// The message, the line, and what it is about: agent, part and field.
+/// The message, the line, and the place of the fault: agent, part and field.
 fn misread(error: &ScenarioError) -> PyErr {
     let part = error.part().map(|(part, number)| format!("{part} {number}"));
     let told = |text: Option<&str>| text.map(str::to_owned);
     Error::new_err((error.to_string(), error.line(), told(error.agent()), part, told(error.field())))
 }
 
-/// What the tool prints with `--json`.
+/// The output of the tool with `--json`.
 fn json(answer: &impl Document) -> PyResult<String> {
     let mut text = Vec::new();
     report::json(answer, &mut text)?;
@@ -59,7 +60,7 @@ impl Fleet {
         Ok(Self { scenario, parts })
     }
 
-    /// Whether its agents are discs, and not several each.
+    /// Refuses fleets with footprints, whose agents consist of several discs.
     fn discs(&self) -> PyResult<()> {
         match self.scenario.agents.iter().find(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
             Some(agent) => Err(refused(format!("agent {}: it has a footprint; this is for discs", agent.called()))),
@@ -72,8 +73,8 @@ impl Fleet {
         place.ok_or_else(|| refused(format!("no agent {id}")))
     }
 
-    /// The regions of every agent in the order of the tool: ego, other, times, lengths, lengths of the other, and whether it is open
-    /// at the start and at the end.
+    /// The regions of every agent in the order of the tool: ego, other, times, lengths, lengths of the other, and
+    /// whether they are open at the start and at the end.
     fn rows(&self, inflated: bool) -> PyResult<Vec<[f64; 10]>> {
         let mut motions = self.parts.motions();
         if inflated {
@@ -105,7 +106,7 @@ impl Fleet {
         py.detach(|| Self::new(Scenario::from_json(text).map_err(|error| misread(&error))?))
     }
 
-    /// A file of any format, with the warnings of its reader.
+    /// Reads a file of any format; also returns the warnings of the reader.
     #[staticmethod]
     #[pyo3(signature = (path, options))]
     fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<(Self, Vec<String>)> {
@@ -148,7 +149,7 @@ impl Fleet {
         Ok(bytes(py, rows))
     }
 
-    /// What `pcr regions --json` prints, of fleets with footprints as well.
+    /// The output of `pcr regions --json`, also for fleets with footprints.
     #[pyo3(signature = (slices = None, agent = None))]
     fn regions_json(&self, py: Python<'_>, slices: Option<usize>, agent: Option<u64>) -> PyResult<String> {
         py.detach(|| {
@@ -162,7 +163,7 @@ impl Fleet {
         py.detach(|| Verdict::of::<f64>(&self.scenario, false).map_err(refused).and_then(|verdict| json(&verdict)))
     }
 
-    /// The forbidden lengths of an agent at these times: number of the time, other agent, from, to.
+    /// The forbidden lengths of an agent at these times: index of the time, other agent, from, to.
     fn map<'py>(
         &self,
         py: Python<'py>,
@@ -192,7 +193,7 @@ impl Fleet {
         Ok(bytes(py, rows))
     }
 
-    /// Where everybody is at a time: x, y, heading, travelled length.
+    /// The place of every agent at a time: x, y, heading, travelled length.
     fn places<'py>(&self, py: Python<'py>, time: f64) -> PyResult<Bound<'py, PyBytes>> {
         if !time.is_finite() {
             return Err(refused(format!("time: {time} is not a finite number")));
@@ -206,7 +207,7 @@ impl Fleet {
         Ok(bytes(py, rows.collect::<Vec<_>>()))
     }
 
-    /// When no other agent blocks these lengths of an agent's path.
+    /// The times at which no other agent blocks these lengths of an agent's path.
     fn safe_intervals(
         &self,
         py: Python<'_>,
@@ -229,7 +230,7 @@ impl Fleet {
         })
     }
 
-    /// The least distance of two agents, when, and the sum of their radii.
+    /// The least distance of two agents, its time, and the sum of their radii.
     fn closest(&self, i: u64, j: u64) -> PyResult<(f64, f64, f64)> {
         self.discs()?;
         let motions = self.parts.motions();
@@ -250,8 +251,8 @@ impl Fleet {
         })
     }
 
-    /// How far each agent may go in the order in which the motions pass, for places that are known from-to; infinite where nobody is
-    /// in the way.
+    /// How far each agent may go in the order in which the motions pass one another. Places are intervals; a hold is
+    /// infinite if no agent is in the way.
     fn holds(&self, py: Python<'_>, places: Vec<(f64, f64)>) -> PyResult<Vec<f64>> {
         self.discs()?;
         let motions = self.parts.motions();
@@ -306,13 +307,13 @@ impl From<Choices> for Options {
     }
 }
 
-/// A layout, for a vehicle.
+/// A layout for one vehicle.
 #[pyclass(frozen)]
 struct Layout(Imported);
 
 #[pymethods]
 impl Layout {
-    /// With an acceleration for vehicles that drive from rest to rest.
+    /// With an acceleration, vehicles drive from rest to rest.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<Self> {
         py.detach(|| {
@@ -325,7 +326,7 @@ impl Layout {
         py.detach(|| Locks::of(&self.0, nodes).map_err(refused).and_then(|locks| json(&locks)))
     }
 
-    /// For a layout that was read with this speed and acceleration, on which the limits of edges depend.
+    /// The layout must have been read with this speed and acceleration, because the limits of edges depend on them.
     #[pyo3(signature = (speed, acceleration))]
     fn delays_json(&self, py: Python<'_>, speed: f64, acceleration: Option<f64>) -> PyResult<String> {
         let driving = Driving { speed, acceleration };

@@ -1,20 +1,21 @@
-//! Agents as the caller writes them, and their paths and motions.
+//! Reads agents from the numbers of the caller, and builds their paths and motions.
 
 use crate::message::Fault;
 use heapless::Vec;
 use pcr_core::{Limits, Motion, Path, Point, Pose, Profile, Radians};
 
-/// Agents, at most.
+/// Largest number of agents.
 pub const AGENTS: usize = 24;
-/// Legs of a path, at most.
+/// Largest number of legs of a path.
 pub const LEGS: usize = 32;
-/// Numbers of an agent: x, y, heading, radius, start, largest speed, largest acceleration, how many legs; and two a leg.
+/// Numbers of an agent: x, y, heading, radius, start, largest speed, largest acceleration, number of legs; then two for
+/// each leg.
 pub const STRIDE: usize = 8 + 2 * LEGS;
 
 /// All agents, a row of [`STRIDE`] numbers each.
 pub type Input = [f64; AGENTS * STRIDE];
 
-/// What an agent is made of.
+/// The parts of an agent.
 #[derive(Debug)]
 pub struct Agent {
     path: Path<f64, LEGS>,
@@ -24,8 +25,8 @@ pub struct Agent {
 }
 
 impl Agent {
-    /// From its numbers. A leg is a line of this length if its second number is 0, else an arc of this radius that turns by the
-    /// second number, to the left if it is positive.
+    /// Reads an agent. A leg whose second number is 0 is a line, and the first number is its length. Otherwise it is an
+    /// arc with the first number as radius, which turns by the second number, to the left if positive.
     fn read(agent: usize, row: &[f64]) -> Result<Self, Fault> {
         let &[x, y, heading, radius, start, speed, acceleration, legs, ref rest @ ..] = row else {
             return Err(Fault::Agents(agent));
@@ -34,7 +35,7 @@ impl Agent {
         let position = Point::new(x, y);
         let mut path = Path::starting_at(Pose { position, heading: Radians(heading) }).map_err(whole)?;
         let all = rest.chunks_exact(2).zip(0_usize..);
-        // The number of legs is a whole number of `f64`; what is none of 0 to LEGS is refused.
+        // The number of legs is an `f64` that must be an integer from 0 to LEGS.
         if !(0..=LEGS).any(|count| count as f64 == legs) {
             return Err(Fault::Legs(agent));
         }
@@ -57,18 +58,20 @@ impl Agent {
 #[derive(Debug)]
 pub struct Agents {
     all: Vec<Agent, AGENTS>,
-    /// Whether these were taken. Until then there are no answers: none would be one about nobody.
+    /// Whether agents were read. Before that a query is an error, because an empty answer would be one about an empty
+    /// fleet.
     known: bool,
 }
 
-/// Their motions.
+/// Motions of the agents.
 pub type Motions<'a> = Vec<Motion<'a, f64>, AGENTS>;
 
 impl Agents {
-    /// Nobody.
+    /// An empty fleet that was not read.
     pub const NONE: Self = Self { all: Vec::new(), known: false };
 
-    /// Becomes the first so many agents of the input. If one of them is refused there are no answers.
+    /// Reads the first `count` agents of the input. If one of them is refused, queries are errors until another fleet
+    /// is read.
     ///
     /// # Errors
     /// [`Fault`], with the agent and the leg.
@@ -86,13 +89,13 @@ impl Agents {
         read
     }
 
-    /// Forgets all of them.
+    /// Removes all agents.
     pub fn clear(&mut self) {
         self.all.clear();
         self.known = false;
     }
 
-    /// Their motions; all of them, as each was tried when it was read.
+    /// The motions of all agents. Each one was checked when it was read.
     ///
     /// # Errors
     /// [`Fault::NotBuilt`].

@@ -1,16 +1,16 @@
-//! The fleet, its table, and the answers as rows of numbers.
+//! The fleet, its table, and its answers as rows of numbers.
 
 use crate::agents::{AGENTS, Agents, Input};
 use crate::message::Fault;
 use heapless::Vec;
 use pcr_core::{Ecm, Encounter, Hold, Interval, Mismatch, Motion, Order, Orders, Piece, Progress, Region, plan_delays};
 
-/// Numbers of an answer, at most.
+/// Largest number of `f64` in an answer.
 pub const ROOM: usize = 1 << 16;
 const REGIONS: usize = 2048;
 const PIECES: usize = 8192;
 
-/// An answer: numbers of rows of one length.
+/// An answer: rows of numbers, all of the same length.
 #[derive(Debug)]
 pub struct Rows {
     numbers: [f64; ROOM],
@@ -18,7 +18,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// No answer.
+    /// An empty answer.
     pub const EMPTY: Self = Self { numbers: [0.0; ROOM], used: 0 };
 
     /// The numbers.
@@ -34,7 +34,7 @@ impl Rows {
     }
 }
 
-/// The memory of the agents and the tables. Empty at first, so that a module does not have to carry what it begins with.
+/// Memory for the agents and the tables. It is filled at run time, so that it takes no room in the module file.
 #[derive(Debug)]
 pub struct Memory {
     agents: Agents,
@@ -44,7 +44,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Without contents.
+    /// Memory that is not filled yet.
     pub const NEW: Self = Self {
         agents: Agents::NONE,
         regions: [Vec::new(), Vec::new()],
@@ -54,12 +54,12 @@ impl Memory {
 }
 
 fn filled<T: Clone, const N: usize>(room: &mut Vec<T, N>, empty: T) -> &mut [T] {
-    // It is as long as it can be: nothing to refuse.
+    // The capacity is the length, so this cannot fail.
     let _ = room.resize(N, empty);
     room
 }
 
-/// Who passes whom, in memory of its own.
+/// Passing orders, with memory of their own.
 type Passing<'s> = Orders<f64, &'s mut [Region], &'s mut [Piece<f64>], &'s mut [Order<f64>]>;
 
 /// A fleet with its tables.
@@ -71,7 +71,7 @@ pub struct Fleet<'s> {
 }
 
 impl<'s> Fleet<'s> {
-    /// No agents.
+    /// A fleet without agents.
     pub fn new(memory: &'s mut Memory) -> Self {
         let [regions, others] = memory.regions.each_mut().map(|room| filled(room, Region::EMPTY));
         let [pieces, parts] = memory.pieces.each_mut().map(|room| filled(room, Piece::EMPTY));
@@ -79,10 +79,10 @@ impl<'s> Fleet<'s> {
         Self { agents: &mut memory.agents, table: Ecm::new(regions, pieces), orders }
     }
 
-    /// Reads the first so many agents, and computes all their regions. Returns how many there are.
+    /// Reads the first `count` agents, and computes all their regions. Returns the number of agents.
     ///
     /// # Errors
-    /// [`Fault`]; there are no answers then, until another one is built.
+    /// [`Fault`]; queries are then errors until another fleet is built.
     pub fn build(&mut self, input: &Input, count: usize) -> Result<usize, Fault> {
         self.agents.read(input, count)?;
         let built = self.table.fill(&self.agents.motions()?);
@@ -93,8 +93,8 @@ impl<'s> Fleet<'s> {
         Ok(self.table.len())
     }
 
-    /// All regions, both directions of each pair: ego, other, first and last time, least and largest length of the ego, and of the
-    /// other.
+    /// All regions, in both directions of each pair: ego, other, range of times, range of lengths of the ego, range of
+    /// lengths of the other.
     ///
     /// # Errors
     /// [`Fault::Rows`].
@@ -110,11 +110,11 @@ impl<'s> Fleet<'s> {
         Ok(count)
     }
 
-    /// The collision map of an agent at so many times from the first on: number of the time, other agent, least and largest
-    /// length of the ego that the other forbids then.
+    /// The collision map of an agent at `times` times, from `from` on in steps of `step`: index of the time, other
+    /// agent, and the least and largest length of the ego that the other agent forbids then.
     ///
     /// # Errors
-    /// [`Fault::Mismatch`] for another agent, [`Fault::Question`], [`Fault::Rows`].
+    /// [`Fault::Mismatch`] if there is no such agent, [`Fault::Question`], [`Fault::Rows`].
     pub fn map(&mut self, rows: &mut Rows, ego: usize, from: f64, step: f64, times: usize) -> Result<usize, Fault> {
         if !(from.is_finite() && step.is_finite()) {
             return Err(Fault::Question("the time"));
@@ -138,8 +138,8 @@ impl<'s> Fleet<'s> {
         Ok(count)
     }
 
-    /// The conflicts of all pairs: both agents, first and last time, depth, 1 if they but touch, lengths of the first, of the
-    /// second.
+    /// The conflicts of all pairs: both agents, interval of time, depth, 1 if they only touch, lengths of the first
+    /// agent, lengths of the second.
     ///
     /// # Errors
     /// [`Fault::Rows`].
@@ -172,7 +172,7 @@ impl<'s> Fleet<'s> {
         Ok(count)
     }
 
-    /// Where all agents are at a time: x, y, heading, travelled length, length of the path, arrival.
+    /// The places of all agents at a time: x, y, heading, travelled length, length of the path, arrival.
     ///
     /// # Errors
     /// [`Fault::Question`].
@@ -191,10 +191,10 @@ impl<'s> Fleet<'s> {
         Ok(motions.len())
     }
 
-    /// How far an agent has travelled at so many times from the first on.
+    /// The travelled length of an agent at `times` times, from `from` on in steps of `step`.
     ///
     /// # Errors
-    /// [`Fault::Mismatch`] for another agent, [`Fault::Question`], [`Fault::Rows`].
+    /// [`Fault::Mismatch`] if there is no such agent, [`Fault::Question`], [`Fault::Rows`].
     pub fn track(&mut self, rows: &mut Rows, ego: usize, from: f64, step: f64, times: usize) -> Result<usize, Fault> {
         if !(from.is_finite() && step.is_finite()) {
             return Err(Fault::Question("the time"));
@@ -208,7 +208,8 @@ impl<'s> Fleet<'s> {
         Ok(times)
     }
 
-    /// Start delays without conflicts, a number an agent \[s\]: each as early as those before it allow.
+    /// Start delays without conflicts, one number for each agent \[s\]: each agent starts as early as those before it
+    /// allow.
     ///
     /// # Errors
     /// [`Fault::Unsolved`].
@@ -222,7 +223,7 @@ impl<'s> Fleet<'s> {
         let mut order: Vec<usize, AGENTS> = (0..larger.len()).collect();
         let mut planned = larger.clone();
         let found = plan_delays(&self.table, &larger, &mut planned, &mut order);
-        // The table is that of the discs as they are again: it held them before.
+        // The table is computed again for discs of the true radii; it fitted before.
         self.table.fill(&motions)?;
         found?;
         rows.used = 0;
@@ -232,11 +233,11 @@ impl<'s> Fleet<'s> {
         Ok(motions.len())
     }
 
-    /// How far each agent may go at a time if all keep the order in which their motions pass, the others being where they are
-    /// then: infinite where nobody is in its way.
+    /// How far each agent may go if all keep the order in which their motions pass one another, and the others are
+    /// where they are at this time; infinite if no agent is in its way.
     ///
     /// # Errors
-    /// [`Fault::Refused`] where motions meet.
+    /// [`Fault::Refused`] if motions collide.
     pub fn holds(&mut self, rows: &mut Rows, time: f64) -> Result<usize, Fault> {
         if !time.is_finite() {
             return Err(Fault::Question("the time"));
@@ -259,7 +260,7 @@ impl<'s> Fleet<'s> {
         Ok(motions.len())
     }
 
-    /// From the first start to the last arrival \[s\].
+    /// The interval from the first start to the last arrival \[s\].
     ///
     /// # Errors
     /// [`Fault::NotBuilt`].

@@ -1,9 +1,10 @@
-//! `pcr-core` for WebAssembly: a fleet of up to 24 agents, its regions, maps, conflicts, plans and holds. No heap, no imports: the
-//! module asks for nothing, and any host that runs WebAssembly can load it.
+//! `pcr-core` for WebAssembly: a fleet of up to 24 agents, its regions, maps, conflicts, plans and holds. The module
+//! uses no heap and has no imports, so any host that runs WebAssembly can load it.
 //!
-//! The caller writes numbers to [`pcr_input`], calls [`pcr_build`], then asks. Answers are rows of numbers at [`pcr_output`], all
-//! `f64`; the number of rows is what the call returns. A negative number says that there is no answer, and [`pcr_message`] why.
-//! An empty answer (0 rows) always means that there is nothing. Agents are counted from 0 in numbers, from 1 in messages.
+//! The caller writes numbers to [`pcr_input`], calls [`pcr_build`], then the queries. Answers are rows of `f64` at
+//! [`pcr_output`]; a call returns the number of rows. A negative result means that there is no answer; [`pcr_message`]
+//! says why. An answer with 0 rows always means that there is nothing. Agents are counted from 0 in numbers, from 1 in
+//! messages.
 //!
 //! ```text
 //! pcr_input()                          -> address of 24 rows of pcr_stride() numbers, an agent each:
@@ -22,8 +23,8 @@
 //! pcr_message(), pcr_message_length()  -> address and length of the last message, UTF-8
 //! ```
 //!
-//! Units: metres, seconds, radians. `bindings/web/regions.mjs` is a program to begin with. The numbers are those of the library on
-//! any other machine, bit for bit: `bindings/web/check.sh` compares them with the tool's.
+//! Units: metres, seconds, radians. `bindings/web/regions.mjs` is an example to begin with. Results have the same bits
+//! as those of the library on any other machine: `bindings/web/check.sh` compares them with the tool's.
 #![cfg_attr(target_arch = "wasm32", no_std)]
 
 pub mod agents;
@@ -43,15 +44,15 @@ fn panicked(_: &core::panic::PanicInfo<'_>) -> ! {
     core::arch::wasm32::unreachable()
 }
 
-/// What a module has one of.
+/// The state of a module.
 struct State {
     input: Input,
     rows: Rows,
     message: String<256>,
 }
 
-/// It is used by one thread: WebAssembly without the threads proposal has no others, and elsewhere (in tests) the exports must not
-/// be called from several threads.
+/// State for one thread: WebAssembly without the threads proposal has only one, and elsewhere (in tests) the exports
+/// must not be called from several threads.
 struct Single<T>(UnsafeCell<T>);
 
 // SAFETY: see above; no export calls another one while it holds a reference.
@@ -63,21 +64,21 @@ static MEMORY: Single<Memory> = Single(UnsafeCell::new(Memory::NEW));
 static FLEET: Single<Option<Fleet<'static>>> = Single(UnsafeCell::new(None));
 
 fn with<T>(act: impl FnOnce(&mut Fleet<'static>, &mut Input, &mut Rows, &mut String<256>) -> T) -> T {
-    // SAFETY: the only references, for as long as the export runs.
+    // SAFETY: these are the only references while the export runs.
     let (State { input, rows, message }, fleet) = unsafe { (&mut *STATE.0.get(), &mut *FLEET.0.get()) };
-    // SAFETY: taken once, when there is no fleet yet, and kept by the fleet for ever.
+    // SAFETY: the reference is taken once, when there is no fleet yet, and the fleet keeps it for ever.
     let fleet = fleet.get_or_insert_with(|| Fleet::new(unsafe { &mut *MEMORY.0.get() }));
     act(fleet, input, rows, message)
 }
 
-/// The number of rows, or -1 and a message.
+/// Returns the number of rows, or -1 and writes a message.
 fn answer(ask: impl FnOnce(&mut Fleet<'static>, &Input, &mut Rows) -> Result<usize, Fault>) -> i32 {
     with(|fleet, input, rows, message| {
         message.clear();
         match ask(fleet, input, rows) {
             Ok(rows) => i32::try_from(rows).unwrap_or(i32::MAX),
             Err(fault) => {
-                // A message that does not fit is cut; none is longer than the room.
+                // A message that does not fit would be cut; all are shorter.
                 let _ = write!(message, "{fault}");
                 -1
             }
@@ -85,31 +86,31 @@ fn answer(ask: impl FnOnce(&mut Fleet<'static>, &Input, &mut Rows) -> Result<usi
     })
 }
 
-/// Where agents are written.
+/// Pointer to the input, where the caller writes agents.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_input() -> *mut f64 {
     with(|_, input, _, _| input.as_mut_ptr())
 }
 
-/// Numbers of an agent.
+/// Number of `f64` for an agent.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_stride() -> u32 {
     STRIDE as u32
 }
 
-/// Where answers are read.
+/// Pointer to the output, where the caller reads answers.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_output() -> *const f64 {
     with(|_, _, rows, _| rows.numbers().as_ptr())
 }
 
-/// Where the last message is.
+/// Pointer to the last message.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_message() -> *const u8 {
     with(|_, _, _, message| message.as_ptr())
 }
 
-/// Bytes of the last message; 0 after an answer.
+/// Length of the last message in bytes; 0 after an answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_message_length() -> u32 {
     with(|_, _, _, message| message.len() as u32)
@@ -139,13 +140,13 @@ pub extern "C" fn pcr_conflicts() -> i32 {
     answer(|fleet, _, rows| fleet.conflicts(rows))
 }
 
-/// Where all agents are at a time.
+/// The places of all agents at a time.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_places(time: f64) -> i32 {
     answer(|fleet, _, rows| fleet.places(rows, time))
 }
 
-/// How far an agent has travelled at these times.
+/// The travelled length of an agent at these times.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_track(agent: u32, from: f64, step: f64, times: u32) -> i32 {
     answer(|fleet, _, rows| fleet.track(rows, agent as usize, from, step, times as usize))

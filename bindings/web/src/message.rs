@@ -1,4 +1,4 @@
-//! What went wrong, as a sentence. Agents and legs are counted from 1.
+//! Errors as sentences. Agents and legs are counted from 1.
 
 use core::fmt;
 use pcr_core::{Full, Invalid, Mismatch, Refused, Unsolved};
@@ -6,25 +6,25 @@ use pcr_core::{Full, Invalid, Mismatch, Refused, Unsolved};
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// So many agents, or an incomplete one.
+    /// The number of agents is too large, or one is incomplete.
     Agents(usize),
-    /// The number of legs of this agent.
+    /// The number of legs of this agent is invalid.
     Legs(usize),
-    /// This agent, or its leg, is not what it should be.
+    /// This agent, or its leg, is invalid.
     Invalid(usize, Option<usize>, Invalid),
     /// No fleet was built, or the last one was refused.
     NotBuilt,
     /// The table is full.
     Full(Full),
-    /// What was asked for is not of this fleet.
+    /// The fleet has no such agent.
     Mismatch(Mismatch),
     /// There is no plan.
     Unsolved(Unsolved),
-    /// The motions have no order.
+    /// The motions collide, so they have no order.
     Refused(Refused),
-    /// The answer has more rows than the output holds.
+    /// The answer has more rows than the output can hold.
     Rows,
-    /// A number of the question is not finite, or not positive.
+    /// An argument of the query is not finite, or not positive.
     Question(&'static str),
 }
 
@@ -62,7 +62,7 @@ impl From<Refused> for Fault {
     }
 }
 
-/// An agent counted from 1: none is the last of `usize`.
+/// Index of an agent, counted from 1; an index is never the largest `usize`.
 fn number(agent: usize) -> usize {
     agent.saturating_add(1)
 }

@@ -4,7 +4,7 @@ use heapless::Vec;
 use pcr_core::{Curve, Limits, Pose, Scalar};
 use serde::{Deserialize, Serialize};
 
-/// Most lines and arcs in the path of one agent.
+/// Largest number of lines and arcs in the path of one agent.
 pub const MAX_STEPS: usize = 8;
 
 /// A line or an arc of a path.
@@ -16,7 +16,8 @@ pub struct Step<S> {
     pub length: S,
 }
 
-/// An agent that drives its path from rest to rest. `P` holds the steps: a list in a message, a slice in a constant.
+/// An agent that drives along its path from rest to rest. `P` holds the steps: a list in a message, a slice in a
+/// constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound(
     serialize = "S: Serialize, S::Angle: Serialize, P: Serialize",
@@ -25,11 +26,11 @@ pub struct Step<S> {
 pub struct Agent<S: Scalar, P = Vec<Step<S>, MAX_STEPS>> {
     /// Radius of the disc \[m\].
     pub radius: S,
-    /// When it sets off \[s\].
+    /// Time at which the agent sets off \[s\].
     pub start_time: S,
     /// Largest speed and acceleration.
     pub limits: Limits<S>,
-    /// Where it sets off.
+    /// Pose in which the agent sets off.
     pub start: Pose<S>,
     /// Its path.
     pub path: P,

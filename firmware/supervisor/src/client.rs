@@ -1,7 +1,7 @@
-//! The other end of the line: asks one thing at a time, and again until all of the answer is there.
+//! The client end of the line: sends one request at a time, and repeats it until the whole answer has arrived.
 //!
-//! It has no clock. Whoever uses it sends [`Client::frame`] again whenever [`Event::Again`] says so, and when nothing has
-//! come for longer than the supervisor may take.
+//! A client has no clock. Its user sends [`Client::frame`] again when [`Event::Again`] says so, and when nothing has
+//! arrived for longer than the supervisor may take.
 
 use crate::frame::{self, Frame, MAX_FRAME, Reads, Receiver, Tag};
 use crate::message::{Answer, Refusal, Request};
@@ -10,37 +10,38 @@ use crate::session::after;
 use core::cmp::Ordering;
 use heapless::Vec;
 
-/// What a byte from the line comes to.
+/// The event caused by a byte from the line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event<S: Number> {
-    /// The next answer to the request; more follow. Those to a [`Request::Report`] come as they are heard, in any order, and again.
+    /// The next answer to the request; more follow. Answers to a [`Request::Report`] are passed on as they arrive, in
+    /// any order and possibly repeated.
     Answer(Answer<S>),
-    /// The last answer to the request: it is done.
+    /// The last answer to the request, which is finished.
     Last(Answer<S>),
-    /// Something was lost: send the request again.
+    /// An answer was lost: send the request again.
     Again,
-    /// What was asked for has changed while it was sent: ask anew. Only robots get that.
+    /// The data changed while they were sent: ask again. Only robots get this.
     Changed,
-    /// The supervisor is at another request: it has started anew, or somebody else talks to it. The request was not done,
-    /// and nobody knows its fleet. Wait until nothing can be under way, greet it, and begin with [`Request::Clear`] or
-    /// [`Request::Load`].
+    /// The supervisor is at another request: it was restarted, or another client talks to it. The request was not
+    /// executed, and the state of the fleet is unknown. Wait until no frame can be on its way any more, send a
+    /// greeting, and begin with [`Request::Clear`] or [`Request::Load`].
     OutOfStep,
 }
 
-/// One who asks.
+/// A client: the planner or a robot.
 #[derive(Debug)]
 pub struct Client {
     who: u16,
     receiver: Receiver,
     request: Vec<u8, MAX_FRAME>,
-    /// Of the request.
+    /// Sequence number of the request.
     sequence: u16,
     greeting: bool,
-    /// Of the next greeting: they are counted by themselves, and use up no number of a request.
+    /// Number of the next greeting. Greetings are counted separately and use up no sequence number.
     greetings: u16,
-    /// Of the next request that is none.
+    /// Sequence number of the next request that is not a greeting.
     next: u16,
-    /// How many answers to the request have come.
+    /// Number of answers to the request that have arrived.
     heard: u16,
     waiting: bool,
 }
@@ -52,12 +53,12 @@ impl Default for Client {
 }
 
 impl Client {
-    /// Who plans, and has asked nothing yet; [`Request::Hello`] comes first.
+    /// The planner; its first request must be [`Request::Hello`].
     pub const fn new() -> Self {
         Self::of(Tag::PLANNER)
     }
 
-    /// A robot of this index. It may ask what changes no fleet ([`Request::is_of_robots`]), in any order.
+    /// The robot with this index. It may send requests that change no fleet ([`Request::is_of_robots`]), in any order.
     pub const fn robot(agent: u16) -> Self {
         Self::of(agent.saturating_add(1))
     }
@@ -77,8 +78,9 @@ impl Client {
         }
     }
 
-    /// Begins a request, whose [`Client::frame`] is then to be sent. `false`, and nothing begun, where it is too long for a
-    /// frame. Whoever gives a request up before its last answer waits until nothing of it can be under way, and greets.
+    /// Begins a request; send its [`Client::frame`] next. Returns `false`, and begins nothing, if the request is too
+    /// long for a frame. To give a request up before its last answer, wait until no frame of it can be on its way, and
+    /// send a greeting.
     pub fn ask<S: Number>(&mut self, request: &Request<S>) -> bool {
         let greeting = self.who != Tag::PLANNER || *request == Request::Hello;
         let sequence = if greeting { self.greetings } else { self.next };
@@ -92,8 +94,8 @@ impl Client {
         true
     }
 
-    /// The sequence number of the next request. Where a greeting changes it, the fleet is not what it was: the supervisor has
-    /// started anew, or somebody else has talked to it.
+    /// The sequence number of the next request. If a greeting changes it, the fleet is not what it was: the supervisor
+    /// was restarted, or another client has talked to it.
     pub fn next(&self) -> u16 {
         self.next
     }
@@ -103,9 +105,9 @@ impl Client {
         &self.request
     }
 
-    /// Takes a byte from the line.
+    /// Processes a byte from the line.
     pub fn take<S: Number>(&mut self, byte: u8) -> Option<Event<S>> {
-        // What is damaged is missing later on.
+        // A damaged frame counts as lost, which is noticed later.
         let Frame { tag, message: answer, .. } = self.receiver.take::<Answer<S>>(byte)?.ok()?;
         let own = tag.who == self.who || matches!(answer, Answer::Refused(Refusal::Frame(_)));
         if !self.waiting || !own {
@@ -122,15 +124,15 @@ impl Client {
             self.waiting = false;
             return Some(Event::OutOfStep);
         }
-        // A place or a release is complete by itself. On a line that loses a quarter of all frames, an answer of five of them almost never
-        // comes whole.
+        // A place or a release is complete by itself. On a line that loses a quarter of all frames, an answer of five
+        // frames would almost never arrive completely.
         if matches!(answer, Answer::Place { .. } | Answer::Go { .. }) {
             self.waiting = answer.goes_on();
             return Some(if self.waiting { Event::Answer(answer) } else { Event::Last(answer) });
         }
-        // Again, or behind one that is missing.
+        // An answer that was received before, or one behind a lost one.
         match tag.place.cmp(&self.heard) {
-            // A list of orders has become shorter meanwhile: the rest of the old one does not come any more.
+            // A list of orders has become shorter meanwhile: the rest of the old list will not arrive.
             Ordering::Less if !answer.goes_on() => {
                 self.waiting = false;
                 return Some(Event::Changed);

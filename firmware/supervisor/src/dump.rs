@@ -1,17 +1,17 @@
-//! The table as text: a line a region, in thousandths for people and in bits for comparison; and all of it in bits, with the paths and
-//! motions it is of, for `pcr certify --table` (docs/certificates.md has the format).
+//! The table as text: one line for each region, in thousandths for people and in bits for comparisons; and the whole
+//! table in bits, with its paths and motions, for `pcr certify --table` (docs/certificates.md has the format).
 //!
-//! Written with integers only: the machinery of `core::fmt` would cost more flash than everything else here.
+//! It uses integers only: the code of `core::fmt` would take more flash than everything else here.
 
 use crate::frame::CRC;
 use crate::number::Number;
 use heapless::Vec;
 use pcr_core::{Curve, Ecm, Interval, Mismatch, Motion, Piece, PieceRef, Region, RegionRef, Share, Turn, excess};
 
-/// Bytes of the longest line.
+/// Length of the longest line in bytes.
 const WIDTH: usize = 120;
 
-/// The headings of the columns.
+/// Headings of the columns.
 pub const HEADING: &[u8] = b"ego other     from [s]    to [s]  from [m]    to [m]    time, length: bits\n";
 
 /// A line of text.
@@ -19,12 +19,12 @@ pub const HEADING: &[u8] = b"ego other     from [s]    to [s]  from [m]    to [m
 pub struct Line(Vec<u8, WIDTH>);
 
 impl Line {
-    /// Its bytes.
+    /// The bytes of the line.
     pub fn as_bytes(&self) -> &[u8] {
         &self.0
     }
 
-    /// Adds text. What does not fit is left out.
+    /// Adds text; the part that does not fit is left out.
     pub fn text(mut self, text: &[u8]) -> Self {
         text.iter().for_each(|&byte| self.push(byte));
         self
@@ -106,10 +106,10 @@ pub fn region<S: Number>(region: &RegionRef<'_, S>) -> Line {
     line.text(b"\n")
 }
 
-/// All of a table in bits, line by line.
+/// Writes a whole table in bits, line by line.
 ///
 /// # Errors
-/// [`Mismatch`] where it is not the table of the fleet.
+/// [`Mismatch`] if it is not the table of the fleet.
 pub fn table<S: Number, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>>(
     fleet: &[Motion<'_, S>],
     table: &Ecm<S, R, P>,
@@ -142,7 +142,7 @@ pub fn table<S: Number, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>>(
     Ok(())
 }
 
-/// An agent with the lines and arcs of its path, and its phases.
+/// Writes an agent with the lines and arcs of its path, and its phases.
 fn agent<S: Number>(motion: &Motion<'_, S>, send: &mut impl FnMut(Line)) {
     let (path, phases) = (motion.path(), motion.profile().phases());
     let (segments, start) = (path.segments(), path.point_at(S::ZERO));

@@ -1,4 +1,4 @@
-//! Storage for the motions of a fleet. It is built to be a `static`: nothing large is ever moved over the stack.
+//! Storage for the motions of a fleet, meant to be a `static`, so that nothing large is moved over the stack.
 
 use crate::agent::{Agent, Step};
 use heapless::Vec;
@@ -7,18 +7,18 @@ use pcr_core::{Curve, Interval, Invalid, Limits, Motion, PathRef, Phase, Pose, P
 /// The motions of up to `A` agents.
 pub type Motions<'a, S, const A: usize> = Vec<Motion<'a, S>, A>;
 
-/// What the motions of up to `A` agents with `N` segments in all borrow. [`Store::replace`] needs room for the segments
-/// of the new path beside those of the old one.
+/// The paths and profiles that the motions of up to `A` agents with `N` segments in total borrow. [`Store::replace`]
+/// needs room for the segments of the new path in addition to those of the old one.
 #[derive(Debug)]
 pub struct Store<S: Scalar, const A: usize, const N: usize> {
     agents: Vec<Parts<S>, A>,
     segments: Vec<Segment<S>, N>,
 }
 
-/// An agent whose segments are placed.
+/// An agent whose segments are stored.
 #[derive(Debug)]
 pub(crate) struct Parts<S> {
-    /// The first of its segments, and how many there are.
+    /// Index of its first segment, and their number.
     begin: u16,
     segments: u16,
     phases: Vec<Phase<S>, 3>,
@@ -30,9 +30,9 @@ pub(crate) struct Parts<S> {
 /// Why an agent of a fleet was not changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejected {
-    /// There is no agent of this index.
+    /// There is no agent with this index.
     NoSuchAgent(usize),
-    /// What it was to become is refused.
+    /// The new agent or motion is invalid.
     Invalid(Invalid),
 }
 
@@ -49,13 +49,13 @@ impl<S: Scalar, const A: usize, const N: usize> Default for Store<S, A, N> {
 }
 
 impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
-    /// No agents.
+    /// A store without agents.
     pub const fn new() -> Self {
         const { assert!(A <= u16::MAX as usize && N <= u16::MAX as usize, "places are sent in 16 bits") };
         Self { agents: Vec::new(), segments: Vec::new() }
     }
 
-    /// Forgets all agents.
+    /// Removes all agents.
     pub fn clear(&mut self) {
         self.agents.clear();
         self.segments.clear();
@@ -66,15 +66,15 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         self.agents.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no agents.
     pub fn is_empty(&self) -> bool {
         self.agents.is_empty()
     }
 
-    /// Adds an agent behind the others and returns its index.
+    /// Appends an agent and returns its index.
     ///
     /// # Errors
-    /// What the constructors of its path, its profile and its motion refuse; [`Invalid::Full`] where there is no room.
+    /// The errors of the constructors of its path, its profile and its motion; [`Invalid::Full`] if there is no room.
     pub fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<usize, Invalid> {
         let (index, begin) = (self.agents.len(), self.segments.len());
         let added = self.parts(agent).and_then(|parts| self.agents.push(parts).map_err(|_| Invalid::Full("agent")));
@@ -84,16 +84,17 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         added.map(|()| index)
     }
 
-    /// Puts another agent in the place of one. O(segments).
+    /// Replaces an agent. O(segments).
     ///
     /// # Errors
-    /// As [`Store::add`], and [`Rejected::NoSuchAgent`]; the fleet is then as it was.
+    /// As [`Store::add`], and [`Rejected::NoSuchAgent`]; the fleet is then unchanged.
     pub fn replace<P: AsRef<[Step<S>]>>(&mut self, index: usize, agent: &Agent<S, P>) -> Result<(), Rejected> {
         let staged = self.stage(agent)?;
         self.settle(index, staged)
     }
 
-    /// Places an agent beside all others; it is none of them before [`Store::settle`], and [`Store::unstage`] takes it away.
+    /// Stores an agent beside all others. It becomes part of the fleet by [`Store::settle`]; [`Store::unstage`] removes
+    /// it.
     pub(crate) fn stage<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, Invalid> {
         let begin = self.segments.len();
         self.parts(agent).inspect_err(|_| self.segments.truncate(begin))
@@ -103,12 +104,12 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         self.segments.truncate(usize::from(staged.begin));
     }
 
-    /// The motion of an agent that was staged.
+    /// The motion of a staged agent.
     pub(crate) fn staged<'a>(&'a self, staged: &'a Parts<S>) -> Result<Motion<'a, S>, Invalid> {
         staged.motion(&self.segments)
     }
 
-    /// Puts an agent that was staged in the place of one.
+    /// Replaces an agent by a staged one.
     pub(crate) fn settle(&mut self, index: usize, staged: Parts<S>) -> Result<(), Rejected> {
         let Some(place) = self.agents.get_mut(index) else {
             self.unstage(&staged);
@@ -119,7 +120,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         Ok(())
     }
 
-    /// Removes an agent; those behind it move up by one index. O(segments).
+    /// Removes an agent; the index of every agent behind it decreases by one. O(segments).
     ///
     /// # Errors
     /// [`Rejected::NoSuchAgent`].
@@ -131,7 +132,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         Ok(())
     }
 
-    /// Closes the gap that an agent's segments leave.
+    /// Closes the gap in the segments of a removed agent.
     fn forget(&mut self, begin: u16, segments: u16) {
         for _ in 0..segments {
             take_out(&mut self.segments, usize::from(begin));
@@ -143,7 +144,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         }
     }
 
-    /// Puts an agent's segments behind all others. Whoever does not keep it takes them away again.
+    /// Stores an agent's segments behind all others. A caller that does not keep them has to remove them again.
     fn parts<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, Invalid> {
         let begin = self.segments.len();
         let origin = Segment::standing(agent.start)?;
@@ -165,17 +166,17 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         for phase in profile.as_profile().phases() {
             phases.push(*phase).map_err(|_| Invalid::Full("phase"))?;
         }
-        // There are at most 65535.
+        // There are at most 65535 segments.
         let [begin, end] = [begin, self.segments.len()].map(|place| place as u16);
         let segments = end.saturating_sub(begin);
         let (limits, radius, start) = (agent.limits, agent.radius, agent.start_time);
         Ok(Parts { begin, segments, phases, limits, radius, start })
     }
 
-    /// Lets an agent set off later by `delay` \[s\]; when it moves then.
+    /// Delays the start of an agent by `delay` \[s\]; returns the interval of its new motion.
     ///
     /// # Errors
-    /// [`Rejected::NoSuchAgent`], and what [`Motion::delayed`] refuses.
+    /// [`Rejected::NoSuchAgent`], and the errors of [`Motion::delayed`].
     pub fn delay(&mut self, index: usize, delay: S) -> Result<Interval<S>, Rejected> {
         let parts = self.agents.get(index).ok_or(Rejected::NoSuchAgent(index))?;
         let time = parts.motion(&self.segments)?.delayed(delay)?.time();
@@ -185,10 +186,10 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         Ok(time)
     }
 
-    /// An agent as it came: the same path of the same bits comes of it.
+    /// An agent as it was received: its path is computed from the same bits.
     ///
     /// # Errors
-    /// [`Rejected::NoSuchAgent`], and [`Invalid::Full`] for more lines and arcs than an agent has that is sent.
+    /// [`Rejected::NoSuchAgent`], and [`Invalid::Full`] if the path has more lines and arcs than a message can hold.
     pub fn agent(&self, index: usize) -> Result<Agent<S>, Rejected> {
         let parts = self.agents.get(index).ok_or(Rejected::NoSuchAgent(index))?;
         let [begin, count] = [parts.begin, parts.segments].map(usize::from);
@@ -207,7 +208,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     ///
     /// # Errors
     /// As [`Store::put_motions`].
-    // Inlined, its copies of the motions would lie on the stack of all that is done with them.
+    // Not inlined: its copies of the motions would stay on the stack while the caller works with them.
     #[inline(never)]
     pub fn motions(&self) -> Result<Motions<'_, S, A>, Invalid> {
         let mut motions = Vec::new();
@@ -215,11 +216,11 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         Ok(motions)
     }
 
-    /// Puts the motions of all agents behind those that are there.
+    /// Appends the motions of all agents to a list.
     ///
     /// # Errors
-    /// [`Invalid::Full`] where there is no room for all of them. A motion itself is not refused: it was accepted when its
-    /// agent came.
+    /// [`Invalid::Full`] if there is no room for all of them. A motion itself cannot be refused, because it was
+    /// accepted when its agent was added.
     pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), Invalid> {
         for parts in &self.agents {
             motions.push(parts.motion(&self.segments)?).map_err(|_| Invalid::Full("agent"))?;
@@ -236,7 +237,7 @@ impl<S: Scalar> Parts<S> {
     }
 }
 
-/// Takes an item that is there out of a list. As [`Vec::remove`], which panics where there is none.
+/// Removes an existing item from a list, without the panic of [`Vec::remove`].
 fn take_out<T, const N: usize>(list: &mut Vec<T, N>, index: usize) {
     for place in index..list.len() {
         if let Some([item, next]) = list.get_mut(place..).and_then(<[T]>::first_chunk_mut) {

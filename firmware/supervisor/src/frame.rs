@@ -1,14 +1,14 @@
-//! Frames on a serial line: one message each, found again after noise, checked, versioned.
+//! Frames on a serial line: each holds one message with a checksum and a version, and can be found again after noise.
 //!
 //! ```text
 //! 0  COBS( version  who  sequence  place  postcard message ...  CRC-32 )  0
 //! ```
 //!
-//! COBS (Cheshire and Baker 1999) takes the zeros out of a frame, so that a zero begins and ends it: noise before a frame
-//! does it no harm, and a receiver is in step after the first zero. Numbers have their low byte first. An answer has who
-//! asked, the sequence number of the request, and its place among the answers to it; a request has [`Tag::REQUEST`] for a place. The
-//! check has 32 bits because 16 let one damaged frame of 65,536 through. A new version may change everything behind the
-//! first byte; within a version, kinds of messages are only ever added.
+//! COBS (Cheshire and Baker 1999) removes zeros from a frame, so that a zero can mark its begin and its end. Noise
+//! before a frame does no harm, and a receiver is synchronized after the first zero. Numbers are little-endian. An
+//! answer contains the asker, the sequence number of the request, and its index among the answers to it; a request has
+//! [`Tag::REQUEST`] as index. The check has 32 bits because a check of 16 bits let one damaged frame in 65,536 through.
+//! A new version may change everything after the first byte; within a version, kinds of messages are only ever added.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
@@ -17,9 +17,9 @@ use serde::{Deserialize, Serialize};
 /// Version of the protocol.
 pub const VERSION: u8 = 3;
 
-/// Longest frame before it is encoded: header, message, check.
+/// Length of the longest frame before encoding: header, message, check.
 pub const MAX_PLAIN: usize = 192;
-/// Longest frame on the line: one more byte for COBS, and the zeros around it.
+/// Length of the longest frame on the line: one more byte for COBS, and the zeros around it.
 pub const MAX_FRAME: usize = MAX_PLAIN + 3;
 
 const HEADER: usize = 7;
@@ -29,58 +29,59 @@ pub(crate) const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 // COBS adds one byte up to this length.
 const _: () = assert!(MAX_PLAIN <= 254);
 
-/// Where a message belongs.
+/// Address of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tag {
-    /// Who asks, or is answered: [`Tag::PLANNER`], or a robot, 1 more than its index. Each counts requests by itself.
+    /// The client that asks or is answered: [`Tag::PLANNER`], or for a robot its index plus 1. Each client counts its
+    /// own requests.
     pub who: u16,
-    /// Number of the request.
+    /// Sequence number of the request.
     pub sequence: u16,
-    /// Place among the answers to it.
+    /// Index among the answers to it.
     pub place: u16,
 }
 
 impl Tag {
-    /// The place of a request.
+    /// The index of a request.
     pub const REQUEST: u16 = u16::MAX;
-    /// Who plans: the one whose requests change the fleet.
+    /// The planner, whose requests change the fleet.
     pub const PLANNER: u16 = 0;
 }
 
 /// A frame that was received.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame<T> {
-    /// Where it belongs.
+    /// Address.
     pub tag: Tag,
-    /// Its check.
+    /// Check of the frame.
     pub check: u32,
-    /// What it says.
+    /// Message.
     pub message: T,
 }
 
-/// What is wrong with a frame.
+/// Why a frame is damaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Damage {
-    /// It is longer than any message.
+    /// The frame is longer than any message.
     TooLong,
-    /// It is shorter than a header and a check.
+    /// The frame is shorter than a header and a check.
     TooShort,
-    /// A byte of it does not say where the next zero was.
+    /// A byte of the encoding does not point to the next zero.
     Stuffing,
-    /// The check does not fit the rest.
+    /// The check does not match the contents.
     Check,
-    /// It is of another version, with which the sender may try again.
+    /// The frame is of this other version; the sender may try again with the receiver's version.
     Version(u8),
-    /// The message is none of this version.
+    /// The message is invalid in this version.
     Message,
 }
 
-/// A message as the bytes of a frame. `None` where it is too long.
+/// Encodes a message as a frame. `None` if it is too long.
 pub fn encode<T: Serialize>(tag: Tag, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
     encode_version(VERSION, tag, message)
 }
 
-/// As [`encode`], with the header of any version: to test that others are refused.
+/// Like [`encode`], with the header of any version, to test that other versions are refused.
 pub fn encode_version<T: Serialize>(version: u8, tag: Tag, message: &T) -> Option<Vec<u8, MAX_FRAME>> {
     let mut plain = [0; MAX_PLAIN];
     let (header, rest) = plain.split_first_chunk_mut::<HEADER>()?;
@@ -92,7 +93,7 @@ pub fn encode_version<T: Serialize>(version: u8, tag: Tag, message: &T) -> Optio
     stuff(plain.get(..length.checked_add(CHECK)?)?)
 }
 
-/// COBS: every zero is replaced by the distance to the next one, and so is the end.
+/// COBS encoding: every zero, and the end, is replaced by the distance to the next one.
 fn stuff(plain: &[u8]) -> Option<Vec<u8, MAX_FRAME>> {
     let mut frame = Vec::new();
     frame.push(0).ok()?;
@@ -104,43 +105,43 @@ fn stuff(plain: &[u8]) -> Option<Vec<u8, MAX_FRAME>> {
     Some(frame)
 }
 
-/// Which frames a receiver is for. Some lines bring back what one has sent; that is passed over.
+/// The kind of frames that a receiver reads. Some lines echo the frames that were sent; those are ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reads {
-    /// Those of requests.
+    /// Frames of requests.
     Requests,
-    /// Those of answers.
+    /// Frames of answers.
     Answers,
 }
 
-/// Collects the bytes of a line into frames.
+/// Assembles the bytes of a line into frames.
 #[derive(Debug)]
 pub struct Receiver {
     reads: Reads,
     bytes: Vec<u8, MAX_PLAIN>,
-    /// Bytes until the next stuffed one; 0 is one.
+    /// Bytes until the next encoded zero; if it is 0, this byte is one.
     run: u8,
     damage: Option<Damage>,
     started: bool,
 }
 
 impl Receiver {
-    /// Nothing received.
+    /// A receiver that has received nothing.
     pub const fn new(reads: Reads) -> Self {
         Self { reads, bytes: Vec::new(), run: 0, damage: None, started: false }
     }
 
-    /// Takes a byte; at the end of a frame, the frame, or what is wrong with it.
+    /// Processes a byte. At the end of a frame it returns the frame, or why it is damaged.
     pub fn take<T: for<'de> Deserialize<'de>>(&mut self, byte: u8) -> Option<Result<Frame<T>, Damage>> {
         if byte == 0 {
-            // Between two zeros there is no frame.
+            // There is no frame between two consecutive zeros.
             let frame = if self.started { self.frame().transpose() } else { None };
             *self = Self::new(self.reads);
             return frame;
         }
         match self.run.checked_sub(1) {
             None => {
-                // The first run begins the frame, each other one follows a zero.
+                // The first run begins the frame; every other one follows a zero.
                 if self.started {
                     self.store(0);
                 }
@@ -161,7 +162,7 @@ impl Receiver {
         }
     }
 
-    /// The frame, if it is one of those to be read.
+    /// The frame, if it is of the kind that is read.
     fn frame<T: for<'de> Deserialize<'de>>(&self) -> Result<Option<Frame<T>>, Damage> {
         if let Some(damage) = self.damage {
             return Err(damage);

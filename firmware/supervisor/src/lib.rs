@@ -1,6 +1,6 @@
-//! A supervisor of a fleet for a microcontroller: agents come in, their collision regions go out.
+//! A supervisor of a fleet for a microcontroller: it receives agents and sends their collision regions.
 //!
-//! Everything here is the same code on the target and on the host, so that one can stand for the other in tests:
+//! The same code runs on the target and on the host, so that tests on the host apply to the target:
 //!
 //! ```text
 //! number     what a number format has to offer besides the arithmetic    Number

@@ -1,5 +1,5 @@
-//! What the two ends of the line say to each other. Within a version of the protocol, kinds are only ever added, at the
-//! end of each list.
+//! The messages on the line. Within a version of the protocol, kinds of messages are only ever added, at the end of
+//! each list.
 
 use crate::agent::{Agent, MAX_STEPS, Step};
 use crate::fleet::Rejected;
@@ -11,73 +11,76 @@ use pcr_core::{
 };
 use serde::{Deserialize, Serialize};
 
-/// A request to the supervisor. Each is answered before the next is read.
+/// A request to the supervisor. It is answered before the next one is read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub enum Request<S: Number> {
-    /// Who are you? [`Answer::Hello`]. Answered whatever its sequence number is.
+    /// Greeting: asks for format and capacities. [`Answer::Hello`]. It is answered whatever its sequence number is.
     Hello,
-    /// Forget the fleet. [`Answer::Done`].
+    /// Removes all agents. [`Answer::Done`].
     Clear,
-    /// Add an agent. [`Answer::Fleet`].
+    /// Adds an agent. [`Answer::Fleet`].
     Add(Agent<S>),
-    /// Take the fleet that is built in; where one of its agents is refused, there are none. [`Answer::Fleet`].
+    /// Loads the built-in fleet; if one of its agents is refused, there are none. [`Answer::Fleet`].
     Load,
-    /// Compute the table of the fleet. [`Answer::Computed`].
+    /// Computes the table of the fleet. [`Answer::Computed`].
     Compute,
-    /// All regions of an agent, of a table that was computed since the fleet last changed: an [`Answer::Region`] each, an
-    /// [`Answer::Piece`] for each of its pieces, and [`Answer::End`].
+    /// Asks for all regions of an agent. The table must have been computed since the fleet last changed. Answers: for
+    /// each region an [`Answer::Region`] and an [`Answer::Piece`] for each of its pieces; then [`Answer::End`].
     Row {
         /// The agent.
         ego: u16,
     },
-    /// The first conflict of every two agents that have one, moving as they were given: an [`Answer::Conflict`] each,
-    /// by the lower index, and [`Answer::End`]. The first overlap; where there is none, the first touch.
+    /// Asks for the first conflict of every pair of agents, on their present motions: an [`Answer::Conflict`] for each
+    /// pair that has one, sorted by the lower index, and [`Answer::End`]. It is the first overlap, or the first touch
+    /// if there is no overlap.
     Conflicts,
-    /// Let an agent set off as late as it must to meet none of the others, moving as they do, and no later; what is
-    /// answered from then on is about its new motion. The table, which must be that of the fleet, serves on.
+    /// Delays an agent's start by the least delay with which it meets none of the others on their present motions.
+    /// Later answers are about its new motion. The table must be that of the fleet, and stays valid.
     /// [`Answer::Replanned`].
     Replan {
         /// The agent.
         agent: u16,
     },
-    /// Put another agent in the place of one; its regions are computed anew, if there is a table. [`Answer::Fleet`].
+    /// Replaces an agent; its regions are computed again, if there is a table. [`Answer::Fleet`].
     Replace {
-        /// Its place.
+        /// Index of the agent.
         agent: u16,
-        /// The other agent.
+        /// The new agent.
         with: Agent<S>,
     },
-    /// Remove an agent; those behind it move up by one place, and the table, if there is one, serves on. [`Answer::Fleet`].
+    /// Removes an agent; the index of every agent behind it decreases by one. The table, if there is one, stays valid.
+    /// [`Answer::Fleet`].
     Remove {
         /// The agent.
         agent: u16,
     },
-    /// Let all set off, in the order in which their motions pass one another: from now on until [`Request::Clear`] the fleet
-    /// changes by [`Request::Admit`] only. All stand at the starts of their paths. [`Answer::Edition`].
+    /// Starts all robots, in the order in which their motions pass one another. From now on until [`Request::Clear`]
+    /// the fleet changes by [`Request::Admit`] only. All robots stand at the starts of their paths.
+    /// [`Answer::Edition`].
     Order(Terms<S>),
-    /// Where a robot is; sent as often as it likes, the more often the less it waits. An [`Answer::Place`] for each robot that
-    /// it has to wait for, and [`Answer::Go`].
+    /// Reports the place of a robot. A robot may send it at any time; the more often it does, the less it waits.
+    /// Answers: an [`Answer::Place`] for each robot that it has to wait for, and [`Answer::Go`].
     Report {
         /// The robot.
         agent: u16,
-        /// That of the orders which it has.
+        /// Edition of the orders that the robot has.
         edition: Edition,
-        /// Where it is on its path \[m\].
+        /// Place of the robot on its path \[m\].
         at: Interval<S>,
     },
-    /// The orders of a robot: an [`Answer::Member`] for itself and each robot with which it has regions, by index, an
-    /// [`Answer::Passing`] for each of these regions, and [`Answer::Orders`].
+    /// Asks for the orders of a robot. Answers: an [`Answer::Member`] for itself and each robot with which it has
+    /// regions, sorted by index; an [`Answer::Passing`] for each of these regions; and [`Answer::Orders`].
     Orders {
         /// The robot.
         agent: u16,
     },
-    /// Give a robot that is at the end of its path another one, which begins there, with orders so that everybody can finish.
-    /// [`Answer::Edition`].
+    /// Gives a robot that is at the end of its path another path, which begins there, with orders with which all robots
+    /// can finish. [`Answer::Edition`].
     Admit {
         /// The robot.
         agent: u16,
-        /// Direction in which it sets off: it may turn round where it stands.
+        /// Direction in which the robot sets off; it may turn in place first.
         heading: S::Angle,
         /// Largest speed and acceleration.
         limits: Limits<S>,
@@ -86,63 +89,64 @@ pub enum Request<S: Number> {
     },
 }
 
-/// What holds while robots are under way.
+/// Parameters of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Terms<S: Number> {
-    /// Number of the run, not 0, and another one than that of any run whose robots may still be about.
+    /// Number of the run: not 0, and different from that of any run whose robots may still be moving.
     pub run: u16,
-    /// How far beyond its last place a robot may be sent \[m\]: more than it goes until it is heard again, and a stopping way.
-    /// What is far ahead can still be given to others.
+    /// How far beyond its last place a robot may be sent \[m\]: more than the distance that it goes until its next
+    /// report, plus a stopping distance. Parts of its path that are further ahead can still be given to others.
     pub horizon: S,
-    /// So far the lower end of a robot's place may be behind it when it stands \[m\].
+    /// When a robot stands, the known lower end of its place may be behind it by up to this \[m\].
     pub width: S,
 }
 
-/// Which orders these are.
+/// Edition of orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edition {
-    /// Number of the run; 0 is none.
+    /// Number of the run; 0 means no run.
     pub run: u16,
-    /// How often orders have changed in it.
+    /// How often orders have changed in the run.
     pub number: u16,
 }
 
 impl<S: Number> Request<S> {
-    /// Whether it may change the fleet or its table; it has one answer then.
+    /// Whether the request may change the fleet or its table; it then has one answer.
     pub fn changes(&self) -> bool {
         !matches!(self, Self::Hello | Self::Row { .. } | Self::Conflicts) && !self.is_of_robots()
     }
 
-    /// Whether a robot may ask it, with numbers of its own: to do it twice, late or in another order does no harm.
+    /// Whether a robot may send the request, with sequence numbers of its own: executing it twice, late or in another
+    /// order does no harm.
     pub fn is_of_robots(&self) -> bool {
         matches!(self, Self::Hello | Self::Report { .. } | Self::Orders { .. })
     }
 }
 
-/// An answer of the supervisor. Any request may be answered by [`Answer::Refused`] alone.
+/// An answer of the supervisor. Any request may be answered by a single [`Answer::Refused`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub enum Answer<S: Number> {
-    /// Its number format and capacities.
+    /// Number format and capacities of the supervisor.
     Hello {
         /// [`Number::NAME`].
         format: Vec<u8, 8>,
-        /// Most agents.
+        /// Largest number of agents.
         agents: u16,
-        /// Most lines and arcs of all agents.
+        /// Largest number of lines and arcs of all agents.
         segments: u16,
-        /// Most regions, each for both directions of a pair.
+        /// Largest number of regions, each for both directions of a pair.
         regions: u16,
-        /// Most pieces of regions.
+        /// Largest number of pieces of regions.
         pieces: u16,
         /// The sequence number of the next request.
         next: u16,
     },
-    /// It is done.
+    /// The request was executed.
     Done,
-    /// There are so many agents now. Their table is there if it was before a [`Request::Replace`] or [`Request::Remove`] and has
-    /// room.
+    /// The number of agents has changed. After a [`Request::Replace`] or [`Request::Remove`] there is a table if there
+    /// was one before and the regions fit.
     Fleet {
         /// Number of agents.
         agents: u16,
@@ -156,71 +160,72 @@ pub enum Answer<S: Number> {
     },
     /// A region of the agent that was asked for.
     Region(RegionRecord<S>),
-    /// A piece of the region before.
+    /// A piece of the region that was sent last.
     Piece(PieceRecord<S>),
-    /// There are no more.
+    /// The end of a list.
     End {
         /// Number of regions or conflicts sent.
         count: u16,
     },
-    /// It was not done, and nothing has changed.
+    /// The request was not executed, and nothing has changed.
     Refused(Refusal),
     /// The first conflict of two agents.
     Conflict(ConflictRecord<S>),
-    /// The motion of an agent now.
+    /// The new motion of an agent.
     Replanned {
         /// The agent.
         agent: u16,
-        /// From setting off to arrival \[s\].
+        /// The interval from start to arrival \[s\].
         time: Interval<S>,
     },
-    /// The orders that count from now on.
+    /// The edition that is valid from now on.
     Edition(Edition),
-    /// A robot has got so far at least.
+    /// A robot has reached at least this length.
     Place {
         /// The robot.
         agent: u16,
-        /// That of the orders by which it goes.
+        /// Edition of the orders of that robot.
         edition: Edition,
         /// Length along its path \[m\].
         at: S,
     },
-    /// A robot may go so far if its hold allows it: it never goes beyond the furthest that it was given.
+    /// A robot may go this far if its hold allows it. It never goes beyond the furthest length that it was given.
     Go {
         /// The robot.
         agent: u16,
-        /// That of its orders.
+        /// Edition of its orders.
         edition: Edition,
         /// Length along its path \[m\].
         to: S,
     },
-    /// A robot whose way crosses that of the one that asks, or that one itself.
+    /// A robot that has regions with the one that asks, or that one itself.
     Member {
         /// The robot.
         agent: u16,
-        /// That of these orders.
+        /// Edition of these orders.
         edition: Edition,
         /// Its disc and path, and the limits that it was planned with.
         with: Agent<S>,
     },
-    /// The next region of the robot, by the other one as in a row, and whether it passes it first.
+    /// The next region of the robot, sorted by the other robot as in a row, and the order in which it passes the
+    /// region.
     Passing {
         /// The other robot.
         other: u16,
-        /// That of these orders.
+        /// Edition of these orders.
         edition: Edition,
-        /// As the robot sees it that asks.
+        /// The order seen by the robot that asks.
         pass: Pass,
-        /// Where the region begins on its path \[m\]: both ends compute the same.
+        /// Length on its path at which the region begins \[m\]; both ends of the line compute the same value.
         from: S,
     },
-    /// All orders of a robot were sent.
+    /// All orders of a robot have been sent.
     Orders {
         /// The robot.
         agent: u16,
-        /// Which they are.
+        /// Edition of the orders.
         edition: Edition,
-        /// [`Edition::number`] with which it got its path.
+        /// [`Edition::number`] in which the robot got its path.
         path: u16,
     },
 }
@@ -240,7 +245,7 @@ impl<S: Number> Answer<S> {
     }
 }
 
-/// A region as it is sent.
+/// A region in an answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct RegionRecord<S: Number> {
@@ -250,40 +255,41 @@ pub struct RegionRecord<S: Number> {
     pub other: u16,
     /// Time range \[s\].
     pub time: Interval<S>,
-    /// Length range along the ego's path \[m\].
+    /// Range of lengths along the ego's path \[m\].
     pub length: Interval<S>,
-    /// Length range along the other's path \[m\].
+    /// Range of lengths along the other's path \[m\].
     pub other_length: Interval<S>,
-    /// Whether it reaches back to before the other agent sets off.
+    /// Whether the region begins while the other agent stands at its start.
     pub open_at_start: bool,
-    /// Whether it goes on after the other agent's arrival.
+    /// Whether the region ends while the other agent stands at its end.
     pub open_at_end: bool,
-    /// Number of its pieces, which follow.
+    /// Number of its pieces; they follow.
     pub pieces: u16,
 }
 
-/// A piece of a region as it is sent: a rectangle of lengths that holds all of its contacts. Which of two laps of an arc it stands
-/// for is not told, so that slices cannot be had from it, which may be less than the rectangle; `dump::table` prints all.
+/// A piece of a region in an answer: a rectangle of lengths that contains all of its contacts. It does not say which of
+/// two laps of an arc the piece belongs to, so slices, which may be less than the rectangle, cannot be computed from
+/// it; `dump::table` prints everything.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct PieceRecord<S: Number> {
-    /// Places of the segments in the paths of the ego and of the other agent.
+    /// Indices of the segments in the paths of the ego and of the other agent.
     pub segments: [u16; 2],
-    /// Length range along the ego's path \[m\].
+    /// Range of lengths along the ego's path \[m\].
     pub length: Interval<S>,
-    /// Length range along the other's path \[m\].
+    /// Range of lengths along the other's path \[m\].
     pub other_length: Interval<S>,
 }
 
-/// The first conflict of two agents as it is sent.
+/// The first conflict of two agents in an answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct ConflictRecord<S: Number> {
     /// The two agents, the lower index first.
     pub agents: [u16; 2],
-    /// From when to when their discs overlap \[s\].
+    /// Interval of time in which their discs overlap \[s\].
     pub time: Interval<S>,
-    /// Lengths along the path of each meanwhile \[m\].
+    /// Lengths along the path of each agent during the conflict \[m\].
     pub lengths: [Interval<S>; 2],
     /// Largest overlap \[m\].
     pub depth: S,
@@ -292,7 +298,8 @@ pub struct ConflictRecord<S: Number> {
 }
 
 impl<S: Number> ConflictRecord<S> {
-    /// The first overlap of two agents of a fleet; the first touch where they do no more; `None` where they do neither.
+    /// The first overlap of two agents of a fleet; the first touch if they do not overlap; `None` if they do not touch
+    /// either.
     ///
     /// # Errors
     /// [`Refusal::NoSuchAgent`].
@@ -313,48 +320,48 @@ impl<S: Number> ConflictRecord<S> {
     }
 }
 
-/// Why a request was not done.
+/// Why a request was not executed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// A frame was damaged. Whose it was cannot be told: the sequence number is 0.
+    /// A frame was damaged. Its sender is unknown, so the sequence number is 0.
     Frame(Damage),
-    /// The request is not the next one, nor the last one again: it comes too late, or the supervisor has started anew and
-    /// knows of no fleet.
+    /// The sequence number is neither the next one nor that of the last request: the request is too late, or the
+    /// supervisor was restarted and has no fleet.
     Sequence {
         /// The sequence number of the next request.
         next: u16,
     },
-    /// A value of an agent was refused: which, and why.
+    /// A value of an agent was refused.
     Agent {
         /// The index that the agent has or was to have.
         agent: u16,
-        /// The quantity, empty where there is no name for it.
+        /// Name of the quantity; empty if it has none.
         what: Vec<u8, 24>,
-        /// What is wrong with it.
+        /// Reason.
         why: Reason,
     },
-    /// The table has no room for two agents, or for what they need to be under way; there is no table now.
+    /// The table has no room for two agents, or for their orders; there is no table now.
     TableFull(Room),
     /// There is no such agent.
     NoSuchAgent {
-        /// The one that was named.
+        /// The index in the request.
         agent: u16,
     },
-    /// There is no table of the fleet as it is: [`Request::Compute`] comes first.
+    /// There is no table of the present fleet; send [`Request::Compute`] first.
     NotComputed,
-    /// However late the agent sets off, it meets another one.
+    /// The agent meets another one, however late it starts.
     NoPlan,
     /// This supervisor has no memory for orders.
     NoOrders,
-    /// Robots are under way, and the fleet does not change but by [`Request::Admit`].
+    /// Robots are under way; the fleet can only be changed by [`Request::Admit`].
     Running,
     /// No robots are under way.
     NotRunning,
-    /// Terms are out of range, or the number of the run is that of the last one.
+    /// A term is out of range, or the number of the run is that of the last run.
     Terms,
-    /// Orders have changed: [`Request::Orders`] tells which they are.
+    /// Orders have changed; ask for them with [`Request::Orders`].
     Edition(Edition),
-    /// The place of a robot is none on its path, or beyond what it was given.
+    /// The place of a robot is not on its path, or is beyond the length that it was given.
     Beyond {
         /// The robot.
         agent: u16,
@@ -364,19 +371,20 @@ pub enum Refusal {
         /// The robot.
         agent: u16,
     },
-    /// By their motions two agents meet, or pass so near that it cannot be told who is first.
+    /// According to their motions two agents meet, or pass so close that it cannot be decided which one is first.
     Meeting([u16; 2]),
-    /// The first would wait for the second for ever.
+    /// The first agent would wait for the second for ever.
     Stuck([u16; 2]),
-    /// The second is in the way of the first, whoever of them goes first.
+    /// The second agent is in the way of the first, whichever of them goes first.
     Blocked([u16; 2]),
-    /// A robot may greet, report, and ask for its orders.
+    /// A robot sent a request that only the planner may send; robots may greet, report, and ask for their orders.
     Robot,
-    /// The table has no room for all regions of the fleet, which needs as many as this, or more where it is 65535; there is no table now.
+    /// The table has no room for all regions of the fleet. These numbers are needed (65535 means at least as many);
+    /// there is no table now.
     Needs {
-        /// Regions, each for both directions of a pair; as many orders, where there are any.
+        /// Number of regions, each for both directions of a pair; the same number of orders, if there are any.
         regions: u16,
-        /// Pieces of these.
+        /// Number of pieces.
         pieces: u16,
     },
 }
@@ -394,40 +402,40 @@ impl From<Refused> for Refusal {
     }
 }
 
-/// What of a table is full.
+/// The part of a table that is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Room {
-    /// More regions are needed.
+    /// The regions.
     Regions,
-    /// More pieces are needed.
+    /// The pieces.
     Pieces,
-    /// No table holds these two agents: they have too many pieces.
+    /// These two agents have too many pieces for any table.
     Pair([u16; 2]),
-    /// Something else.
+    /// Another part.
     Other,
 }
 
-/// [`Invalid`] without its words.
+/// [`Invalid`] without its text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reason {
-    /// It is NaN or infinite.
+    /// The quantity is NaN or infinite.
     NonFinite,
-    /// It is below zero.
+    /// The quantity is below zero.
     Negative,
-    /// It is not above zero.
+    /// The quantity is not above zero.
     NonPositive,
-    /// Its magnitude is too large.
+    /// The magnitude of the quantity is too large.
     OutOfRange,
     /// The arc sweeps more than one turn.
     SweepOverOneTurn,
-    /// There is no room for another.
+    /// There is no room for another item.
     Full,
-    /// The agent is impossible in another way.
+    /// The agent is invalid for another reason.
     Other,
 }
 
 impl<S: Number> RegionRecord<S> {
-    /// A region of the table.
+    /// Makes a record of a region.
     pub fn of(region: &RegionRef<'_, S>) -> Self {
         Self {
             ego: short(region.ego()),
@@ -443,14 +451,14 @@ impl<S: Number> RegionRecord<S> {
 }
 
 impl<S: Number> PieceRecord<S> {
-    /// A piece of a region.
+    /// Makes a record of a piece of a region.
     pub fn of(piece: &PieceRef<'_, S>) -> Self {
         Self { segments: piece.segments.map(short), length: piece.length, other_length: piece.other_length }
     }
 }
 
 impl Refusal {
-    /// An agent is refused.
+    /// The refusal of an agent.
     pub fn agent(agent: usize, invalid: Invalid) -> Self {
         let (why, what) = match invalid {
             Invalid::NonFinite(what) => (Reason::NonFinite, what),
@@ -464,7 +472,7 @@ impl Refusal {
         Self::Agent { agent: short(agent), what: text(what), why }
     }
 
-    /// A change of an agent is refused.
+    /// The refusal of a change of an agent.
     pub fn change(agent: usize, rejected: Rejected) -> Self {
         match rejected {
             Rejected::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
@@ -502,12 +510,12 @@ impl From<Mismatch> for Refusal {
     }
 }
 
-/// Counts and indices of the supervisor are below 65536.
+/// Converts a count or index, which is below 65536 in the supervisor.
 pub(crate) fn short(count: usize) -> u16 {
     u16::try_from(count).unwrap_or(u16::MAX)
 }
 
-/// Text as it is sent: its bytes, as many as there is room for.
+/// The bytes of a text, as many as fit.
 pub fn text<const N: usize>(text: &str) -> Vec<u8, N> {
     let mut bytes = Vec::new();
     for byte in text.bytes() {

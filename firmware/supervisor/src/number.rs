@@ -6,15 +6,15 @@ use serde::de::DeserializeOwned;
 
 /// A number format of the supervisor.
 pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + DeserializeOwned {
-    /// Name in commands and expected files.
+    /// Name in commands and in files of expected output.
     const NAME: &'static str;
     /// One metre, one second.
     const ONE: Self;
-    /// The bits of the number: what is compared between machines.
+    /// The bits of the number, for comparisons between machines.
     fn bits(self) -> u32;
     /// The bits of an angle.
     fn angle_bits(angle: Self::Angle) -> u32;
-    /// Thousandths, rounded to nearest: what people read.
+    /// The number in thousandths, rounded to nearest, for output.
     fn thousandths(self) -> i32;
 }
 
@@ -61,7 +61,7 @@ macro_rules! fixed {
                 angle.to_bits().cast_unsigned()
             }
             fn thousandths(self) -> i32 {
-                // What a table holds is far below the millions where this would wrap.
+                // Values in a table are far below the millions at which this would wrap.
                 let scaled = i64::from(self.to_bits()).wrapping_mul(1000);
                 (scaled.wrapping_add(1 << ($fraction_bits - 1)) >> $fraction_bits) as i32
             }

@@ -1,5 +1,5 @@
-//! What a robot knows: its orders, and how far those before it have come. From that it computes how far it may go, ten times a
-//! second or more often, without a clock and whatever was lost on the line.
+//! The state of a robot: its orders, and how far the robots before it have come. From that it computes how far it may
+//! go, ten times a second or more often. It needs no clock, and messages may be lost.
 //!
 //! ```text
 //! loop {
@@ -14,7 +14,7 @@
 //! }
 //! ```
 //!
-//! While it asks for new orders, the last hold that it computed counts.
+//! While the robot asks for new orders, the last hold that it computed stays valid.
 
 use crate::fleet::{Motions, Store};
 use crate::message::{Answer, Edition};
@@ -22,12 +22,12 @@ use crate::number::Number;
 use heapless::Vec;
 use pcr_core::{Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region};
 
-/// The orders of one robot as they are sent: paths of at most `A` robots, its own included, with `N` segments in all, and at most
-/// `R` regions that it has with them.
+/// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
+/// in total, and at most `R` regions that it has with the others.
 #[derive(Debug)]
 pub struct Briefing<S: Number, const A: usize, const N: usize, const R: usize> {
     agent: u16,
-    /// Of all that was heard.
+    /// Edition of the answers received so far.
     edition: Option<Edition>,
     /// Indices of the robots, in increasing order, and their paths.
     members: Vec<u16, A>,
@@ -43,12 +43,12 @@ struct Passing<S> {
 }
 
 impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N, R> {
-    /// Of a robot of this index, nothing heard yet.
+    /// An empty briefing for the robot with this index.
     pub const fn new(agent: u16) -> Self {
         Self { agent, edition: None, members: Vec::new(), paths: Store::new(), passings: Vec::new() }
     }
 
-    /// Forgets everything.
+    /// Removes everything.
     pub fn clear(&mut self) {
         self.edition = None;
         self.members.clear();
@@ -56,11 +56,12 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
         self.passings.clear();
     }
 
-    /// Takes one answer to [`Request::Orders`](crate::Request::Orders) after the other; others are passed over.
+    /// Processes the answers to [`Request::Orders`](crate::Request::Orders), one after the other; other answers are
+    /// ignored.
     ///
     /// # Errors
-    /// [`Unclear`]: what does not fit, is no path, or belongs to other orders than what was heard before: they have changed
-    /// meanwhile. All is to be cleared and asked for anew then.
+    /// [`Unclear`] if an answer does not fit, has an invalid path, or belongs to another edition than those before it,
+    /// because orders have changed meanwhile. Then clear the briefing and ask again.
     pub fn take(&mut self, answer: &Answer<S>) -> Result<(), Unclear> {
         match *answer {
             Answer::Member { agent, edition, ref with } => {
@@ -82,8 +83,8 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
         if *self.edition.get_or_insert(edition) == edition { Ok(()) } else { Err(Unclear::Disagreement) }
     }
 
-    /// Puts what the orders are about, the paths of all in the order of their indices, where they are to be: an empty list. What is
-    /// returned would lie on the stack more than once.
+    /// Writes the motions of all robots, sorted by index, to an empty list. They are written in place because a return
+    /// value would be on the stack more than once.
     ///
     /// # Errors
     /// As [`Store::put_motions`].
@@ -97,16 +98,16 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
     }
 }
 
-/// Why a robot does not take orders: it stays where its last hold is.
+/// Why a robot does not accept orders. It then stays at its last hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unclear {
     /// There is no room for its regions.
     Full(Full),
-    /// The paths are not those of the briefing, or its own is not among them.
+    /// The paths are not those of the briefing, or its own path is not among them.
     Mismatch(Mismatch),
-    /// What it was told belongs to different orders, or it computes other regions than it was told of.
+    /// The answers belong to different editions, or the robot computes other regions than those that were sent.
     Disagreement,
-    /// A robot or an order does not fit, or its path is none.
+    /// There are too many robots or orders, or a path is invalid.
     Invalid(Invalid),
 }
 
@@ -128,17 +129,18 @@ impl From<Mismatch> for Unclear {
     }
 }
 
-/// The orders of one robot, made to be a `static`: with at most `A` robots, its own included, `R` regions in `P` pieces.
+/// The orders of one robot, meant to be a `static`: with at most `A` robots, including its own, and `R` regions in `P`
+/// pieces.
 #[derive(Debug)]
 pub struct Robot<S: Number, const A: usize, const R: usize, const P: usize> {
     orders: Orders<S, [Region; R], [Piece<S>; P], [Order<S>; R]>,
     progress: [Progress<S>; A],
-    /// Its place among them.
+    /// Its own index among them.
     own: usize,
     edition: Edition,
-    /// That in which it got its path.
+    /// Edition in which the robot got its path.
     path: Edition,
-    /// The furthest that it was sent, and the furthest hold that it has computed \[m\].
+    /// The furthest length that it was given, and the furthest hold that it has computed \[m\].
     sent: S,
     hold: S,
 }
@@ -150,7 +152,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Default for Robo
 }
 
 impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P> {
-    /// No orders yet: it stays.
+    /// A robot without orders, which stays where it is.
     pub const fn new() -> Self {
         let orders = Orders::new([Region::EMPTY; R], [Piece::EMPTY; P], [Order::EMPTY; R]);
         let nowhere = Progress { at: Interval { lo: S::ZERO, hi: S::ZERO }, stop: S::ZERO };
@@ -158,23 +160,23 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         Self { orders, progress: [nowhere; A], own: 0, edition, path: edition, sent: S::ZERO, hold: S::ZERO }
     }
 
-    /// Which orders it has.
+    /// Edition of its orders.
     pub fn edition(&self) -> Edition {
         self.edition
     }
 
-    /// Its own place in the fleet of its briefing.
+    /// Index of the robot in the fleet of its briefing.
     pub fn own(&self) -> usize {
         self.own
     }
 
-    /// Takes orders that are complete ([`Answer::Orders`]); `at` is where it is on the path that it has had \[m\]. Tells whether
-    /// its path is another one than before: then it is at its start.
+    /// Accepts orders that are complete ([`Answer::Orders`]); `at` is the robot's place on the path that it had before
+    /// \[m\]. Returns whether its path has changed; it is then at the start of the new one.
     ///
     /// Cost: that of [`Orders::fill_row`].
     ///
     /// # Errors
-    /// [`Unclear`]; it has no orders then, and stays.
+    /// [`Unclear`]; the robot then has no orders, and stays where it is.
     #[inline(never)]
     pub fn brief<const N: usize>(
         &mut self,
@@ -217,8 +219,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         Ok(changed)
     }
 
-    /// Takes in where another robot is ([`Answer::Place`]), and how far it is sent itself ([`Answer::Go`]). What belongs to other
-    /// orders is passed over; what comes late or twice changes nothing.
+    /// Processes the place of another robot ([`Answer::Place`]), or how far the robot may go itself ([`Answer::Go`]).
+    /// Answers of other editions are ignored; late and repeated ones change nothing.
     pub fn hear<const N: usize>(&mut self, briefing: &Briefing<S, A, N, R>, answer: &Answer<S>) {
         match *answer {
             Answer::Place { agent, edition, at } if edition == self.edition => {
@@ -236,7 +238,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         }
     }
 
-    /// How far it may go \[m\]: it has to brake so that it stays there. It never decreases on the same path.
+    /// How far the robot may go \[m\]; it has to brake so that it does not exceed this. It never decreases on the same
+    /// path.
     #[inline(never)]
     pub fn hold(&mut self, fleet: &[Motion<'_, S>]) -> S {
         let hold = self.orders.hold_before(fleet, self.own, &self.progress, Hold::At(self.sent));

@@ -1,25 +1,26 @@
-//! The paper's 12 agents in each number format, rounded to it when this is compiled.
+//! The paper's 12 agents in each number format, rounded to the format at compile time.
 //!
 //! `scenario/paper12.rs` is generated from the scenario embedded in the tool: `cargo run -p pcr-tests --example
 //! constants`. A test of the host's workspace compares the two.
 
 pub mod crowd;
 
-/// Agents of the scenario.
+/// Number of agents of the scenario.
 pub const AGENTS: usize = 12;
-/// Lines and arcs of the scenario.
+/// Number of lines and arcs of the scenario.
 pub const SEGMENTS: usize = 36;
-/// Lines and arcs with room for the path of one agent more, which comes in the place of another one.
+/// Number of lines and arcs, with room for the path of one more agent, which replaces another one.
 pub const ROOM: usize = SEGMENTS + crate::agent::MAX_STEPS;
-/// Collision regions of the scenario, each for both directions of its pair, with room for a few more.
+/// Number of collision regions of the scenario, each for both directions of its pair, with room for a few more.
 pub const REGIONS: usize = 80;
-/// Pieces of these regions, with room for a few more.
+/// Number of pieces of these regions, with room for a few more.
 pub const PIECES: usize = 112;
 
-/// Orders for these regions, and those of a robot that gets another path.
+/// Number of orders for these regions, and for those of a robot that gets another path.
 pub const ORDERS: usize = REGIONS + 40;
 
-/// A module with the scenario: its format, and how a decimal becomes a number and an angle of it.
+/// Defines a module with the scenario in a number format, and the conversions of decimals to numbers and angles of the
+/// format.
 macro_rules! scenario {
     ($(#[$attribute:meta])* $module:ident: $number:ty, $angle:ty, |$v:ident| $to_number:expr, |$a:ident| $to_angle:expr) => {
         $(#[$attribute])*
@@ -45,19 +46,19 @@ macro_rules! scenario {
 
 #[cfg(feature = "float")]
 scenario!(
-    /// In `f32`.
+    /// The scenario in `f32`.
     float: f32, pcr_core::Radians<f32>, |v| v as f32, |a| pcr_core::Radians(a as f32)
 );
 
 #[cfg(feature = "micromath")]
 scenario!(
-    /// In [`pcr_core::scalar::Micro`].
+    /// The scenario in [`pcr_core::scalar::Micro`].
     micro: pcr_core::scalar::Micro, pcr_core::Radians<Number>,
     |v| pcr_core::scalar::Micro(v as f32),
     |a| pcr_core::Radians(pcr_core::scalar::Micro(a as f32))
 );
 
-/// The same for a fixed-point format. What does not fit does not compile.
+/// The same for a fixed-point format. A value that does not fit does not compile.
 #[cfg(feature = "fixed")]
 macro_rules! fixed {
     ($($(#[$attribute:meta])* $module:ident: $number:ident,)*) => {
@@ -78,10 +79,10 @@ macro_rules! fixed {
 
 #[cfg(feature = "fixed")]
 fixed!(
-    /// In Q20.12.
+    /// The scenario in Q20.12.
     q12: Q12,
-    /// In Q16.16.
+    /// The scenario in Q16.16.
     q16: Q16,
-    /// In Q12.20.
+    /// The scenario in Q12.20.
     q20: Q20,
 );

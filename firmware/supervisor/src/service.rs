@@ -1,4 +1,4 @@
-//! The supervisor itself: keeps a fleet and its table, and answers requests.
+//! The supervisor without the line: keeps a fleet and its table, and answers requests.
 
 use crate::agent::{Agent, MAX_STEPS, Step};
 use crate::fleet::{Motions, Parts, Store};
@@ -13,13 +13,14 @@ use pcr_core::{Ecm, Interval, Limits, Motion, Piece, Pose, Region, Unchanged, ea
 
 pub use crate::table::Regions;
 
-/// Where answers go; a closure that takes them is one.
+/// Receives answers; a closure can be used.
 pub trait Replies<S: Number> {
-    /// Takes the next answer.
+    /// Receives the next answer.
     fn send(&mut self, answer: Answer<S>);
 
-    /// Between two parts of a long job: after one agent against all before it, one pair of agents, one region of a replan. Feed the
-    /// watchdog here, and after every answer. docs/firmware.md has the instructions from one to the next.
+    /// Called during long computations: after one agent against all before it, one pair of agents, or one region of a
+    /// replan. Feed the watchdog here, and after every answer. docs/firmware.md has the number of instructions between
+    /// two calls.
     fn pause(&mut self) {}
 }
 
@@ -29,9 +30,9 @@ impl<S: Number, F: FnMut(Answer<S>)> Replies<S> for F {
     }
 }
 
-/// A fleet and its table, made to be a `static`: at most `A` agents with `N` segments in all, those of an agent that comes
-/// in the place of another one included while both are there, `R` regions and `P` pieces of them. Without orders, or with them
-/// where the table is a [`Traffic`](crate::Traffic).
+/// A fleet and its table, meant to be a `static`: at most `A` agents with `N` segments in total (including those of a
+/// new agent while it replaces an old one), `R` regions and `P` pieces. It has passing orders if the table is a
+/// [`Traffic`](crate::Traffic).
 #[derive(Debug)]
 pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, const P: usize, T = Regions<S, R, P>> {
     fleet: Store<S, A, N>,
@@ -40,16 +41,16 @@ pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, co
 }
 
 impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P> {
-    /// No agents yet, a fleet to load, and no orders.
+    /// A supervisor without agents and orders, and a fleet that can be loaded.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
         Self::with(Ecm::new([Region::EMPTY; R], [Piece::EMPTY; P]), built_in)
     }
 }
 
 impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P, T> {
-    /// No agents yet, a fleet to load, and this table.
+    /// A supervisor without agents, with a fleet that can be loaded and this table.
     pub const fn with(table: T, built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
-        // A row is all of it at most, and each record of it has its place in 16 bits.
+        // A row has at most this many records, and each record has an index of 16 bits.
         const { assert!(R + P + A < u16::MAX as usize, "places are sent in 16 bits") };
         Self { fleet: Store::new(), table, built_in }
     }
@@ -60,8 +61,9 @@ where
     S: Number,
     T: Table<S, R, P>,
 {
-    // What it calls is not inlined: the stack of the one would lie under that of the other.
-    /// Answers a request: one call of [`Replies::send`] for each answer. `next` is the sequence number that a greeting tells.
+    // The functions that it calls are not inlined, so that their stacks do not add up.
+    /// Answers a request: calls [`Replies::send`] for each answer. `next` is the sequence number for the answer to a
+    /// greeting.
     pub fn answer(&mut self, request: Request<S>, next: u16, mut replies: impl Replies<S>) {
         let outcome = match request {
             Request::Hello => Ok(Answer::Hello {
@@ -76,7 +78,7 @@ where
                 self.clear();
                 Ok(Answer::Done)
             }
-            // Robots go by what they were told.
+            // While robots are under way, the fleet must stay as they were told.
             Request::Add(_)
             | Request::Load
             | Request::Replan { .. }
@@ -143,7 +145,7 @@ where
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
         let motion = self.fleet.staged(&staged).map_err(|invalid| Refusal::agent(index, invalid))?;
-        // Whose table it was not, or where there is no room, there is none of the new fleet.
+        // An error means that the new fleet has no table: there was none before, or the regions do not fit.
         let _: Result<(), Unchanged> = self.table.replace(&mut motions, index, motion);
         drop(motions);
         self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
@@ -154,14 +156,14 @@ where
     fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
-        // Whose table it was not, it is not now.
+        // A table that did not belong to the fleet before does not belong to it now.
         let _ = self.table.erase(&motions, index);
         drop(motions);
         self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
         Ok(self.agents())
     }
 
-    /// Computes the table, if it is not that of the fleet already.
+    /// Computes the table, unless it is that of the fleet already.
     #[inline(never)]
     fn compute(&mut self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
@@ -202,7 +204,7 @@ where
         self.table.orders(&motions, agent, with, send)
     }
 
-    /// A path that begins where the one that the robot has ends.
+    /// A path that begins at the end of the robot's present path.
     #[inline(never)]
     fn admit(
         &mut self,
@@ -237,7 +239,7 @@ where
         self.table.admit(&mut motions, index, motion)
     }
 
-    /// Puts the motions of the fleet, which has this agent, where they are to be.
+    /// Writes the motions of the fleet to a list; refuses if the fleet has no such agent.
     fn put_of<'a>(&'a self, agent: usize, motions: &mut Motions<'a, S, A>) -> Result<(), Refusal> {
         if agent >= self.fleet.len() {
             return Err(Refusal::NoSuchAgent { agent: short(agent) });
@@ -245,12 +247,12 @@ where
         put(&self.fleet, motions)
     }
 
-    /// When the agent moves now.
+    /// The interval of the agent's new motion.
     #[inline(never)]
     fn replan(&mut self, agent: usize, replies: &mut impl Replies<S>) -> Result<Interval<S>, Refusal> {
         let mut motions = Motions::new();
         self.put_of(agent, &mut motions)?;
-        // The regions are gone through more than once: what goes through them is cloned.
+        // The regions are iterated several times, so the iterator is cloned.
         let replies = RefCell::new(replies);
         let row = self.table.regions().row(&motions, agent)?.inspect(|_| {
             if let Ok(mut replies) = replies.try_borrow_mut() {
@@ -259,7 +261,7 @@ where
         });
         let delay = earliest_start(row, S::ZERO).ok_or(Refusal::NoPlan)?;
         drop(motions);
-        // The table is of paths: it stays as it is.
+        // The table depends on paths only, so it stays as it is.
         self.fleet.delay(agent, delay).map_err(|rejected| Refusal::change(agent, rejected))
     }
 
@@ -294,7 +296,7 @@ where
     }
 }
 
-/// Puts the motions of a fleet where they are to be. What is returned would lie on the stack more than once.
+/// Writes the motions of a fleet to a list in place; a return value would be on the stack more than once.
 fn put<'a, S: Number, const A: usize, const N: usize>(
     fleet: &'a Store<S, A, N>,
     motions: &mut Motions<'a, S, A>,
@@ -302,7 +304,7 @@ fn put<'a, S: Number, const A: usize, const N: usize>(
     fleet.put_motions(motions).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
 }
 
-/// The table of a fleet, an agent at a time; where there is no room, it is that of nobody.
+/// Computes the table of a fleet, one agent at a time. If there is no room, it is empty afterwards.
 fn build<S: Number, const R: usize, const P: usize>(
     table: &mut impl Table<S, R, P>,
     fleet: &[Motion<'_, S>],
@@ -320,7 +322,8 @@ fn build<S: Number, const R: usize, const P: usize>(
     Ok(())
 }
 
-/// Of what there is too little room: how much the fleet needs, counted pair by pair in the table that is too small for all of them.
+/// The number of regions and pieces that the fleet needs, counted pair by pair in the table that is too small for all
+/// of them.
 #[inline(never)]
 fn needed<S: Number, const R: usize, const P: usize>(
     table: &mut impl Table<S, R, P>,
@@ -331,7 +334,7 @@ fn needed<S: Number, const R: usize, const P: usize>(
     let [mut regions, mut pieces] = [0_usize; 2];
     for (agent, first) in fleet.iter().enumerate() {
         for second in fleet.iter().skip(agent.saturating_add(1)) {
-            // It is too small for two of them, or no table is large enough.
+            // The table is too small for two agents, or no table is large enough.
             if build(table, &[*first, *second], replies).is_err() {
                 return unchanged.into();
             }

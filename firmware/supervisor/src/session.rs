@@ -1,10 +1,11 @@
-//! The supervisor on a line that loses, repeats, cuts and reorders frames: each request is done once, and what comes too
-//! late is refused.
+//! The supervisor on a line that loses, repeats, damages and reorders frames: each request is executed once, and late
+//! ones are refused.
 //!
-//! Requests are numbered: 1 is the first after power-up, and after 65535 comes 2, so that a supervisor that has started
-//! anew is noticed. The next number is done, the last one again is answered again, every other is refused
-//! ([`Refusal::Sequence`]). What robots ask is done whatever its number is: it may be done twice, late and in any order
-//! ([`Request::is_of_robots`]). A greeting is answered whatever its number is, and uses none up. 0 is that of a damaged frame.
+//! Requests are numbered: the first after power-up has 1, and 65535 is followed by 2, so that a restart of the
+//! supervisor is noticed. The next number is executed; a repetition of the last one gets the same answer; all others
+//! are refused ([`Refusal::Sequence`]). Requests of robots are executed whatever their number is, possibly twice, late
+//! and in any order ([`Request::is_of_robots`]). A greeting is answered whatever its number is, and uses none up. 0 is
+//! the number of a damaged frame.
 
 use crate::agent::{Agent, Step};
 use crate::frame::{self, Reads, Receiver, Tag};
@@ -21,12 +22,12 @@ pub const fn after(sequence: u16) -> u16 {
     }
 }
 
-/// The way out to the line; a closure that takes frames is one.
+/// The output of the line; a closure that takes frames can be used.
 pub trait Line {
     /// Sends a frame.
     fn send(&mut self, frame: &[u8]);
 
-    /// Between two parts of a long job, as [`Replies::pause`](service::Replies::pause).
+    /// Called during long computations, like [`Replies::pause`](service::Replies::pause).
     fn pause(&mut self) {}
 }
 
@@ -36,7 +37,7 @@ impl<F: FnMut(&[u8])> Line for F {
     }
 }
 
-/// A [`Service`] behind a line, made to be a `static`.
+/// A [`Service`] behind a line, meant to be a `static`.
 #[derive(Debug)]
 pub struct Session<S: Number, const A: usize, const N: usize, const R: usize, const P: usize, T = Regions<S, R, P>> {
     service: Service<S, A, N, R, P, T>,
@@ -44,25 +45,25 @@ pub struct Session<S: Number, const A: usize, const N: usize, const R: usize, co
     last: Option<Last<S>>,
 }
 
-/// The request that was done last.
+/// The request that was executed last.
 #[derive(Debug)]
 struct Last<S: Number> {
     sequence: u16,
-    /// Check of its frame: another request of the same number is none again.
+    /// Check of its frame, which tells a repetition from another request with the same number.
     check: u32,
-    /// What was answered; `None` where it changes nothing and is answered anew.
+    /// The answer; `None` if the request changes nothing and is answered again by executing it.
     answer: Option<Answer<S>>,
 }
 
 impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P> {
-    /// No agents yet, a fleet to load, and no orders.
+    /// A session without agents and orders, and a fleet that can be loaded.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
         Self::of(Service::new(built_in))
     }
 }
 
 impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P, T> {
-    /// This service.
+    /// A session for this service.
     pub const fn of(service: Service<S, A, N, R, P, T>) -> Self {
         Self { service, receiver: Receiver::new(Reads::Requests), last: None }
     }
@@ -73,7 +74,7 @@ where
     S: Number,
     T: Table<S, R, P>,
 {
-    /// Takes a byte from the line: one call of [`Line::send`] for each frame to be sent.
+    /// Processes a byte from the line: calls [`Line::send`] for each frame to be sent.
     pub fn take(&mut self, byte: u8, line: &mut impl Line) {
         let Some(received) = self.receiver.take::<Request<S>>(byte) else { return };
         let mut replies = Replies { tag: Tag { who: Tag::PLANNER, sequence: 0, place: 0 }, line, last: None };
@@ -93,7 +94,7 @@ where
         }
     }
 
-    /// The number of the planner's next request.
+    /// Sequence number of the planner's next request.
     fn next(&self) -> u16 {
         self.last.as_ref().map_or(1, |last| after(last.sequence))
     }
@@ -119,17 +120,17 @@ where
     }
 }
 
-/// Sends the answers to a request, each with its place.
+/// Sends the answers to a request with their indices.
 struct Replies<'a, S: Number, L> {
     tag: Tag,
     line: &'a mut L,
-    /// Where the last answer is kept, if it is to be.
+    /// Where the last answer is kept, if it has to be.
     last: Option<&'a mut Option<Answer<S>>>,
 }
 
 impl<S: Number, L: Line> Replies<'_, S, L> {
     fn say(&mut self, answer: &Answer<S>) {
-        // Every answer is shorter than a frame may be (`tests/wire.rs`); one that is not would leave its place empty.
+        // Every answer is shorter than the longest frame (`tests/wire.rs`); a longer one would be skipped.
         if let Some(bytes) = frame::encode(self.tag, answer) {
             self.line.send(&bytes);
         }

@@ -1,4 +1,4 @@
-//! What a supervisor keeps of its fleet: a table of regions, with passing orders where there is memory for them.
+//! The table of a supervisor: regions, with passing orders if there is memory for them.
 
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms};
@@ -8,18 +8,18 @@ use pcr_core::{Ecm, Interval, Mismatch, Motion, Piece, Region, Unchanged};
 /// A table of at most `R` regions in `P` pieces.
 pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [Region; R], [Piece<S>; P]>;
 
-/// A table that a [`Service`](crate::Service) keeps. What orders are asked for is refused by one without them.
+/// A table that a [`Service`](crate::Service) keeps. A table without orders refuses requests about orders.
 pub trait Table<S: Number, const R: usize, const P: usize> {
     /// The regions.
     fn regions(&self) -> &Regions<S, R, P>;
 
-    /// Adds the last agent of a fleet whose table this is but for that agent.
+    /// Adds the last agent of a fleet. The table must be that of the fleet without this agent.
     ///
     /// # Errors
     /// [`Unchanged`].
     fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged>;
 
-    /// Exchanges an agent, and computes its regions only.
+    /// Replaces an agent, and computes only its regions.
     ///
     /// # Errors
     /// [`Unchanged`].
@@ -30,13 +30,13 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
         motion: Motion<'m, S>,
     ) -> Result<(), Unchanged>;
 
-    /// Removes an agent; those behind it move up by one place.
+    /// Removes an agent; the index of every agent behind it decreases by one.
     ///
     /// # Errors
     /// [`Mismatch`].
     fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch>;
 
-    /// Forgets the fleet.
+    /// Removes the fleet.
     fn clear(&mut self);
 
     /// Whether robots are under way with orders.
@@ -44,7 +44,7 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
         false
     }
 
-    /// Takes the orders of a plan. [`Request::Order`](crate::Request::Order).
+    /// Takes the orders from a plan. [`Request::Order`](crate::Request::Order).
     ///
     /// # Errors
     /// [`Refusal`].
@@ -52,7 +52,7 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
         Err(Refusal::NoOrders)
     }
 
-    /// Takes the place of a robot. [`Request::Report`](crate::Request::Report).
+    /// Updates the place of a robot. [`Request::Report`](crate::Request::Report).
     ///
     /// # Errors
     /// [`Refusal`].
@@ -67,7 +67,7 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
         Err(Refusal::NoOrders)
     }
 
-    /// The orders of a robot, of the agents `with` these indices. [`Request::Orders`](crate::Request::Orders).
+    /// The orders of a robot; `with` are the agents with these indices. [`Request::Orders`](crate::Request::Orders).
     ///
     /// # Errors
     /// [`Refusal`].
@@ -81,7 +81,7 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
         Err(Refusal::NoOrders)
     }
 
-    /// Whether a robot is at the end of its path.
+    /// Checks that a robot is at the end of its path.
     ///
     /// # Errors
     /// [`Refusal`].
@@ -108,7 +108,7 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
         self
     }
 
-    // By itself, with a stack of its own; so are those below.
+    // Separate functions, with stacks of their own; so are those below.
     #[inline(never)]
     fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
         Ecm::insert(self, fleet, agent)

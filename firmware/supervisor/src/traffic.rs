@@ -1,12 +1,14 @@
-//! Robots under way: who passes first, how far each has got, and how far each was sent.
+//! Robots under way: which one passes first, how far each one has come, and how far it was sent.
 //!
-//! Orders are kept whatever is lost, late or repeated on the line:
+//! Robots keep their orders even if messages are lost, late or repeated:
 //!
-//! - what a robot has passed only grows, so an old report changes nothing, and a hold that is computed from old places is too low,
-//!   never too high;
-//! - how far a robot was sent ([`Answer::Go`]) only grows, too, and it never goes further. Without any clock that is the upper
-//!   end of where it can be: whoever gets a new path passes second wherever another robot may already be on the way there;
-//! - reports and places carry the edition of the orders. Those about another path have another edition, and are dropped.
+//! - The part that a robot has passed only grows. So an old report changes nothing, and a hold that is computed from
+//!   old places is too low, never too high.
+//! - The length to which a robot was sent ([`Answer::Go`]) only grows, too, and the robot never goes further. It is the
+//!   upper end of the robot's place, which needs no clock. So a robot that gets a new path passes second wherever
+//!   another robot may already be on the way.
+//! - Reports and places carry the edition of the orders. Those about another path have another edition, and are
+//!   dropped.
 
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms, short};
@@ -17,8 +19,8 @@ use pcr_core::{
     Unchanged,
 };
 
-/// A table of at most `R` regions in `P` pieces with `O` orders: as many as regions, and as many more as a robot has that is
-/// admitted. For at most `A` robots.
+/// A table for at most `A` robots, with at most `R` regions in `P` pieces and `O` orders. It needs as many orders as
+/// regions, and as many more as a robot has that gets a new path.
 #[derive(Debug)]
 pub struct Traffic<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> {
     orders: Orders<S, [Region; R], [Piece<S>; P], [Order<S>; O]>,
@@ -28,17 +30,17 @@ pub struct Traffic<S: Number, const A: usize, const R: usize, const P: usize, co
     running: bool,
 }
 
-/// What is known of a robot.
+/// The progress of a robot.
 #[derive(Clone, Copy, Debug)]
 struct Robot<S> {
-    /// It has got so far at least, and was sent so far.
+    /// The length that it has reached at least, and the length to which it was sent.
     at: Interval<S>,
     /// Number of the edition in which it got its path.
     path: u16,
 }
 
 impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> Traffic<S, A, R, P, O> {
-    /// No fleet yet.
+    /// A table without a fleet.
     pub const fn new() -> Self {
         let orders = Orders::new([Region::EMPTY; R], [Piece::EMPTY; P], [Order::EMPTY; O]);
         let at = Interval { lo: S::ZERO, hi: S::ZERO };
@@ -54,7 +56,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         self.robots.get(agent).ok_or(Refusal::NoSuchAgent { agent: short(agent) })
     }
 
-    /// Where all are; what they were sent to counts as where they can stop at the latest.
+    /// The progress of all robots; the length to which a robot was sent counts as the furthest place at which it can
+    /// stop.
     fn progress(&self) -> [Progress<S>; A] {
         self.robots.map(|robot| Progress { at: robot.at, stop: robot.at.hi })
     }
@@ -137,7 +140,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
             return Err(Refusal::Edition(self.edition));
         }
         let end = fleet.get(agent).ok_or(Refusal::NoSuchAgent { agent: short(agent) })?.path().length();
-        // Neither does a number that is none pass.
+        // This test also refuses NaN.
         if !(S::ZERO <= at.lo && at.lo <= at.hi && at.hi <= known.hi) {
             return Err(Refusal::Beyond { agent: short(agent) });
         }

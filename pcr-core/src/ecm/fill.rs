@@ -1,4 +1,4 @@
-//! Into a table and out of it: the regions of an agent with others, in the order of the pairs.
+//! Adds the regions of an agent to a table, or removes them; entries stay sorted by pair.
 
 use super::known::Known;
 use super::{Ecm, Region};
@@ -18,7 +18,7 @@ where
     R: AsRef<[Region]> + AsMut<[Region]>,
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
 {
-    /// Computes all regions, or those of a row, of a fleet.
+    /// Computes all regions of a fleet, or those of one row.
     pub(super) fn compute(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -35,7 +35,7 @@ where
         Ok(())
     }
 
-    /// Adds the regions of an agent with all others, or nothing.
+    /// Adds the regions of an agent with all others. If they do not fit, none is added.
     pub(super) fn add_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
         let mut partners = [0..agent, agent.saturating_add(1)..fleet.len()].into_iter();
         let added = partners.try_for_each(|partners| self.add_pairs(fleet, agent, partners));
@@ -45,7 +45,7 @@ where
         added
     }
 
-    /// Adds the regions of an agent with others, all of them before or after it in the fleet.
+    /// Adds the regions of an agent with others, which are all before it or all after it in the fleet.
     pub(super) fn add_pairs(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -70,7 +70,7 @@ where
         Ok(())
     }
 
-    /// Where there is no room, some regions of the pair may stay behind: the caller takes out one of the agents, or all.
+    /// If there is no room, some regions of the pair may remain: the caller then removes one of the agents, or all.
     fn add_pair(&mut self, agents: [usize; 2], pair: Pair<'_, S>) -> Result<(), Full> {
         if let Err(full) = pair.find(&mut self.pieces) {
             let no_storage_helps = self.pieces.pair_is_full();
@@ -80,7 +80,7 @@ where
         if self.pieces.first_pending() == NONE {
             return Ok(());
         }
-        // A table that is built from scratch grows at its end.
+        // While a table is built from scratch, new entries belong at its end.
         let entries = self.entries();
         let at_end = entries.last().is_none_or(|last| last.agents() < agents);
         let mut index = if at_end { entries.len() } else { entries.partition_point(|region| region.agents() < agents) };
@@ -90,7 +90,7 @@ where
                 self.pieces.take_back();
                 return Err(full);
             }
-            // There is an entry at this index: no saturation.
+            // An entry with this index exists, so this does not saturate.
             index = index.saturating_add(1);
         }
         Ok(())
@@ -102,7 +102,7 @@ where
         };
         let len = self.len.saturating_add(1);
         let behind = self.regions.as_mut().get_mut(index..len).ok_or(Full::Regions)?;
-        // Every entry from here on moves up by one place.
+        // Every entry from here on moves back by one place.
         let places = Cell::from_mut(behind).as_slice_of_cells();
         for neighbours in places.windows(2).rev() {
             if let [place, next] = neighbours {
@@ -116,7 +116,7 @@ where
         Ok(())
     }
 
-    /// Removes the entries of an agent, and gives their pieces back.
+    /// Removes the entries of an agent and frees their pieces.
     pub(super) fn take_out(&mut self, agent: usize) {
         let mut kept = 0_usize;
         for index in 0..self.len {
@@ -130,7 +130,7 @@ where
                 if let Some(place) = regions.get_mut(kept) {
                     *place = region;
                 }
-                // Never above `index`: it cannot saturate, but the compiler does not see it.
+                // Never larger than `index`: it cannot saturate, but the compiler does not know that.
                 kept = kept.saturating_add(1);
             }
         }

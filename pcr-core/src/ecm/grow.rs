@@ -1,4 +1,4 @@
-//! Tables of a host, whose storage grows with what is found.
+//! Tables on a host, whose storage grows as needed.
 
 extern crate std;
 
@@ -11,14 +11,16 @@ use std::collections::TryReserveError;
 use std::vec::Vec;
 
 impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
-    /// The table of a whole fleet, as [`Ecm::build`], in vectors that grow until all regions have room (feature `std`).
+    /// Computes the table of a whole fleet, like [`Ecm::build`], in vectors that grow until all regions fit (feature
+    /// `std`).
     ///
-    /// Cost: at most twice that of [`Ecm::build`], as a table that does not fit is begun again with twice the room. It begins with
-    /// that for 16 regions and 32 pieces an agent, more than the fleets of `docs/evaluation.md` need.
+    /// Cost: at most twice that of [`Ecm::build`], because a table that does not fit is computed again with twice the
+    /// room. The first attempt has room for 16 regions and 32 pieces for each agent, more than the fleets of
+    /// `docs/evaluation.md` need.
     ///
     /// # Errors
-    /// [`Full::Pair`] and [`Full::Agents`], which no storage helps; [`Full::Regions`] and [`Full::Pieces`] where there is no more
-    /// memory.
+    /// [`Full::Pair`] and [`Full::Agents`], which more storage does not help; [`Full::Regions`] and [`Full::Pieces`] if
+    /// the allocation of memory fails.
     pub fn grown(fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let room = fleet.len().saturating_add(1).saturating_mul(16);
         let mut ecm = Self::new(Vec::new(), Vec::new());
@@ -30,7 +32,7 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
         Ok(ecm)
     }
 
-    /// Twice the room for what was full. The regions stay. After it, try again what failed (feature `std`):
+    /// Doubles the storage that was full. The regions stay. Afterwards repeat the call that failed (feature `std`):
     ///
     /// ```
     /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, Unchanged};
@@ -52,7 +54,8 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
     /// ```
     ///
     /// # Errors
-    /// What no storage helps, as it came: all but [`Full::Regions`] and [`Full::Pieces`], and those where there is no more memory.
+    /// Returns `full` itself if more storage does not help (all variants but [`Full::Regions`] and [`Full::Pieces`]),
+    /// or if the allocation of memory fails.
     pub fn grow(&mut self, full: Full) -> Result<(), Full> {
         let twice = |room: usize| room.saturating_add(1).saturating_mul(2);
         let (regions, pieces) = (twice(self.regions.len()), twice(self.pieces.storage().len()));
@@ -65,7 +68,7 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
     }
 }
 
-/// A storage of this length, if there is memory for it: a failed allocation would end the program.
+/// Extends a storage to this length if there is memory for it; a failed allocation would abort the program.
 fn lengthened<T: Clone>(storage: &mut Vec<T>, room: usize, empty: T) -> Result<(), TryReserveError> {
     storage.try_reserve_exact(room.saturating_sub(storage.len()))?;
     storage.resize(room, empty);

@@ -1,9 +1,9 @@
-//! Which fleet a table is that of: a checksum.
+//! A checksum that identifies the fleet of a table.
 
 use crate::motion::Motion;
 use crate::scalar::Scalar;
 
-/// The agents that a table knows: how many, and the sum of their checksums.
+/// The fleet of a table: the number of its agents, and the sum of their checksums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Known {
     agents: usize,

@@ -1,8 +1,9 @@
-//! Orders for a new path, so that everybody can still finish.
+//! Admission of a new path: chooses orders with which all agents can still finish.
 //!
-//! Who goes first is asked of the caller for each region of the new path, as far as both ways are possible. If somebody would
-//! then wait for ever, orders that hold a stuck agent are turned round, one after the other, each once at most. Choosing orders is
-//! NP-hard in general: what is refused may be possible, what is admitted is safe and free of deadlock.
+//! For each region of the new path where both orders are possible, the caller says which agent goes first. If some
+//! agent would then wait for ever, orders that keep an agent stuck are reversed, one after the other, each at most
+//! once. Choosing orders is NP-hard in general. Hence a path that is refused may be possible, but one that is admitted
+//! is safe and free of deadlock.
 
 use crate::ecm::Region;
 use crate::error::{Full, Mismatch, Unchanged};
@@ -15,14 +16,14 @@ use crate::pieces::Piece;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// A new path of an agent.
+/// A new path for an agent.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mission<'a, S: Scalar> {
-    /// Who shall have it.
+    /// The agent that gets the path.
     pub agent: usize,
-    /// The path and the disc; the profile does not matter. It begins where the agent is or before it, and goes on along the
-    /// old path up to where the agent can stop.
+    /// The path and the disc; the profile does not matter. The path begins where the agent is, or before that, and
+    /// follows the old path at least up to the point where the agent can stop.
     pub motion: Motion<'a, S>,
     /// Where the agent is on the new path.
     pub progress: Progress<S>,
@@ -35,20 +36,22 @@ where
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
     O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
 {
-    /// Gives an agent a new path, with orders for all its regions so that everybody can finish; the orders that the others have
-    /// with one another stay as they are. The path and progress in `fleet` and `progress` are exchanged.
+    /// Gives an agent a new path and orders for all its regions, with which every agent can finish. The orders between
+    /// the other agents stay as they are. The path in `fleet` and the entry in `progress` are replaced.
     ///
-    /// `prefer` says for a region, whose ego is the agent, who should go first: [`Pass::First`] or [`Pass::Second`]. Its
-    /// answer counts where both are possible: the second must be able to stop before the region, and the first to leave it
-    /// (`Progress::stop`: another agent that gets a lower hold by this must not set out beyond it any more, so places and
-    /// stopping points have to be those of now, or promised). Nobody who is in a region, or cannot stop before it, loses
-    /// the right to go on.
+    /// `prefer` is called for regions, whose ego is the agent, and says which one should go first: [`Pass::First`] or
+    /// [`Pass::Second`]. Its answer is used if both orders are possible: the second agent must be able to stop before
+    /// the region, and the first one to leave it. An agent that is in a region, or cannot stop before it, never loses
+    /// its right to go on. The new orders can lower the hold of another agent, so `Progress::stop` must not be out of
+    /// date: places and stopping points have to be current, or promised, and an agent must not go beyond its promise
+    /// any more.
     ///
-    /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds a region of the row, and at most as many
-    /// checks as the row has regions, and one.
+    /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds for each region of the row, and at most
+    /// one check more than the row has regions.
     ///
     /// # Errors
-    /// [`Refused`], with who is in the way; everything is then as it was. Another path, or the same one later, may be admitted.
+    /// [`Refused`], which names the agent in the way; everything is then unchanged. Another path, or the same path
+    /// later, may be admitted.
     ///
     /// ```
     /// use pcr_core::{
@@ -112,11 +115,11 @@ where
         admitted
     }
 
-    /// Exchanges the path of an agent, with nothing decided about any of its regions; the orders that the others have with one
-    /// another stay as they are. As [`Orders::admit`], it needs as many places more as the agent has regions.
+    /// Replaces the path of an agent and leaves all its regions undecided. The orders between the other agents stay as
+    /// they are. Like [`Orders::admit`], it needs room for as many additional orders as the agent has regions.
     ///
     /// # Errors
-    /// [`Full`] and [`Mismatch`]; everything is then as it was.
+    /// [`Full`] and [`Mismatch`]; everything is then unchanged.
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -127,8 +130,8 @@ where
         self.exchange(fleet, agent, motion).map(drop)
     }
 
-    /// Exchanges the path; the old orders of the agent are kept at the end of the storage, the last one first. Returns how many
-    /// they are.
+    /// Replaces the path. The old orders of the agent are kept at the end of the storage, the last one first. Returns
+    /// the number of these orders.
     fn exchange<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -161,7 +164,7 @@ where
         Err(Full::Orders.into())
     }
 
-    /// Everything as it was before an exchange.
+    /// Undoes an exchange.
     fn restore<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -170,7 +173,7 @@ where
         saved: usize,
     ) -> Result<(), Refused> {
         let kept = self.gather(agent, |_, _| {});
-        // What was there fits.
+        // The old regions fit, as they did before.
         self.ecm.replace(fleet, agent, before)?;
         self.spread_saved(agent, kept, saved);
         Ok(())
@@ -185,7 +188,7 @@ where
         });
     }
 
-    /// Orders for all regions of an agent, those that are wanted where there is a choice.
+    /// Chooses orders for all regions of an agent: the preferred ones where both are possible.
     fn choose(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -221,7 +224,7 @@ where
         Ok(())
     }
 
-    /// Checks the orders, and turns some of the agent's round where somebody would wait for ever.
+    /// Checks the orders, and reverses some orders of the agent while some agent would wait for ever.
     fn repair(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -240,8 +243,8 @@ where
         }
     }
 
-    /// An order of the agent that keeps somebody stuck, and can be turned round: one where it is first, else one where it is
-    /// stuck itself.
+    /// An order of the agent that keeps some agent stuck and can be reversed: preferably one where the agent goes
+    /// first, otherwise one where it is stuck itself.
     fn culprit(&self, agent: usize, gain: S, reaches: &[Reach<S>]) -> Option<usize> {
         let holds = |pass: Pass| {
             self.places(agent).find_map(|(place, agents, order)| {
@@ -264,7 +267,7 @@ where
     }
 }
 
-/// The order of a region whose ego is first or second, from where both are now.
+/// The order of a region whose ego is first or second, counted from where both agents are now.
 fn with_room<S: Scalar>(
     region: &RegionRef<'_, S>,
     pass: Pass,
@@ -276,8 +279,8 @@ fn with_room<S: Scalar>(
     Order { open, ..Order::new(region, pass, since) }
 }
 
-/// Whether the ego of a region can let the other agent go first: it can stop before what that one has still to pass, and need
-/// not go into what that one never leaves.
+/// Whether the ego of a region can let the other agent go first: it can stop before the part that the other one has
+/// still to pass, and its path does not lead into a part that the other one never leaves.
 fn can_wait<S: Scalar>(region: &RegionRef<'_, S>, own: &Progress<S>, their: &Progress<S>, width: S) -> bool {
     if !region.hold(own.at.lo, their.at.lo).allows(own.stop) {
         return false;

@@ -1,9 +1,9 @@
-//! Stopping ways: a hold is kept by whoever can stop before it.
+//! Stopping distances: an agent keeps a hold if it can stop before it.
 
 use crate::error::{Invalid, in_range, not_negative, positive};
 use crate::scalar::{Scalar, Wide};
 
-/// How an agent brakes: at a constant deceleration, after a reaction time during which it may go on at its speed.
+/// How an agent brakes: at a constant deceleration, after a reaction time during which it may continue at its speed.
 ///
 /// ```
 /// use pcr_core::Brakes;
@@ -17,12 +17,13 @@ use crate::scalar::{Scalar, Wide};
 pub struct Brakes<S> {
     deceleration: S,
     reaction: S,
-    /// Speed that is lost in the reaction time when braking \[m/s\].
+    /// Speed that the agent would lose in the reaction time if it were braking \[m/s\].
     lost: S,
 }
 
 impl<S: Scalar> Brakes<S> {
-    /// Deceleration \[m/s²\], and reaction time \[s\]: what passes between two controls, and until one takes effect.
+    /// Deceleration \[m/s²\], and reaction time \[s\]: the time between two control steps plus the delay until a
+    /// command takes effect.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for their product), [`Invalid::NonPositive`] (deceleration),
@@ -34,17 +35,17 @@ impl<S: Scalar> Brakes<S> {
         Ok(Self { deceleration, reaction, lost })
     }
 
-    /// The way that is needed to stop from a speed \[m/s\], rounded up \[m\]: `v τ + v² / 2a`.
+    /// Stopping distance from a speed \[m/s\], rounded up \[m\]: `v τ + v² / 2a`.
     pub fn distance(&self, speed: S) -> S {
         let speed = speed.max(S::ZERO);
         let ramp = speed.times(speed.quotient(self.deceleration)).narrow().half();
         let way = speed.times(self.reaction).narrow() + ramp;
-        // Not of ways above 0: those of the slowest round to 0.
+        // Only distances above 0: those of the lowest speeds round to 0.
         if speed > S::ZERO { way + S::slack(way + speed) } else { way }
     }
 
-    /// The speed from which this way \[m\] is enough to stop, rounded down \[m/s\]: its [`Brakes::distance`] is at most that,
-    /// rounding aside. 0 where there is no way.
+    /// The largest speed \[m/s\] from which this distance \[m\] is enough to stop, rounded down: its
+    /// [`Brakes::distance`] is at most that distance, except for rounding. 0 if the distance is not above 0.
     pub fn speed(&self, distance: S) -> S {
         if distance <= S::ZERO {
             return S::ZERO;

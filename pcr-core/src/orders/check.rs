@@ -1,9 +1,9 @@
-//! Whether everybody can finish: the least fixed point above where all are now.
+//! Checks that all agents can finish: computes the least fixed point above their present places.
 //!
-//! F takes every agent as far as its holds allow, the others being where they are. It is monotone, and whoever keeps the
-//! orders stays below its least fixed point above the present places, which is reached by raising agents in any order. So all
-//! arrive, in whatever order and however late, if that fixed point is the end of all paths, and nobody can arrange it if it is
-//! not (docs/theory.md).
+//! The function F moves every agent as far as its holds allow while the others stay where they are. F is monotone.
+//! Agents that keep the orders stay below the least fixed point of F above their present places. It is reached by
+//! moving agents in any order. If it is the end of all paths, all agents arrive, in whatever order they move and
+//! however late they are; if it is not, no schedule lets all of them arrive (docs/theory.md).
 
 use crate::ecm::Region;
 use crate::error::Full;
@@ -15,37 +15,37 @@ use crate::orders::table::Orders;
 use crate::pieces::Piece;
 use crate::scalar::Scalar;
 
-/// What a check takes into account.
+/// Parameters of a check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tolerances<S> {
-    /// So far the lower end of an agent's place may be behind it when it stands \[m\]: it is known to have left a region only
-    /// when it is further than that behind it.
+    /// Uncertainty of places \[m\]: when an agent stands, the known lower end of its place may be behind it by up to
+    /// this. It is known to have left a region only when it is further than this behind the region.
     pub width: S,
-    /// Less way than this \[m\] is no progress: where agents follow one another around a circle they may gain less and less.
-    /// It bounds the check at the length of all paths over this many sweeps.
+    /// A gain below this \[m\] does not count as progress, because agents that follow one another around a circle may
+    /// gain less and less. The number of sweeps of a check is at most the length of all paths divided by this.
     pub gain: S,
 }
 
-/// How far a check has come with an agent.
+/// The state of an agent in a check.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reach<S> {
-    /// Where it has got to \[m\].
+    /// How far the agent has come \[m\].
     pub(super) at: S,
-    /// Where it can get to \[m\].
+    /// How far the agent can come in the next step \[m\].
     pub(super) next: S,
     /// End of its path \[m\].
     pub(super) end: S,
-    /// Whether it has gained since its orders were looked at.
+    /// Whether the agent has gained since its orders were last evaluated.
     pub(super) moved: bool,
 }
 
 impl<S: Scalar> Reach<S> {
-    /// To fill a storage with.
+    /// An unused entry, to fill a storage with.
     pub const EMPTY: Self = Self { at: S::ZERO, next: S::ZERO, end: S::ZERO, moved: false };
 
-    /// Whether it does not get to the end of its path.
+    /// Whether the agent cannot reach the end of its path.
     pub(super) fn is_stuck(&self) -> bool {
         self.at < self.end
     }
@@ -64,18 +64,19 @@ where
     P: AsRef<[Piece<S>]>,
     O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
 {
-    /// Whether everybody can get to the end of its path, from where all are now, without breaking an order. Then everybody
-    /// will, if nobody stops for ever, whatever the delays; else nobody can avoid that somebody waits for ever, but by
-    /// other orders or paths. Old places do not change the answer.
+    /// Checks that every agent can reach the end of its path from its present place without breaking an order. Then all
+    /// agents arrive, whatever their delays, if none stops for ever. Otherwise some agent waits for ever however they
+    /// move, unless orders or paths are changed. The answer is the same for places that are out of date.
     ///
-    /// `reaches` needs a place an agent; what is in it does not matter.
+    /// `reaches` needs one entry for each agent; its contents do not matter.
     ///
-    /// Cost: a sweep over the regions for each time that somebody has to wait for somebody, in which each order is evaluated
-    /// whose first agent has gained ([`RegionRef::hold`](crate::RegionRef::hold)).
+    /// Cost: one sweep over the regions for each time that an agent has to wait for another one. A sweep evaluates the
+    /// orders ([`RegionRef::hold`](crate::RegionRef::hold)) whose first agent has gained.
     ///
     /// # Errors
-    /// [`Refused::Stuck`] names one agent that would wait for ever, [`Refused::Late`] one that is beyond its hold, by more
-    /// than the least gain; [`Full::Reaches`] for too few places; [`Mismatch`](crate::Mismatch) for another fleet or the row of one agent only.
+    /// [`Refused::Stuck`] names one agent that would wait for ever. [`Refused::Late`] names one that is beyond its hold
+    /// by more than the least gain. [`Full::Reaches`] if there are too few entries; [`Mismatch`](crate::Mismatch) for
+    /// another fleet or a table of one row only.
     pub fn check(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -87,7 +88,7 @@ where
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();
-            // What is no number may be the start.
+            // A place that is NaN is taken as the start.
             let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().at.lo).min(end);
             *reach = Reach { at, next: end, end, moved: true };
         }
@@ -109,8 +110,8 @@ where
         Err(self.stuck(agent, reaches.get(agent).copied().unwrap_or_default()))
     }
 
-    /// Brings the holds up to date whose first agents have gained, and takes everybody's `next` down to them. Returns
-    /// whether there is anybody left who is not at its end.
+    /// Updates the holds whose first agents have gained, and lowers `next` of every agent to them. Returns whether any
+    /// agent has not reached its end.
     fn sweep(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -125,7 +126,7 @@ where
                 Pass::Second => (agents[1], agents[0]),
                 Pass::Over => continue,
                 Pass::Undecided => {
-                    // Nobody passes it.
+                    // The region is undecided: neither agent passes it.
                     for agent in agents {
                         let hold = self.ecm.at(fleet, place, agent).map(|region| region.hold(S::ZERO, S::ZERO));
                         if let Some(reach) = reaches.get_mut(agent) {
@@ -151,7 +152,7 @@ where
         Ok(reaches.iter().any(Reach::is_stuck))
     }
 
-    /// Who keeps an agent from going on.
+    /// The agent that keeps this one from going on.
     fn stuck(&self, agent: usize, reach: Reach<S>) -> Refused {
         let mut nearest: Option<(S, usize, usize)> = None;
         for (place, agents, order) in self.places(agent) {
@@ -170,7 +171,7 @@ where
     }
 }
 
-/// A hold as a length beyond all paths or before them.
+/// A hold as a length: beyond the end of all paths if free, before their start if inside.
 fn length<S: Scalar>(hold: Hold<S>) -> S {
     match hold {
         Hold::Free => S::LIMIT,

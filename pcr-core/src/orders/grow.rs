@@ -1,4 +1,4 @@
-//! Orders of a host, whose storage grows with what is found.
+//! Orders on a host, whose storage grows as needed.
 
 extern crate std;
 
@@ -11,11 +11,11 @@ use crate::scalar::Scalar;
 use std::vec::Vec;
 
 impl<S: Scalar> Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>> {
-    /// Twice the room for what was full, as [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. After it, try again what
-    /// failed (feature `std`).
+    /// Doubles the storage that was full, like [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. Afterwards
+    /// repeat the call that failed (feature `std`).
     ///
     /// # Errors
-    /// What no storage helps, as it came, and what there is no more memory for.
+    /// Returns `full` itself if more storage does not help, or if the allocation of memory fails.
     ///
     /// ```
     /// use pcr_core::{Motion, Orders, Path, Point, Pose, Profile, Radians, Unchanged};

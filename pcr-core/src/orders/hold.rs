@@ -1,7 +1,9 @@
-//! How far an agent may go that passes a region second: the infimum of its lengths over what the first has not passed.
+//! How far the second agent at a region may go: the infimum of its lengths in the part that the first agent has not
+//! passed yet.
 //!
-//! A piece that lies ahead of both agents as a whole counts by its least length, which is stored. Of one that an agent is in,
-//! the part of the first one's segment that is still ahead of it blocks lengths of the second one's: closed forms.
+//! A piece that lies ahead of both agents counts with its stored least length. If an agent is inside a piece, closed
+//! forms give the lengths of the second agent's segment that are blocked by the part of the first agent's segment that
+//! is still ahead.
 
 use crate::geometry::Interval;
 use crate::query::{covered, cut};
@@ -15,9 +17,9 @@ use crate::scalar::Scalar;
 pub enum Hold<S> {
     /// To the end of its path.
     Free,
-    /// Up to this length of its path \[m\], where it may stand.
+    /// Up to this length of its path \[m\]; it may stand there.
     At(S),
-    /// Nowhere: where it is the other one will pass. It can only be first.
+    /// Nowhere: it stands where the other agent will pass. It can only go first.
     Inside,
 }
 
@@ -31,7 +33,7 @@ impl<S: Scalar> Hold<S> {
         }
     }
 
-    /// The one that leaves less way.
+    /// The more restrictive of two holds.
     #[must_use]
     pub fn min(self, other: Self) -> Self {
         match (self, other) {
@@ -50,7 +52,7 @@ impl<S: Scalar> Hold<S> {
         }
     }
 
-    /// The hold as a length of a path that ends at `end` \[m\]: nothing inside.
+    /// The hold as a length of a path that ends at `end` \[m\]; `None` for [`Hold::Inside`].
     pub fn length(self, end: S) -> Option<S> {
         match self {
             Self::Free => Some(end),
@@ -61,19 +63,20 @@ impl<S: Scalar> Hold<S> {
 }
 
 impl<S: Scalar> RegionRef<'_, S> {
-    /// How far the ego may go if the other agent passes this region first and has still to go from `other_from` on: the
-    /// infimum of the ego's lengths in what is left of the region, where both are at `from` and `other_from` \[m\] or further
-    /// on. Lower ends of what is known of the places are on the safe side for both.
+    /// How far the ego may go if the other agent passes this region first and has still to travel from `other_from` on:
+    /// the infimum of the ego's lengths in the part of the region in which the ego is at `from` or beyond, and the
+    /// other at `other_from` or beyond \[m\]. For places that are known as ranges, use the lower ends: this is safe for
+    /// both agents.
     ///
-    /// It never exceeds the exact infimum of the region of R, nor falls below that of R + 2 [`RegionRef::excess`]. It does not
-    /// decrease as the other agent goes on, rounding aside; it is free once the other one has left the region, never if
-    /// the region holds the end of its path. [`Hold::Inside`] is a region that reaches before `from` or to the start of the
-    /// ego's path.
+    /// The hold never exceeds the exact infimum of the region for the sum of the radii R, and never falls below that
+    /// for R + 2 [`RegionRef::excess`]. It does not decrease as the other agent goes on, except for rounding. It is
+    /// free once the other agent has left the region, which never happens if the region contains the end of its path.
+    /// [`Hold::Inside`] means that the region begins before `from`, or at the start of the ego's path.
     ///
-    /// Where both agents are in the same pair of segments, one of them an arc of half a turn or more or one that the disc can
-    /// hold, another region of this pair of segments may count as well: the hold is then lower than it has to be.
+    /// If both agents are in the same pair of segments, and one segment is an arc of half a turn or more or fits into
+    /// the disc, another region of this pair of segments may count as well: the hold is then lower than necessary.
     ///
-    /// Cost: a comparison a piece, and a few hundred operations for each that an agent is in.
+    /// Cost: a comparison for each piece, and a few hundred operations for each piece that an agent is in.
     ///
     /// ```
     /// use pcr_core::{Ecm, Hold, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
@@ -100,12 +103,12 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn hold(&self, from: S, other_from: S) -> Hold<S> {
-        // Nobody is beyond the ends of its path, whatever rounding says; what is no number may be the start.
+        // Places are clamped to the paths, which rounding may leave a little; NaN is taken as the start.
         let from = S::ZERO.max(from).min(self.ego_motion().path().length());
         let other_from = S::ZERO.max(other_from).min(self.other_motion().path().length());
         let mut hold = Hold::Free;
         for piece in self.pieces() {
-            // It holds no less than its least length.
+            // The hold is at least the least length of the piece.
             let counts =
                 piece.other_length.hi >= other_from && piece.length.hi >= from && hold.allows_beyond(piece.length.lo);
             if counts {
@@ -121,7 +124,7 @@ impl<S: Scalar> RegionRef<'_, S> {
             return at(piece.length.lo, from);
         }
         let slack = self.slack();
-        // The cut of a segment adds roundings of its own.
+        // Cutting a segment adds rounding errors of its own.
         let radius = self.ego_motion().radius() + self.other_motion().radius() + slack.double();
         let ahead = Interval::new(other_from.max(piece.other_length.lo), piece.other_length.hi);
         let Some(their) = cut(piece.other, ahead) else { return Hold::Free };
@@ -132,7 +135,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 }
 
-/// The hold before this length: the start of a path is no boundary of a region.
+/// The hold before this length. The start of a path is no boundary of a region.
 fn at<S: Scalar>(length: S, from: S) -> Hold<S> {
     if length < from || length <= S::ZERO { Hold::Inside } else { Hold::At(length) }
 }

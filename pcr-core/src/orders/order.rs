@@ -1,4 +1,4 @@
-//! Who passes a region first, and what is known of agents.
+//! Types for the order in which agents pass a region, and for the progress of an agent.
 
 use crate::geometry::Interval;
 use crate::motion::Motion;
@@ -10,19 +10,19 @@ use crate::scalar::Scalar;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Pass {
-    /// Not decided yet: both have to stay before the region.
+    /// Not decided yet: both agents have to stay before the region.
     #[default]
     Undecided,
-    /// It goes first, and the other one waits.
+    /// The agent goes first, and the other one waits.
     First,
-    /// It waits until the other one is through.
+    /// The agent waits until the other one has left the region.
     Second,
-    /// One of the two has left the region behind: it is nothing to anybody any more.
+    /// One of the two agents has left the region: it no longer restricts either of them.
     Over,
 }
 
 impl Pass {
-    /// The same as the other agent sees it.
+    /// The same order seen by the other agent.
     #[must_use]
     pub fn swapped(self) -> Self {
         match self {
@@ -32,51 +32,53 @@ impl Pass {
         }
     }
 
-    /// As seen by the other agent, if `swapped`.
+    /// The order seen by the other agent if `swapped`.
     pub(super) fn swapped_if(self, swapped: bool) -> Self {
         if swapped { self.swapped() } else { self }
     }
 }
 
-/// What is known of an agent.
+/// What is known about the progress of an agent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Progress<S> {
-    /// Where it is on its path \[m\]. The lower end may be old: it counts for what it has passed.
+    /// Where the agent is on its path \[m\]. The lower end may be out of date; it decides which regions the agent has
+    /// left.
     pub at: Interval<S>,
-    /// Where it can be at rest at the latest \[m\], the upper end of `at` or more. What it has promised not to go beyond
-    /// counts, too.
+    /// The furthest length at which the agent can come to rest \[m\], at least the upper end of `at`. If it has
+    /// promised not to go beyond a length, it is that length.
     pub stop: S,
 }
 
 impl<S: Scalar> Progress<S> {
-    /// At rest at a length that is known exactly \[m\].
+    /// At rest at an exactly known length \[m\].
     pub fn at_rest(length: S) -> Self {
         Self { at: Interval::new(length, length), stop: length }
     }
 
-    /// Whether it has left a region of these lengths of its path behind for sure.
+    /// Whether the agent has certainly left a region with these lengths of its path.
     pub(super) fn is_beyond(&self, lengths: Interval<S>, motion: &Motion<'_, S>) -> bool {
         self.at.lo > exit(lengths, motion)
     }
 }
 
-/// An entry of the table [`Orders`](crate::Orders): who passes a region first. 20 bytes for `f32`, 40 for `f64`.
+/// An entry of the table [`Orders`](crate::Orders): which agent passes a region first. 20 bytes for `f32`, 40 for
+/// `f64`.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Order<S> {
-    /// As the agent of the lower index sees it.
+    /// The order seen by the agent with the lower index.
     pub(super) pass: Pass,
-    /// Whether the other way round is possible, too, and has not been tried yet.
+    /// Whether the reversed order is possible, too, and has not been tried yet.
     pub(super) open: bool,
-    /// From which length of the second on the region counts \[m\]: what is behind it is passed.
+    /// Length of the second agent from which on the region counts \[m\]; what is behind it has been passed.
     pub(super) since: S,
-    /// Least length of the second in it \[m\].
+    /// Least length of the second agent in the region \[m\].
     pub(super) entry: S,
-    /// Largest length of the first in it \[m\], out of reach if it holds the end of its path.
+    /// Largest length of the first agent in the region \[m\]; unreachable if the region contains the end of its path.
     pub(super) exit: S,
-    /// How far a check has found the second to get past it \[m\].
+    /// Hold of the second agent at this region, as last computed by a check \[m\].
     pub(super) hold: S,
 }
 
@@ -84,11 +86,12 @@ const _: () = assert!(size_of::<Order<f32>>() == 20, "the documented size of an 
 const _: () = assert!(size_of::<Order<f64>>() == 40, "the documented size of an order");
 
 impl<S: Scalar> Order<S> {
-    /// No order, to fill a storage with.
+    /// No order: an entry to fill a storage with.
     pub const EMPTY: Self =
         Self { pass: Pass::Undecided, open: false, since: S::ZERO, entry: S::ZERO, exit: S::ZERO, hold: S::ZERO };
 
-    /// The order in which the ego of a region is first or second; what is behind `since` of the second does not count.
+    /// The order in which the ego of a region goes first or second. Lengths of the second agent below `since` do not
+    /// count.
     pub(super) fn new(region: &RegionRef<'_, S>, pass: Pass, since: S) -> Self {
         let (second, exit) = match pass {
             Pass::First => (region.other_length(), exit(region.length(), region.ego_motion())),
@@ -98,18 +101,19 @@ impl<S: Scalar> Order<S> {
         Self { pass: pass.swapped_if(transposed), since, entry: second.lo, exit, ..Self::EMPTY }
     }
 
-    /// Whether the second is held nowhere before the entry: it cannot be inside.
+    /// Whether the hold of the second agent is at least `entry`, because the agent cannot be inside the region.
     pub(super) fn bounds_from_entry(&self) -> bool {
         self.entry >= self.since && self.entry > S::ZERO
     }
 
-    /// As this agent of the pair sees it.
+    /// The order seen by this agent of the pair.
     pub(super) fn pass_of(&self, agent: usize, [_, higher]: [usize; 2]) -> Pass {
         self.pass.swapped_if(agent == higher)
     }
 }
 
-/// Where an agent has left a region of these lengths: never if it holds the end of its path, whatever rounding says.
+/// The length at which an agent has left a region with these lengths: never, if the region contains the end of its
+/// path, whatever rounding does.
 fn exit<S: Scalar>(lengths: Interval<S>, motion: &Motion<'_, S>) -> S {
     if lengths.hi < motion.path().length() { lengths.hi } else { S::LIMIT }
 }

@@ -10,35 +10,35 @@ use crate::error::{Full, Mismatch, Unchanged};
 pub enum Refused {
     /// An agent would wait for ever.
     Stuck {
-        /// Who waits.
+        /// The agent that waits.
         agent: usize,
-        /// For whom.
+        /// The agent for which it waits.
         by: usize,
-        /// The place of their region in the table.
+        /// Index of their region in the table.
         place: usize,
     },
-    /// An agent is where it should have waited for another one: the order cannot be kept any more.
+    /// An agent is already where it should have waited for another one: the order cannot be kept any more.
     Late {
-        /// Who is there.
+        /// The agent that has gone too far.
         agent: usize,
-        /// Who was to go first.
+        /// The agent that was to go first.
         by: usize,
-        /// The place of their region in the table.
+        /// Index of their region in the table.
         place: usize,
     },
-    /// Neither agent can be second at a region any more, or none would ever leave it: one cannot stop before it, is in
-    /// it, or ends in it.
+    /// Neither order of a region is possible: an agent that would go second cannot stop before it any more, is in it,
+    /// or an agent that would go first never leaves it.
     Blocked {
         /// The agent that was to be admitted.
         agent: usize,
-        /// Who is in its way.
+        /// The agent that is in its way.
         by: usize,
     },
-    /// By their motions two agents meet, or pass so near that it cannot be told who is first.
+    /// According to their motions these two agents meet, or pass so close that it cannot be decided which one is first.
     Meeting([usize; 2]),
-    /// The fleet is not that of the table, or there is no such agent.
+    /// The fleet is not that of the table, or has no such agent.
     Mismatch(Mismatch),
-    /// There is no room.
+    /// There is not enough room.
     Full(Full),
 }
 

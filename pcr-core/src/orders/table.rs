@@ -1,4 +1,4 @@
-//! The table of orders: one for each region, in the same places.
+//! The table of orders: one order for each region, at the same indices.
 
 use crate::ecm::{Ecm, Region};
 use crate::error::{Full, Mismatch, Unchanged};
@@ -12,17 +12,17 @@ use crate::query::{first_overlap, times};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// The collision regions of a fleet, and who passes each of them first.
+/// The collision regions of a fleet, and for each of them which agent passes it first.
 ///
-/// Every agent that keeps its [`Orders::hold`] never touches another one, however late whoever is; if [`Orders::check`] has
-/// passed, everybody arrives (`docs/theory.md` has the proofs). Only paths and radii matter, not when the motions say an agent
-/// is where, but for [`Orders::as_planned`]. As with [`Ecm`], the fleet is handed to each method, and another one is refused.
+/// Agents that keep their [`Orders::hold`] never touch one another, however late they are. If [`Orders::check`] passes,
+/// all of them arrive (`docs/theory.md` has the proofs). Paths and radii matter; the times of the motions are used by
+/// [`Orders::as_planned`] only. As with [`Ecm`], every method takes the fleet, and refuses another one.
 ///
-/// The storage is the caller's, as that of [`Ecm`]. There must be an [`Order`] a region; [`Orders::admit`] needs as
+/// The caller provides the storage, as for [`Ecm`]. One [`Order`] is needed for each region; [`Orders::admit`] needs as
 /// many more as its agent has regions.
 ///
-/// A robot that has but its own row ([`Orders::fill_row`], and [`Orders::decide`] as it is told) computes its
-/// own hold from that: it needs to know how far those before it have come, and nothing about clocks or speeds.
+/// A robot can compute its hold from its own row alone ([`Orders::fill_row`], then [`Orders::decide`] as it is told).
+/// For that it has to know how far the robots before it have come, but nothing about clocks or speeds.
 ///
 /// ```
 /// use pcr_core::{Hold, Limits, Motion, Order, Orders, Pass, Path, Piece, Point, Pose, Profile, Progress, Radians, Region};
@@ -62,7 +62,7 @@ impl<S: Scalar, R, P, O> Orders<S, R, P, O> {
         Self { ecm: Ecm::new(regions, pieces), orders }
     }
 
-    /// The regions.
+    /// The table of regions.
     pub const fn ecm(&self) -> &Ecm<S, R, P> {
         &self.ecm
     }
@@ -75,16 +75,16 @@ where
     P: AsRef<[Piece<S>]>,
     O: AsRef<[Order<S>]>,
 {
-    /// The places of an agent's regions in the table, their pairs and orders.
+    /// The regions of an agent: their indices in the table, pairs and orders.
     pub(super) fn places(&self, agent: usize) -> impl Iterator<Item = (usize, [usize; 2], Order<S>)> {
-        // The pair alone is looked at first: most regions are those of others.
+        // Only the pair is read first, because most regions belong to other agents.
         (0..self.ecm.len()).filter_map(move |place| {
             let agents = self.ecm.agents_at(place).filter(|agents| agents.contains(&agent))?;
             Some((place, agents, self.order(place)))
         })
     }
 
-    /// All places with their pairs and orders.
+    /// All indices with their pairs and orders.
     pub(super) fn all(&self) -> impl Iterator<Item = (usize, [usize; 2], Order<S>)> {
         (0..self.ecm.len()).filter_map(|place| Some((place, self.ecm.agents_at(place)?, self.order(place))))
     }
@@ -93,10 +93,10 @@ where
         self.orders.as_ref().get(place).copied().unwrap_or_default()
     }
 
-    /// The regions of an agent's row, their places in the table, and whether it passes them first. O(agents + regions).
+    /// The regions of an agent's row, their indices, and the order in which it passes them. O(agents + regions).
     ///
     /// # Errors
-    /// [`Mismatch`]: none is an answer.
+    /// [`Mismatch`]. If there is no error, an empty iterator means that the agent has no regions.
     pub fn row<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
@@ -108,13 +108,15 @@ where
         }))
     }
 
-    /// How far an agent may go, given what is known of the others: it has to brake so that it stays there, wherever it may be
-    /// itself. Of those that pass first the lower end of the place counts; of an agent that nothing is known of, the
-    /// start of its path. Old places give a hold that is too low, never one that is too high.
+    /// How far an agent may go, given the progress of the others. The agent has to brake so that it does not exceed the
+    /// hold, wherever it may be itself. For agents that pass first, the lower end of their place counts; an agent
+    /// without an entry in `progress` is taken to be at the start of its path. Places that are out of date give a hold
+    /// that is too low, never one that is too high.
     ///
-    /// It must not be asked with places on another path than that of `fleet`.
+    /// The places in `progress` must belong to the paths in `fleet`.
     ///
-    /// Cost: O(agents + regions) to find the row, and that of [`RegionRef::hold`] for each region of it that may be the nearest.
+    /// Cost: O(agents + regions) to find the row, and that of [`RegionRef::hold`] for each region of it that may limit
+    /// the hold.
     ///
     /// # Errors
     /// As [`Orders::row`].
@@ -122,8 +124,8 @@ where
         self.hold_before(fleet, agent, progress, Hold::Free)
     }
 
-    /// The hold, or this other one if that leaves less way: regions that begin beyond it are not looked at. An agent that needs
-    /// to know no more than whether it may go on for a while asks so.
+    /// The hold, or `other` if that is more restrictive; regions that begin beyond `other` are skipped. Use this for an
+    /// agent that only needs to know whether it may go on for a while.
     ///
     /// # Errors
     /// As [`Orders::row`].
@@ -137,7 +139,7 @@ where
         self.nearest(fleet, agent, progress, other).map(|(hold, _)| hold)
     }
 
-    /// The hold and the place of the region that it is before; none where it is `other`.
+    /// The hold, and the index of the region that limits it; `None` if it is `other`.
     pub(super) fn nearest(
         &self,
         fleet: &[Motion<'_, S>],
@@ -153,7 +155,7 @@ where
             let held = match order.pass_of(agent, agents) {
                 Pass::First | Pass::Over => continue,
                 Pass::Second if first > order.exit => continue,
-                // It is held nowhere before the entry.
+                // The hold at this region is at least the entry.
                 Pass::Second if order.bounds_from_entry() && !hold.allows_beyond(order.entry) => continue,
                 Pass::Second => self.ecm.at(fleet, place, agent).map(|region| region.hold(order.since, first)),
                 Pass::Undecided => self.ecm.at(fleet, place, agent).map(|region| region.hold(S::ZERO, S::ZERO)),
@@ -174,40 +176,40 @@ where
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
     O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
 {
-    /// The table of a whole fleet of at most 65535 agents, nothing decided. Cost: that of [`Ecm::build`].
+    /// Computes the table of a fleet of at most 65535 agents, with no order decided. Cost: that of [`Ecm::build`].
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small.
+    /// [`Full`] if the storage is too small.
     pub fn build(regions: R, pieces: P, orders: O, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
         let mut table = Self { ecm: Ecm::build(regions, pieces, fleet)?, orders };
         table.undecide().map(|()| table)
     }
 
-    /// Becomes the table of a whole fleet, as [`Orders::build`], in the storage that it has.
+    /// Computes the table of a whole fleet, like [`Orders::build`], in the existing storage.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    /// [`Full`] if the storage is too small; the table is then empty, as after [`Orders::clear`].
     pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
         self.ecm.fill(fleet)?;
         self.undecide()
     }
 
-    /// Becomes the table of one agent's row only, nothing decided, in the storage that it has: that agent asks it for its holds.
-    /// Cost: that of [`Ecm::fill_row`].
+    /// Computes the table of one agent's row only, with no order decided, in the existing storage. It answers holds of
+    /// that agent. Cost: that of [`Ecm::fill_row`].
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small; the table is then that of nobody.
+    /// [`Full`] if the storage is too small; the table is then empty, as after [`Orders::clear`].
     pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
         self.ecm.fill_row(fleet, agent)?;
         self.undecide()
     }
 
-    /// Forgets all regions, orders and agents.
+    /// Removes all regions and orders; the table is then that of a fleet without agents.
     pub fn clear(&mut self) {
         self.ecm.clear();
     }
 
-    /// No order for any region.
+    /// Resets the orders of all regions.
     fn undecide(&mut self) -> Result<(), Full> {
         if let Some(orders) = self.orders.as_mut().get_mut(..self.ecm.len()) {
             orders.fill(Order::EMPTY);
@@ -217,10 +219,10 @@ where
         Err(Full::Orders)
     }
 
-    /// Adds the regions of one agent with all others of the fleet, nothing decided, as [`Ecm::insert`].
+    /// Adds the regions of one agent with all others of the fleet, like [`Ecm::insert`], with no order decided.
     ///
     /// # Errors
-    /// [`Full`] where the storage is too small, and [`Mismatch`]; the table is then as it was.
+    /// [`Full`] if the storage is too small, and [`Mismatch`]; the table is then unchanged.
     pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
         let kept = self.ecm.len();
         self.ecm.insert(fleet, agent)?;
@@ -232,29 +234,30 @@ where
         Ok(())
     }
 
-    /// Removes one agent, its regions and their orders, as [`Ecm::remove`]. O(agents + regions).
+    /// Removes the regions of one agent and their orders, like [`Ecm::remove`]. O(agents + regions).
     ///
     /// # Errors
-    /// [`Mismatch`]; the table is then as it was.
+    /// [`Mismatch`]; the table is then unchanged.
     pub fn remove(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
         self.ecm.holds_all(fleet)?;
         self.gather(agent, |_, _| {});
         self.ecm.remove(fleet, agent)
     }
 
-    /// Removes one agent for good, its regions and their orders: those behind it move up by one number, as [`Ecm::erase`].
-    /// O(agents + regions).
+    /// Removes one agent for good, with its regions and their orders, like [`Ecm::erase`]: the index of every agent
+    /// behind it decreases by one. O(agents + regions).
     ///
     /// # Errors
-    /// [`Mismatch`]; the table is then as it was.
+    /// [`Mismatch`]; the table is then unchanged.
     pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
         self.ecm.holds_all(fleet)?;
         self.gather(agent, |_, _| {});
         self.ecm.erase(fleet, agent)
     }
 
-    /// Decides about all regions that `ego` and `other` have and that are not decided yet: whether the ego passes them first or
-    /// second. `since` is the least length at which the second of the two is now \[m\]: what is behind it is passed.
+    /// Decides the order of all undecided regions of `ego` and `other`: whether the ego passes them first or second.
+    /// `since` is the least length at which the agent that goes second is now \[m\]; parts of a region behind it count
+    /// as passed.
     ///
     /// # Errors
     /// [`Mismatch`].
@@ -277,12 +280,12 @@ where
         Ok(())
     }
 
-    /// The same for the region in one place of the table, of which `ego` is an agent, whether it is decided or not.
+    /// Decides the order of the region at one index of the table, one of `ego`. An existing order is overwritten.
     ///
-    /// It is not checked whether both can still keep it, nor whether everybody can finish: [`Orders::check`] does the latter.
+    /// It does not check that both agents can still keep the order, nor that all can finish (see [`Orders::check`]).
     ///
     /// # Errors
-    /// [`Mismatch`], also where there is no region of `ego` in the place.
+    /// [`Mismatch`], also if the region at this index is not one of `ego`.
     pub fn decide_at(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -305,12 +308,12 @@ where
         }
     }
 
-    /// Takes the orders in which the motions of the fleet pass their regions, those of a plan without collisions.
-    /// Decisions that were made before are overwritten. Cost: that of [`first_overlap`] a region.
+    /// Takes the orders from the motions of the fleet, which must be those of a plan without collisions. Earlier
+    /// decisions are overwritten. Cost: that of [`first_overlap`] for each region.
     ///
     /// # Errors
-    /// [`Refused::Meeting`] for two that do more than touch, or pass so near that it cannot be told who is first;
-    /// [`Refused::Mismatch`].
+    /// [`Refused::Meeting`] for two agents that do more than touch, or pass so close that it cannot be decided which
+    /// one is first; [`Refused::Mismatch`].
     pub fn as_planned(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
         for place in 0..self.ecm.len() {
@@ -327,7 +330,7 @@ where
         Ok(())
     }
 
-    /// Drops the orders of regions that the first agent has left: they cost nothing any more. O(regions).
+    /// Drops the orders of regions that the first agent has left, so that they are not evaluated any more. O(regions).
     pub fn passed(&mut self, progress: &[Progress<S>]) {
         for (place, order) in (0..self.ecm.len()).zip(self.orders.as_mut()) {
             let Some(agents) = self.ecm.agents_at(place) else { continue };
@@ -342,8 +345,8 @@ where
         }
     }
 
-    /// Moves the orders of all others together at the beginning; those of an agent are taken away. Returns how many
-    /// there are of the others.
+    /// Moves the orders of all other agents to the beginning of the storage, and passes those of `agent` to `taken`.
+    /// Returns the number of orders at the beginning.
     pub(super) fn gather(&mut self, agent: usize, mut taken: impl FnMut(&mut [Order<S>], Order<S>)) -> usize {
         let mut kept = 0_usize;
         for place in 0..self.ecm.len() {
@@ -359,8 +362,8 @@ where
         kept
     }
 
-    /// Puts the orders of the others, so many at the beginning, in the places of their regions, and what `own` says in those of
-    /// an agent, the last one first.
+    /// Moves the first `kept` orders, those of the others, back to the indices of their regions. The orders of the
+    /// agent are taken from `own`, the last one first.
     pub(super) fn spread(&mut self, agent: usize, kept: usize, mut own: impl FnMut(&[Order<S>]) -> Order<S>) {
         let mut next = kept;
         for place in (0..self.ecm.len()).rev() {
@@ -378,7 +381,7 @@ where
     }
 }
 
-/// Whether the ego of a region passes it first or second: at a point of it, whose time is earlier.
+/// Whether the ego passes a region first or second: whether it is at a point inside the region before the other agent.
 fn planned<S: Scalar>(region: &RegionRef<'_, S>) -> Option<Pass> {
     let always = Interval::new(-S::LIMIT, S::LIMIT);
     region.inner_points().find_map(|[length, other_length]| {

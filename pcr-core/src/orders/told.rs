@@ -1,4 +1,5 @@
-//! What others have to know of orders: for whom an agent waits, and what a program keeps to make the same orders again.
+//! Reading orders out of the table: for which agent an agent waits, and the list of decisions that reproduces the
+//! orders.
 
 use crate::ecm::Region;
 use crate::error::Mismatch;
@@ -9,17 +10,17 @@ use crate::orders::table::Orders;
 use crate::pieces::Piece;
 use crate::scalar::Scalar;
 
-/// An order as it was decided: [`Orders::decide_at`] makes it again in a table of the same fleet.
+/// An order that was decided. [`Orders::decide_at`] restores it in a table of the same fleet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Decision<S> {
-    /// The place of the region in the table.
+    /// Index of the region in the table.
     pub place: usize,
-    /// Its agents, lower index first.
+    /// Agents of the region, lower index first.
     pub agents: [usize; 2],
-    /// How the agent of the lower index passes it.
+    /// The order in which the agent with the lower index passes the region.
     pub pass: Pass,
-    /// From which length of the second on it counts \[m\].
+    /// Length of the second agent from which on the region counts \[m\].
     pub since: S,
 }
 
@@ -30,7 +31,7 @@ where
     P: AsRef<[Piece<S>]>,
     O: AsRef<[Order<S>]>,
 {
-    /// The hold of an agent as [`Orders::hold`] tells it, and for whom it waits there; nobody where it is free.
+    /// The hold of an agent, as [`Orders::hold`], and the agent for which it waits there; `None` if the hold is free.
     ///
     /// # Errors
     /// As [`Orders::row`].
@@ -59,7 +60,7 @@ where
         Ok((hold, agents.map(|agents| if agents[0] == agent { agents[1] } else { agents[0] })))
     }
 
-    /// All orders, by pair, those of one pair in the order of the table. O(regions).
+    /// All orders, sorted by pair; those of one pair are in the order of the table. O(regions).
     pub fn decisions(&self) -> impl Iterator<Item = Decision<S>> {
         self.all().map(|(place, agents, order)| Decision { place, agents, pass: order.pass, since: order.since })
     }

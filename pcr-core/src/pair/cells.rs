@@ -1,13 +1,13 @@
-//! From events to pieces: the collision region of one segment against one segment.
+//! From events to pieces: the part of a collision region that belongs to one pair of segments.
 //!
-//! The events cut the second segment into slabs, in each of which the disc covers something of the first one all along or
-//! nothing at all: its middle tells. Neighbouring slabs that are covered are parts of one piece, if one lap at most of the
-//! first segment can be covered ([`super::laps`] is for the others).
+//! The events cut the second segment into slabs. In a slab the disc either covers something of the first segment
+//! everywhere, or nothing at all; its middle shows which. Neighbouring covered slabs belong to the same piece if at
+//! most one lap of the first segment can be covered ([`super::laps`] handles the other case).
 //!
-//! The lengths of a piece are the hull of its slices where it begins and ends, of the ends of the first segment where they
-//! are covered, and of the turning points: nothing between them can be extreme. Inside the second segment a piece begins
-//! and ends in a point. There it is the foot, which is right where a turning point between almost parallel lines is lost
-//! to rounding.
+//! The range of a piece along the first segment is the hull of its slices at both ends, of those ends of the first
+//! segment that are covered, and of the turning points; no other point can be extreme. Inside the second segment a
+//! piece begins and ends in a single point. The foot is used for it, because it is right even if the turning point
+//! between almost parallel lines is lost to rounding.
 
 use super::events::{add_events, add_turning_lengths, wraps};
 use super::footprint::{Footprint, Lap, Reach, Share};
@@ -20,21 +20,21 @@ use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
-/// Two segments, by their places in the two paths.
+/// Two segments, and their indices in the two paths.
 #[derive(Clone, Copy)]
 pub(crate) struct SegmentPair<'a, S: Scalar> {
     pub(crate) first: &'a Segment<S>,
     pub(crate) second: &'a Segment<S>,
     pub(crate) indices: [u16; 2],
-    /// Combined radius, slack included \[m\].
+    /// Combined radius, including the slack \[m\].
     pub(crate) radius: S,
-    /// What distances may be off \[m\].
+    /// Bound on the rounding error of distances \[m\].
     pub(crate) slack: S,
 }
 
-/// What is covered of the first segment, a bit a slab: no branch depends on what is as good as random.
+/// What is covered of the first segment, one bit for each slab. No branch depends on outcomes that are unpredictable.
 struct Slabs {
-    /// Anything.
+    /// Any part of it.
     any: u32,
     /// Its start.
     start: u32,
@@ -43,11 +43,11 @@ struct Slabs {
 }
 
 impl<S: Scalar> SegmentPair<'_, S> {
-    /// Adds the pieces of this pair, joined where they are connected. Lengths are those along the segments.
+    /// Adds the pieces of this pair of segments and joins those that are connected. Lengths are along the segments.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
         let (mut events, mut turning) = (Lengths::new(S::ZERO), Lengths::new(S::ZERO));
         let ends = add_events(self.first, self.second, self.radius, self.slack, &mut events);
-        // Taken from where it is needed: a processor that looks ahead has something to do while events are put in order.
+        // Computed before the events are sorted, so that the processor can overlap the two computations.
         add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);
         events.sort();
         let in_order = events.as_slice();
@@ -66,13 +66,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Ok(())
     }
 
-    /// Whether this slab, between two neighbouring events, is one. Events may coincide; a second segment of length 0 has one
-    /// slab only.
+    /// Whether the part between two neighbouring events is a slab: events may coincide. A second segment of length 0
+    /// has one slab only.
     pub(super) fn is_slab(&self, slab: Interval<S>) -> bool {
         (slab.lo < slab.hi) | (self.second.length == S::ZERO)
     }
 
-    /// The pieces where one lap at most can be covered: runs of slabs.
+    /// Finds the pieces if at most one lap can be covered: they are runs of covered slabs.
     fn find_one_lap<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         in_order: &[S],
@@ -80,7 +80,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
     ) -> Result<(), Full> {
         let Slabs { mut any, start, end } = self.slabs(in_order, self.radius);
         if Runs(any).rest() != 0 {
-            // A gap between two runs may be one by rounding alone, and the turning points in it then those of no piece.
+            // A gap between two runs may exist only because of rounding; turning points in it would then belong to no
+            // piece.
             let near = self.slabs(in_order, self.reach()).any;
             let between = !(any ^ any.wrapping_sub(1)) & u32::MAX.wrapping_shr(any.leading_zeros());
             for gap in Runs(between & !any) {
@@ -100,7 +101,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Ok(())
     }
 
-    /// As far as rounding may take a contact: half a slack more, so that what is off by as much is still within R + ε.
+    /// The radius to which rounding may move a contact: half a slack more, so that a point that is off by as much is
+    /// still within R + ε.
     fn reach(&self) -> S {
         self.radius + self.slack.half()
     }
@@ -120,7 +122,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 slabs.start |= if covered.start { bit } else { 0 };
                 slabs.end |= if covered.end { bit } else { 0 };
             } else {
-                // It separates nothing.
+                // An empty slab does not separate its neighbours.
                 slabs.any |= (slabs.any << 1) & bit;
             }
             bit <<= 1;
@@ -128,7 +130,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         slabs
     }
 
-    /// The slice where a piece begins or ends. Inside the second segment it is a point, the foot.
+    /// The slice at which a piece begins or ends. Inside the second segment it is a single point, the foot.
     fn slice_at_end(&self, s: S) -> Interval<S> {
         let footprint = Footprint::of(self.second.point_at(s), self.first);
         let outer = s <= S::ZERO || s >= self.second.length;
@@ -139,12 +141,12 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Interval::new(foot - half, foot + half).widen(S::ZERO, Interval::new(S::ZERO, self.first.length))
     }
 
-    /// Adds a turning point to the pieces after `begin` whose second range comes within reach of it: by one of its ends, where
-    /// its foot `s` is not in it.
+    /// Adds a turning point to the pieces after `begin` whose second range comes within reach of it. If its foot `s` is
+    /// not in the range, the ends of the range are tested.
     ///
-    /// The foot alone would not do: its error is not a few slacks but ϱ / |ϱ - R| times that beside the centre of an arc, and two
-    /// turning points on either side of a gap may be one by rounding, whose foot is in the gap. The distance is right
-    /// whatever the foot, and of all points of a range it is least at the foot or at an end.
+    /// The foot alone is not enough. Near the centre of an arc its error is ϱ / |ϱ - R| times a few slacks, and two
+    /// turning points on either side of a gap may coincide because of rounding, with a foot in the gap. The distance is
+    /// accurate whatever the foot, and over a range it is least at the foot or at an end.
     fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>, begin: u32, l: S) {
         let point = self.first.point_at(l);
         let footprint = Footprint::of(point, self.second);
@@ -164,7 +166,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
                     return true;
                 }
                 let footprint = Footprint::of(self.second.point_at(s), self.first);
-                // What is but one interval by rounding is that of both pieces. Further out only what none holds before.
+                // If two intervals are one by rounding, the point belongs to both pieces. Further out, only a point
+                // that no piece has yet is added.
                 [reach, self.radius + self.slack].into_iter().all(|radius| {
                     let laps = footprint.reach(self.first, radius).intervals(self.first);
                     piece.share.holds(l, laps, self.first, piece.first)

@@ -1,17 +1,17 @@
-//! Where, along the second segment, the part of the first one that the disc covers can change its structure,
-//! and where it can be extreme.
+//! Finds where, along the second segment, the covered part of the first segment can change its structure, and where it
+//! can be extreme.
 //!
-//! Between two neighbouring [events](add_events) the number of covered intervals is constant and their ends move continuously.
-//! They are
+//! Between two neighbouring [events](add_events) the number of covered intervals is constant and their ends move
+//! continuously. Events are
 //!
 //! - the ends of the second segment;
-//! - contacts with an end of the first segment: P1 about it;
-//! - contacts normal to the first segment: intervals begin and end, or the disc begins or ceases to cover the whole circle
-//!   (P3, or P1 about the centre);
-//! - where the foot on a circle leaves one lap for the next, if two laps can be covered at once.
+//! - contacts with an end of the first segment: P1 about that end;
+//! - contacts normal to the first segment, where intervals begin or end, or where the disc begins or ceases to cover
+//!   the whole circle (P3, or P1 about the centre);
+//! - places where the foot on a circle passes from one lap to the next, if two laps can be covered at once.
 //!
-//! An end of a covered interval turns back only where the contact is normal to the second segment
-//! ([`add_turning_lengths`]), or at an event. Superfluous events cost time and change nothing.
+//! An end of a covered interval reverses its direction only where the contact is normal to the second segment
+//! ([`add_turning_lengths`]), or at an event. Additional events cost time but do not change the result.
 
 use super::footprint::{Footprint, Reach};
 use super::lengths::Lengths;
@@ -20,8 +20,8 @@ use crate::geometry::Direction;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
-/// Adds the events along `second`, its ends among them, for discs whose radii add up to `radius`, distances right within
-/// `slack`. Returns the lateral distances of the ends of `first` from `second` \[m\].
+/// Adds the events along `second`, its ends included, for discs whose radii add up to `radius`; distances are right
+/// within `slack`. Returns the lateral distances of the ends of `first` from `second` \[m\].
 pub(crate) fn add_events<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
@@ -41,13 +41,13 @@ pub(crate) fn add_events<S: Scalar>(
         let centre = Footprint::of(diameter.start, second);
         Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
     }
-    // Last, where it belongs: fewer are out of order.
+    // Added last, because it is the largest: then fewer events are out of order.
     events.add(second.length, true);
     [start.offset, end.offset]
 }
 
-/// Adds the lengths of `first` at which a contact with it may be normal to `second`. The ends of `first` that touch it, by
-/// their distances from it, are among them: rounding may have taken a contact just beyond one of them.
+/// Adds the lengths of `first` at which a contact with it may be normal to `second`. An end of `first` is added if its
+/// distance shows that it touches `second`, because rounding may have moved the contact just beyond that end.
 pub(crate) fn add_turning_lengths<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
@@ -56,18 +56,20 @@ pub(crate) fn add_turning_lengths<S: Scalar>(
     slack: S,
     lengths: &mut Lengths<S>,
 ) {
-    // Further out it is not rounding that keeps the contact from the segment.
+    // At larger distances the contact is beyond the segment, and not because of rounding.
     let touches = |offset: S| (radius - slack <= offset) & (offset <= radius + slack.half());
     lengths.add(S::ZERO, touches(start.abs()));
     lengths.add(first.length, touches(end.abs()));
     add_normals(second, &Footprint::of(second.start, first), first, radius, slack, lengths);
 }
 
-/// Adds the lengths of `segment` at which a contact may be normal to `other`, whose start has this footprint on it: by P3.
+/// Adds the lengths of `segment` at which a contact may be normal to `other`, whose start has this footprint on it: by
+/// P3.
 ///
-/// P3 compares squares, d² with (ϱ - R)² on the inside of an arc: what rounding does to them, 2ϱ times a distance, is
-/// ϱ / |ϱ - R| times as much in d. That is no more than twice from ϱ = 2R on. Below, d is compared with |ϱ - R| by P1
-/// about the centre, which is no further than 2R then: of a larger arc it is not known as well as its start.
+/// P3 compares squares; on the inside of an arc, d² with (ϱ - R)². Their rounding error is 2ϱ times that of a distance,
+/// so the error in d is ϱ / |ϱ - R| times as large. From ϱ = 2R on, that is at most twice. Below, P1 about the centre
+/// compares d with |ϱ - R|; the centre is then not further away than 2R. (The centre of a larger arc is less accurate
+/// than its start.)
 fn add_normals<S: Scalar>(
     other: &Segment<S>,
     start: &Footprint<S>,
@@ -87,9 +89,9 @@ fn add_normals<S: Scalar>(
     }
 }
 
-/// Adds the lengths of a segment that are as far from a point as `radius`. Where rounding alone may have kept the point from
-/// being that near it is the foot, and of a circle that is nearer everywhere the other end of the diameter: a slab that only
-/// just is covered, by rounding too, ends there.
+/// Adds the lengths of a segment at the distance `radius` from a point. If only rounding may keep the point from being
+/// that near, the foot is added; if the whole circle is nearer, the other end of the diameter. So a slab that is barely
+/// covered, perhaps only because of rounding, ends there.
 fn add_ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S, lengths: &mut Lengths<S>) {
     let (foot, half) = match footprint.reach(segment, radius) {
         Reach::Around { foot, half } => (foot, half),
@@ -103,21 +105,21 @@ fn add_ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S
     }
 }
 
-/// Whether both ends of an arc can be covered while its middle is not: two laps at once, or where rounding may show them so; or one
-/// after the other, behind the centre of an arc that is hardly larger than the disc, with a gap between them that may be narrower
-/// than a last digit.
+/// Whether both ends of an arc can be covered while its middle is not. Then two laps are covered at once, or seem to be
+/// because of rounding; or they are covered one after the other, behind the centre of an arc that is hardly larger than
+/// the disc, with a gap between them that may be narrower than a last digit.
 pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S, slack: S) -> bool {
     match segment.curve {
         Curve::Line => false,
         Curve::Arc { radius: own, .. } => {
-            // Sixteen: docs/equations.md#laps.
+            // The factor 16 is derived in docs/equations.md#laps.
             let far = radius + slack.double().double().double().double();
             own <= far || segment.length.double() >= segment.circumference
         }
     }
 }
 
-/// The diameter through the middle of an arc, from the centre: the foot changes its lap on the far half of it.
+/// The diameter through the middle of an arc, from the centre. On its far half the foot passes to the next lap.
 fn middle_diameter<S: Scalar>(arc: &Segment<S>, radius: S) -> Carrier<S> {
     let middle = arc.point_at(arc.length.half());
     let heading = Direction::<S>::at(arc.heading_at(arc.length.half()));

@@ -1,8 +1,7 @@
-//! P1, disc against piece: which lengths of a line or arc lie within `r` of a point.
+//! P1, disc against segment: which lengths of a line or arc lie within `r` of a point.
 //!
-//! With the local coordinates `(x, y)` of the point in the frame of the start of the piece (`x` along, `y`
-//! towards the centre of an arc, left of a line), `ϱ` the radius of the arc and `d` the distance of the point
-//! from its centre:
+//! Let `(x, y)` be the local coordinates of the point in the frame of the start of the segment (`x` along, `y` towards
+//! the centre of an arc, left of a line), `ϱ` the radius of the arc and `d` the distance of the point from its centre:
 //!
 //! ```text
 //! d = √(x² + (ϱ - y)²)                distance from the centre
@@ -11,15 +10,15 @@
 //! H = 2 ϱ atan2(√((r - |n|)(r + |n|)), √((ϱ + d - r)(ϱ + d + r)))   half-width
 //! ```
 //!
-//! and `n = y`, `u = x`, `H = √((r - |n|)(r + |n|))` on a line. The piece is within `r` for the lengths
-//! `[u - H, u + H]`, on every lap of the circle. This is Eq. (13) and, corrected, Eq. (26)-(29) of the paper
-//! in one form that is right for every radius, `r > ϱ` included (docs/equations.md).
+//! and `n = y`, `u = x`, `H = √((r - |n|)(r + |n|))` on a line. The segment is within `r` at the lengths
+//! `[u - H, u + H]`, on every lap of the circle. This is Eq. (13) and, corrected, Eq. (26)-(29) of the paper, in one
+//! form that is right for every radius, also for `r > ϱ` (docs/equations.md).
 
 use crate::geometry::{Direction, Interval, Point};
 use crate::scalar::{Angle, Scalar, Unit, Wide};
 use crate::segment::{Curve, Segment};
 
-/// A point seen from the carrier (infinite line or full circle) of a segment.
+/// A point in the coordinates of the carrier (infinite line or full circle) of a segment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Footprint<S> {
     /// Local coordinates, mirrored for an arc that turns right, so that its centre is at `(0, ϱ)`.
@@ -27,34 +26,34 @@ pub(crate) struct Footprint<S> {
     y: S,
     /// Distance from the centre of an arc; 0 on a line.
     distance: S,
-    /// Lateral distance from the carrier, positive towards the centre of an arc, left of a line.
+    /// Lateral distance from the carrier, positive towards the centre of an arc or left of a line.
     pub(crate) offset: S,
 }
 
 /// The lengths of a carrier that lie within a radius of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Reach<S> {
-    /// None.
+    /// No length.
     Nothing,
-    /// Those within `half` of `foot`, on every lap.
+    /// The lengths within `half` of `foot`, on every lap.
     Around {
         /// Length at the foot of the point.
         foot: S,
         /// Half the width of the interval.
         half: S,
     },
-    /// All of them: the whole circle is inside the disc.
+    /// All lengths: the whole circle is inside the disc.
     Whole,
 }
 
-/// What a disc covers of a segment.
+/// Which parts of a segment a disc covers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Covered {
     /// The start of the segment.
     pub(crate) start: bool,
     /// The end of the segment.
     pub(crate) end: bool,
-    /// Anything at all.
+    /// Any part of it.
     pub(crate) any: bool,
 }
 
@@ -76,7 +75,7 @@ impl<S: Scalar> Footprint<S> {
         }
     }
 
-    /// Length at the foot; on an arc the one nearest to the middle of the segment.
+    /// Length at the foot; on an arc, the foot that is nearest to the middle of the segment.
     pub(crate) fn foot(&self, segment: &Segment<S>) -> S {
         let Curve::Arc { radius, .. } = segment.curve else {
             return self.x;
@@ -95,7 +94,8 @@ impl<S: Scalar> Footprint<S> {
         }
     }
 
-    /// What a disc about the point covers of a segment of which it covers one lap at most. No square root, no arctangent.
+    /// Which parts of a segment a disc around the point covers, if it covers at most one lap. Needs no square root and
+    /// no arctangent.
     pub(crate) fn covered(&self, point: Point<S>, segment: &Segment<S>, r: S) -> Covered {
         let square = r.times(r);
         let start = self.x.times(self.x) + self.y.times(self.y) <= square;
@@ -104,7 +104,7 @@ impl<S: Scalar> Footprint<S> {
         Covered { start: near & start, end: near & end, any: near & (start | end | self.foot_is_on(segment)) }
     }
 
-    /// Whether the foot lies on the segment, of half a turn at most.
+    /// Whether the foot lies on the segment, which is at most half a turn long.
     fn foot_is_on(&self, segment: &Segment<S>) -> bool {
         match segment.curve {
             Curve::Line => (S::ZERO <= self.x) & (self.x <= segment.length),
@@ -115,7 +115,7 @@ impl<S: Scalar> Footprint<S> {
         }
     }
 
-    /// The lengths of the carrier within `r` of the point. Cost: two square roots and two arctangents on an arc.
+    /// The lengths of the carrier within `r` of the point. Cost on an arc: two square roots and two arctangents.
     pub(crate) fn reach(&self, segment: &Segment<S>, r: S) -> Reach<S> {
         let offset = self.offset.abs();
         if offset > r {
@@ -136,30 +136,31 @@ impl<S: Scalar> Footprint<S> {
     }
 }
 
-/// The lap of a length along a circle, within half a turn of its start, that is nearest to the middle of the segment.
+/// Moves a length on a circle, within half a turn of its start, to the lap that is nearest to the middle of the
+/// segment.
 fn near_middle<S: Scalar>(foot: S, segment: &Segment<S>) -> S {
     if foot < (segment.length - segment.circumference).half() { foot + segment.circumference } else { foot }
 }
 
-/// Which of the intervals that a disc cuts out of a circle: its foot, moved by so many laps.
+/// The lap of an interval that a disc cuts out of a circle: by how many circumferences its foot is shifted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub(crate) enum Lap {
-    /// The foot less one circumference.
+    /// The foot minus one circumference.
     Previous,
-    /// The foot nearest to the middle of the segment; the only one on a line.
+    /// The foot that is nearest to the middle of the segment; the only lap on a line.
     Same,
     /// The foot plus one circumference.
     Next,
-    /// The circle is inside the disc.
+    /// The whole circle is inside the disc.
     Whole,
 }
 
 impl Lap {
     pub(crate) const ALL: [Self; 4] = [Self::Previous, Self::Same, Self::Next, Self::Whole];
 
-    /// This lap counted from a foot that has lost so many laps since.
+    /// This lap, counted from a foot that has passed backwards through so many laps.
     pub(crate) fn less(self, laps: i8) -> Option<Self> {
         match self as i8 - laps {
             _ if self == Self::Whole => Some(self),
@@ -189,14 +190,14 @@ impl<S: Scalar> Reach<S> {
 }
 
 impl<S: Scalar> Reach<S> {
-    /// What is covered of the segment, at most two intervals in increasing order.
+    /// The covered parts of the segment: at most two intervals, in increasing order.
     pub(crate) fn intervals(self, segment: &Segment<S>) -> [Option<Interval<S>>; 2] {
         let mut intervals = [None; 2];
         for interval in Lap::ALL.into_iter().filter_map(|lap| self.on(segment, lap)) {
             match intervals {
                 [None, _] => intervals[0] = Some(interval),
                 [Some(low), None] if !interval.meets(low) => intervals[1] = Some(interval),
-                // Rounding where the whole circle is about to be covered.
+                // Rounding, just before the whole circle is covered.
                 [Some(low), None] => intervals[0] = Some(low.hull(interval)),
                 [Some(low), Some(high)] => intervals = [Some(low.hull(high).hull(interval)), None],
             }
@@ -205,23 +206,23 @@ impl<S: Scalar> Reach<S> {
     }
 }
 
-/// Which of the intervals that are covered at one length a piece stands for.
+/// The other disc can cover two intervals of a segment at once; this says which of them belongs to a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Share {
-    /// The only one.
+    /// The only interval.
     Only,
-    /// Of two, the one at the start of the segment. There are two where the gap between them lies inside the segment.
+    /// The first of two, at the start of the segment. There are two if the gap between them lies inside the segment.
     Start,
-    /// Of two, the one at the end of the segment.
+    /// The second of two, at the end of the segment.
     End,
 }
 
 impl Share {
-    /// The intervals it stands for, of those that are covered. Next to an end of the piece rounding may show two where there
-    /// is one, or one where there are two, a little off the end of the segment; then those that reach into `hull`, where
-    /// the piece lies.
+    /// The covered intervals that belong to the piece. Near an end of the piece rounding may turn one interval into
+    /// two, or two into one, a little away from the end of the segment; then those intervals are returned that reach
+    /// into `hull`, the range of the piece.
     pub(crate) fn of<S: Scalar>(
         self,
         intervals: [Option<Interval<S>>; 2],
@@ -247,8 +248,8 @@ impl Share {
         })
     }
 
-    /// Whether the length `l` is its own, of those that are covered. One that none of the intervals holds, by rounding, may be
-    /// anybody's.
+    /// Whether the length `l` lies in an interval of the piece. A length that is in no interval, because of rounding,
+    /// may belong to any piece.
     pub(crate) fn holds<S: Scalar>(
         self,
         l: S,
@@ -296,7 +297,7 @@ mod tests {
 
     #[test]
     fn a_disc_on_a_circle_covers_an_angle_either_way_round() {
-        // A chord of length R = √2 of the unit circle spans a quarter turn.
+        // A chord of length R = √2 in the unit circle spans a quarter turn.
         for turn in [Turn::Left, Turn::Right] {
             let arc = origin().then_arc(1.0, turn, PI).unwrap();
             let covered = |u: f64| Footprint::of(arc.point_at(u), &arc).reach(&arc, 2.0_f64.sqrt()).intervals(&arc);
@@ -322,7 +323,7 @@ mod tests {
         assert_eq!(reach(1.0), Reach::Whole);
         assert_eq!(reach(-2.5), Reach::Nothing);
         assert_eq!(reach(5.0), Reach::Nothing);
-        // Centre of the disc on the circle at its lowest point: the far point is exactly 2 away.
+        // The centre of the disc is at the lowest point of the circle: the far point is exactly 2 away.
         assert_eq!(reach(0.0), Reach::Whole);
         assert!(
             matches!(reach(-1.0), Reach::Around { foot: 0.0, half } if (half - 1.318_116_071_652_818).abs() < 1e-14)

@@ -1,8 +1,8 @@
-//! From events to pieces where two laps of the first segment can be covered at once: an arc of half a turn or more, or one
-//! that the disc can hold.
+//! From events to pieces if two laps of the first segment can be covered at once: for an arc of half a turn or more, or
+//! one that fits into the disc.
 //!
-//! In a slab, every lap that the disc covers is a cell; cells of neighbouring slabs with the same lap are parts of one
-//! piece. Cells of different laps can only meet where the disc covers the whole circle.
+//! In a slab, every lap that the disc covers is a cell; cells of neighbouring slabs with the same lap belong to the
+//! same piece. Cells of different laps can meet only where the disc covers the whole circle.
 
 use super::cells::SegmentPair;
 use super::footprint::{Footprint, Lap, Reach, Share, shift};
@@ -19,20 +19,20 @@ struct Section<S> {
     reach: Reach<S>,
 }
 
-/// A slab as its neighbours see it.
+/// The data of a slab that its neighbours need.
 #[derive(Clone, Copy)]
 struct Slab<S> {
     /// Whether anything of the segment is covered.
     covered: bool,
-    /// The foot in its middle.
+    /// The foot in the middle of the slab.
     foot: S,
 }
 
-/// The piece that is open in each lap, by [`Lap`], or [`NONE`].
+/// The piece that is open in each lap, indexed by [`Lap`], or [`NONE`].
 type Open = [u32; Lap::ALL.len()];
 
 impl<S: Scalar> SegmentPair<'_, S> {
-    /// The pieces of the slabs, joined where they are connected.
+    /// Adds the pieces of the slabs and joins those that are connected.
     pub(super) fn find_laps<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         in_order: &[S],
@@ -67,7 +67,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Section { footprint, reach: footprint.reach(self.first, self.radius) }
     }
 
-    /// Adds the slice at the end of their slab to the pieces that are open in it.
+    /// Adds the slice at the end of their slab to the open pieces.
     fn limit_open<P>(&self, pieces: &mut Pieces<S, P>, open: &Open, end: &Section<S>, slab: Slab<S>)
     where
         P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
@@ -79,7 +79,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
         }
     }
 
-    /// Adds the cells of one slab to the pieces that are open at its beginning; then those open at its end are.
+    /// Adds the cells of one slab to the pieces that are open at its beginning; afterwards `open` holds those open at
+    /// its end.
     fn extend<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         pieces: &mut Pieces<S, P>,
@@ -115,15 +116,15 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 share = Share::End;
             }
         }
-        // Where the whole circle is covered every lap meets.
+        // Where the whole circle is covered, all laps meet.
         for (whole, laps) in [(open[Lap::Whole as usize], before), (before[Lap::Whole as usize], *open)] {
             laps.into_iter().for_each(|lap| pieces.join(whole, lap));
         }
         Ok(())
     }
 
-    /// The slice of a cell at an end of its slab, whose middle has this foot. There it may have shrunk to a point, or
-    /// grown to the whole circle, and rounding may have taken it a little beyond.
+    /// The slice of a cell at an end of its slab; `middle` is the foot in the middle of the slab. At the end the slice
+    /// may have shrunk to a point, or grown to the whole circle, and rounding may have moved it a little beyond.
     fn limit(&self, end: &Section<S>, middle: S, lap: Lap) -> Interval<S> {
         let all = Interval::new(S::ZERO, self.first.length);
         let (mut foot, half) = match (end.reach, lap) {
@@ -140,7 +141,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         Interval::new(foot - half, foot + half).widen(S::ZERO, all)
     }
 
-    /// How many laps the foot has lost between two slabs: it passes from the end of the lap to its beginning.
+    /// How many laps the foot passes backwards between two slabs: it goes from the end of a lap to its beginning.
     fn laps_lost(&self, before: Slab<S>, after: Slab<S>, between: &Section<S>) -> i8 {
         if !before.covered || !self.changes_lap(before.foot, after.foot, between.foot(self.first)) {
             0
@@ -151,8 +152,8 @@ impl<S: Scalar> SegmentPair<'_, S> {
         }
     }
 
-    /// Whether two feet lie on different sides of the middle of the segment because the foot left its lap, at `between`,
-    /// on the far half of the circle.
+    /// Whether two feet lie on different sides of the middle of the segment because the foot left its lap, at
+    /// `between`, on the far half of the circle.
     fn changes_lap(&self, a: S, b: S, between: S) -> bool {
         let middle = self.first.length.half();
         let quarter = self.first.circumference.half().half();

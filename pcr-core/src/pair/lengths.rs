@@ -1,18 +1,18 @@
-//! A few lengths along a segment.
+//! A short list of lengths along a segment.
 
 use crate::few::Few;
 use crate::scalar::Scalar;
 use core::cell::Cell;
 
-/// Most events that a pair of segments has: 2 ends, 4 end contacts, 4 normal contacts, 4 for the whole circle and 2
-/// changes of lap.
+/// Largest number of events of a pair of segments: 2 ends, 4 contacts with ends, 4 normal contacts, 4 for the whole
+/// circle and 2 changes of lap.
 const MOST: usize = 16;
 
 /// At most [`MOST`] lengths \[m\].
 pub(crate) type Lengths<S> = Few<S, MOST>;
 
 impl<S: Scalar> Lengths<S> {
-    /// Puts them in increasing order.
+    /// Sorts the lengths in increasing order.
     pub(crate) fn sort(&mut self) {
         let places = Cell::from_mut(self.as_mut_slice()).as_slice_of_cells();
         for last in 2..=places.len() {

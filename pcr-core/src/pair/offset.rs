@@ -1,8 +1,8 @@
-//! P3, offset against piece: where a piece J runs at the lateral offset `c` from the carrier of a piece I.
+//! P3, offset against segment: where a segment J has the lateral offset `c` from the carrier of a segment I.
 //!
-//! Take as base the foot of I's start on the carrier of J. There, `n` is the offset of I's start from J and
-//! `α` the angle from I to J; with the signed curvatures `κ` the square of the distance between J's point at
-//! half-tangent `T = tan(κ_J u / 2) / κ_J` and I's centre gives one quadratic for all four types,
+//! The base is the foot of I's start on the carrier of J. There, `n` is the offset of I's start from J and `α` the
+//! angle from I to J. With the signed curvatures `κ`, the squared distance between I's centre and J's point at
+//! half-tangent `T = tan(κ_J u / 2) / κ_J` gives one quadratic equation for all four types,
 //!
 //! ```text
 //! A T² - 4 sin α T + G = 0
@@ -10,10 +10,10 @@
 //! A = 4 κ_I - 4 κ_J (κ_I n + cos α) + κ_J² G,
 //! ```
 //!
-//! multiplied below by the radii, so that it holds lengths and products of lengths only. The base is near
-//! I, hence no coefficient is large against what it is made of. With `c = ±R` the roots are the first and last
-//! contacts of Eq. (17), (23), (33), (37); with `c = 0` the crossings of the two paths. For an arc I with `R > ϱ`
-//! the offset beyond the centre is the circle of radius `R - ϱ`, included.
+//! multiplied below by the radii, so that it contains only lengths and products of lengths. The base is near I, so no
+//! coefficient is much larger than the quantities it is computed from. With `c = ±R` the roots are the first and last
+//! contacts of Eq. (17), (23), (33), (37); with `c = 0` the crossings of the two paths. For an arc I with `R > ϱ`, the
+//! offset beyond the centre is the circle of radius `R - ϱ`; the equation includes it.
 
 use super::footprint::Footprint;
 use super::lengths::Lengths;
@@ -22,7 +22,7 @@ use crate::scalar::{Angle, Scalar, Sector, Wide};
 use crate::segment::{Curve, Segment, Turn};
 use core::hint::select_unpredictable as select;
 
-/// An infinite line or a full circle: start, direction there, shape.
+/// A carrier: an infinite line or a full circle, given by start, direction there and shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carrier<S: Scalar> {
     pub(crate) start: Point<S>,
@@ -36,15 +36,15 @@ impl<S: Scalar> From<&Segment<S>> for Carrier<S> {
     }
 }
 
-/// A carrier seen from a segment (mirrored if that turns right).
+/// A carrier in the coordinates of a segment (mirrored if that turns right).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Relative<'a, S: Scalar> {
     segment: &'a Segment<S>,
     /// The carrier's start.
     start: &'a Footprint<S>,
-    /// Direction of the segment at the foot of the carrier's start, in the (mirrored) frame of its start.
+    /// Direction of the segment at the foot of the carrier's start, in the (mirrored) frame of the segment's start.
     base: Direction<S>,
-    /// Angle from the carrier to the segment there.
+    /// Cosine and sine of the angle from the carrier to the segment there.
     cos: S::Unit,
     sin: S::Unit,
     /// Signed radius of the carrier, left positive; `None` for a line.
@@ -65,7 +65,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
         Self { segment, start, base, cos: towards.dot(base), sin: towards.cross(base), bend }
     }
 
-    /// The offset of what is this far outside of the carrier's circle; on the right of a line.
+    /// The offset of a point at this distance outside of the carrier's circle, or to the right of a line.
     pub(crate) fn outward(&self, distance: S) -> S {
         match self.bend {
             Some(bend) if bend < S::ZERO => distance,
@@ -73,14 +73,14 @@ impl<'a, S: Scalar> Relative<'a, S> {
         }
     }
 
-    /// Adds the lengths of the segment, ends and a margin beyond them included, at which it has one of the offsets `c` from
-    /// the carrier.
+    /// Adds the lengths of the segment at which it has one of the offsets `c` from the carrier. The ends of the segment
+    /// are included, and a margin beyond them.
     ///
-    /// Where the segment only just misses an offset, by `doubt`, this may be rounding: then the length is found at which it
-    /// comes nearest to it. A slab that would be judged by its middle alone, by rounding, is cut there.
+    /// If the segment misses an offset by less than `doubt`, rounding may be the reason; then the length at which it
+    /// comes nearest to the offset is added. A slab that is judged by its middle alone is cut there.
     pub(crate) fn lengths_at(&self, offsets: &[S], margin: S, doubt: S, found: &mut Lengths<S>) {
-        // What rounding does to a distance whatever the extent: it may take a contact from P3 that P1 has not, and then
-        // nobody would tell of it. An event too many is harmless.
+        // The rounding error of a distance at any extent: because of it P3 may miss a contact that P1 finds, and the
+        // contact would be lost. An additional event is harmless.
         let doubt = doubt + S::slack(S::ZERO);
         match self.segment.curve {
             Curve::Line => self.lengths_of_line(offsets, margin, doubt, found),
@@ -119,7 +119,7 @@ impl<'a, S: Scalar> Relative<'a, S> {
         }
     }
 
-    /// J is an arc: `T = r τ`. What lies beyond its ends may be left out.
+    /// J is an arc: `T = r τ`. Lengths beyond its ends may be left out.
     fn lengths_of_arc(&self, r: S, offsets: &[S], margin: S, doubt: S, found: &mut Lengths<S>) {
         let Self { segment, base, cos, sin, bend, .. } = *self;
         let n = self.start.offset;
@@ -154,8 +154,8 @@ impl<'a, S: Scalar> Relative<'a, S> {
     }
 }
 
-/// A length along a circle, less than one lap away, moved onto its first lap unless it is within the margin of it.
-/// Lines have one lap only, and a circumference of 0: nothing moves.
+/// Moves a length along a circle, less than one lap away, to the first lap, unless it is within the margin of it. Lines
+/// have one lap only and a circumference of 0, so nothing moves.
 #[cfg_attr(not(feature = "std"), inline(never))]
 pub(crate) fn on_first_lap<S: Scalar>(length: S, segment: &Segment<S>, margin: S) -> S {
     let lap = segment.circumference;

@@ -1,4 +1,5 @@
-//! Constraints on one agent, as a search over a fleet puts them: where it must not be when, and who passes a region first.
+//! Constraints on one agent, as a search over a fleet adds them: lengths that it must avoid during a time, or which
+//! agent passes a region first.
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
@@ -7,40 +8,42 @@ use crate::query::times;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Lengths of its path, ends included, at which an agent must not be in an interval of time; at the ends of the time it may, so that an
-/// interval without length forbids nothing. What conflict-based search adds to an agent to resolve a conflict (Sharon et al. 2015), with
-/// intervals in place of vertices and time steps (Andreychuk et al. 2022).
+/// Lengths of its path, ends included, at which an agent must not be during an interval of time. At the two ends of the
+/// interval it may be there, so an interval of length 0 forbids nothing. Conflict-based search adds such constraints to
+/// an agent to resolve a conflict (Sharon et al. 2015), here with intervals in place of vertices and time steps
+/// (Andreychuk et al. 2022).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Constraint<S> {
-    /// Along the path \[m\].
+    /// Lengths along the path \[m\].
     pub length: Interval<S>,
-    /// When \[s\].
+    /// Times \[s\].
     pub time: Interval<S>,
 }
 
 impl<S: Scalar> Constraint<S> {
-    /// The ego passes the region before the other agent does: it is not at these lengths from when the other one comes.
+    /// The ego passes the region before the other agent: it is not at these lengths from the time at which the other
+    /// agent arrives there.
     pub fn before(region: &RegionRef<'_, S>) -> Self {
         Self { length: region.length(), time: Interval::new(region.time().lo, S::LIMIT) }
     }
 
-    /// The ego passes the region after the other agent: it is not at these lengths until the other one has left, never if that stays
-    /// there.
+    /// The ego passes the region after the other agent: it is not at these lengths until the other agent has left them,
+    /// or at all if the other agent ends its path there.
     pub fn after(region: &RegionRef<'_, S>) -> Self {
         let left = if region.is_open_at_end() { S::LIMIT } else { region.time().hi };
         Self { length: region.length(), time: Interval::new(-S::LIMIT, left) }
     }
 
-    /// Whether both are intervals.
+    /// Checks that both are valid intervals.
     pub(super) fn checked(&self) -> Result<(), Invalid> {
         let is_one = |all: Interval<S>| all.lo <= all.hi;
         if is_one(self.length) && is_one(self.time) { Ok(()) } else { Err(Invalid::OutOfRange("constraint")) }
     }
 
-    /// Whether an agent that stands at its start from a time on \[s\], and then moves so, is on these lengths at such times, by more than two
-    /// [`Scalar::tolerance`] of time.
+    /// Whether an agent that stands at its start from the time `from` \[s\] and then moves by `motion` is on these
+    /// lengths at these times, by more than two [`Scalar::tolerance`] of time.
     pub(super) fn is_broken_by(&self, motion: &Motion<'_, S>, from: S) -> bool {
         let rounding = S::tolerance(from.abs().max(motion.time().hi.abs())).double();
         let during = Interval::new(self.time.lo.max(from) + rounding, self.time.hi - rounding);

@@ -1,4 +1,4 @@
-//! Fleet plans by start delays: each agent as early as those before it in the order allow.
+//! Fleet plans by start delays: each agent starts as early as the agents before it in the order allow.
 
 use crate::ecm::{Ecm, Region};
 use crate::motion::Motion;
@@ -8,20 +8,21 @@ use crate::query::earliest_start;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Delays the starts of the agents so that none collides, and puts the motions into `plan`, in the order of the
-/// fleet. It begins with motions of the same agents: those of the fleet, or an earlier plan.
+/// Delays the starts of the agents so that none collide, and puts the motions into `plan`, in the order of the fleet.
+/// On entry `plan` holds motions of the same agents: those of the fleet, or an earlier plan.
 ///
-/// `order` lists each agent of the fleet once, by priority, the highest first. It may come back changed: agents that could not
-/// start otherwise are moved up, at most as often as there are agents.
-/// Plan with radii that are larger by [`Encounter::tolerance`](crate::Encounter::tolerance), so that agents of the true
-/// radii do not even touch.
+/// `order` lists each agent of the fleet once, the highest priority first. It may come back changed: an agent that
+/// could not start otherwise is moved up. The number of such moves is at most the number of agents. Plan with radii
+/// that are larger by [`Encounter::tolerance`](crate::Encounter::tolerance), so that agents of the true radii do not
+/// even touch.
 ///
-/// Cost: a comparison a pair of agents, and for each agent that of [`earliest_start`] for its row, and again for those after one that is moved.
+/// Cost: a comparison for each pair of agents, and for each agent that of [`earliest_start`] for its row; agents behind
+/// one that is moved up are planned again.
 ///
-/// The plan is checked as a whole before it is returned: no overlap is deeper than the tolerance.
+/// The whole plan is checked before the function returns: no overlap is deeper than the tolerance.
 ///
 /// # Errors
-/// [`Unsolved`] with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
+/// [`Unsolved`], with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
 pub fn plan_delays<'m, S, R, P>(
     ecm: &Ecm<S, R, P>,
     fleet: &[Motion<'m, S>],
@@ -49,7 +50,7 @@ where
     verified(ecm, plan, order)
 }
 
-/// The motion as early as the regions allow.
+/// The motion with the earliest start that the regions allow.
 pub(super) fn earliest<'a, 'm, S: Scalar>(
     motion: Motion<'m, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
@@ -57,7 +58,7 @@ pub(super) fn earliest<'a, 'm, S: Scalar>(
     earliest_start(regions, S::ZERO).and_then(|delay| motion.delayed(delay).ok())
 }
 
-/// Who forbids all late starts.
+/// The agent that forbids all late starts.
 fn blocking<'a, S: Scalar>(
     agent: usize,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
@@ -66,7 +67,7 @@ fn blocking<'a, S: Scalar>(
     let forever = |region: &RegionRef<'_, S>| region.forbidden_delays().hi >= S::LIMIT;
     let place = |region: &RegionRef<'_, S>| before.iter().position(|&other| other == region.other());
     let blocking = regions.filter(forever);
-    // A region that forbids the early ones as well.
+    // Whether a region forbids all early starts as well.
     let always = |region: &RegionRef<'_, S>| region.forbidden_delays().lo <= -S::LIMIT;
     if let Some(unsolved) = blocking.clone().filter(always).find_map(|region| separated(&region)) {
         return Blocked::Never(unsolved);

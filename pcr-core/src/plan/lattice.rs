@@ -1,9 +1,9 @@
-//! The motions among which a speed plan is chosen.
+//! The set of motions from which a speed plan is chosen.
 //!
-//! The path is divided into cells of the same length, with one shorter cell in the middle. At the border of two cells the
-//! agent has one of a few speeds, the squares of which are evenly spaced from 0 to the top speed; a cell is as long as a
-//! ramp from one of them to the next at full acceleration (or twice, four times ... as long, on a path of many cells).
-//! Inside a cell the agent speeds up at once, or slows down as late as possible, at full acceleration:
+//! The path is divided into cells of equal length, with one shorter cell in the middle. At the border of two cells the
+//! agent has one of a few speeds; their squares are evenly spaced from 0 to the top speed. A cell is as long as a ramp
+//! from one of these speeds to the next at full acceleration (or twice, four times ... as long, on a path of many
+//! cells). Inside a cell the agent speeds up at once, or slows down as late as possible, at full acceleration:
 //!
 //! ```text
 //! speed   ____        ____
@@ -11,7 +11,7 @@
 //!       /                  \       that stay at or below the higher one
 //! ```
 //!
-//! Hence the fastest motion from rest to rest over the whole path is among them.
+//! Hence the set contains the fastest motion from rest to rest over the whole path.
 
 use crate::error::{Invalid, not_negative, positive};
 use crate::geometry::Interval;
@@ -19,33 +19,33 @@ use crate::motion::Motion;
 use crate::profile::{Limits, Phase};
 use crate::scalar::{Scalar, Wide};
 
-/// Speeds at the borders of cells: rest and four others, the last one of which is the top speed.
+/// Number of speeds at the borders of cells: rest and four others, the last of which is the top speed.
 pub(super) const LEVELS: usize = 5;
-/// And the speeds at the ends of the path.
+/// Number of speeds with those at the two ends of the path.
 const SPEEDS: usize = LEVELS + 2;
-/// Parts of a cell, for each of which it is known when it is blocked.
+/// Number of slabs into which a cell is divided; for each slab it is known when it is blocked.
 pub(super) const SLABS: usize = 4;
 
-/// How an agent may move, and how it begins and ends.
+/// The limits of an agent's speed plan, and the speeds at both ends of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drive<S> {
     /// Largest speed and acceleration.
     pub limits: Limits<S>,
-    /// Speed at the start of the path \[m/s\]. An agent that is in motion there cannot wait.
+    /// Speed at the start of the path \[m/s\]. An agent that is already moving there cannot wait.
     pub start: S,
     /// Speed at the end of the path \[m/s\].
     pub goal: S,
 }
 
 impl<S: Scalar> Drive<S> {
-    /// From rest to rest.
+    /// A drive that begins and ends at rest.
     pub const fn rest_to_rest(limits: Limits<S>) -> Self {
         Self { limits, start: S::ZERO, goal: S::ZERO }
     }
 
-    /// Of a motion: its largest speed and acceleration, and the speeds with which it begins and ends.
+    /// The drive of a motion: its largest speed and acceleration, and its speeds at the start and the end.
     pub fn of(motion: &Motion<'_, S>) -> Self {
         let phases = motion.profile().phases();
         let accelerations = phases.iter().map(|phase| phase.acceleration().abs());
@@ -56,16 +56,16 @@ impl<S: Scalar> Drive<S> {
     }
 }
 
-/// The fastest motion over a cell between two speeds, without exceeding the higher one.
+/// The fastest motion over a cell between two speeds that does not exceed the higher one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge<S> {
     phases: [Phase<S>; 2],
-    /// When each slab is entered, and when the last one is left, from the begin of the cell on \[s\].
+    /// Times at which each slab is entered and the last one is left, from the begin of the cell on \[s\].
     pub(super) passes: [S; SLABS + 1],
 }
 
 impl<S: Scalar> Edge<S> {
-    /// Nothing for speeds that are too far apart for the cell.
+    /// `None` if the speeds are too far apart for the cell.
     fn new(from: S, to: S, length: S, acceleration: S) -> Option<Self> {
         let (slow, fast) = (from.min(to), from.max(to));
         if fast <= S::ZERO || length <= S::ZERO {
@@ -77,7 +77,7 @@ impl<S: Scalar> Edge<S> {
         if way > length + rounding.double() {
             return None;
         }
-        // What rounding leaves of a cell is no phase of its own.
+        // A rest of the cell that is due to rounding does not get a phase of its own.
         if length - way <= rounding.double() {
             way = length;
         }
@@ -102,13 +102,13 @@ impl<S: Scalar> Edge<S> {
         Some(Self { phases, passes })
     }
 
-    /// Time that it takes \[s\].
+    /// Time that the agent takes for the cell \[s\].
     pub(super) fn duration(&self) -> S {
         let [_, last] = &self.phases;
         last.time().hi
     }
 
-    /// The phases, none of them empty: duration, way, speed at the end, acceleration.
+    /// The phases of non-zero duration: duration, length, final speed, acceleration.
     pub(super) fn phases(&self) -> impl Iterator<Item = (S, S, S, S)> {
         let phases = self.phases.iter().filter(|phase| phase.time().length() > S::ZERO);
         phases.map(|phase| {
@@ -124,24 +124,24 @@ pub(super) fn borders<S: Scalar>(cell: Interval<S>) -> [S; SLABS + 1] {
     [cell.lo, cell.lo + quarter, cell.lo + half, cell.lo + half + quarter, cell.hi]
 }
 
-/// Speeds, cells, and the ways from one border to the next.
+/// Speeds, cells, and the motions between speeds at neighbouring borders.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice<S> {
     speeds: [S; SPEEDS],
     edges: [[Option<Edge<S>>; SPEEDS]; SPEEDS],
-    /// Those of the cell in the middle.
+    /// The motions over the shorter cell in the middle.
     short: [[Option<Edge<S>>; SPEEDS]; SPEEDS],
-    /// Length of a cell, and of the one in the middle \[m\].
+    /// Length of a cell, and of the shorter cell in the middle \[m\].
     cell: S,
     middle: S,
-    /// Cells on either side of the middle.
+    /// Number of cells before and after the middle.
     halves: [usize; 2],
-    /// Places of the speeds at both ends of the path.
+    /// Indices of the speeds at both ends of the path.
     ends: [usize; 2],
 }
 
 impl<S: Scalar> Lattice<S> {
-    /// Of at most `most` cells, at least two.
+    /// A lattice of at least two and at most `most` cells.
     pub(super) fn new(length: S, drive: Drive<S>, most: usize) -> Result<Self, Invalid> {
         let Limits { speed, acceleration } = drive.limits;
         positive(speed, "largest speed")?;
@@ -151,7 +151,7 @@ impl<S: Scalar> Lattice<S> {
                 return Err(Invalid::OutOfRange(what));
             }
         }
-        // Where the ramps up and down meet: v² = a L + (v₀² + v₁²) / 2.
+        // The top speed that is reached if the ramps up and down meet: v² = a L + (v₀² + v₁²) / 2.
         let square = |v: S| v.times(v);
         let peak = acceleration.times(length) + (square(drive.start) + square(drive.goal)).half();
         let peak = if peak < square(speed) { peak.sqrt() } else { speed };
@@ -161,9 +161,9 @@ impl<S: Scalar> Lattice<S> {
         let [rest, first, second, third] = levels;
         let speeds = [rest, first, second, third, peak, drive.start, drive.goal];
         let ramp = peak.times(peak.quotient(acceleration)).narrow().half();
-        // Shorter on a path that is but a part of a ramp.
+        // Cells are shorter on a path that is only a part of a ramp.
         let mut cell = ramp.half().half().min(length.half().half());
-        // A quarter of a few last digits is nothing, and nothing doubled is no more.
+        // The quarter of a few last digits rounds to 0, and doubling 0 does not help.
         if cell <= S::ZERO {
             cell = S::slack(length);
         }
@@ -190,7 +190,7 @@ impl<S: Scalar> Lattice<S> {
         })
     }
 
-    /// The lengths of the cells in their order \[m\], with whether it is the one in the middle.
+    /// The lengths of the cells in order \[m\], and whether a cell is the one in the middle.
     pub(super) fn cells(&self) -> impl DoubleEndedIterator<Item = (S, bool)> + use<S> {
         let [before, after] = self.halves;
         let cell = (self.cell, false);
@@ -198,24 +198,24 @@ impl<S: Scalar> Lattice<S> {
         core::iter::repeat_n(cell, before).chain(middle).chain(core::iter::repeat_n(cell, after))
     }
 
-    /// The way over a cell from the speed in one place to that in another one.
+    /// The motion over a cell from one speed to another, both given by index.
     pub(super) fn edge(&self, is_middle: bool, from: usize, to: usize) -> Option<&Edge<S>> {
         let edges = if is_middle { &self.short } else { &self.edges };
         edges.get(from)?.get(to)?.as_ref()
     }
 
-    /// The speed in a place \[m/s\].
+    /// The speed with this index \[m/s\].
     pub(super) fn speed(&self, place: usize) -> S {
         self.speeds.get(place).copied().unwrap_or_default()
     }
 
-    /// Place of the speed at the start and at the goal.
+    /// Indices of the speeds at the start and at the goal.
     pub(super) fn ends(&self) -> [usize; 2] {
         self.ends
     }
 }
 
-/// How many cells there are, and what is left in the middle \[m\]; nothing for more than `most` or less than 2.
+/// The number of cells, and the rest in the middle \[m\]; `None` for more than `most` or less than 2 cells.
 fn cells<S: Scalar>(length: S, cell: S, most: usize) -> Option<(usize, S)> {
     if cell <= S::ZERO {
         return None;
@@ -248,7 +248,7 @@ mod tests {
         assert_eq!([cells(2.5, 1.0, 3), cells(2.5, 1.0, 2)], [Some((2, 0.5)), None]);
         assert_eq!([cells(1.5, 1.0, 2), cells(1.0, 1.0, 2), cells(0.5, 1.0, 2)], [Some((1, 0.5)), None, None]);
         assert_eq!([cells(2.0, 1.0, 2), cells(3.0, 1.0, 2), cells(2.0, 0.0, 9)], [Some((2, 0.0)), None, None]);
-        // By rounding alone there is something left, or a cell is not whole.
+        // Because of rounding, there is a small rest, or a cell is missing.
         let digit = f64::EPSILON;
         assert_eq!([cells(2.0 + 2.0 * digit, 1.0, 2), cells(2.0 - digit, 1.0, 2)], [Some((2, 0.0)); 2]);
     }

@@ -1,7 +1,7 @@
-//! Agents one after the other by priority, and what to do where one cannot be planned.
+//! Plans agents one after the other by priority, and changes the order if an agent cannot be planned.
 //!
-//! An agent for which there is no plan because of one of higher priority (that parks on its way, or passes over its
-//! start) is moved up before it in the order, and the search goes on from there; a bounded number of times.
+//! If an agent has no plan because of one of higher priority (which parks on its path, or passes over its start), it is
+//! moved up before that one, and planning continues from there. The number of such moves is limited.
 
 use crate::ecm::{Ecm, Region};
 use crate::error::Mismatch;
@@ -11,7 +11,7 @@ use crate::pieces::Piece;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Agents for which no plan was found.
+/// Agents for which no plan was found, and the reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -21,19 +21,20 @@ pub enum Unsolved {
     Starts([usize; 2]),
     /// Their discs overlap at the ends of their paths.
     Ends([usize; 2]),
-    /// However they move, they meet: head-on without a passing place, or each on the way of the other while it stands.
+    /// They meet however they move: head-on without a passing place, or each stands on the path of the other.
     Always([usize; 2]),
-    /// There is no plan for the first with the priorities that were tried, because of the second.
+    /// There is no plan for the first agent, because of the second one, with the priorities that were tried.
     Priorities([usize; 2]),
-    /// The check of the plan found that these overlap.
+    /// The check of the finished plan found that these two overlap.
     Overlap([usize; 2]),
-    /// There is no room for the plan of this agent: profiles, phases or stations; or its times are out of range.
+    /// There is not enough room for the plan of this agent (profiles, phases or stations), or its times are out of
+    /// range.
     Full(usize),
-    /// There is no such agent, or not as many plans as motions.
+    /// The fleet has no such agent, or the numbers of plans and motions differ.
     NoSuchAgent(usize),
-    /// The order does not list this agent once: nobody would look out for one that is left out.
+    /// The order does not list this agent exactly once. An agent that is left out would be ignored by all others.
     NotOnce(usize),
-    /// The table is not that of the fleet, or the motions that the plan begins with are not.
+    /// The table does not belong to the fleet, or `plan` does not begin with motions of the same agents.
     Table(Mismatch),
 }
 
@@ -61,11 +62,11 @@ impl core::fmt::Display for Unsolved {
 
 impl core::error::Error for Unsolved {}
 
-/// Why there is no plan for an agent.
+/// Why an agent cannot be planned.
 pub(super) enum Blocked {
-    /// Because of another one, with the priorities as they are.
+    /// Because of another agent, with the present priorities.
     By(usize),
-    /// With none.
+    /// With any priorities.
     Never(Unsolved),
 }
 
@@ -75,7 +76,8 @@ impl From<Mismatch> for Blocked {
     }
 }
 
-/// Refuses an order that is not one of so many agents: who is left out would be planned by nobody and looked out for by nobody.
+/// Refuses an order that does not list every agent once: an agent that is left out would not be planned, and the others
+/// would not avoid it.
 pub(super) fn complete(order: &[usize], agents: usize) -> Result<(), Unsolved> {
     if let Some(&agent) = order.iter().find(|&&agent| agent >= agents) {
         return Err(Unsolved::NoSuchAgent(agent));
@@ -87,7 +89,7 @@ pub(super) fn complete(order: &[usize], agents: usize) -> Result<(), Unsolved> {
     (0..agents).find(|&agent| !listed(agent)).map_or(Ok(()), |agent| Err(Unsolved::NotOnce(agent)))
 }
 
-/// Plans the agents of an order, each after those before it; the order may change.
+/// Plans the agents in order, each one after those before it; the order may change.
 pub(super) fn in_order(
     order: &mut [usize],
     mut plan: impl FnMut(&[usize], usize) -> Result<(), Blocked>,
@@ -140,8 +142,9 @@ where
 
 /// Whether two agents meet in this region however they move, and why.
 ///
-/// The region is connected. If the ego can pass neither before the other (it reaches the ego's end, or the other's
-/// start) nor after it (the ego's start, or the other's end), it parts the start of both from the end of both.
+/// The region is connected. The ego cannot pass before the other agent if the region reaches the ego's end or the
+/// other's start, and not after it if the region reaches the ego's start or the other's end. If both hold, the region
+/// separates the starts of both from the ends of both.
 pub(super) fn separated<S: Scalar>(region: &RegionRef<'_, S>) -> Option<Unsolved> {
     let agents = [region.ego(), region.other()];
     let (ego, other) = (region.ego_motion().path().length(), region.other_motion().path().length());

@@ -1,4 +1,4 @@
-//! What speed planning answers.
+//! Results of speed planning.
 
 use crate::error::Invalid;
 use crate::profile::Profile;
@@ -8,14 +8,14 @@ use crate::scalar::Scalar;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SpeedPlan<S: Scalar, const N: usize> {
-    /// When the agent sets off \[s\].
+    /// Time at which the agent sets off \[s\].
     pub start: S,
-    /// How it moves then.
+    /// Speed profile of the motion.
     pub profile: Profile<S, N>,
 }
 
 impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
-    /// When the agent arrives \[s\].
+    /// Time at which the agent arrives \[s\].
     pub fn end(&self) -> S {
         self.start + self.profile.as_profile().duration()
     }
@@ -27,24 +27,25 @@ impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum NoSpeedPlan<S> {
-    /// This agent is met while the ego stands at its start, before it may set off; or as it sets off, if it is in motion.
+    /// This agent hits the ego while that stands at its start and may not set off yet, or, if the ego is already
+    /// moving, as it sets off.
     AtStart(usize),
     /// The goal is never free for good because of this agent.
     AtGoal(usize),
-    /// No motion leads further than about this length \[m\], because of this agent.
+    /// No motion gets further than about this length \[m\], because of an agent.
     Beyond {
         /// Length along the path \[m\].
         length: S,
         /// Index of the other agent in the fleet.
         other: usize,
     },
-    /// No motion leads further than about this length \[m\], because of a constraint.
+    /// No motion gets further than about this length \[m\], because of a constraint.
     Constrained {
         /// Length along the path \[m\].
         length: S,
     },
-    /// The drive is not valid, a constraint is none, the speeds at the ends are too far apart for the path, there are too few stations, the
-    /// profile has too few phases, or it takes longer than the format can tell.
+    /// The drive or a constraint is invalid, the speeds at the ends are too far apart for the path, there are too few
+    /// stations, the profile has too few phases, or the plan takes longer than the format can represent.
     Invalid(Invalid),
 }
 
@@ -54,7 +55,7 @@ impl<S> From<Invalid> for NoSpeedPlan<S> {
     }
 }
 
-// The length is not told: what writes floating point can panic, for all that a linker knows.
+// The length is not printed, because the formatting of floating-point numbers contains code that can panic.
 impl<S> core::fmt::Display for NoSpeedPlan<S> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {

@@ -1,4 +1,4 @@
-//! The search behind a speed plan: forward for the times at every station, backward for the motion.
+//! The search behind a speed plan: a forward pass computes the times at every station, a backward pass the motion.
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
@@ -11,23 +11,23 @@ use crate::profile::{Phase, Profile};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// The regions that a path of this length has to keep out of, and the motions among which is chosen.
+/// The regions that an agent on a path of this length has to avoid, and the motions to choose from.
 pub(super) struct Search<'c, S: Scalar, I> {
     pub(super) lattice: Lattice<S>,
     pub(super) regions: I,
     pub(super) constraints: &'c [Constraint<S>],
-    /// Of the path \[m\].
+    /// Length of the path \[m\].
     pub(super) length: S,
 }
 
-/// When the slabs of a cell are blocked, and when its end is.
+/// When the slabs of a cell and its end are blocked.
 struct Blocked<S> {
     slabs: [Times<S>; SLABS],
     end: Times<S>,
 }
 
 impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, I> {
-    /// Sets up the stations, with the times at which the agent may set off from the first one.
+    /// Initializes the stations, with the times at which the agent may set off from the first one.
     pub(super) fn begin(&self, from: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
         let cells = self.lattice.cells().map(|(cell, _)| cell);
         let mut length = S::ZERO;
@@ -37,7 +37,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
             station.length = length;
         }
         if let Some(goal) = stations.last_mut() {
-            // What rounding has left.
+            // Removes the rounding error of the sum of the cells.
             goal.length = self.length;
         }
         let [start, _] = self.lattice.ends();
@@ -46,7 +46,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         stands(&self.regions, S::ZERO, before)?;
         let mut blocked = Times::NONE;
         self.cover(&mut blocked, Interval::new(S::ZERO, S::ZERO));
-        // Nobody else is there before, and what a constraint says of the time before does not count.
+        // No other agent is there before, and constraints on the time before do not count.
         let until = blocked.iter().find(|window| window.hi > from).map_or(S::LIMIT, |window| window.lo);
         if until < from {
             return Err(NoSpeedPlan::Constrained { length: S::ZERO });
@@ -57,14 +57,14 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         Ok(())
     }
 
-    /// When a part of the path is blocked.
+    /// Adds the times at which a part of the path is blocked.
     fn cover(&self, times: &mut Times<S>, part: Interval<S>) {
         let always = Interval::new(-S::LIMIT, S::LIMIT);
         self.near(part).flat_map(|region| region.blocked(part, always)).for_each(|window| times.cover(window));
         self.constrained(part).for_each(|window| times.cover(window));
     }
 
-    /// When constraints forbid a part of the path.
+    /// The times at which constraints forbid a part of the path.
     fn constrained(&self, part: Interval<S>) -> impl Iterator<Item = Interval<S>> {
         self.constraints.iter().filter(move |it| it.length.meets(part)).map(|it| it.time)
     }
@@ -84,12 +84,12 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         blocked
     }
 
-    /// The times at which the agent may leave a station so that it passes the cell after it freely.
+    /// The times at which the agent may leave a station so that it passes the cell after it without contact.
     fn departures(&self, reached: &Times<S>, passes: &[S], blocked: &Blocked<S>) -> Times<S> {
         let mut departures = reached.clone();
         for ((slab, &enters), &leaves) in blocked.slabs.iter().zip(passes).zip(passes.iter().skip(1)) {
             for window in slab.iter() {
-                // A window without end stays one.
+                // A window without an end stays unbounded.
                 let until = if window.hi >= S::LIMIT { S::LIMIT.double() } else { window.hi - enters };
                 departures.remove(Interval::new(window.lo - leaves, until));
             }
@@ -97,7 +97,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         departures
     }
 
-    /// The places of the speeds at a station.
+    /// Indices of the speeds that are possible at a station.
     fn levels(&self, is_first: bool, is_last: bool) -> core::ops::Range<usize> {
         let [start, goal] = self.lattice.ends();
         let only = |level: usize| level..level.saturating_add(1);
@@ -108,7 +108,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         }
     }
 
-    /// When the agent can be at each station with each speed.
+    /// Computes the times at which the agent can be at each station with each speed.
     pub(super) fn reach(&self, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
         let (mut rest, mut is_first) = (stations, true);
         for (_, is_middle) in self.lattice.cells() {
@@ -141,7 +141,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         Ok(())
     }
 
-    /// What is said where no motion passes a cell.
+    /// The error if no motion passes a cell.
     fn stopped(&self, cell: Interval<S>) -> NoSpeedPlan<S> {
         let until = |region: &RegionRef<'a, S>| if region.is_open_at_end() { S::LIMIT } else { region.time().hi };
         let later = |a: RegionRef<'a, S>, b: RegionRef<'a, S>| if until(&b) > until(&a) { b } else { a };
@@ -150,12 +150,12 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         match (most, constrained) {
             (Some(region), _) => NoSpeedPlan::Beyond { length: cell.lo, other: region.other() },
             (None, Some(_)) => NoSpeedPlan::Constrained { length: cell.lo },
-            // Nothing is in the way: the speeds are too far apart, or the time is over.
+            // Nothing is in the way: the speeds are too far apart, or the times exceed the format.
             (None, None) => NoSpeedPlan::Invalid(Invalid::OutOfRange("speed or time")),
         }
     }
 
-    /// From when on the goal is free for good.
+    /// The time from which on the goal stays free.
     pub(super) fn free_from(&self) -> Result<S, NoSpeedPlan<S>> {
         let place = Interval::new(self.length, self.length);
         let always = Interval::new(-S::LIMIT, S::LIMIT);
@@ -171,7 +171,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         if free >= S::LIMIT { Err(NoSpeedPlan::Constrained { length: self.length }) } else { Ok(free) }
     }
 
-    /// The earliest time at the goal, which is free from a time on.
+    /// The earliest arrival at the goal, which stays free from the time `free` on.
     pub(super) fn arrive(&self, stations: &[Station<S>], free: S) -> Result<S, NoSpeedPlan<S>> {
         let [_, goal] = self.lattice.ends();
         let times = stations.last().and_then(|station| station.reached(goal));
@@ -180,7 +180,8 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         arrival.map(|times| times.lo.max(free)).ok_or_else(|| self.stopped(place))
     }
 
-    /// From the goal back to the start: which speed at which station, and when the agent leaves it.
+    /// Goes back from the goal to the start, and chooses the speed at each station and the time at which the agent
+    /// leaves it.
     pub(super) fn trace(&self, arrival: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
         let [_, goal] = self.lattice.ends();
         if let Some(last) = stations.last_mut() {
@@ -193,7 +194,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
             let Some(here) = before.last_mut() else { break };
             let cell = Interval::new(here.length, next.length);
             let blocked = self.blocked(cell);
-            // At rest it may have waited since its place was free.
+            // At rest the agent may have waited since its place became free.
             let waits = next.level == 0;
             let since =
                 blocked.end.iter().map(|window| window.hi).filter(|&hi| hi <= next.leaves).fold(-S::LIMIT, S::max);
@@ -207,7 +208,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
                     let Some(arrivals) = later(times, edge.duration()) else { continue };
                     let at = arrivals.hi.min(next.leaves);
                     let possible = arrivals.lo <= at && if waits { since <= at } else { at >= next.leaves };
-                    // The least wait, at the highest speed.
+                    // Prefers the shortest wait, then the highest speed.
                     if possible && best.is_none_or(|(best, ..)| at >= best) {
                         best = Some((at, (at - edge.duration()).clamp(times.lo, times.hi), from));
                     }
@@ -220,7 +221,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         Ok(())
     }
 
-    /// The motion that was traced.
+    /// The motion that was chosen.
     pub(super) fn profile<const N: usize>(&self, stations: &[Station<S>]) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
         let [start, _] = self.lattice.ends();
         let first = stations.first().map_or(S::ZERO, |station| station.leaves);
@@ -247,7 +248,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
     }
 }
 
-/// Refuses an agent that stands in someone's way at some time of an interval.
+/// Refuses a place at which a standing agent is hit at some time of the interval.
 pub(super) fn stands<'a, S: Scalar>(
     regions: &(impl Iterator<Item = RegionRef<'a, S>> + Clone),
     length: S,
@@ -258,13 +259,13 @@ pub(super) fn stands<'a, S: Scalar>(
     met.map_or(Ok(()), |region| Err(NoSpeedPlan::AtStart(region.other())))
 }
 
-/// All times later by a duration, as far as the format holds them.
+/// Shifts an interval of times by a duration, limited to the range of the format.
 fn later<S: Scalar>(times: Interval<S>, duration: S) -> Option<Interval<S>> {
     let lo = times.lo + duration;
     (lo <= S::LIMIT).then(|| Interval::new(lo, (times.hi + duration).min(S::LIMIT)))
 }
 
-/// Lets the agent wait from each of the times on until its place is blocked.
+/// Extends each interval of times by waiting, until the place of the agent is blocked.
 fn wait<S: Scalar>(times: &mut Times<S>, blocked: &Times<S>) {
     let arrivals = core::mem::replace(times, Times::NONE);
     for arrival in arrivals.iter() {

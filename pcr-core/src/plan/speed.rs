@@ -1,15 +1,15 @@
-//! Speed plans: when and how fast an agent goes along its path so that it arrives early and meets no region.
+//! Speed plans: when and how fast an agent moves along its path so that it arrives early and meets no region.
 //!
-//! The path stays as it is, the speed is planned (path-velocity decomposition, Kant and Zucker 1986). The motions are
-//! those of `lattice`; time is not divided at all: for every border of cells and every speed there the set of times at
-//! which the agent can be there is computed, a few intervals. A motion over a cell that begins at time τ passes each slab
-//! of it in an interval that moves with τ, so that every window in which a slab is blocked takes an interval out of
-//! the τ that are possible. At rest an agent can wait until its place is blocked. The first time at the goal, from which on
-//! it is free for good, leads back to the start.
+//! The path is fixed and the speed is planned (path-velocity decomposition, Kant and Zucker 1986). The motions are
+//! those of `lattice`. Time is not discretized: for every border of cells and every speed there, the planner computes
+//! the set of times at which the agent can be there, as a few intervals. A motion over a cell that begins at time τ is
+//! in each slab of the cell during an interval that is shifted by τ, so every window in which a slab is blocked removes
+//! an interval from the possible τ. At rest an agent can wait until its place is blocked. The plan is traced back to
+//! the start from the earliest time at the goal after which the goal stays free.
 //!
-//! What is lost against all motions under the limits: stops and changes of speed are at borders of cells, and a slab is
-//! blocked as a whole. Of the latter the last step wins back what it can: it moves all that comes after a wait to an
-//! earlier time, up to a contact.
+//! Compared with all motions under the limits, the plan loses time because stops and changes of speed are at borders of
+//! cells, and because a slab is blocked as a whole. The last step regains some of the latter: it shifts everything
+//! after a wait to an earlier time, until there is a contact.
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
@@ -23,22 +23,23 @@ use crate::profile::Profile;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// The earliest arrival of an agent along its path that meets none of the regions: those of its row in the table, or of
-/// some of the others, each of whom moves as its motion says; and that keeps to the constraints. Path, radius and earliest start are those of `ego`; its
-/// profile does not matter. Before the start it stands, unless the drive says that it is in motion, and after
-/// the end it stands for good.
+/// The earliest arrival of an agent along its path that meets none of the regions and respects the constraints. Pass
+/// the regions of its row in the table, or those with some of the other agents; the other agents move as their motions
+/// say. Path, radius and earliest start are taken from `ego`; its profile does not matter. Before the start the agent
+/// stands, unless the drive says that it is already moving; after the end it stands for good.
 ///
-/// Among the motions that stop and change their speed at borders of cells only (at most as many cells as there
-/// are stations less one, at least 8) and for which a quarter of a cell is blocked as a whole, the plan is the one that
-/// arrives first; what can be gained by leaving earlier after a wait is gained. `docs/theory.md` compares with a fine
-/// dynamic program over length, speed and time. A set of more than 8 separate intervals of times at one
-/// border and speed loses the last but one.
+/// The plan is the earliest among the motions that stop and change their speed at borders of cells only (the number of
+/// cells is at most the number of stations minus one, and at least 8), where a quarter of a cell is blocked as a whole.
+/// Then waits are shortened as far as possible. `docs/theory.md` compares the result with a fine dynamic program over
+/// length, speed and time. If the set of times at one border and speed has more than 8 separate intervals, the last but
+/// one is dropped.
 ///
-/// The plan is checked by [`first_conflict`](crate::first_conflict): no overlap is deeper than [`Encounter::tolerance`](crate::Encounter::tolerance). Plan with a radius that
-/// is larger by that, so that agents of the true radii do not even touch.
+/// The plan is checked by [`first_conflict`](crate::first_conflict): no overlap is deeper than
+/// [`Encounter::tolerance`](crate::Encounter::tolerance). Plan with a radius that is larger by that, so that agents of
+/// the true radii do not even touch.
 ///
-/// Cost: for each region a few hundred operations a slab on its length, a few for each window of a slab and two speeds,
-/// and about 20 searches for contacts a wait.
+/// Cost: for each region a few hundred operations for each slab on its length, a few for each window of a slab and pair
+/// of speeds, and about 20 searches for contacts for each wait.
 ///
 /// # Errors
 /// [`NoSpeedPlan`].
@@ -89,7 +90,7 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     search.trace(arrival, stations)?;
     let mut plan = search.profile(stations)?;
     search.check(ego, &plan)?;
-    // Contacts are those of agents in time.
+    // Searches for contacts do not consider lateness.
     if !search.regions.clone().any(|region| region.is_uncertain()) {
         search.tighten(ego, &mut plan)?;
         search.check(ego, &plan)?;

@@ -1,4 +1,4 @@
-//! Fleet plans by speeds: each agent arrives as early as those before it in the order allow.
+//! Fleet plans by speeds: each agent arrives as early as the agents before it in the order allow.
 
 use crate::ecm::{Ecm, Region};
 use crate::motion::Motion;
@@ -13,21 +13,22 @@ use crate::profile::Profile;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Plans how fast the agents go along their paths so that none collides, and puts the motions into `plan`, in the
-/// order of the fleet. It begins with motions of the same agents: those of the fleet, or an earlier plan.
+/// Plans how fast the agents move along their paths so that none collide, and puts the motions into `plan`, in the
+/// order of the fleet. On entry `plan` holds motions of the same agents: those of the fleet, or an earlier plan.
 ///
-/// Each agent goes under the largest speed and acceleration of the motion that the fleet gives it, and begins and ends
-/// at the same speeds ([`Drive::of`]): by [`plan_speed`], or as given but later, whichever arrives first. `order` is as in
-/// [`plan_delays`](crate::plan_delays), and so are the radii. Every plan of an agent takes a profile of `profiles`, one
-/// for each agent and one for each that is planned again, because another one was moved up; what is there is overwritten.
+/// Each agent keeps the largest speed and acceleration of its motion in the fleet, and begins and ends at the same
+/// speeds ([`Drive::of`]). It gets the plan of [`plan_speed`] or its own profile with a later start, whichever arrives
+/// first. `order` and the radii are as in [`plan_delays`](crate::plan_delays). Every plan of an agent takes one of the
+/// `profiles`: one for each agent, and one more each time that an agent is planned again because another one was moved
+/// up. Their contents are overwritten.
 ///
-/// Cost: for each agent that of [`plan_speed`] and [`earliest_start`](crate::earliest_start), and again for those after
-/// one that is moved.
+/// Cost: for each agent that of [`plan_speed`] and [`earliest_start`](crate::earliest_start); agents behind one that is
+/// moved up are planned again.
 ///
-/// The plan is checked as a whole before it is returned: no overlap is deeper than the tolerance.
+/// The whole plan is checked before the function returns: no overlap is deeper than the tolerance.
 ///
 /// # Errors
-/// [`Unsolved`] with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
+/// [`Unsolved`], with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
 pub fn plan_speeds<'m, S, R, P, const N: usize>(
     ecm: &Ecm<S, R, P>,
     fleet: &[Motion<'m, S>],
@@ -51,7 +52,7 @@ where
         let chosen = {
             let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
             let later = earliest(motion, regions.clone());
-            // What is but a rounding earlier is not worth another profile.
+            // An arrival that is earlier only by a rounding does not justify another profile.
             let earlier = |end: S| later.is_none_or(|later| end < later.time().hi - S::tolerance(end.abs()));
             match plan_speed::<S, N>(&motion, Drive::of(&motion), regions.clone(), &[], stations) {
                 Ok(speeds) if earlier(speeds.end()) => {
@@ -71,7 +72,7 @@ where
     verified(ecm, plan, order)
 }
 
-/// What is to be done about a reason.
+/// How to react to this reason.
 fn blocking<'a, S: Scalar>(
     agent: usize,
     mut regions: impl Iterator<Item = RegionRef<'a, S>>,
@@ -79,7 +80,7 @@ fn blocking<'a, S: Scalar>(
 ) -> Blocked {
     match reason {
         Some(NoSpeedPlan::AtStart(other) | NoSpeedPlan::AtGoal(other) | NoSpeedPlan::Beyond { other, .. }) => {
-            // Another one than the first that was found may be without remedy.
+            // Another region than the first that was found may have no remedy.
             let never = regions.find_map(|region| separated(&region));
             never.map_or(Blocked::By(other), Blocked::Never)
         }

@@ -1,19 +1,19 @@
-//! What a speed plan remembers of each place along the path.
+//! What a speed plan stores for each border of cells along the path.
 
 use crate::plan::lattice::LEVELS;
 use crate::plan::times::Times;
 use crate::scalar::Scalar;
 
-/// A border of two cells of the path, or one of its ends: a place of the storage of [`plan_speed`](crate::plan_speed).
+/// A border of two cells of the path, or one of its ends: an entry of the storage of [`plan_speed`](crate::plan_speed).
 #[derive(Clone, Debug)]
 pub struct Station<S> {
     /// Length along the path \[m\].
     pub(super) length: S,
-    /// When the agent can be here with each speed \[s\].
+    /// Times at which the agent can be here with each speed \[s\].
     pub(super) reached: [Times<S>; LEVELS],
-    /// Place of the speed that was chosen.
+    /// Index of the speed that was chosen.
     pub(super) level: usize,
-    /// When the agent goes on from here \[s\].
+    /// Time at which the agent leaves \[s\].
     pub(super) leaves: S,
 }
 
@@ -25,11 +25,11 @@ impl<S: Scalar + defmt::Format> defmt::Format for Station<S> {
 }
 
 impl<S: Scalar> Station<S> {
-    /// A free place.
+    /// An unused entry, to fill a storage with.
     pub const EMPTY: Self =
         Self { length: S::ZERO, reached: [const { Times::NONE }; LEVELS], level: 0, leaves: S::ZERO };
 
-    /// The times at a speed. At the ends of the path there is one speed only, in any place.
+    /// The times for a speed. At the ends of the path there is only one speed; its times are returned for any index.
     pub(super) fn reached(&self, level: usize) -> Option<&Times<S>> {
         self.reached.get(level).or(self.reached.first())
     }

@@ -1,4 +1,4 @@
-//! The last step of a speed plan: it is checked, and waits become as short as contacts allow.
+//! The last step of a speed plan: checks it, and shortens waits as far as contacts allow.
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
@@ -11,23 +11,23 @@ use crate::query::first_conflict;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
-/// Halvings of a wait at most; fewer where the format has fewer digits.
+/// Largest number of bisections for a wait; formats with fewer digits need fewer.
 const HALVINGS: u32 = 32;
 
 impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, I> {
-    /// Whether nobody is met from a time on and no constraint is broken.
+    /// Whether the plan has no conflict from a time on and breaks no constraint.
     fn is_free<const N: usize>(&self, ego: &Motion<'_, S>, plan: &SpeedPlan<S, N>, from: S) -> Result<bool, Invalid> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         Ok(self.broken(&motion, ego.time().lo).is_none()
             && first_conflict(&motion, self.regions.clone(), self.during(&motion, from)).is_none())
     }
 
-    /// A constraint that a motion breaks, for which the agent stands ready from a time on \[s\].
+    /// A constraint that a motion breaks if the agent stands at its start from a time on \[s\].
     fn broken(&self, motion: &Motion<'_, S>, from: S) -> Option<&Constraint<S>> {
         self.constraints.iter().find(|constraint| constraint.is_broken_by(motion, from))
     }
 
-    /// From a time on until everybody stands.
+    /// The interval from a time on until all agents stand.
     fn during(&self, ego: &Motion<'_, S>, from: S) -> Interval<S> {
         let ends = self.regions.clone().map(|region| region.other_motion().time()).chain([ego.time()]);
         let all = ends.reduce(Interval::hull).unwrap_or_default();
@@ -55,7 +55,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
             .map_or(Ok(()), |(other, conflict)| Err(NoSpeedPlan::Beyond { length: conflict.length.lo, other }))
     }
 
-    /// Shortens the waits, the first one first, as far as nobody is met.
+    /// Shortens the waits, beginning with the first one, as long as there is no conflict.
     pub(super) fn tighten<const N: usize>(
         &self,
         ego: &Motion<'_, S>,
@@ -64,7 +64,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         let [start, _] = self.lattice.ends();
         if start == 0 {
             self.shorten(ego, plan, None, plan.start - ego.time().lo)?;
-            // Not earlier by a rounding.
+            // Undoes a start that is earlier by a rounding.
             plan.start = plan.start.max(ego.time().lo);
         }
         let mut place = 0_usize;
@@ -78,7 +78,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         Ok(())
     }
 
-    /// Shortens the wait before the start, or the phase in a place, which is one.
+    /// Shortens the wait before the start, or the phase with this index, which is a wait.
     fn shorten<const N: usize>(
         &self,
         ego: &Motion<'_, S>,
@@ -96,7 +96,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
                 break;
             }
             let sooner = plan.sooner(place, tried)?;
-            // What comes before stays as it is.
+            // The motion before the wait does not change.
             if self.is_free(ego, &sooner, leaves - wait)? {
                 free = tried;
             } else {
@@ -110,7 +110,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
 }
 
 impl<S: Scalar, const N: usize> SpeedPlan<S, N> {
-    /// The plan with an earlier start, or with a shorter phase in a place.
+    /// The plan with an earlier start, or with a shorter phase at this index.
     fn sooner(&self, place: Option<usize>, by: S) -> Result<Self, Invalid> {
         let phases = self.profile.as_profile().phases();
         let Some(place) = place else {

@@ -1,10 +1,10 @@
-//! Sets of times of fixed capacity.
+//! Sets of times with a fixed capacity.
 
 use crate::geometry::Interval;
 use crate::scalar::Scalar;
 use heapless::Vec;
 
-/// Intervals of a set, at most. What a set loses for want of room is said where it is used.
+/// Largest number of intervals of a set. The functions below say what is lost when there are more.
 const MOST: usize = 8;
 
 /// Disjoint closed intervals of time \[s\] in increasing order.
@@ -28,8 +28,8 @@ impl<S: Scalar> Times<S> {
         self.intervals.clear();
     }
 
-    /// Adds an interval. Without room the last interval but one is lost: the earliest times are the best, and the last ones
-    /// are those at which everybody else has arrived.
+    /// Adds an interval. If the set is full, the last but one is dropped: the earliest times are the best ones, and the
+    /// last ones are those at which all other agents have arrived.
     pub(super) fn add(&mut self, interval: Interval<S>) {
         let interval = self.absorb(interval);
         let at = self.intervals.partition_point(|before| before.lo < interval.lo);
@@ -37,7 +37,7 @@ impl<S: Scalar> Times<S> {
             self.carry(at, interval);
             return;
         }
-        // Of the full set and the new interval together the last but one is left out.
+        // Of the full set and the new interval together, the last but one is dropped.
         let mut last_two = self.intervals.iter_mut().rev();
         let (Some(last), Some(before)) = (last_two.next(), last_two.next()) else { return };
         if interval.lo > last.lo {
@@ -45,7 +45,7 @@ impl<S: Scalar> Times<S> {
         } else if interval.lo < before.lo {
             let mut entry = interval;
             let room = MOST.saturating_sub(2);
-            // The place of the one that is left out takes what moves up.
+            // The entry that is dropped makes room for those that move up.
             self.intervals
                 .iter_mut()
                 .take(room.saturating_add(1))
@@ -54,7 +54,8 @@ impl<S: Scalar> Times<S> {
         }
     }
 
-    /// Adds an interval to a set that may be too large, but not too small: without room two of its neighbours become one.
+    /// Adds an interval to a set that may become too large, but not too small: if the set is full, two neighbours are
+    /// merged.
     pub(super) fn cover(&mut self, interval: Interval<S>) {
         let interval = self.absorb(interval);
         let at = self.intervals.partition_point(|before| before.lo < interval.lo);
@@ -68,7 +69,7 @@ impl<S: Scalar> Times<S> {
         }
     }
 
-    /// Takes the inside of an interval out of the set; its ends stay. Without room as [`Times::add`].
+    /// Removes the interior of an interval from the set; its ends stay. If the set is full, as [`Times::add`].
     pub(super) fn remove(&mut self, inside: Interval<S>) {
         if !self.iter().any(|interval| interval.lo < inside.hi && inside.lo < interval.hi) {
             return;
@@ -88,9 +89,9 @@ impl<S: Scalar> Times<S> {
         }
     }
 
-    /// Takes out what meets an interval, and returns the hull.
+    /// Removes all intervals that meet this one, and returns their hull with it.
     fn absorb(&mut self, mut interval: Interval<S>) -> Interval<S> {
-        // `Vec::retain` cannot be proved not to panic.
+        // `Vec::retain` cannot be proved free of panics.
         let before = core::mem::replace(&mut self.intervals, Vec::new());
         for &other in &before {
             if other.meets(interval) {
@@ -102,7 +103,7 @@ impl<S: Scalar> Times<S> {
         interval
     }
 
-    /// Moves the last interval, which is `entry`, to its place.
+    /// Moves the last interval, which is `entry`, to its place in the order.
     fn carry(&mut self, at: usize, mut entry: Interval<S>) {
         self.intervals.iter_mut().skip(at).for_each(|place| core::mem::swap(place, &mut entry));
     }

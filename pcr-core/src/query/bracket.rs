@@ -1,32 +1,32 @@
-//! The end of an interval of which one place is known, bracketed by looking for contacts.
+//! Finds the end of an interval of forbidden values, starting from one value inside, by searching for contacts.
 //!
-//! Towards the end of what is forbidden a contact gets shorter and shorter: its duration D falls with the square root of
-//! what is left, because the discs pass each other ever less deep. D² goes to 0 as a line does, and two places inside tell
-//! where. That is a guess and no more: what is returned lies outside, a place inside is not further from it than the
-//! resolution, and where the guesses do not help the bracket is halved.
+//! Towards the end of the forbidden interval a contact gets shorter: its duration D falls with the square root of the
+//! distance to the end, because the discs overlap less and less deeply. So D² falls linearly, and two values inside
+//! give a guess of the end. It is only a guess: the value that is returned lies outside, and a value inside is no
+//! further from it than the resolution. Where the guesses do not help, the bracket is bisected.
 
 use crate::scalar::{Scalar, Wide};
 
-/// Places that are tried, at most; fewer where the format has fewer digits.
+/// Largest number of values that are tried; formats with fewer digits need fewer.
 const TRIALS: u32 = 96;
-/// Every so many trials the bracket is halved, whatever the guesses say.
+/// Every so many trials the bracket is bisected, whatever the guesses say.
 const PATIENCE: u32 = 12;
 
-/// A bracket: a place inside, with how long the contact is there, and one outside.
+/// A bracket: a value inside the forbidden interval, and one outside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bracket<S> {
     pub(super) inside: S,
     pub(super) outside: S,
-    /// It is not made narrower than this.
+    /// The bracket is not made narrower than this.
     pub(super) resolution: S,
 }
 
 impl<S: Scalar> Bracket<S> {
-    /// The place outside when the bracket has shrunk. `contact` tells how long the contact at a place is, `None` where
-    /// there is none.
+    /// The value outside when the bracket has been narrowed down. `contact` returns the duration of the contact at a
+    /// value, `None` if there is no contact.
     pub(super) fn shrunk(self, contact: impl Fn(S) -> Option<S>) -> S {
         let Self { mut inside, mut outside, resolution } = self;
-        // Two places inside, and the guess before.
+        // The last two values inside, and the previous guess.
         let (mut near, mut far, mut guess) = (contact(inside).map(|long| (inside, long)), None, None);
         for trial in 0..TRIALS {
             if (outside - inside).abs() <= resolution {
@@ -51,7 +51,7 @@ impl<S: Scalar> Bracket<S> {
     }
 }
 
-/// Where the square of the durations at two places vanishes, on the line through both.
+/// Extrapolates the squares of the durations at two values linearly, and returns where they vanish.
 fn vanishing<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S> {
     if short >= long {
         return None;
@@ -62,8 +62,8 @@ fn vanishing<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S>
     Some(if near < far { near - left } else { near + left })
 }
 
-/// Places to try beside a guess, as far from it as it is uncertain: short of it, which makes the next guess better, or
-/// beyond it where the bracket is all but closed from inside.
+/// Values to try next to a guess, at a distance equal to its uncertainty: one short of it, which improves the next
+/// guess, or one beyond it if the bracket is almost closed from inside.
 fn beside<S: Scalar>(guess: S, before: Option<S>, inside: S, outside: S, resolution: S) -> [S; 2] {
     let fine = resolution.half();
     let doubt = (guess - before.unwrap_or(inside)).abs().half().half().max(fine.half());

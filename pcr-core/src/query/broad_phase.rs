@@ -1,10 +1,11 @@
 //! Broad phase in space and time: which agents of a fleet can be in contact at all, and when.
 //!
-//! An interval of time is cut into equal parts, and each agent has a box for every part. A box holds the points where the
-//! agent is at both ends of the part and the joints of its path between them. An arc of length w and radius ϱ is w² / 8ϱ
-//! from its chord at most (linear interpolation), so that the box, moved outward by as much, holds the arc; and by the radius
-//! and [`Encounter::tolerance`] of the agent with itself, so that agents whose boxes do not meet are in no contact. The
-//! parts in which the boxes of a pair meet are bits of a word, and runs of them are looked at by [`Encounter::contacts`].
+//! An interval of time is cut into equal parts, and each agent has a box for every part. A box holds the positions of
+//! the agent at both ends of the part and the joints of its path in between. An arc of length w and radius ϱ is at most
+//! w² / 8ϱ from its chord (linear interpolation), so the box contains the arc after it is expanded by that. It is
+//! expanded further by the radius and the [`Encounter::tolerance`] of the agent with itself, so that agents whose boxes
+//! do not meet are not in contact. The parts in which the boxes of a pair meet are bits of a word;
+//! [`Encounter::contacts`] then examines runs of such parts.
 
 use crate::bits::{self, Runs};
 use crate::error::{Full, Mismatch};
@@ -16,7 +17,7 @@ use core::hint::select_unpredictable as select;
 use core::iter::{self, Take};
 use core::slice::ChunksExact;
 
-/// What the bits of a word can tell of.
+/// Number of parts that the bits of a word can represent.
 const MOST_PARTS: usize = u32::BITS as usize;
 
 /// A fleet during an interval of time, as boxes in space and time.
@@ -42,7 +43,7 @@ const MOST_PARTS: usize = u32::BITS as usize;
 #[derive(Clone, Copy, Debug)]
 pub struct BroadPhase<'a, S: Scalar, B> {
     fleet: &'a [Motion<'a, S>],
-    /// A row an agent: the box of all of the time, then those of its parts.
+    /// One row for each agent: the box for the whole time, then those for its parts.
     boxes: B,
     during: Interval<S>,
     /// How often the time is halved.
@@ -57,14 +58,15 @@ impl<S: Scalar + defmt::Format, B> defmt::Format for BroadPhase<'_, S, B> {
 }
 
 impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S, B> {
-    /// The fleet during an interval of time \[s\], in 32, 16, 8, 4, 2 parts or 1: as many as there is room for. Each agent
-    /// needs a box more than there are parts. More parts sort out more pairs and take more time themselves; about 16 are
-    /// best where a fleet crosses its floor once. The interval is cut as by [`Encounter::contacts`].
+    /// Computes the boxes of a fleet for an interval of time \[s\], in 32, 16, 8, 4, 2 parts or 1: as many as the
+    /// storage has room for. Each agent needs one box more than there are parts. More parts exclude more pairs, but
+    /// take more time themselves; about 16 are best for a fleet that crosses its floor once. The interval is limited in
+    /// the same way as by [`Encounter::contacts`].
     ///
-    /// Cost: a point of the path a part.
+    /// Cost: one evaluation of the path for each part.
     ///
     /// # Errors
-    /// [`Full::Boxes`] where there is room for less than two boxes an agent.
+    /// [`Full::Boxes`] if there is room for less than two boxes for each agent.
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, Full> {
         let during = during.limited();
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
@@ -90,17 +92,18 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
 }
 
 impl<S: Scalar, B> BroadPhase<'_, S, B> {
-    /// Into how many parts the time is cut.
+    /// Number of parts into which the time is cut.
     pub fn parts(&self) -> u32 {
         1_u32.wrapping_shl(self.halvings)
     }
 }
 
 impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
-    /// The pairs of agents that may be in contact, the lower index first, and from when to when \[s\]: in increasing order of
-    /// the agents, then of the time. At no other time they are in contact.
+    /// The pairs of agents that may be in contact, the lower index first, with the interval of time \[s\]: in
+    /// increasing order of the agents, then of the time. At all other times they are not in contact.
     ///
-    /// Cost: a comparison of boxes a pair of agents, and one a part for pairs whose ways meet.
+    /// Cost: a comparison of boxes for each pair of agents, and one for each part for pairs whose boxes for the whole
+    /// time meet.
     pub fn candidates(&self) -> impl Iterator<Item = ([usize; 2], Interval<S>)> {
         let rows = self.boxes.as_ref().chunks_exact((self.parts() as usize).wrapping_add(1));
         let rows = rows.take(self.fleet.len());
@@ -116,8 +119,8 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
         }
     }
 
-    /// When the agents of each pair are in contact \[s\], in increasing order of the agents, then of the time: what
-    /// [`Encounter::contacts`] tells of each pair, within its tolerance.
+    /// The contacts of all pairs as intervals of time \[s\], in increasing order of the agents, then of the time: the
+    /// same as [`Encounter::contacts`] of each pair, within its tolerance.
     ///
     /// Cost: that of [`BroadPhase::candidates`], and of [`Encounter::contacts`] for each.
     pub fn contacts(&self) -> impl Iterator<Item = ([usize; 2], Interval<S>)> {
@@ -130,14 +133,14 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
                     return Some((*agents, time));
                 }
                 let (agents, during) = candidates.next()?;
-                // Both are of the fleet.
+                // Both agents are in the fleet.
                 current = self.encounter(agents).ok().map(|encounter| (agents, encounter.contacts(during)));
             }
         })
     }
 
-    /// When two agents of the fleet, by their places in it, are in contact during an interval of time \[s\]: of one of the
-    /// [`BroadPhase::candidates`], which may be looked at in any order, on several cores as well.
+    /// The contacts of two agents of the fleet, given by their indices, during an interval of time \[s\]. Use it for
+    /// one of the [`BroadPhase::candidates`]; these may be examined in any order, also on several cores.
     ///
     /// Cost: that of [`Encounter::contacts`].
     ///
@@ -164,14 +167,14 @@ impl<'a, S: Scalar, B> BroadPhase<'a, S, B> {
 struct Meetings<'a, S: Scalar> {
     during: Interval<S>,
     halvings: u32,
-    /// Boxes of the agents from the `next` one on.
+    /// Boxes of the agents from index `next` on.
     rows: Take<ChunksExact<'a, Bounds<S>>>,
     next: usize,
     /// Boxes of the first agent of the pair, and of those that come after the second one.
     own: &'a [Bounds<S>],
     others: Take<ChunksExact<'a, Bounds<S>>>,
     agents: [usize; 2],
-    /// The parts in which their boxes meet, as far as they were not told yet.
+    /// The parts in which their boxes meet and which have not been returned yet.
     runs: Runs,
 }
 
@@ -198,7 +201,8 @@ impl<S: Scalar> Iterator for Meetings<'_, S> {
     }
 }
 
-/// Where a part of so often halved an interval begins; the last one ends where the interval does.
+/// The begin of a part of an interval that has been halved so often. The index behind the last part gives the end of
+/// the interval.
 fn place_in<S: Scalar>(interval: Interval<S>, part: u32, halvings: u32) -> S {
     let Interval { mut lo, mut hi } = interval;
     if part.wrapping_shr(halvings) != 0 {
@@ -212,7 +216,7 @@ fn place_in<S: Scalar>(interval: Interval<S>, part: u32, halvings: u32) -> S {
     lo
 }
 
-/// The parts in which the boxes of two rows meet, a bit each.
+/// The parts in which the boxes of two rows meet, one bit each.
 fn meeting<S: Scalar>(own: &[Bounds<S>], other: &[Bounds<S>]) -> u32 {
     let ([all, own @ ..], [their, other @ ..]) = (own, other) else { return 0 };
     if !all.meets(*their) {
@@ -221,10 +225,10 @@ fn meeting<S: Scalar>(own: &[Bounds<S>], other: &[Bounds<S>]) -> u32 {
     bits::row(own.iter().zip(other).map(|(own, other)| own.meets(*other)))
 }
 
-/// The way of an agent, followed from one time to the next.
+/// Follows an agent along its path from one time to the next.
 struct Way<'a, S: Scalar> {
     motion: &'a Motion<'a, S>,
-    /// What it has reached: a segment, by its place, a length of the path and the point there.
+    /// The place that was reached: index of the segment, length along the path, and the point there.
     place: usize,
     length: S,
     point: Point<S>,
@@ -237,7 +241,7 @@ impl<'a, S: Scalar> Way<'a, S> {
         Self { motion, place, length, point: motion.path().point_at(length) }
     }
 
-    /// A box around the way up to a time, and `margin` more.
+    /// A box around the path from the last place to that at `time`, expanded by `margin`.
     fn until(&mut self, time: S, margin: S) -> Bounds<S> {
         let (path, from) = (self.motion.path(), self.length);
         let to = self.motion.length_at(time).max(from);

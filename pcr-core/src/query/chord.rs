@@ -1,4 +1,4 @@
-//! The relative motion of two agents between two instants, as if it were straight and uniform.
+//! The relative motion of two agents between two instants, approximated by a straight uniform motion.
 //!
 //! ```text
 //!   from ------- foot ------- to        x from 0 to length
@@ -12,9 +12,10 @@ use crate::scalar::{Scalar, Wide};
 /// The line from one relative position to another, seen from the origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chord<S> {
-    /// \[m\]
+    /// Length of the chord \[m\].
     pub(crate) length: S,
-    /// Where on the chord the origin projects to, from its start; anywhere \[m\].
+    /// Projection of the origin onto the line, as a length from the start of the chord; it may lie outside the chord
+    /// \[m\].
     foot: S,
     /// Distance of the origin from the line \[m\].
     offset: S,
@@ -35,7 +36,7 @@ impl<S: Scalar> Chord<S> {
 
     /// The part of the chord within `radius` of the origin.
     pub(crate) fn within(&self, radius: S) -> Option<Interval<S>> {
-        // No relative position is further away, and the sum below has room.
+        // No relative position is further away, and the sum below cannot overflow.
         let radius = radius.min(S::LIMIT.double().double());
         if radius < self.offset {
             return None;
@@ -45,16 +46,16 @@ impl<S: Scalar> Chord<S> {
         (lo <= self.length && hi >= S::ZERO).then(|| Interval::new(lo.max(S::ZERO), hi.min(self.length)))
     }
 
-    /// Whether the relative position, in a circle at the begin of the chord, stays there until the chord enters a circle that
-    /// is smaller by `error`. With ξ and y as for [`clears`], (ϱ - y)² - |chord|² is not negative at either place, and concave
-    /// if L² is 8 ϱ e + 16 e² at least, as the second derivative of y² is 32 e² at most.
+    /// Whether a relative position that is in a circle at the begin of the chord stays in it until the chord enters a
+    /// circle that is smaller by `error`. With ξ and y as in [`clears`], (ϱ - y)² - |chord|² is not negative at either
+    /// place. It is concave if L² >= 8 ϱ e + 16 e², because the second derivative of y² is 32 e² at most.
     pub(crate) fn dives(&self, radius: S, error: S) -> bool {
         let square = |length: S| length.times(length);
         square(self.foot) + square(self.offset) <= square(radius)
             && square(self.length) >= error.times(radius + error.double()).double().double().double()
     }
 
-    /// Where the chord is nearest to the origin, and how near \[m\].
+    /// The place of the chord that is nearest to the origin, and its distance from it \[m\].
     pub(crate) fn nearest(&self) -> (S, S) {
         let at = self.foot.clamp(S::ZERO, self.length);
         let beyond = self.foot - at;
@@ -66,12 +67,12 @@ fn between<S: Scalar>(from: Vector<S>, to: Vector<S>) -> Vector<S> {
     Vector { x: to.x - from.x, y: to.y - from.y }
 }
 
-/// Whether the relative position stays out of a circle between two places outside, if it deviates from the chord by no
-/// more than `error` in its middle; what is computed is right within `pad`.
+/// Whether the relative position stays outside a circle between two places outside, if it deviates from the chord by at
+/// most `error` in its middle. Computed distances are right within `pad`.
 ///
-/// With the part ξ of the chord, p₀ and p₁ the squares of the tangents from its ends, L its length and y = 4 e ξ (1 - ξ)
-/// the deviation, |chord|² - ϱ² = p₀ (1 - ξ) + p₁ ξ - L² ξ (1 - ξ) is to be at least 2 ϱ y + y², for which y² <= y e. Divided by
-/// ξ (1 - ξ), the left side is least at (√p₀ + √p₁)² - L².
+/// Let ξ be the fraction of the chord, p₀ and p₁ the squared lengths of the tangents from its ends, L its length and y
+/// = 4 e ξ (1 - ξ) the deviation. Then |chord|² - ϱ² = p₀ (1 - ξ) + p₁ ξ - L² ξ (1 - ξ) has to be at least 2 ϱ y + y²,
+/// where y² <= y e. Divided by ξ (1 - ξ), the left side is least at (√p₀ + √p₁)² - L².
 pub(crate) fn clears<S: Scalar>([from, to]: [Vector<S>; 2], radius: S, error: S, pad: S) -> bool {
     let square = radius.times(radius);
     let tangents = [from, to].map(|end| (end.norm_squared() - square).sqrt());
@@ -83,9 +84,8 @@ pub(crate) fn clears<S: Scalar>([from, to]: [Vector<S>; 2], radius: S, error: S,
     }
 }
 
-/// Whether the relative position stays in a circle between two places inside, as [`clears`] tells of one that stays
-/// outside: 2 ϱ y is to be no more than ϱ² - |chord|² = d₀ (1 - ξ) + d₁ ξ + L² ξ (1 - ξ), which is at least d₀ + d₁ + L² times
-/// ξ (1 - ξ).
+/// Whether the relative position stays in a circle between two places inside; the counterpart of [`clears`]. 2 ϱ y has
+/// to be at most ϱ² - |chord|² = d₀ (1 - ξ) + d₁ ξ + L² ξ (1 - ξ), which is at least d₀ + d₁ + L² times ξ (1 - ξ).
 pub(crate) fn keeps<S: Scalar>([from, to]: [Vector<S>; 2], radius: S, error: S) -> bool {
     let square = radius.times(radius);
     let [near, far] = [from, to].map(|end| end.norm_squared());
@@ -108,8 +108,8 @@ mod tests {
         assert!(dives(0.75) && !dives(0.75_f64.next_down()));
     }
 
-    /// Relative motions that deviate from their chord by `error` in the middle, to a side: their ends, the error, and how
-    /// far they are from the origin at each of so many parts of the way.
+    /// Relative motions that deviate sideways from their chord by `error` in the middle: their ends, the error, and the
+    /// distance from the origin as a function of the fraction of the way.
     fn motions() -> impl Iterator<Item = ([Vector<f64>; 2], f64, impl Fn(f64) -> f64)> {
         let mut state = 7_u64;
         let mut random = move || {
@@ -133,7 +133,7 @@ mod tests {
         })
     }
 
-    /// Largest and least distance up to a part of the way.
+    /// Largest and least distance up to a fraction of the way.
     fn distances(at: impl Fn(f64) -> f64, until: f64) -> (f64, f64) {
         let distances = (0..=PARTS).map(|k| at(until * f64::from(k) / f64::from(PARTS)));
         distances.fold((0.0_f64, f64::MAX), |(most, least), distance| (most.max(distance), least.min(distance)))
@@ -147,7 +147,7 @@ mod tests {
             if keeps(ends, 1.0, error) {
                 assert!(most <= 1.0 + 1e-15, "{ends:?} {error}");
                 kept += 1;
-                // By the depth of its ends alone.
+                // Cases in which the depth of the ends alone decides.
                 deep += u32::from(between(ends[0], ends[1]).norm_squared() < 8.0 * error);
             }
             if clears(ends, 1.0, error, 1e-12) {

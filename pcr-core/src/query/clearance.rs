@@ -1,7 +1,8 @@
-//! How near two discs come: the least separation over time.
+//! The closest approach of two discs: the least separation over time.
 //!
-//! The chord of a step (see `contact`) less its error bounds the separation from below, the motion itself at the
-//! nearest point of the chord from above. A step whose lower bound is not below what is known already is done.
+//! The separation is bounded from below by the chord of a step (see `contact`) minus its error, and from above by the
+//! motion itself at the nearest point of the chord. A step is finished when its lower bound is not below the least
+//! separation known.
 
 use crate::geometry::Interval;
 use crate::query::chord::Chord;
@@ -9,28 +10,29 @@ use crate::query::contact::Encounter;
 use crate::query::windows::{Window, Windows};
 use crate::scalar::{Scalar, Wide};
 
-/// When two agents are nearest to one another, and how near.
+/// The closest approach of two agents: its time and the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Approach<S> {
-    /// The first such time, as far as the tolerance tells \[s\].
+    /// The first time of the closest approach, within the tolerance \[s\].
     pub time: S,
     /// Distance of the centres \[m\].
     pub separation: S,
 }
 
 impl<S: Scalar> Encounter<'_, S> {
-    /// When the two are nearest to one another during an interval of time \[s\], and how near: within
-    /// [`Encounter::tolerance`] of the least separation. Both stand at their start before they set off and at their end after
-    /// their arrival. The clearance is the separation less [`Encounter::radius`].
+    /// The closest approach of the two agents during an interval of time \[s\], within [`Encounter::tolerance`] of the
+    /// least separation. Each agent stands at its start before it sets off and at its end after its arrival. The
+    /// clearance is the separation minus [`Encounter::radius`].
     ///
-    /// Cost: a comparison of boxes a pair of segments and a few steps for those that come nearer than the ones before.
+    /// Cost: a comparison of boxes for each pair of segments, and a few steps for each pair that comes nearer than
+    /// those before.
     pub fn closest(&self, during: Interval<S>) -> Approach<S> {
         let separation = |time: S| (self.other.position_at(time) - self.ego.position_at(time)).norm_squared().sqrt();
         let during = during.limited();
         let mut best = Approach { time: during.lo, separation: separation(during.lo) };
-        // A bound that holds for the first windows as well.
+        // An upper bound that the search can use from the first window on.
         let eighth = during.length().half().half().half();
         let places = [(); 8].iter().scan(during.lo, |place, ()| {
             *place = *place + eighth;
@@ -44,7 +46,7 @@ impl<S: Scalar> Encounter<'_, S> {
         best
     }
 
-    /// Looks for what is nearer than the best and than the bound.
+    /// Searches a window for a separation that is less than `best` and `bound`.
     fn closest_in(&self, window: &Window<'_, S>, bound: S, best: &mut Approach<S>) {
         let fine = self.tolerance().half();
         let mut now = window.at(window.time.lo);

@@ -1,4 +1,4 @@
-//! Conflicts: contacts with where and how deep.
+//! Conflicts: contacts with their place and depth.
 
 use crate::geometry::Interval;
 use crate::motion::Motion;
@@ -13,17 +13,17 @@ use crate::scalar::Scalar;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Conflict<S> {
-    /// From when to when \[s\].
+    /// The interval of time \[s\].
     pub time: Interval<S>,
-    /// Lengths along the ego's path meanwhile \[m\].
+    /// Lengths of the ego's path during the contact \[m\].
     pub length: Interval<S>,
-    /// Lengths along the other's path meanwhile \[m\].
+    /// Lengths of the other's path during the contact \[m\].
     pub other_length: Interval<S>,
-    /// When the centres are nearest to one another.
+    /// The closest approach of the centres during the contact.
     pub deepest: Approach<S>,
-    /// Largest overlap: sum of the radii less the least separation, 0 where the discs only touch \[m\].
+    /// Largest overlap \[m\]: sum of the radii minus the least separation; 0 if the discs only touch.
     pub depth: S,
-    /// Whether the depth is within [`Encounter::tolerance`] of 0.
+    /// Whether the depth is 0 within [`Encounter::tolerance`].
     pub touching: bool,
 }
 
@@ -42,14 +42,14 @@ impl<S: Scalar + defmt::Format> defmt::Format for Conflicts<'_, S> {
 }
 
 impl<'a, S: Scalar> Encounter<'a, S> {
-    /// The contacts during an interval of time \[s\], with where they are and how deep. Cost: that of
-    /// [`Encounter::contacts`], and of [`Encounter::closest`] for each.
+    /// The contacts during an interval of time \[s\], with their place and depth. Cost: that of
+    /// [`Encounter::contacts`], and of [`Encounter::closest`] for each contact.
     pub fn conflicts(&self, during: Interval<S>) -> Conflicts<'a, S> {
         Conflicts { encounter: *self, contacts: self.contacts(during) }
     }
 }
 
-/// A conflict, and with whom.
+/// A conflict with an agent of the fleet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -60,13 +60,13 @@ pub struct Met<S> {
     pub conflict: Conflict<S>,
 }
 
-/// The earliest conflict of a motion with the agents of some regions, those of its row in the table, during an interval of
-/// time \[s\]; of two at the same time the one that comes first among the regions. The motion may differ from the one that
-/// the regions are told of, but not in path and radius: a delay, or another profile. It may be a mere touch
-/// ([`Conflict::touching`]), which plans make on purpose: what overlaps first, [`first_overlap`] tells.
+/// The earliest conflict of a motion with the agents of some regions during an interval of time \[s\]. Pass the regions
+/// of the agent's row in the table. Of two conflicts at the same time, the one whose region comes first is returned.
+/// The motion needs the path and radius of the regions' ego, but may differ in start time or profile. The conflict may
+/// be a mere touch ([`Conflict::touching`]), which plans make on purpose; [`first_overlap`] skips touches.
 ///
-/// Cost: four times of lengths a region, and that of [`Encounter::contacts`] for those where both are at the same time, up to
-/// the earliest contact that is known already.
+/// Cost: four inversions of a profile for each region; and that of [`Encounter::contacts`], up to the earliest contact
+/// known so far, for regions in which both agents are at the same time.
 ///
 /// ```
 /// use pcr_core::{Ecm, Interval, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, first_conflict};
@@ -92,9 +92,9 @@ pub fn first_conflict<'a, S: Scalar>(
     first(ego, regions, during, |_, _| true)
 }
 
-/// As [`first_conflict`], the earliest conflict that is deeper than a touch.
+/// Like [`first_conflict`], but returns the earliest conflict that is deeper than a touch.
 ///
-/// Cost: that of [`first_conflict`], and for each touch on the way that of [`Encounter::closest`].
+/// Cost: that of [`first_conflict`], and that of [`Encounter::closest`] for each touch before the conflict.
 pub fn first_overlap<'a, S: Scalar>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>>,
@@ -103,7 +103,7 @@ pub fn first_overlap<'a, S: Scalar>(
     first(ego, regions, during, |encounter, contact| !encounter.conflict(encounter.whole(contact, during)).touching)
 }
 
-/// The conflict of the earliest contact that counts.
+/// The earliest conflict that the filter accepts.
 fn first<'a, S: Scalar>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>>,
@@ -126,14 +126,14 @@ fn first<'a, S: Scalar>(
 }
 
 impl<S: Scalar> RegionRef<'_, S> {
-    /// The times of an interval at which both agents are on the lengths of the region, the ego by another motion along its
-    /// path: all contacts of the region are among them.
+    /// The part of an interval of time in which both agents are on the lengths of the region, where `ego` may be
+    /// another motion along the ego's path. All contacts that belong to the region are in it.
     fn window(&self, ego: &Motion<'_, S>, during: Interval<S>) -> Option<Interval<S>> {
         let window = times(self.other_motion(), self.other_length(), during)?;
         times(ego, self.length(), window)
     }
 
-    /// The first conflict in the window of this region that is more than touching.
+    /// The first conflict in the time window of this region that is more than a touch.
     pub(crate) fn overlap(&self, ego: &Motion<'_, S>, during: Interval<S>) -> Option<Conflict<S>> {
         let window = self.window(ego, during)?;
         Encounter::new(ego, self.other_motion()).conflicts(window).find(|conflict| !conflict.touching)
@@ -150,14 +150,14 @@ impl<S: Scalar> Iterator for Conflicts<'_, S> {
 }
 
 impl<S: Scalar> Encounter<'_, S> {
-    /// A contact to its end, of which a search in a part of the time may have found the begin only. A search from there on
-    /// need not find a touch again.
+    /// Extends a contact to its end: a search in a part of the time may have found only its begin. A new search from
+    /// there on might miss a touch.
     fn whole(&self, contact: Interval<S>, during: Interval<S>) -> Interval<S> {
         let again = self.contacts(Interval::new(contact.lo, during.hi)).next();
         again.filter(|again| again.lo <= contact.hi).map_or(contact, |again| contact.hull(again))
     }
 
-    /// Where a contact is and how deep.
+    /// The place and depth of a contact.
     fn conflict(&self, time: Interval<S>) -> Conflict<S> {
         let Self { ego, other, .. } = self;
         let deepest = self.closest(time);

@@ -1,18 +1,19 @@
-//! When two discs are in contact, found in steps that cannot miss anything.
+//! Finds when two discs are in contact, in steps that cannot miss a contact.
 //!
-//! Over a step of length h the relative position Δ(t) of the two centres stays within
+//! Over a step of length h, let the relative position of the two centres be Δ(t). It deviates by at most
 //!
 //! ```text
 //! e = Σ |a| h² / 8 + w² / 8ϱ          (w the way of an agent, ϱ the radius of its arc; w² / 4ϱ if it speeds up or slows)
 //! ```
 //!
-//! of the chord between its values at both ends (linear interpolation), so that the chord decides: outside a circle of
-//! R + e there is no contact, inside one of R - e there is. As the deviation is 0 at both ends, less decides that nothing
-//! happens at all (`chord::clears`, `chord::keeps`, `Chord::dives`), also where a step begins at a distance of R. Else the step
-//! is cut to the part in doubt: e falls with the square of the step, and the part in doubt with e. On lines at constant speeds
-//! e is 0 and one step is exact; elsewhere an end of a contact takes about four. The worst case is discs that stay at a
-//! distance of R within the tolerance for a time T: every step there is at least h = √(2 ε / c) long, c = Σ |a| + v²/ϱ, as
-//! e <= ε / 4 always decides; hence at most a few T / h + 1 steps a leg. `Contacts::steps` counts them.
+//! from the chord between its values at both ends (linear interpolation). So the chord decides: if it is outside a
+//! circle of R + e there is no contact, if it is inside one of R - e there is. The deviation is 0 at both ends, so
+//! weaker conditions are enough to decide that nothing changes in the whole step (`chord::clears`, `chord::keeps`,
+//! `Chord::dives`), also if the step begins at a distance of R. Otherwise the step is shortened to the part in doubt: e
+//! falls with the square of the step, and the part in doubt with e. On lines at constant speeds e is 0 and one step is
+//! exact; elsewhere an end of a contact takes about four. The worst case is discs that stay at a distance of R within
+//! the tolerance for a time T. Since e <= ε / 4 always decides, every step there is at least h = √(2 ε / c) long, with
+//! c = Σ |a| + v²/ϱ; hence a leg takes at most a few T / h + 1 steps. `Contacts::steps` counts them.
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
@@ -21,10 +22,10 @@ use crate::query::chord::{Chord, clears, keeps};
 use crate::query::windows::{Instant, Window, Windows};
 use crate::scalar::Scalar;
 
-/// Two agents in motion: are they in contact, when, how near do they come.
+/// A pair of agents in motion: whether and when they are in contact, and how near they come.
 ///
-/// Contact is found for the sum of the radii plus the rounding of the format, [`Encounter::tolerance`] at most. What
-/// is deeper than that is never missed; what is further apart is never reported.
+/// Contacts are found for the sum of the radii plus an allowance for rounding, [`Encounter::tolerance`] at most. An
+/// overlap that is deeper than the tolerance is never missed; discs that are further apart than it are never reported.
 ///
 /// ```
 /// use pcr_core::{Encounter, Interval, Limits, Motion, Path, Point, Pose, Profile, Radians};
@@ -50,23 +51,23 @@ use crate::scalar::Scalar;
 pub struct Encounter<'a, S: Scalar> {
     pub(crate) ego: &'a Motion<'a, S>,
     pub(crate) other: &'a Motion<'a, S>,
-    /// What rounding may do to a distance \[m\].
+    /// Bound on the rounding error of a distance \[m\].
     pad: S,
     tolerance: S,
 }
 
 impl<'a, S: Scalar> Encounter<'a, S> {
-    /// The two, whose order says whose lengths come first.
+    /// Pairs two motions. Lengths of the `ego` come first in results.
     pub fn new(ego: &'a Motion<'a, S>, other: &'a Motion<'a, S>) -> Self {
         let extent = ego.extent().max(other.extent());
         let quadruple = |length: S| length.double().double();
-        // The slack of both positions (docs/errors.md); the last digit of a time counts with the speed.
+        // The slack of both positions (docs/errors.md); the rounding error of a time counts multiplied by the speed.
         let pad = S::slack(extent + ego.reach() + other.reach());
         let pad = [ego, other].into_iter().fold(pad, |pad, motion| pad + motion.drift() + motion.lag() + motion.leap());
         Self { ego, other, pad, tolerance: S::tolerance(extent).max(quadruple(pad)) }
     }
 
-    /// From the first start to the last arrival of the two \[s\].
+    /// The interval from the first start to the last arrival of the two agents \[s\].
     pub fn time(&self) -> Interval<S> {
         self.ego.time().hull(self.other.time())
     }
@@ -76,21 +77,22 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         self.ego.radius() + self.other.radius()
     }
 
-    /// ε: contacts deeper than this are never missed, clearances above it never taken for a contact \[m\]. The larger
-    /// of [`Scalar::tolerance`] of the larger extent and 4 slacks of that extent and both ways at top speed since the
-    /// time 0, with four times the [`Scalar::drift`] and the [`Scalar::lag`] of both, and, in fixed point, their ways at top
-    /// speed in five last digits; 2e-10 of the extent in `f64` unless times are beyond 1e5
-    /// extents.
+    /// Tolerance ε \[m\]: contacts deeper than this are never missed, clearances above it are never reported as
+    /// contacts. It is the larger of two values: [`Scalar::tolerance`] of the larger extent; and 4 slacks of that
+    /// extent plus the distances that both agents go at top speed since the time 0, plus four times the
+    /// [`Scalar::drift`] and the [`Scalar::lag`] of both and, in fixed point, the distances at top speed in five last
+    /// digits. In `f64` it is 2e-10 of the extent unless times are beyond 1e5 extents.
     pub fn tolerance(&self) -> S {
         self.tolerance
     }
 
-    /// When the discs are in contact during an interval of time \[s\], in increasing order, each as long as it lasts.
-    /// Both stand at their start before they set off and at their end after their arrival. Beyond [`Scalar::LIMIT`] nobody
-    /// moves: an interval that goes further is cut there.
+    /// The contacts during an interval of time \[s\], in increasing order, each as a whole interval. Each agent stands
+    /// at its start before it sets off and at its end after its arrival. All times of motions are within
+    /// [`Scalar::LIMIT`], and the interval is limited to that.
     ///
-    /// Cost: a comparison of boxes a pair of segments, four times of lengths where two come near each other, and 50 to
-    /// 100 ns a step on a desktop: one to a few where they do so at the same time, about nine for a contact.
+    /// Cost: a comparison of boxes for each pair of segments, and four inversions of a profile for each pair that comes
+    /// close. A step takes 50 to 100 ns on a desktop: one to a few steps for pairs that are close at the same time,
+    /// about nine for a contact.
     #[cfg_attr(feature = "std", inline(always))]
     pub fn contacts(&self, during: Interval<S>) -> Contacts<'a, S> {
         let reach = self.radius() + self.pad;
@@ -101,9 +103,9 @@ impl<'a, S: Scalar> Encounter<'a, S> {
 }
 
 impl<S: Scalar> Motion<'_, S> {
-    /// The motion to plan with: of a disc that is larger by its margin and by its [`Encounter::tolerance`] with itself. Two such
-    /// discs grow by more than the tolerance of their pair together, so that those of the true radii do not even touch where
-    /// these are told to touch.
+    /// The motion to plan with: its disc is larger by its margin and by its [`Encounter::tolerance`] with itself.
+    /// Together two such discs are larger by more than the tolerance of their pair. So discs of the true radii do not
+    /// even touch where a query reports a touch of these.
     ///
     /// # Errors
     /// [`Invalid::OutOfRange`].
@@ -125,7 +127,7 @@ impl<S: Scalar> Motion<'_, S> {
 }
 
 impl<S: Scalar> Encounter<'_, S> {
-    /// What rounding may do to a distance \[m\].
+    /// Bound on the rounding error of a distance \[m\].
     pub(crate) fn pad(&self) -> S {
         self.pad
     }
@@ -135,13 +137,13 @@ impl<S: Scalar> Encounter<'_, S> {
 #[derive(Clone, Debug)]
 pub struct Contacts<'a, S: Scalar> {
     encounter: Encounter<'a, S>,
-    /// Contact is within this \[m\].
+    /// Discs are in contact if their centres are within this distance \[m\].
     radius: S,
-    /// `None` for paths that are apart.
+    /// `None` for paths that are never near each other.
     windows: Option<Windows<'a, S>>,
     /// The window that is being searched.
     scan: Option<Scan<'a, S>>,
-    /// Since when there is contact.
+    /// Begin of the current contact.
     since: Option<S>,
     /// The end of the window that was searched last.
     last: Option<Instant<S>>,
@@ -155,7 +157,7 @@ impl<S: Scalar + defmt::Format> defmt::Format for Contacts<'_, S> {
     }
 }
 
-/// How far a window is searched.
+/// State of the search in a window.
 #[derive(Clone, Copy, Debug)]
 struct Scan<'a, S: Scalar> {
     window: Window<'a, S>,
@@ -164,7 +166,7 @@ struct Scan<'a, S: Scalar> {
     step: S,
 }
 
-/// What a step ends in.
+/// A change at the end of a step.
 enum Event<S> {
     /// Contact begins at this time.
     Begin(S),
@@ -173,14 +175,15 @@ enum Event<S> {
 }
 
 impl<S: Scalar> Contacts<'_, S> {
-    /// Steps taken so far: evaluations of both motions. See [`Encounter::contacts`] for how many to expect.
+    /// Number of steps taken so far; each one evaluates both motions. See [`Encounter::contacts`] for how many to
+    /// expect.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 }
 
 impl<'a, S: Scalar> Contacts<'a, S> {
-    /// The next window in which the two may come as near as a contact lasts.
+    /// The next window in which the two agents may come near enough for a contact.
     fn next_scan(&mut self) -> Option<Scan<'a, S>> {
         let reach = self.radius + self.encounter.tolerance;
         let window = self.windows.as_mut()?.next(reach)?;
@@ -209,7 +212,7 @@ impl<'a, S: Scalar> Contacts<'a, S> {
         }
     }
 
-    /// One step of the search; an event where something changes.
+    /// One step of the search; returns an event if something changes.
     fn step(&mut self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
         self.steps = self.steps.saturating_add(1);
         let Scan { window, now, step } = *scan;
@@ -248,7 +251,7 @@ struct Stretch<S> {
     now: Instant<S>,
     ahead: Instant<S>,
     chord: Chord<S>,
-    /// How far the relative position may be from the chord.
+    /// Largest deviation of the relative position from the chord.
     error: S,
     duration: S,
     radius: S,
@@ -256,7 +259,7 @@ struct Stretch<S> {
     pad: S,
 }
 
-/// Where the search goes on, how far the next step reaches, and what has happened until then.
+/// Where the search continues, the length of the next step, and an event before that.
 struct Next<S> {
     from: S,
     step: S,
@@ -264,7 +267,7 @@ struct Next<S> {
 }
 
 impl<S: Scalar> Stretch<S> {
-    /// Out of contact: looks for its begin.
+    /// Without contact: looks for the begin of one.
     fn search(&self) -> Next<S> {
         let Some(near) = self.chord.within(self.radius + self.error) else {
             return self.advance();
@@ -283,7 +286,8 @@ impl<S: Scalar> Stretch<S> {
         }
     }
 
-    /// In contact: looks for its end, which is where the discs are apart by the tolerance: what hovers does not flicker.
+    /// In contact: looks for its end, where the discs are apart by the tolerance. This hysteresis avoids many short
+    /// contacts of discs that hover at a distance of R.
     fn follow(&self) -> Next<S> {
         let outer = self.radius + self.tolerance;
         let kept = self.chord.within(outer - self.error);
@@ -291,7 +295,7 @@ impl<S: Scalar> Stretch<S> {
         if kept.is_some_and(|kept| kept.hi >= self.chord.length) {
             return self.advance();
         }
-        // Parts of the chord within smaller radii lie inside the part that is kept.
+        // Parts of the chord within smaller radii lie inside the kept part.
         let left_at = |radius: S| {
             let hi = kept.and_then(|_| self.chord.within(radius)).map(|part| part.hi);
             hi.map_or(self.now.time, |hi| self.time_at(hi))
@@ -302,37 +306,37 @@ impl<S: Scalar> Stretch<S> {
         match self.refined(from, doubt) {
             _ if self.decides(doubt) => {
                 let event = Some(Event::End(left_at(self.radius + self.error)));
-                // A chord does not come back.
+                // A chord that has left the circle does not come back.
                 let from = if kept.is_some() { self.ahead.time } else { self.now.time };
                 Next { from, step: S::LIMIT, event }
             }
             Some(next) => next,
-            // Times have a last digit, too: contact is what cannot be excluded.
+            // The step is down to the last digit of the time: what cannot be excluded counts as contact.
             None => self.advance(),
         }
     }
 
-    /// Nothing happens on the whole step.
+    /// Nothing changes during the whole step.
     fn advance(&self) -> Next<S> {
         Next { from: self.ahead.time, step: self.duration.double(), event: None }
     }
 
-    /// A shorter step, unless it would be none: the part in doubt, at most half of this one.
+    /// A shorter step: the part in doubt, at most half of this step; `None` if the time would not change.
     fn refined(&self, from: S, doubt: Option<S>) -> Option<Next<S>> {
         let half = self.duration.half();
         let step = doubt.map_or(half, |doubt| doubt.min(half));
         (from + step > from).then_some(Next { from, step, event: None })
     }
 
-    /// Whether the chord is as good as the motion: within the tolerance, and within a few roundings or where the next step
-    /// would not be much better.
+    /// Whether the chord is as good as the motion: its error is within the tolerance, and either within a few roundings
+    /// or a shorter step would hardly be better.
     fn decides(&self, doubt: Option<S>) -> bool {
         let quarter = |x: S| x.half().half();
         let shrinks = doubt.is_some_and(|doubt| doubt < quarter(self.duration));
         self.error <= quarter(self.tolerance) && (self.error <= self.pad.double().double().double() || !shrinks)
     }
 
-    /// When the chord is at `x`.
+    /// The time at which the chord has the length `x`.
     fn time_at(&self, x: S) -> S {
         if x < self.chord.length {
             self.now.time + self.duration.portion(x, self.chord.length)
@@ -348,7 +352,7 @@ impl<S: Scalar> Iterator for Contacts<'_, S> {
     fn next(&mut self) -> Option<Interval<S>> {
         loop {
             let scan = self.scan.take().or_else(|| self.next_scan());
-            // No contact outlasts the windows that follow one another.
+            // A contact ends where windows do not follow one another without a gap.
             if let (Some(since), Some(last)) = (self.since, self.last)
                 && scan.as_ref().is_none_or(|scan| last.time < scan.now.time)
             {

@@ -1,11 +1,12 @@
-//! Start delays: by how much an agent has to start later so that it meets no region.
+//! Start delays: how much later an agent has to start so that it meets no region.
 //!
-//! The ego sets off later by τ and stands at its start until then. A point (l, s) of coordination space is met at a
-//! delay of T_other(s) - T_ego(l); the image of a connected region is connected, hence every region forbids one
-//! interval of delays, whatever the profiles. It reaches to infinity where the ego is met standing at its start (later
-//! does not help), or the other standing at its end; and from minus infinity likewise. A finite end is bracketed: what
-//! the box of the region allows lies outside, a delay with a contact inside (`bracket`). The outer end is taken, at which
-//! there was none. Where agents may be late, the interval is longer by as much.
+//! The ego starts later by τ and stands at its start until then. A point (l, s) of coordination space is reached with a
+//! delay of T_other(s) - T_ego(l). The image of a connected region is connected, so every region forbids one interval
+//! of delays, whatever the profiles. The interval is unbounded above if the ego is hit while it stands at its start
+//! (starting later does not help), or if it meets the other agent standing at its end; it is unbounded below in the
+//! mirrored cases. A finite end is bracketed (`bracket`): the extreme delay that the bounding box of the region allows lies
+//! outside, a delay with a contact inside. The outer end of the bracket, at which there was no contact, is the result.
+//! If agents may be late, the interval is longer by their lateness.
 
 use crate::error::in_range;
 use crate::geometry::Interval;
@@ -17,13 +18,13 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 impl<S: Scalar> RegionRef<'_, S> {
-    /// The delays of the ego's start \[s\] at which it meets this region, rounded outward; negative ones are earlier
-    /// starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity. With agents that may be late
-    /// ([`Motion::with_lateness`]) these are the delays at which they may meet.
+    /// The delays of the ego's start \[s\] with which it meets this region, rounded outward; negative delays are
+    /// earlier starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity. If agents may be late
+    /// ([`Motion::with_lateness`]), these are the delays with which they may meet.
     ///
-    /// The ends are right within [`Scalar::tolerance`] of the latest time, and what [`Encounter::tolerance`] of distance
-    /// makes of them; a region in which the discs only touch may forbid all that its ranges allow. Cost: for each finite end
-    /// 10 to 30 searches for contacts.
+    /// The error of an end is [`Scalar::tolerance`] of the latest time, plus the delay that corresponds to a distance
+    /// of [`Encounter::tolerance`]. For a region in which the discs only touch, the result may be all delays that its
+    /// bounding box allows. Cost: 10 to 30 searches for contacts for each finite end.
     pub fn forbidden_delays(&self) -> Interval<S> {
         let possible = self.possible_delays();
         let met = self.delays_inside().find(|&delay| possible.contains(delay) && self.contact_after(delay).is_some());
@@ -31,11 +32,11 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.with_lateness(Interval::new(ends[0], ends[1]))
     }
 
-    /// The delays of the ego's start \[s\] at which it meets this region while both are under way, rounded outward: what either
-    /// does before its start and after its arrival does not count, as if they came from nowhere and were gone then. For tables of
-    /// the edges of a roadmap.
+    /// The delays of the ego's start \[s\] with which it meets this region while both agents are under way, rounded
+    /// outward. An agent does not count before its start or after its arrival, as if it appeared and vanished. Meant
+    /// for tables of the edges of a roadmap.
     ///
-    /// Accuracy, lateness and cost as of [`RegionRef::forbidden_delays`].
+    /// Accuracy, lateness and cost are those of [`RegionRef::forbidden_delays`].
     pub fn passing_delays(&self) -> Interval<S> {
         let possible = self.delays_of(self.ego_motion().time_in(self.length()));
         let meets = |delay| self.contact_in_passing(delay);
@@ -47,7 +48,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.with_lateness(Interval::new(end(possible.lo), end(possible.hi)))
     }
 
-    /// Delays that bring the agents to points inside the region.
+    /// Delays with which the agents meet at points inside the region.
     fn delays_inside(&self) -> impl Iterator<Item = S> {
         let when = |motion: &Motion<'_, S>, length| motion.time_in(Interval::new(length, length)).lo;
         let points = self.inner_points();
@@ -56,7 +57,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         })
     }
 
-    /// The delays that the ranges of the region allow.
+    /// The delays that the bounding box of the region allows.
     fn possible_delays(&self) -> Interval<S> {
         let length = self.length();
         let Interval { lo, hi } = self.delays_of(self.ego_motion().time_in(length));
@@ -65,15 +66,15 @@ impl<S: Scalar> RegionRef<'_, S> {
         Interval::new(if never { -S::LIMIT } else { lo }, if ever { S::LIMIT } else { hi })
     }
 
-    /// The delays that bring what the ego does at these times \[s\] to those at which the other is in the region.
+    /// The delays that move the ego's times `own` \[s\] onto times at which the other agent is in the region.
     pub(super) fn delays_of(&self, own: Interval<S>) -> Interval<S> {
         let their = self.time();
-        // Differences of times have a rounding of their own.
+        // Differences of times have a rounding error of their own.
         let slack = self.resolution();
         Interval::new(their.lo - own.hi - slack, their.hi - own.lo + slack)
     }
 
-    /// Longer by how late the agents may be.
+    /// Extends an interval of delays by the lateness of both agents.
     pub(super) fn with_lateness(&self, delays: Interval<S>) -> Interval<S> {
         let (own, their) = (self.ego_motion().lateness(), self.other_motion().lateness());
         let lo = if delays.lo > -S::LIMIT { delays.lo - own } else { delays.lo };
@@ -85,13 +86,13 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.ego_motion().lateness() > S::ZERO || self.other_motion().lateness() > S::ZERO
     }
 
-    /// Brackets are not narrower than this \[s\].
+    /// Brackets are not made narrower than this \[s\].
     pub(super) fn resolution(&self) -> S {
         let latest = |interval: Interval<S>| interval.lo.abs().max(interval.hi.abs());
         S::tolerance(latest(self.ego_motion().time()).max(latest(self.other_motion().time())))
     }
 
-    /// The end of the forbidden delays between one that is forbidden and one that is beyond it.
+    /// The end of the forbidden delays, between a forbidden delay and one beyond the end.
     fn end_of_delays(&self, inside: S, outside: S) -> S {
         if outside.abs() >= S::LIMIT {
             return outside;
@@ -99,13 +100,14 @@ impl<S: Scalar> RegionRef<'_, S> {
         Bracket { inside, outside, resolution: self.resolution() }.shrunk(|delay| self.contact_after(delay))
     }
 
-    /// How long the ego meets the region if it starts later by this delay, if it does.
+    /// How long the ego is in contact in this region if it starts later by this delay; `None` if it is not.
     fn contact_after(&self, delay: S) -> Option<S> {
-        // A start that the format does not hold is none to recommend.
+        // A start that the format cannot represent counts as forbidden.
         self.ego_motion().delayed(delay).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, self.length(), -S::LIMIT))
     }
 
-    /// How long the ego meets the region while both are under way if it starts later by this delay, if it does.
+    /// How long the ego is in contact in this region while both agents are under way, if it starts later by this delay;
+    /// `None` if it is not.
     fn contact_in_passing(&self, delay: S) -> Option<S> {
         let Ok(ego) = self.ego_motion().delayed(delay) else { return Some(S::ZERO) };
         let under_way = ego.time().common(self.other_motion().time());
@@ -115,28 +117,29 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.contact_during(&ego, self.length(), under_way)
     }
 
-    /// How long the ego, in another motion along its path, first meets the region on a part of it from a time on \[s\], if
-    /// it does.
+    /// Duration \[s\] of the first contact of the ego on a part of this region from a time on, where `ego` is another
+    /// motion along its path; `None` if there is no contact.
     pub(super) fn contact_of(&self, ego: &Motion<'_, S>, part: Interval<S>, from: S) -> Option<S> {
         let Interval { lo, hi } = ego.time().hull(self.other_motion().time());
         self.contact_during(ego, part, Interval::new(lo.max(from), hi))
     }
 
-    /// The same in an interval of time \[s\].
+    /// The same during an interval of time \[s\].
     fn contact_during(&self, ego: &Motion<'_, S>, part: Interval<S>, all: Interval<S>) -> Option<S> {
         let other = self.other_motion();
         let encounter = Encounter::new(ego, other);
         let (own, their) = (times(ego, part, all)?, times(other, self.other_length(), all)?);
         let during = Interval::new(own.lo.max(their.lo), own.hi.min(their.hi));
-        // A contact is connected, hence part of one region; at a grazing one only its deepest point may be inside. No region
-        // covers what is not within R, so that a contact of none is a touch, within what `Encounter::new` adds to R.
+        // A contact is connected, hence belongs to one region; of a grazing contact only the deepest point may be
+        // inside. Regions cover everything within R, so a contact outside of all regions is a touch, within the
+        // allowance that `Encounter::new` adds to R.
         let covers = |time: S| self.covers(ego.length_at(time), other.length_at(time));
         let belongs = |contact: &Interval<S>| covers(contact.middle()) || covers(encounter.closest(*contact).time);
         let mut contacts = (during.lo <= during.hi).then(|| encounter.contacts(during)).into_iter().flatten();
         contacts.find(belongs).map(Interval::length)
     }
 
-    /// The least delay from `delay` on at which the ego does not meet this region.
+    /// The least delay from `delay` on with which the ego does not meet this region.
     fn next_free(&self, delay: S) -> Option<S> {
         let possible = self.possible_delays();
         if !self.with_lateness(possible).contains(delay) {
@@ -154,11 +157,11 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 }
 
-/// The least delay of the ego's start, from `from` \[s\] on, at which it meets none of the regions: those of its row in
-/// the table, or of some of the others. `None` where no delay helps that the format holds; [`RegionRef::forbidden_delays`] tells which regions
-/// forbid all late ones.
+/// The least delay of the ego's start, from `from` \[s\] on, with which it meets none of the regions. Pass the regions
+/// of its row in the table, or those with some of the other agents. `None` if no delay that the format can represent
+/// helps; then [`RegionRef::forbidden_delays`] of each region shows which ones forbid all late starts.
 ///
-/// Cost: a comparison of ranges a region, 10 to 30 searches for contacts for each that is met.
+/// Cost: a comparison of ranges for each region, and 10 to 30 searches for contacts for each region that is met.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, earliest_start};
@@ -187,7 +190,7 @@ pub(super) fn settle<'a, S: Scalar>(
     next_free: impl Fn(&RegionRef<'a, S>, S) -> Option<S>,
 ) -> Option<S> {
     let mut delay = from;
-    // A region that was left behind is not met again: one round for each, and one that finds nothing.
+    // A region that was passed is not met again: one round for each region, and one that changes nothing.
     for () in regions.clone().map(|_| ()).chain([()]) {
         let mut later = delay;
         for region in regions.clone() {

@@ -1,7 +1,7 @@
-//! Waits on the way: how long an agent has to stand at a length of its path so that it meets no region behind it.
+//! Waits on the way: how long an agent has to stand at a length of its path so that it meets no region after it.
 //!
-//! What comes after the length is a motion that is delayed by the wait, so that the forbidden waits are found as the
-//! forbidden delays are (`delay`); how long the agent may stand there is told by the windows in which its place is blocked.
+//! After this length the motion is delayed by the wait, so the forbidden waits are found like the forbidden delays
+//! (`delay`). How long the agent may stand there follows from the windows in which its place is blocked.
 
 use crate::error::in_range;
 use crate::geometry::Interval;
@@ -11,14 +11,15 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 impl<S: Scalar> RegionRef<'_, S> {
-    /// The least wait from `wait` on at a length of the path, after which the ego does not meet the rest of this region.
+    /// The least wait from `wait` on, at a length of the path, with which the ego does not meet the rest of this
+    /// region.
     fn next_free_after(&self, at: S, wait: S) -> Option<S> {
         let at = self.ego_motion().path().length().min(at);
         let part = Interval::new(self.length().lo.max(at), self.length().hi);
         if part.lo > part.hi {
             return Some(wait);
         }
-        // Standing at the end of the path is a part of the rest.
+        // Standing at the end of the path belongs to the rest.
         let ego = self.ego_motion();
         let leaves = self.leaves(at);
         let contact =
@@ -28,7 +29,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         let parked = self.blocked(part, Interval::new(S::LIMIT, S::LIMIT)).next().is_some();
         let stands = part.hi >= ego.path().length() || self.is_open_at_start();
         let apart = wait >= possible.hi && !parked || wait < possible.lo && !stands;
-        // Of agents that may be late all that the ranges allow counts.
+        // If agents may be late, all waits that the bounding box allows count as forbidden.
         if apart || !self.is_uncertain() && contact(wait).is_none() {
             return Some(wait);
         }
@@ -38,12 +39,12 @@ impl<S: Scalar> RegionRef<'_, S> {
         Some(Bracket { inside: wait, outside: possible.hi, resolution: self.resolution() }.shrunk(contact))
     }
 
-    /// When the ego leaves a length of its path by its motion.
+    /// The time at which the ego's motion leaves a length of its path.
     fn leaves(&self, at: S) -> S {
         self.ego_motion().time().lo + self.ego_motion().profile().last_time_at(at)
     }
 
-    /// How long the ego can stand at a length of its path, from when it leaves it by its motion on.
+    /// How long the ego can stand at a length of its path, counted from when its motion leaves it.
     fn longest_wait(&self, at: S) -> S {
         let at = self.ego_motion().path().length().min(at);
         let leaves = self.leaves(at);
@@ -52,15 +53,16 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 }
 
-/// The least further wait of the ego at a length of its path \[m\], limited to it, from `from` \[s\] on, after which it goes on by its motion and
-/// meets none of the regions: those of its row in the table, or of some of the others. At the length 0 it is a delay of
-/// the start. `None` where no wait helps, for what is no number or beyond [`Scalar::LIMIT`], or where the agent is in someone's way before. Whether it can stop there is not asked: a
-/// motion that is at rest at this length can.
+/// The least additional wait of the ego at a length of its path \[m\], from `from` \[s\] on, with which it meets none
+/// of the regions when it continues with its motion. Pass the regions of its row in the table, or those with some of
+/// the other agents. The length is clamped to the path; a wait at length 0 is a delay of the start. `None` if no wait
+/// helps, if the agent would be hit while it waits, or for an argument that is NaN or beyond [`Scalar::LIMIT`]. The
+/// function does not check that the agent can stop there; a motion that is at rest at this length can.
 ///
-/// Where the motion itself waits at this length, that wait comes before. Where the length cuts a region in two, a wait that
-/// leads through between the parts may be missed; so may one that is shorter than all that the ranges of a region allow, if
-/// agents may be late. Cost: for each region that is met that of [`earliest_start`], and a few hundred operations a piece at
-/// this length.
+/// If the motion itself waits at this length, the additional wait comes after that. If the length cuts a region in two,
+/// a wait with which the agent would pass between the parts may be missed. If agents may be late, a wait that is
+/// shorter than all those that the bounding box of a region allows may be missed, too. Cost: that of [`earliest_start`]
+/// for each region that is met, and a few hundred operations for each piece at this length.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, earliest_departure};

@@ -1,7 +1,7 @@
-//! A motion, cut where its formula changes: each leg is one phase on one segment, or a stand.
+//! Splits a motion where its formula changes. Each leg is one phase on one segment, or a stand.
 //!
-//! A motion has a stage before it sets off, one on each segment, and one after its arrival. Stages know where they are,
-//! which costs nothing; when they are takes a time of a length for either end. Legs are the phases of a stage.
+//! A motion has a stage before it sets off, one on each segment, and one after its arrival. The position of a stage is
+//! known at no cost; each end of its time needs an inversion of the profile. Legs are the phases of a stage.
 
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
@@ -9,15 +9,15 @@ use crate::profile::Phase;
 use crate::scalar::{Scalar, Wide};
 use crate::segment::Segment;
 
-/// Part of a motion at constant acceleration on one segment, or a stand.
+/// A part of a motion at constant acceleration on one segment, or a stand.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg<'a, S: Scalar> {
     segment: &'a Segment<S>,
     /// `None` for a stand.
     phase: Option<&'a Phase<S>>,
-    /// When the motion sets off \[s\].
+    /// Time at which the motion sets off \[s\].
     start: S,
-    /// Where a stand is: length along the path \[m\].
+    /// Place of a stand: length along the path \[m\].
     stand: S,
 }
 
@@ -35,10 +35,10 @@ impl<S: Scalar> Leg<'_, S> {
         self.segment.point_at(length - self.segment.from)
     }
 
-    /// How far the agent may be from the point that goes at constant speed along the chord of its way \[m\], over a part
-    /// of the leg that takes `duration` \[s\] for `way` \[m\].
+    /// Largest distance \[m\] of the agent from a point that moves uniformly along the chord, over a part of the leg
+    /// that has the length `way` \[m\] and takes `duration` \[s\].
     ///
-    /// The largest second derivative times h²/8 bounds the error of linear interpolation: over time it is the
+    /// The error of linear interpolation is at most h²/8 times the largest second derivative: over time this is the
     /// acceleration, over length the curvature.
     pub(crate) fn deviation(&self, way: S, duration: S) -> S {
         let eighth = |length: S| length.half().half().half();
@@ -51,18 +51,18 @@ impl<S: Scalar> Leg<'_, S> {
     }
 }
 
-/// Part of a motion on one segment, or one of its two stands.
+/// The part of a motion on one segment, or one of its two stands.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stage<'a, S: Scalar> {
     motion: &'a Motion<'a, S>,
-    /// 0 for the stand before the motion, then 1 more than the place of the segment, at last the stand after the motion.
+    /// 0 for the stand before the motion, then the index of the segment plus 1, finally the stand after the motion.
     place: usize,
     segment: &'a Segment<S>,
-    /// Where a stand is: length along the path \[m\].
+    /// Place of a stand: length along the path \[m\].
     stand: Option<S>,
 }
 
-/// The places of the first and of the last stage that are in an interval of time; `slack` is what rounding may do to a
+/// The indices of the first and the last stage within an interval of time; `slack` bounds the rounding error of a
 /// length \[m\].
 pub(crate) fn places<S: Scalar>(motion: &Motion<'_, S>, during: Interval<S>, slack: S) -> [usize; 2] {
     let (travel, segments) = (motion.time(), motion.path().segments());
@@ -87,7 +87,7 @@ pub(crate) fn places<S: Scalar>(motion: &Motion<'_, S>, during: Interval<S>, sla
 }
 
 impl<'a, S: Scalar> Stage<'a, S> {
-    /// The first stage from a place on, up to the `last` one, whose box meets another one.
+    /// The first stage from `place` on, up to the `last` one, whose box meets `around`.
     pub(crate) fn in_box(motion: &'a Motion<'a, S>, [place, last]: [usize; 2], around: &Bounds<S>) -> Option<Self> {
         let segments = motion.path().segments();
         let stands_in = |point: Point<S>| around.x.contains(point.x) && around.y.contains(point.y);
@@ -107,7 +107,7 @@ impl<'a, S: Scalar> Stage<'a, S> {
         if stands { stage(after, end, Some(motion.path().length())) } else { None }
     }
 
-    /// Box around it \[m\].
+    /// Box around the stage \[m\].
     pub(crate) fn bounds(&self) -> Bounds<S> {
         match self.stand {
             None => self.segment.bounds,
@@ -122,8 +122,8 @@ impl<'a, S: Scalar> Stage<'a, S> {
         self.place
     }
 
-    /// The lengths of the path at which a stage whose box is near that of another one may come nearer than `reach` to it
-    /// \[m\], if there are any.
+    /// The lengths of the path \[m\] at which this stage may come nearer than `reach` to another one, whose box is near
+    /// its own; `None` if there are none.
     pub(crate) fn beside(&self, other: &Self, reach: S) -> Option<Interval<S>> {
         let Segment { from, to, length, .. } = *self.segment;
         let part = match (self.stand, other.stand) {
@@ -134,8 +134,8 @@ impl<'a, S: Scalar> Stage<'a, S> {
         Some(Interval::new(from + part.lo, if part.hi < length { from + part.hi } else { to }))
     }
 
-    /// When the agent is on a part of it, in an interval of time that stands are not longer than \[s\]. A wait at a joint
-    /// belongs to the segment before.
+    /// The time \[s\] in which the agent is on a part of the stage, within the interval `during`, to which stands are
+    /// limited. A wait at a joint belongs to the segment before it.
     pub(crate) fn time_in(&self, part: Interval<S>, during: Interval<S>) -> Interval<S> {
         let (travel, profile, place) = (self.motion.time(), self.motion.profile(), self.place);
         let joints = self.motion.path().segments().len();
@@ -155,8 +155,8 @@ impl<'a, S: Scalar> Stage<'a, S> {
         Interval::new(lo.max(during.lo), hi.min(during.hi))
     }
 
-    /// The leg of the stage from a time on, and when it ends, if the stage does not end before. `phase` is the place of
-    /// a phase that is not after it, and then of its own.
+    /// The leg of the stage from a time on, and its end, if it ends before the stage. On entry `phase` must not be
+    /// behind the phase of the leg; on return it is the index of that phase.
     pub(crate) fn leg(&self, now: S, phase: &mut usize) -> (Leg<'a, S>, Option<S>) {
         let start = self.motion.time().lo;
         let mut phases = self.motion.profile().phases().get(*phase..).unwrap_or_default().iter();

@@ -1,9 +1,9 @@
-//! Safe intervals: when a part of a path is free, and which lengths are free in a window of time.
+//! Safe intervals: when a part of a path is free, and which lengths are free during an interval of time.
 //!
-//! Both are one question in coordination space. The part of the one path that is asked for blocks those lengths of
-//! the other from which it is within R. Per pair of segments these are the slabs between events (see `pair::events`) in
-//! whose middle something of the part is covered: closed forms. The other's motion turns lengths into times; an agent
-//! that stands before its start or after its arrival blocks all of that time.
+//! Both are the same question in coordination space. The part of the ego's path blocks those lengths of the other path
+//! that are within R of it. For each pair of segments, these are the slabs between events (see `pair::events`) in the
+//! middle of which some of the part is covered; this has a closed form. The motion of the other agent turns lengths
+//! into times; an agent that stands before its start or after its arrival blocks all of that time.
 
 use crate::error::Mismatch;
 use crate::geometry::{Interval, Pose};
@@ -18,16 +18,17 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
-/// Parts of one segment that another one blocks, at most: the slabs between 16 events ([`Lengths`]), no two of them neighbours.
+/// Largest number of parts of one segment that another one blocks: of the slabs between 16 events ([`Lengths`]), no two
+/// parts are neighbours.
 const PARTS: usize = 8;
 
 impl<'a, S: Scalar> Encounter<'a, S> {
-    /// When the other agent blocks a part of the ego's path \[m\], in an interval of time \[s\]: its disc is then within
-    /// reach of the ego's on some of these lengths. Disjoint windows in increasing order, rounded outward. A single
-    /// length is a part, too; so is a whole segment. Lengths are limited to the path.
+    /// The windows in an interval of time \[s\] in which the other agent blocks a part of the ego's path \[m\]: its
+    /// disc then reaches the ego's disc at some of these lengths. Disjoint windows in increasing order, rounded
+    /// outward. The part may also be a single length or a whole segment; it is clamped to the path.
     ///
-    /// Cost: a comparison of boxes a pair of segments, and a few hundred operations a pair that comes near, for each
-    /// window.
+    /// Cost for each window: a comparison of boxes for each pair of segments, and a few hundred operations for each
+    /// pair that comes near.
     pub fn blocked(
         &self,
         length: Interval<S>,
@@ -37,19 +38,19 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         union(self.covered(ego, length, other).filter_map(move |covered| kept_from(ego, other, covered, during)))
     }
 
-    /// Lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint, in
-    /// increasing order, rounded outward. Cost as that of [`Encounter::blocked`].
+    /// The lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint
+    /// intervals in increasing order, rounded outward. Cost as for [`Encounter::blocked`].
     pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let during = during.limited();
         let times = [during.lo - self.other.lateness(), during.hi + self.ego.lateness()];
         let lengths = times.map(|time| self.other.length_at(time));
-        // The length that belongs to a time is right within what rounding does to a distance.
+        // The length that belongs to a time is right within the rounding error of a distance.
         let all = Interval::new(S::ZERO, self.other.path().length());
         let part = Interval::new(lengths[0], lengths[1]).widen(self.pad(), all);
         union(self.covered(self.other, part, self.ego))
     }
 
-    /// The lengths of the path of `on` from which some of this part of the path of `by` is within reach, in no order.
+    /// The lengths of the path of `on` that are within reach of this part of the path of `by`, in no order.
     fn covered(
         &self,
         by: &'a Motion<'a, S>,
@@ -58,7 +59,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let slack = Pair::new(by, on).slack;
         let part = on_path(by, part);
-        // The cut of a segment adds roundings of its own.
+        // Cutting a segment adds rounding errors of its own.
         let radius = self.radius() + slack.double();
         let length = Interval::new(S::ZERO, on.path().length());
         let theirs = on.path().segments().iter();
@@ -73,11 +74,11 @@ impl<'a, S: Scalar> Encounter<'a, S> {
 }
 
 impl<'a, S: Scalar> RegionRef<'a, S> {
-    /// When the other agent blocks a part of the ego's path \[m\] in this region, in an interval of time \[s\]: windows in no
-    /// order, which may overlap, rounded outward. Another region of the same two segments may be in it. The ego's own motion
-    /// does not matter.
+    /// The windows in an interval of time \[s\] in which the other agent blocks a part of the ego's path \[m\] in this
+    /// region, rounded outward: in no order, and they may overlap. Another region of the same two segments may be
+    /// included. The ego's own motion does not matter.
     ///
-    /// Cost: a few hundred operations a piece that meets the part.
+    /// Cost: a few hundred operations for each piece that meets the part.
     pub fn blocked(
         &self,
         length: Interval<S>,
@@ -85,7 +86,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
         let length = on_path(ego, length);
-        // The cut of a segment adds roundings of its own.
+        // Cutting a segment adds rounding errors of its own.
         let radius = ego.radius() + other.radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
         let pieces = self.pieces().filter(move |piece| piece.length.meets(length));
@@ -98,11 +99,11 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 }
 
-/// The safe intervals of a part of an agent's path: when no other agent of the fleet blocks any of these lengths \[m\],
-/// in an interval of time \[s\], in increasing order. Each of the others moves as its motion says, standing before and
-/// after it.
+/// The safe intervals of a part of an agent's path: the times in an interval \[s\] at which no other agent of the fleet
+/// blocks any of these lengths \[m\], in increasing order. The other agents move as their motions say, and stand before
+/// and after them.
 ///
-/// Cost: that of [`Encounter::blocked`] for every other agent, for each interval.
+/// Cost for each interval: that of [`Encounter::blocked`] for every other agent.
 ///
 /// # Errors
 /// [`Mismatch::NoSuchAgent`].
@@ -132,8 +133,8 @@ pub fn safe_intervals<'a, S: Scalar>(
     Ok(gaps(union(pairs.flat_map(move |pair| pair.blocked(length, during))), during))
 }
 
-/// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the dual
-/// of [`safe_intervals`], at the same cost and with the same error.
+/// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the
+/// dual of [`safe_intervals`], with the same cost and the same error.
 pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
@@ -145,7 +146,7 @@ pub fn safe_lengths<'a, S: Scalar>(
     Ok(gaps(blocked, Interval::new(S::ZERO, length)))
 }
 
-/// The ego with every other agent.
+/// The encounters of the ego with every other agent.
 fn encounters<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
@@ -156,8 +157,8 @@ fn encounters<'a, S: Scalar>(
     Ok(others.map(move |(_, other)| Encounter::new(own, other)))
 }
 
-/// The part of a path, limited to it: an end that is off by a rounding is on it. One that is no number is an end of the path,
-/// and what is between the ends counts whichever is the larger.
+/// Clamps a part to the path, so that an end that is off by a rounding lies on it. An end that is NaN becomes an end of
+/// the path; the ends may be in either order.
 fn on_path<S: Scalar>(motion: &Motion<'_, S>, part: Interval<S>) -> Interval<S> {
     let (from, to) = (S::ZERO.max(part.lo), motion.path().length().min(part.hi));
     Interval::new(from.min(to), from.max(to))
@@ -165,7 +166,8 @@ fn on_path<S: Scalar>(motion: &Motion<'_, S>, part: Interval<S>) -> Interval<S> 
 
 /// The part of a segment between these lengths of its path, if there is any.
 pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<Segment<S>> {
-    // Not `from` + `length`, which is another number in floating point: a joint, and the end of the path, is on a segment.
+    // Compared with `from` and `to`, because `from` + `length` may differ from `to` in floating point: joints, and the
+    // end of the path, are on the segment.
     let own = Interval::new(segment.from, segment.to);
     if !own.meets(part) {
         return None;
@@ -182,12 +184,12 @@ pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<
         Curve::Line => start.then_line(length),
         Curve::Arc { radius, turn } => start.then_arc(radius, turn, length),
     });
-    // It fits where the whole one does, but for rounding at the limits of the format; the whole one blocks no less.
+    // The cut segment is valid because the whole one is, except for rounding at the limits of the format. The whole
+    // segment blocks no less.
     Some(cut.unwrap_or(*segment))
 }
 
-/// The lengths of the second segment from which some of the first one is within the radius, distances right within
-/// `slack`.
+/// The lengths of the second segment that are within the radius of the first one. Distances are right within `slack`.
 pub(crate) fn covered<S: Scalar>(
     first: &Segment<S>,
     second: &Segment<S>,
@@ -202,7 +204,7 @@ pub(crate) fn covered<S: Scalar>(
     let mut places = parts.iter_mut();
     let mut place: Option<&mut Option<Interval<S>>> = None;
     for (&lo, &hi) in events.iter().zip(events.iter().skip(1)) {
-        // Events may coincide; a second segment of length 0 has this one slab only.
+        // Events may coincide. A second segment of length 0 has only this slab.
         if lo >= hi && second.length > S::ZERO {
             continue;
         }
@@ -225,8 +227,8 @@ pub(crate) fn covered<S: Scalar>(
     parts
 }
 
-/// The times of an interval at which the ego must not be meant to be where the other is on these lengths of its path:
-/// either may be late.
+/// The times of an interval at which the ego must not plan to be within reach of the other agent, which is on these
+/// lengths of its path, because either may be late.
 fn kept_from<S: Scalar>(
     ego: &Motion<'_, S>,
     other: &Motion<'_, S>,
@@ -237,13 +239,14 @@ fn kept_from<S: Scalar>(
     let inner = during.limited();
     let window = times(other, lengths, Interval::new(inner.lo - late, inner.hi + early))?;
     let (lo, hi) = (window.lo - early, window.hi + late);
-    // Beyond the limits nobody moves.
+    // No motion has times beyond the limits.
     let lo = if lo <= inner.lo { during.lo } else { lo };
     let hi = if hi >= inner.hi { during.hi } else { hi };
     (lo <= hi).then_some(Interval::new(lo, hi))
 }
 
-/// The times of an interval at which an agent is on these lengths of its path, standing included.
+/// The times of an interval at which an agent is on these lengths of its path, including the times when it stands
+/// there.
 pub(crate) fn times<S: Scalar>(
     motion: &Motion<'_, S>,
     lengths: Interval<S>,

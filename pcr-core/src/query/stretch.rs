@@ -1,11 +1,12 @@
 //! Speed scale factors: how long an agent has to take for its path so that it meets no region.
 //!
-//! The profile of the ego is stretched as a whole, so that it takes the duration d instead of its own D: speeds are then
-//! D / d times as large, the scale factor. A point (l, s) of coordination space is met at d = D (T_other(s) - t₀) / τ_ego(l),
-//! t₀ the start and τ the time since then. For l > 0 that is continuous, the image of a connected region is connected, and
-//! a region forbids one interval of durations. It reaches to infinity where the region comes to the ego's start (however
-//! slow, it is met) or the other stands in it at its end; down to 0 where it comes to the ego's end, or the other stands in
-//! it at its start. Finite ends are found as those of delays are.
+//! The profile of the ego is stretched as a whole, so that it takes the duration d instead of its own D: speeds are
+//! multiplied by the scale factor D / d. A point (l, s) of coordination space is reached with d = D (T_other(s) - t₀) /
+//! τ_ego(l), where t₀ is the start and τ the time since then. For l > 0 that is continuous, so the image of a connected
+//! region is connected, and a region forbids one interval of durations. The interval is unbounded above if the region
+//! contains the ego's start (the ego is met however slow it is) or if the other agent stands in it at its end. It
+//! extends down to 0 if the region contains the ego's end, or if the other agent stands in it at its start. Finite ends
+//! are found like those of delays.
 
 use crate::error::{Invalid, not_negative};
 use crate::geometry::Interval;
@@ -16,25 +17,25 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 impl<S: Scalar> RegionRef<'_, S> {
-    /// The durations of the ego's motion \[s\] at which it meets this region, if its profile is stretched or shortened as a
-    /// whole ([`Profile::stretched`]) and its start stays, rounded outward; `None` where there is no such duration.
-    /// The forbidden interval of a speed scale factor runs from the duration of the motion divided by the upper end to that
-    /// divided by the lower one. An upper end of [`Scalar::LIMIT`] stands for infinity; `N` is the number of phases of the
-    /// motion at least.
+    /// The durations of the ego's motion \[s\] with which it meets this region, if its profile is stretched or
+    /// compressed as a whole ([`Profile::stretched`]) and its start time stays, rounded outward; `None` if there is no
+    /// such duration. The forbidden interval of a speed scale factor runs from the duration of the motion divided by
+    /// the upper end to the same divided by the lower end. An upper end of [`Scalar::LIMIT`] stands for infinity. `N`
+    /// must be at least the number of phases of the motion.
     ///
-    /// Accuracy as that of [`RegionRef::forbidden_delays`]; a region of which the start time leaves but a small part may forbid
-    /// all that its ranges allow. With agents that may be late all that the ranges of the region
-    /// allow is forbidden. Cost: for each finite end 10 to 40 searches for contacts.
+    /// The accuracy is that of [`RegionRef::forbidden_delays`]. If the start time cuts off all but a small part of the
+    /// region, or if agents may be late, the result may be all durations that the bounding box of the region allows.
+    /// Cost: 10 to 40 searches for contacts for each finite end.
     ///
     /// # Errors
-    /// [`Invalid::Full`] where the motion has more than `N` phases.
+    /// [`Invalid::Full`] if the motion has more than `N` phases.
     pub fn forbidden_durations<const N: usize>(&self) -> Result<Option<Interval<S>>, Invalid> {
         let Some(possible) = self.possible_durations() else {
             return Ok(None);
         };
         let (mut met, mut full) = (None, None);
         if !self.is_uncertain() {
-            // The start may cut off all but a corner of the region.
+            // The start time may cut off all but a corner of the region.
             let eighth = possible.length().half().half().half();
             let even = [(); 7].iter().scan(possible.lo, |place, ()| {
                 *place = *place + eighth;
@@ -56,7 +57,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         Ok(Some(Interval::new(ends[0], ends[1])))
     }
 
-    /// The duration at which the ego is at one length when the other is at another.
+    /// The duration with which the ego is at one length when the other agent is at another.
     fn duration_to_meet(&self, length: S, other_length: S) -> S {
         let (ego, other) = (self.ego_motion(), self.other_motion());
         let start = ego.time().lo;
@@ -65,13 +66,13 @@ impl<S: Scalar> RegionRef<'_, S> {
         then.portion(ego.profile().duration(), since)
     }
 
-    /// The durations that the ranges of the region allow.
+    /// The durations that the bounding box of the region allows.
     fn possible_durations(&self) -> Option<Interval<S>> {
         let ego = self.ego_motion();
         let (length, start, duration) = (self.length(), ego.time().lo, ego.profile().duration());
         let before = Interval::new(-S::LIMIT, start);
         if length.lo <= S::ZERO && self.blocked(Interval::new(S::ZERO, S::ZERO), before).next().is_some() {
-            // However it moves then.
+            // The ego meets the region whatever its duration.
             return Some(Interval::new(S::ZERO, S::LIMIT));
         }
         let (own, their) = (ego.time_in(length), self.time());
@@ -89,7 +90,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         Some(Interval::new(lo.max(S::ZERO), hi.min(S::LIMIT)))
     }
 
-    /// The end of the forbidden durations between one that is forbidden and one that is beyond it.
+    /// The end of the forbidden durations, between a forbidden duration and one beyond the end.
     fn end<const N: usize>(&self, inside: S, outside: S) -> S {
         if outside >= S::LIMIT || outside <= S::ZERO {
             return outside;
@@ -98,7 +99,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         Bracket { inside, outside, resolution: self.resolution() }.shrunk(contact)
     }
 
-    /// How long the ego meets the region if it takes this duration, if it does.
+    /// How long the ego is in contact in this region with this duration of its motion; `None` if it is not.
     fn contact_in<const N: usize>(&self, duration: S) -> Result<Option<S>, Invalid> {
         let ego = self.ego_motion();
         let contact = |profile: &Profile<S, N>| {
@@ -107,21 +108,21 @@ impl<S: Scalar> RegionRef<'_, S> {
         };
         match Profile::<S, N>::stretched(ego.profile(), duration).and_then(|profile| contact(&profile)) {
             Err(full @ Invalid::Full(_)) => Err(full),
-            // What the format does not hold is nothing to recommend.
+            // A duration that the format cannot represent counts as forbidden.
             other => Ok(other.unwrap_or(Some(S::ZERO))),
         }
     }
 }
 
-/// The least duration of the ego's motion, from `from` \[s\] on, at which it meets none of the regions, if its profile is
-/// stretched as a whole and its start stays: those of its row in the table, or of some of the others. `None` where no
-/// duration helps. The speed scale factor is the duration of the motion divided by this. `N` is the number of phases
-/// of the motion at least.
+/// The least duration of the ego's motion, from `from` \[s\] on, with which it meets none of the regions, if its
+/// profile is stretched as a whole and its start time stays. Pass the regions of its row in the table, or those with
+/// some of the other agents. `None` if no duration helps. The speed scale factor is the duration of the motion divided
+/// by the result. `N` must be at least the number of phases of the motion.
 ///
-/// Cost: that of [`RegionRef::forbidden_durations`] for each region on the way, twice.
+/// Cost: twice that of [`RegionRef::forbidden_durations`] for each region that is met.
 ///
 /// # Errors
-/// [`Invalid::Full`] where the motion has more than `N` phases; [`Invalid::NonFinite`], [`Invalid::OutOfRange`] and
+/// [`Invalid::Full`] if the motion has more than `N` phases; [`Invalid::NonFinite`], [`Invalid::OutOfRange`] and
 /// [`Invalid::Negative`] for `from`.
 ///
 /// ```

@@ -1,26 +1,27 @@
-//! The intervals of time in which two agents may be near one another, each on one leg.
+//! The intervals of time in which two agents may be near each other, each on one leg.
 //!
-//! Stages of the two are compared first by where they are, then by when: boxes reject most, and only the rest costs times
-//! of lengths. In the order of the ego's stages, then of the other's, those at the same time follow one another in time.
+//! Stages of the two agents are compared first by position, then by time: boxes reject most pairs, and only the others
+//! need inversions of a profile. Windows come in the order of the ego's stages, then of the other's; windows with the
+//! same stages follow one another in time.
 
 use crate::geometry::{Interval, Vector};
 use crate::motion::Motion;
 use crate::query::legs::{Leg, Stage, places};
 use crate::scalar::{Scalar, Wide};
 
-/// A leg of each agent, while both last.
+/// A leg of each agent, and the time in which both last.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Window<'a, S: Scalar> {
     pub(crate) time: Interval<S>,
     legs: [Leg<'a, S>; 2],
 }
 
-/// Where both agents are at a time.
+/// Positions of both agents at one time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant<S> {
     pub(crate) time: S,
     lengths: [S; 2],
-    /// From the one centre to the other.
+    /// Vector from one centre to the other.
     pub(crate) apart: Vector<S>,
 }
 
@@ -39,7 +40,7 @@ impl<S: Scalar> Window<'_, S> {
         Instant { time, lengths, apart: b.point_at(lengths[1]) - a.point_at(lengths[0]) }
     }
 
-    /// How far the relative position may be from the chord between two instants \[m\].
+    /// Largest deviation of the relative position from the chord between two instants \[m\].
     pub(crate) fn deviation(&self, from: &Instant<S>, to: &Instant<S>) -> S {
         let duration = to.time - from.time;
         let [[a, b], [c, d]] = [from.lengths, to.lengths];
@@ -48,21 +49,22 @@ impl<S: Scalar> Window<'_, S> {
     }
 }
 
-/// The windows of two agents that may be near one another, in increasing order of time.
+/// The windows in which two agents may be near each other, in increasing order of time.
 #[derive(Clone, Debug)]
 pub(crate) struct Windows<'a, S: Scalar> {
     motions: [&'a Motion<'a, S>; 2],
-    /// What is left of the interval of time \[s\].
+    /// The rest of the interval of time \[s\].
     during: Interval<S>,
-    /// Whether that was of length 0: so is its window then.
+    /// Whether the interval had length 0; its window then has, too.
     instant: bool,
-    /// The stages that are left, from the first to the last: of the ego, and of the other for the next one of the ego.
+    /// The remaining stages, first and last: those of the ego, and those of the other agent for the next stage of the
+    /// ego.
     left: [[usize; 2]; 2],
-    /// The first stage of the other that is not over before.
+    /// The first stage of the other agent that is not over before.
     first_of_other: usize,
-    /// What is left of the time that two stages share.
+    /// The rest of the time that two stages share.
     rest: Option<(Interval<S>, [Stage<'a, S>; 2])>,
-    /// The phases of both, or some before them.
+    /// Indices of the current phases of both, or of earlier ones.
     phases: [usize; 2],
 }
 
@@ -87,7 +89,7 @@ impl<'a, S: Scalar> Windows<'a, S> {
         Some(Window { time: Interval::new(time.lo, until), legs: [ego, other] })
     }
 
-    /// The next two stages that may come nearer than `reach` at the same time, and when both last.
+    /// The next two stages that may come nearer than `reach` at the same time, and the interval in which both last.
     fn meeting(&mut self, reach: S) -> Option<(Interval<S>, [Stage<'a, S>; 2])> {
         let [ego, other] = self.motions;
         let near = other.bounds().expanded(reach);
@@ -102,7 +104,8 @@ impl<'a, S: Scalar> Windows<'a, S> {
                 let Some(part) = own.beside(&their, reach) else { continue };
                 let Some(their_part) = their.beside(&own, reach) else { continue };
                 let time = own.time_in(part, self.during).common(their.time_in(their_part, self.during));
-                // What is passed at one time is near both its ends, as far as `Motion::leap`, and they are in windows of others.
+                // Segments that are passed at a single time are skipped: both their ends are near, within
+                // `Motion::leap`, and belong to other windows.
                 if time.lo < time.hi || self.instant && time.lo <= time.hi {
                     return Some((time, [own, their]));
                 }
@@ -111,7 +114,7 @@ impl<'a, S: Scalar> Windows<'a, S> {
         }
     }
 
-    /// Goes on with a stage of the ego, and all of the other.
+    /// Continues with stage `place` of the ego, and all stages of the other agent.
     fn go_on(&mut self, place: usize) {
         (self.left[0][0], self.left[1][0]) = (place, self.first_of_other);
     }

@@ -1,6 +1,6 @@
-//! `f32` and `f64`.
+//! The formats `f32` and `f64`.
 //!
-//! All functions come from `libm` or from `trig`, so a result has the same bits on every machine; the feature `std` and
+//! All functions come from `libm` or from `trig`, so results have the same bits on every machine. The feature `std` and
 //! the FPU of a Cortex-M only replace the square root, which is correctly rounded everywhere. `f32` never computes in
 //! `f64`.
 
@@ -60,7 +60,7 @@ macro_rules! impl_float {
                 self * by
             }
             fn digest(self) -> u32 {
-                // All bits of `f32`, the halves of `f64` on one another: a shift by 0 or 32.
+                // All bits of `f32`; the two halves of `f64` combined: a shift by 0 or 32.
                 let bits = u64::from(self.to_bits());
                 (bits ^ (bits >> 32)) as u32
             }
@@ -78,7 +78,7 @@ macro_rules! impl_float {
                 $t::from_bits(self.to_bits() ^ (<$bits>::from(negated) << ($bits::BITS - 1)))
             }
             fn sum(self, rhs: Self) -> (Self, Self) {
-                // Knuth's; exact for every order of magnitudes.
+                // Knuth's two-sum; exact whatever the order of magnitudes.
                 let sum = self + rhs;
                 let added = sum - self;
                 (sum, (self - (sum - added)) + (rhs - added))
@@ -104,7 +104,7 @@ macro_rules! impl_float {
                 if a + b > 0.0 { squares / (a + b) } else { 0.0 }
             }
             fn quadratic_roots(b: Self, g: $t, doubt: $t) -> Option<[Self; 2]> {
-                // -b ∓ √(b² - g) with the sign that adds magnitudes; the other root from their product g.
+                // -b ∓ √(b² - g) with the sign that adds magnitudes; the other root is g divided by this one.
                 let discriminant = b * b - g;
                 if discriminant < 0.0 {
                     return (discriminant + doubt >= 0.0).then_some([-b; 2]);
@@ -121,7 +121,7 @@ macro_rules! impl_float {
                 let ([base_cos, base_sin], [middle_cos, middle_sin]) = (sector.from, sector.middle);
                 for [a, b, g, doubt] in equations {
                     let discriminant = b * b - a * g;
-                    // τ = q/a and τ = g/q, left as fractions: a = 0 is the far end of the diameter (τ = ∞).
+                    // τ = q/a and τ = g/q, kept as fractions: a = 0 is the far end of the diameter (τ = ∞).
                     let q = -(b + Wide::<$t>::sqrt(discriminant).copysign(b));
                     let mut add = |n: $t, m: $t, real: bool| {
                         // The cosine and sine of 2 atan(n/m), and their common denominator.
@@ -129,7 +129,8 @@ macro_rules! impl_float {
                         let (x, y) = (cos * base_cos - sin * base_sin, sin * base_cos + cos * base_sin);
                         vectors.add([y, x], real & (x * middle_cos + y * middle_sin >= norm * sector.least));
                     };
-                    // By doubt alone they are one: -b/a = -g/b, by the larger one of what is in doubt.
+                    // Real only because of `doubt`: a double root, -b/a = -g/b, computed with the larger of the two
+                    // uncertain coefficients.
                     let (two, larger) = (discriminant >= 0.0, a.abs() > g.abs());
                     let one = discriminant + doubt * (a + g).abs() >= 0.0;
                     add(q, a, two | (one & larger));
@@ -161,8 +162,8 @@ macro_rules! impl_float {
                 2.0 * $t::EPSILON * of
             }
             fn lag(speed: Self, time: Self) -> Self {
-                // One roundoff of the time in what has elapsed of it, two at either end of a phase, two where a stop is, one
-                // of a phase that takes no time.
+                // One roundoff of the time for the elapsed time, two for the two ends of a phase, two for the place of
+                // a stop, one for a phase without duration.
                 4.0 * $t::EPSILON * speed * time
             }
         }

@@ -1,13 +1,13 @@
 //! [`Micro`]: `f32` with the approximations of the crate `micromath`, refined.
 //!
 //! micromath trades accuracy for size and speed: its square root is off by 6 %, its arctangent by 2.8e-3 rad, its sine
-//! by 1.1e-3. No region computed with these would contain what it has to. As first guesses they are good: Newton's
-//! method squares their errors, and three steps for a root and one for an angle reach the last digits of `f32`.
-//! Sines have no such method, they are the polynomials of `f32`.
+//! by 1.1e-3. Regions that are computed with these would not contain the exact ones. But they are good initial guesses:
+//! Newton's method squares their errors, and three steps for a root or one for an angle reach the last digits of `f32`.
+//! There is no such method for sines; those use the polynomials of `f32`.
 //!
-//! On a core with an FPU `f32` is both faster and more accurate, because its root is one instruction and its
-//! arctangent one polynomial; `docs/firmware.md` has the figures. This type is for those who use micromath already
-//! and want what its functions can be made to guarantee.
+//! On a core with an FPU `f32` is both faster and more accurate, because its root is one instruction and its arctangent
+//! one polynomial; `docs/firmware.md` has the figures. This type is for programs that use micromath already and need a
+//! guaranteed accuracy.
 
 use super::trig::Trig;
 use super::{Angle, Radians, Ramp, Scalar, Sector, Wide};
@@ -24,8 +24,8 @@ pub struct Micro(
 );
 
 impl Micro {
-    /// Slack in unit roundoffs of the extent: that of `f32`, and more for roots that are right to 1.5 last digits instead of
-    /// 0.5 and angles that are right to 7 roundoffs instead of 6.
+    /// Slack in unit roundoffs of the extent: that of `f32`, and more because roots are right to 1.5 last digits
+    /// instead of 0.5, and angles to 7 roundoffs instead of 6.
     const SLACK: f32 = 70.0;
 }
 
@@ -50,7 +50,7 @@ impl Neg for Micro {
     }
 }
 
-/// What needs neither roots nor angles is that of `f32`.
+/// Operations that need neither roots nor angles are those of `f32`.
 impl Scalar for Micro {
     type Wide = Self;
     type Unit = f32;
@@ -199,10 +199,10 @@ impl Angle<Micro> for Radians<Micro> {
     }
 }
 
-/// √x, 0 for what is not positive. Right to 1.5 last digits for normal numbers.
+/// √x; 0 if x is not positive. Right to 1.5 last digits for normal numbers.
 fn sqrt(x: f32) -> f32 {
     if x > 0.0 {
-        // Heron's step makes e of a relative error e²/2: 6e-2, 1.8e-3, 1.6e-6, 1.3e-12.
+        // Heron's step turns a relative error e into e²/2: 6e-2, 1.8e-3, 1.6e-6, 1.3e-12.
         (0..3).fold(F32Ext::sqrt(x), |root, _| 0.5 * (root + x / root))
     } else {
         0.0
@@ -212,7 +212,7 @@ fn sqrt(x: f32) -> f32 {
 /// Angle of the vector `(x, y)`, right to 7 unit roundoffs of itself (docs/errors.md); 0 for the zero vector.
 fn atan2(y: f32, x: f32) -> f32 {
     use core::f32::consts::PI;
-    /// Below it micromath's squares would lose their digits, above its inverse they overflow.
+    /// Below this, micromath's squares would lose their digits; above its inverse, they overflow.
     const SMALL: f32 = 1e-12;
     const LARGER: f32 = 1e24;
     if x == 0.0 && y == 0.0 {
@@ -227,7 +227,7 @@ fn atan2(y: f32, x: f32) -> f32 {
         1.0
     };
     let (y, x) = (scale * y, scale * x);
-    // The angle between the guess and the vector, less a third of its cube: of 2.8e-3 that is 7e-9.
+    // The angle between the guess and the vector, without the cubic term, a third of its cube: for 2.8e-3 that is 7e-9.
     let guess = F32Ext::atan2(y, x);
     let (sin, cos) = Trig::sin_cos(guess);
     (guess + (y * cos - x * sin) / (x * cos + y * sin)).clamp(-PI, PI)

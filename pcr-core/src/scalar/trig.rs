@@ -1,14 +1,15 @@
 //! Sine, cosine and arctangent of `f32` and `f64`, each in its own arithmetic, with one division at most.
 //!
-//! libm's `f32` sine and cosine compute in `f64`, which a single-precision FPU does not have, and its arctangents
-//! divide twice. The polynomials are those of Cephes (Moshier 1989) for `f32` and of fdlibm (Sun 1993) for `f64`.
+//! libm computes the sine and cosine of `f32` in `f64`, which a single-precision FPU does not support, and its
+//! arctangents divide twice. The polynomials are those of Cephes (Moshier 1989) for `f32` and of fdlibm (Sun 1993) for
+//! `f64`.
 
 use core::hint::select_unpredictable as select;
 
-/// A floating-point number with these functions of its own.
+/// Floating-point numbers with their own implementation of these functions.
 ///
-/// Two arctangents at once take the time of one where a processor has lanes and the compiler is shown both: a matter of
-/// desktops, hence of `f64`.
+/// If a processor has SIMD lanes and the compiler sees both, two arctangents at once take the time of one. Only
+/// desktops have such lanes, hence only `f64` uses this.
 pub(super) trait Trig: Copy {
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
@@ -18,7 +19,7 @@ pub(super) trait Trig: Copy {
     fn atan2_each([y, v]: [Self; 2], [x, u]: [Self; 2]) -> [Self; 2] {
         [Self::atan2(y, x), Self::atan2(v, u)]
     }
-    /// Tells `found` the angles of vectors `[y, x]`.
+    /// Calls `found` with the angles of vectors `[y, x]`.
     fn angles(vectors: &[[Self; 2]], found: impl FnMut(Self)) {
         vectors.iter().map(|&[y, x]| Self::atan2(y, x)).for_each(found);
     }
@@ -55,13 +56,14 @@ impl Trig for f64 {
     }
 }
 
-/// Sine and cosine: reduced by quarter turns, in parts (Cody and Waite), to `[-π/4, π/4]`. The polynomials are
-/// `(sin r / r - 1) / r²` and `(cos r - 1 + r²/2) / r⁴` of `r²`.
+/// Sine and cosine. The argument is reduced by quarter turns, in parts (Cody and Waite), to `[-π/4, π/4]`. The
+/// polynomials are `(sin r / r - 1) / r²` and `(cos r - 1 + r²/2) / r⁴` in `r²`.
 macro_rules! sin_cos {
     ($(#[$doc:meta])* $name:ident($t:ident), quarter: $quarter:expr, polynomials: $polynomials:expr) => {
         $(#[$doc])*
         fn $name(x: $t) -> ($t, $t) {
-            // Half of what has no more room for a fraction: a sum with it is rounded, its last bits are the integer's.
+            // A sum with this number has no fraction bits: it is rounded to an integer, whose lowest bits are the last
+            // bits of the sum.
             const ROUND: $t = 1.5 / $t::EPSILON;
             const SIGN: u32 = 8 * size_of::<$t>() as u32 - 1;
             let shifted = x * core::$t::consts::FRAC_2_PI + ROUND;
@@ -70,7 +72,7 @@ macro_rules! sin_cos {
             let z = r * r;
             let [sin, cos] = $polynomials(z);
             let (sin, cos) = (r + r * (z * sin), (1.0 - 0.5 * z) + z * (z * cos));
-            // In bits: which quarter it is nobody foresees.
+            // Selected with bit operations, because the quarter is unpredictable.
             let (sin, cos) = (sin.to_bits(), cos.to_bits());
             let exchanged = (sin ^ cos) & (quarters & 1).wrapping_neg();
             let signed = |value, quarters| $t::from_bits(value ^ ((quarters & 2) << (SIGN - 1)));
@@ -79,8 +81,8 @@ macro_rules! sin_cos {
     };
 }
 
-/// Arctangent: the angle of the smaller to the larger component, less an eighth of a turn where it is nearer to that, is
-/// `atan(t)` with `|t| <= tan(π/8)`. The polynomial is `(1 - atan t / t) / t²` of `t²`.
+/// Arctangent. The angle is that of the smaller to the larger component; if it is nearer to an eighth of a turn, that
+/// is subtracted. The rest is `atan(t)` with `|t| <= tan(π/8)`. The polynomial is `(1 - atan t / t) / t²` in `t²`.
 macro_rules! atan2 {
     ($(#[$doc:meta])* $name:ident($t:ident), polynomial: $polynomial:expr) => {
         $(#[$doc])*
@@ -89,7 +91,7 @@ macro_rules! atan2 {
             const TAN_PI_8: $t = 0.414_213_562_373_095_03_f64 as $t;
             let steep = y.abs() > x.abs();
             let (small, large) = (select(steep, x.abs(), y.abs()), select(steep, y.abs(), x.abs()));
-            // Without branches: in which octant it is nobody foresees.
+            // Without branches, because the octant is unpredictable.
             let beyond = select(small > TAN_PI_8 * large, 1.0, 0.0);
             let (n, m) = (small - beyond * large, large + beyond * small);
             let t = if m > 0.0 { n / m } else { 0.0 };
@@ -103,7 +105,7 @@ macro_rules! atan2 {
     };
 }
 
-/// A polynomial by its coefficients, the constant first.
+/// Evaluates a polynomial given by its coefficients, the constant first.
 macro_rules! horner {
     ($name:ident, $t:ident) => {
         fn $name<const N: usize>(x: $t, coefficients: [$t; N]) -> $t {
@@ -114,7 +116,7 @@ macro_rules! horner {
 horner!(horner_f32, f32);
 horner!(horner_f64, f64);
 
-/// Two polynomials side by side, which a processor with lanes takes at once.
+/// Evaluates two polynomials side by side, which a processor with SIMD lanes does at once.
 fn horner_each<const N: usize>(x: f64, coefficients: [[f64; 2]; N]) -> [f64; 2] {
     let sums = coefficients.into_iter().rev().reduce(|[a, b], [c, d]| [a * x + c, b * x + d]);
     sums.unwrap_or_default()
@@ -131,7 +133,8 @@ sin_cos!(
 );
 
 sin_cos!(
-    /// Absolute error below 1.8 unit roundoffs, 2e-16, for `|x|` up to a million; beyond that libm reduces.
+    /// Absolute error below 1.8 unit roundoffs, 2e-16, for `|x|` up to a million; beyond that, libm reduces the
+    /// argument.
     near_sin_cos_f64(f64),
     quarter: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
     polynomials: |z: f64| {
@@ -161,7 +164,7 @@ fn sin_cos_f64(x: f64) -> (f64, f64) {
     if x.abs() < 1e6 { near_sin_cos_f64(x) } else { far_sin_cos_f64(x) }
 }
 
-/// Apart, as its reduction would take a frame on the stack from the near ones, too.
+/// A separate function, because the stack frame of its reduction would otherwise also be needed for small arguments.
 #[cold]
 #[inline(never)]
 fn far_sin_cos_f64(x: f64) -> (f64, f64) {
@@ -210,7 +213,7 @@ mod tests {
 
     use super::*;
 
-    /// The largest error in either of `pairs`, which is below `bound` and not far below it.
+    /// Asserts that the largest error of `pairs`, found and exact, is below `bound`, but not far below it.
     fn assert_bound(bound: f64, pairs: impl Iterator<Item = (f64, f64)>) {
         let worst = pairs.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
         assert!(worst < bound, "largest error {worst:e}");
@@ -231,7 +234,7 @@ mod tests {
 
     #[test]
     fn sin_cos_f64_stays_within_its_bound() {
-        // libm's own error, half a unit in the last place, is on top.
+        // The reference adds the error of libm, half a unit in the last place.
         let near = (-2_000_003_i32..=2_000_003).map(|step| f64::from(step) * 4.0e-6);
         let far = (-500_003_i32..=500_003).map(|step| f64::from(step) * 1.999_9);
         assert_bound(
@@ -260,7 +263,8 @@ mod tests {
 
     #[test]
     fn arctangents_stay_within_their_bounds() {
-        // Relative: an angle is multiplied by radii of any size. libm's own error, a unit in the last place, is on top.
+        // Relative, because an angle is multiplied by radii of any size. The reference adds the error of libm, a unit
+        // in the last place.
         let near = |found: f64, exact: f64| (found / exact, 1.0);
         assert_bound(6.0 * 0.5 * f64::EPSILON, vectors().map(|(y, x)| near(atan2_f64(y, x), libm::atan2(y, x))));
         let vectors = vectors().map(|(y, x)| (y as f32, x as f32));
@@ -282,7 +286,7 @@ mod tests {
         }
     }
 
-    /// Far inside of their bounds, too, a result has the same bits on every machine.
+    /// Results have the same bits on every machine, which is stronger than being within their bounds.
     #[test]
     fn results_have_the_same_bits_everywhere() {
         let add = |sum: u64, bits: u64| sum.wrapping_mul(0x0000_0100_0000_01b3) ^ bits;

@@ -1,16 +1,16 @@
 //! The square root of the FPU of a Cortex-M with hard-float ABI: the only `unsafe` of the workspace's libraries.
 //!
-//! `core` has no stable square root, and `libm`'s is a software routine of some 70 instructions there. The operand
-//! goes through core registers because `asm!` takes no `sreg` operands on these targets. The program `sqrt` of the
-//! firmware compares a million results with `libm::sqrtf` bit for bit in QEMU.
+//! `core` has no stable square root, and that of `libm` is a software routine of some 70 instructions there. The
+//! operand goes through core registers because `asm!` takes no `sreg` operands on these targets. The program `sqrt` of
+//! the firmware compares a million results with `libm::sqrtf` bit for bit in QEMU.
 #![allow(unsafe_code)]
 
 /// √x, correctly rounded: the same bits as `libm::sqrtf`, NaN below zero.
 #[inline]
 pub(super) fn sqrt(x: f32) -> f32 {
     let mut bits = x.to_bits();
-    // SAFETY: targets with the ABI `eabihf` pass numbers in `s` registers, so the FPU is there and on; the block reads
-    // and writes registers that it declares, no memory, no stack, no flags of the core.
+    // SAFETY: targets with the ABI `eabihf` pass numbers in `s` registers, so the FPU exists and is enabled. The block
+    // reads and writes only the registers that it declares; it uses no memory, no stack and no flags of the core.
     unsafe {
         core::arch::asm!(
             "vmov s0, {0}",

@@ -5,18 +5,18 @@ use crate::geometry::{Bounds, Direction, Point};
 use crate::scalar::{Scalar, Unit};
 
 impl<S: Scalar> Segment<S> {
-    /// Sets the boxes of an arc whose ends are known.
+    /// Computes the boxes of an arc whose ends are known.
     pub(super) fn enclose(&mut self, radius: S, turn: Turn) {
         self.bounds = self.arc_bounds(radius, turn);
         let along = (self.end - self.start).along(self.axis).half();
         let bulge = (self.point_at(self.length.half()) - self.start).across(self.axis).half();
         self.middle = self.start + self.axis.vector(along, bulge);
-        // Beyond half a turn it is wider than its chord.
+        // Beyond half a turn an arc is wider than its chord.
         self.half = [if self.half_turn.cos < S::Unit::ZERO { radius } else { along }, bulge.abs()];
     }
 
-    /// Below half a turn a coordinate is extreme at an end, or on the axis where the other component of the heading changes
-    /// its sign; from half a turn on the whole circle is taken.
+    /// Below half a turn a coordinate is extreme at an end, or on the axis where the other component of the heading
+    /// changes its sign. From half a turn on, the whole circle is used.
     fn arc_bounds(&self, radius: S, turn: Turn) -> Bounds<S> {
         let (start, end) = (self.start, self.end);
         let (leaving, arriving) = (self.direction, Direction::<S>::at(self.heading_at_end));
@@ -71,8 +71,8 @@ mod tests {
         }
     }
 
-    /// By its sides, also where it is nearly straight. A thousandth part of an arc bulges by less than 1e-5 here; the rest is
-    /// rounding.
+    /// Compares with points on the sides, also for almost straight arcs. A thousandth of an arc bulges by less than
+    /// 1e-5 here; the rest is rounding.
     #[test]
     fn the_box_along_the_chord_holds_the_arc_and_touches_it() {
         for k in 1..64 {

@@ -1,22 +1,22 @@
-//! Whether and where two segments may come near each other, by boxes along the chords of both and by circles: what rejects most
-//! pairs before any closed form.
+//! Whether and where two segments may come near each other, decided by boxes along the chords of both and by circles.
+//! This rejects most pairs before any closed form is evaluated.
 
 use super::{Curve, Segment};
 use crate::bits;
 use crate::geometry::{Bounds, Interval};
 use crate::scalar::{Scalar, Unit};
 
-/// Segments whose boxes are compared at once.
+/// Number of segments whose boxes are compared at once.
 pub(crate) const ROW: usize = u32::BITS as usize;
 
-/// Which of a row of segments have boxes that meet another one, a bit each.
+/// Which segments of a row have boxes that meet `around`, one bit each.
 pub(crate) fn in_box<S: Scalar>(row: &[Segment<S>], around: Bounds<S>) -> u32 {
     bits::row(row.iter().map(|segment| around.meets(segment.bounds)))
 }
 
 impl<S: Scalar> Segment<S> {
-    /// Whether it may come nearer than `reach` to another segment: the boxes along the chords of both do, and the
-    /// circles of arcs come as near to the box of the other.
+    /// Whether this segment may come nearer than `reach` to another one: the boxes along both chords come that near,
+    /// and the circle of an arc comes that near to the box of the other.
     #[cfg_attr(feature = "std", inline(always))]
     pub(crate) fn near(&self, other: &Self, reach: S) -> bool {
         let (cos, sin) = (self.axis.dot(other.axis).abs(), self.axis.cross(other.axis).abs());
@@ -30,14 +30,15 @@ impl<S: Scalar> Segment<S> {
             && other.circle_near(self, reach)
     }
 
-    /// Where it may come nearer than `reach` to another segment, as lengths along it: the part of a line that is as near to
-    /// the box of the other, the whole of an arc.
+    /// Where this segment may come nearer than `reach` to another one, as lengths along it: the part of a line that is
+    /// that near to the box of the other, or the whole of an arc.
     pub(crate) fn beside(&self, other: &Self, reach: S) -> Option<Interval<S>> {
         let whole = Interval::new(S::ZERO, self.length);
         if self.curve != Curve::Line {
             return Some(whole);
         }
-        // At u it is within x + u c of the middle, on the axis on which x is where it starts and c its slope.
+        // At the length u the distance from the middle along an axis is x + u c, with x its value at the start and c
+        // the slope.
         let within = |x: S, slope: S::Unit, half: S| {
             let ends = [-half - x, half - x].map(|way| way.quotient_unit(slope));
             let [Some(a), Some(b)] = ends else { return whole };
@@ -55,7 +56,7 @@ impl<S: Scalar> Segment<S> {
         let Curve::Arc { radius, .. } = self.curve else {
             return true;
         };
-        // A centre far away is not known any better.
+        // The centre of a large circle is known less accurately.
         let reach = reach + S::slack(radius.double());
         let apart = other.middle - self.centre(radius);
         let (along, across) = (apart.along(other.axis).abs(), apart.across(other.axis).abs());

@@ -1,4 +1,4 @@
-//! A fleet in the caller's memory, in safe Rust.
+//! A fleet in the memory of the caller, in safe Rust.
 
 use super::number::{S, angle, inner};
 use super::points::given;
@@ -11,12 +11,12 @@ use pcr_core::{
     Unsolved, plan_delays,
 };
 
-/// The regions of a fleet, in the caller's memory.
+/// The table of regions of a fleet, in the memory of the caller.
 pub(super) type Regions = Ecm<S, &'static mut [Region], &'static mut [Piece<S>]>;
-/// The same with orders.
+/// The same, with orders.
 pub(super) type Ordered = Orders<S, &'static mut [Region], &'static mut [Piece<S>], &'static mut [Order<S>]>;
 
-/// The table of a fleet, with orders where there is memory for them.
+/// The table of a fleet; it has orders if there is memory for them.
 enum Table {
     Regions(Regions),
     Ordered(Ordered),
@@ -59,12 +59,12 @@ impl Table {
 
 /// Agents, and the table of their regions.
 pub(crate) struct Fleet {
-    /// Of all agents, without gaps, and in the same order.
+    /// Segments of all agents, without gaps, in the order of the agents.
     segments: Arena<Segment<S>>,
     phases: Arena<Phase<S>>,
     motions: Stack<Motion<'static, S>>,
     table: Table,
-    /// Where the agents are, and room for a check: as many as motions, or none without orders.
+    /// Progress of the agents, and room for a check: as many entries as motions, or none without orders.
     progress: Stack<Progress<S>>,
     reaches: &'static mut [Reach<S>],
 }
@@ -106,7 +106,7 @@ impl Fleet {
         }
     }
 
-    /// The orders, and where all are.
+    /// The orders, and the progress of all agents.
     pub(super) fn ordered(&self) -> Result<(&Ordered, &[Progress<S>]), PcrStatus> {
         match &self.table {
             Table::Regions(_) => Err(PcrStatus::NoOrders),
@@ -114,7 +114,7 @@ impl Fleet {
         }
     }
 
-    /// The same, to be changed, the motions, and room for a check.
+    /// The same, mutable, with the motions and room for a check.
     pub(super) fn ordered_mut(&mut self) -> Result<OrderedMut<'_>, PcrStatus> {
         match &mut self.table {
             Table::Regions(_) => Err(PcrStatus::NoOrders),
@@ -127,7 +127,7 @@ impl Fleet {
         }
     }
 
-    /// From the first start to the last arrival.
+    /// The interval from the first start to the last arrival.
     pub(super) fn duration(&self) -> Interval<S> {
         let times = self.motions().iter().map(Motion::time);
         times.reduce(Interval::hull).unwrap_or_default()
@@ -138,13 +138,13 @@ impl Fleet {
         if !self.motions.push(motion) {
             return Err(PcrStatus::NoRoom);
         }
-        // As many as motions; none without orders.
+        // There are as many entries as motions; none without orders.
         let _ = self.progress.push(Progress::default());
         self.take(&motion);
         Ok(())
     }
 
-    /// The motion of an agent in free memory, which is taken once nothing can go wrong any more.
+    /// Builds the motion of an agent in free memory. The caller takes that memory once nothing can fail any more.
     fn placed(&mut self, agent: &PcrAgent) -> Result<Motion<'static, S>, PcrStatus> {
         let segments = place(agent, self.segments.free())?;
         let path = PathRef::new(self.segments.next(segments))?;
@@ -157,14 +157,14 @@ impl Fleet {
         self.phases.take(motion.profile().phases().len());
     }
 
-    /// Another agent in the place of one; a table that was complete is so afterwards.
+    /// Replaces an agent. If the table was built, it is so afterwards.
     pub(super) fn replace(&mut self, index: usize, agent: &PcrAgent) -> Result<(), PcrStatus> {
         let before = *self.motion(index)?;
         let motion = self.placed(agent)?;
         match self.table.replace(self.motions.values_mut(), index, motion) {
             Err(Unchanged::Full(full)) => return Err(full.into()),
             Ok(()) => {}
-            // It was not complete before.
+            // The table was not built before.
             Err(_) => *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion,
         }
         if let Some(progress) = self.progress.get_mut(index) {
@@ -174,7 +174,7 @@ impl Fleet {
         self.close(&before)
     }
 
-    /// A new path with orders, as [`Orders::admit`].
+    /// Gives an agent a new path with orders, like [`Orders::admit`].
     pub(super) fn admit(
         &mut self,
         agent: usize,
@@ -195,18 +195,19 @@ impl Fleet {
         self.close(&before).map_err(silent)
     }
 
-    /// Removes an agent; those behind it move up by one number. A table that was complete is so afterwards.
+    /// Removes an agent; the number of every agent behind it decreases by one. If the table was built, it is so
+    /// afterwards.
     pub(super) fn remove(&mut self, index: usize) -> Result<(), PcrStatus> {
         let gone = *self.motion(index)?;
-        // Whatever it was not the table of, it is not now.
+        // A table that did not belong to the fleet before does not belong to it now.
         let _ = self.table.erase(self.motions.values(), index);
         self.motions.remove(index);
         self.progress.remove(index);
         self.close(&gone)
     }
 
-    /// Closes the gap that a motion leaves: those behind it move down, one after the other, so that each is read before
-    /// anything is written there.
+    /// Closes the gap that a motion leaves: the parts behind it move down, one after the other, so that each is read
+    /// before it is overwritten.
     fn close(&mut self, gone: &Motion<'static, S>) -> Result<(), PcrStatus> {
         let (path, profile) = (gone.path().segments(), gone.profile().phases());
         let mut to = [self.segments.place(path), self.phases.place(profile)];
@@ -230,7 +231,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// Computes the table anew.
+    /// Computes the table again.
     pub(super) fn build(&mut self) -> Result<(), PcrStatus> {
         Ok(self.table.fill(self.motions.values())?)
     }
@@ -247,7 +248,8 @@ impl Fleet {
         Ok(())
     }
 
-    /// Delays the starts so that nobody collides; `room` is for a plan. The fleet is as before where there is none.
+    /// Delays the starts so that no agents collide; `room` is memory for a plan. The fleet is unchanged if there is no
+    /// plan.
     pub(super) fn plan(
         &mut self,
         mut room: Stack<Motion<'static, S>>,
@@ -268,7 +270,7 @@ impl Fleet {
     }
 }
 
-/// Orders and what goes with them.
+/// Orders, and the data that are needed to change them.
 pub(super) struct OrderedMut<'a> {
     pub(super) orders: &'a mut Ordered,
     pub(super) motions: &'a mut [Motion<'static, S>],
@@ -276,7 +278,7 @@ pub(super) struct OrderedMut<'a> {
     pub(super) reaches: &'a mut [Reach<S>],
 }
 
-/// Places the path of an agent in the first of these slots; how many it takes.
+/// Builds the path of an agent in the first slots; returns the number of slots.
 fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, PcrStatus> {
     let legs = given(values(agent.legs, agent.leg_count))?;
     let position = Point::new(inner(agent.x), inner(agent.y));
@@ -298,7 +300,7 @@ fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, PcrStatus>
     Ok(count.max(1))
 }
 
-/// The profile of an agent in the first of these slots; how many it takes.
+/// Builds the profile of an agent in the first slots; returns the number of slots.
 fn profile(agent: &PcrAgent, length: S, slots: &mut [Phase<S>]) -> Result<usize, PcrStatus> {
     let stretches = given(values(agent.stretches, agent.stretch_count))?;
     let mut count = 0;

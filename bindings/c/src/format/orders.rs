@@ -1,4 +1,5 @@
-//! Passing orders: who passes a region first. Whoever keeps its hold touches nobody, however late anybody is.
+//! Passing orders: which agent passes a region first. Agents that keep their holds do not touch one another, whatever
+//! their delays.
 
 use super::fleet::OrderedMut;
 use super::number::{Real, S, inner, plain};
@@ -8,7 +9,7 @@ use crate::memory::values;
 use crate::status::{PcrHoldKind, PcrRefused, PcrStatus, decision, pass};
 use pcr_core::{Brakes, Hold, Interval, Pass, Progress, Refused, Scalar, Tolerances};
 
-/// What a refusal comes to, told where there is a place for it.
+/// Converts a refusal, and writes the reason if there is a place for it.
 fn refused(why: Option<&mut PcrRefused>, refused: Refused) -> PcrStatus {
     if let (Some(why), Some(refused)) = (why, PcrRefused::of(refused)) {
         *why = refused;
@@ -34,7 +35,7 @@ fn tolerances(tolerances: Option<&PcrTolerances>) -> Result<Tolerances<S>, PcrSt
     }
 }
 
-/// The regions of an agent, who passes them first, and their count.
+/// The regions of an agent, the order in which it passes them, and their count.
 #[unsafe(export_name = name!("fleet_passings"))]
 pub extern "C" fn pcr_fleet_passings(
     place: Option<&PcrFleet>,
@@ -56,9 +57,9 @@ pub extern "C" fn pcr_fleet_passings(
     })
 }
 
-/// Takes the orders in which the motions of the fleet pass their regions, those of a plan without collisions. Decisions that
-/// were made before are overwritten. PCR_STATUS_REFUSED where two meet, or pass so near that it cannot be told who is first;
-/// `why` tells who, and may be null.
+/// Takes the orders from the motions of the fleet, which must be those of a plan without collisions. Earlier decisions
+/// are overwritten. PCR_STATUS_REFUSED if two agents meet, or pass so close that it cannot be decided which one is
+/// first; `why` then names them. `why` may be null.
 #[unsafe(export_name = name!("fleet_orders_as_planned"))]
 pub extern "C" fn pcr_fleet_orders_as_planned(place: Option<&mut PcrFleet>, why: Option<&mut PcrRefused>) -> PcrStatus {
     change(place, |fleet| {
@@ -67,8 +68,9 @@ pub extern "C" fn pcr_fleet_orders_as_planned(place: Option<&mut PcrFleet>, why:
     })
 }
 
-/// Decides about all regions of two agents that are not decided yet: whether the ego passes them first (PCR_FIRST) or second
-/// (PCR_SECOND). What is behind the second is passed. `pcr_fleet_check` tells whether everybody can finish then.
+/// Decides the order of all undecided regions of two agents: whether the ego passes them first (PCR_FIRST) or second
+/// (PCR_SECOND). Parts of a region behind the second agent count as passed. `pcr_fleet_check` checks that all agents
+/// can still finish.
 #[unsafe(export_name = name!("fleet_decide"))]
 pub extern "C" fn pcr_fleet_decide(place: Option<&mut PcrFleet>, ego: usize, other: usize, pass: u8) -> PcrStatus {
     change(place, |fleet| {
@@ -80,8 +82,8 @@ pub extern "C" fn pcr_fleet_decide(place: Option<&mut PcrFleet>, ego: usize, oth
     })
 }
 
-/// The same for the region in one place of the table (`PcrPassing.place`), whether it is decided or not.
-/// PCR_STATUS_NO_SUCH_REGION where the agent has none there.
+/// Decides the order of the region at one index of the table (`PcrPassing.place`). An order that exists is overwritten.
+/// PCR_STATUS_NO_SUCH_REGION if the agent has no region there.
 #[unsafe(export_name = name!("fleet_decide_at"))]
 pub extern "C" fn pcr_fleet_decide_at(place: Option<&mut PcrFleet>, region: usize, ego: usize, pass: u8) -> PcrStatus {
     change(place, |fleet| {
@@ -99,8 +101,8 @@ pub extern "C" fn pcr_fleet_decide_at(place: Option<&mut PcrFleet>, region: usiz
     })
 }
 
-/// Takes in where an agent is. Reports may come late, twice and in any order: none takes back what another one has said. It must be
-/// about the path that the agent has now.
+/// Updates the progress of an agent. Reports may come late, twice and in any order; an older report does not undo a
+/// newer one. The report must be about the present path of the agent.
 #[unsafe(export_name = name!("fleet_report"))]
 pub extern "C" fn pcr_fleet_report(
     place: Option<&mut PcrFleet>,
@@ -117,8 +119,8 @@ pub extern "C" fn pcr_fleet_report(
     })
 }
 
-/// How far an agent may go, given what was reported of the others: it has to brake so that it stays there
-/// (`pcr_stopping_speed`). Old reports give a hold that is too low, never one that is too high.
+/// How far an agent may go, given the reports of the others. The agent has to brake so that it does not exceed this
+/// (`pcr_stopping_speed`). Reports that are out of date give a hold that is too low, never one that is too high.
 #[unsafe(export_name = name!("fleet_hold"))]
 pub extern "C" fn pcr_fleet_hold(place: Option<&PcrFleet>, agent: usize, out: Option<&mut PcrHold>) -> PcrStatus {
     ask(place, |fleet| {
@@ -135,8 +137,9 @@ pub extern "C" fn pcr_fleet_hold(place: Option<&PcrFleet>, agent: usize, out: Op
     })
 }
 
-/// Whether everybody can get to the end of its path, from where all were reported, without breaking an order.
-/// PCR_STATUS_REFUSED where somebody would wait for ever, or is where it should have waited; `why` tells who, and may be null.
+/// Checks that every agent can reach the end of its path, from the place that was reported last, without breaking an
+/// order. PCR_STATUS_REFUSED if an agent would wait for ever, or is where it should have waited; `why` then names it.
+/// `why` may be null.
 #[unsafe(export_name = name!("fleet_check"))]
 pub extern "C" fn pcr_fleet_check(
     place: Option<&mut PcrFleet>,
@@ -150,12 +153,13 @@ pub extern "C" fn pcr_fleet_check(
     })
 }
 
-/// Gives an agent a new path, with orders for all its regions so that everybody can finish; the orders that the others have with
-/// one another stay as they are. `report` is where it is on the new path, which goes on along the old one up to where the agent
-/// can stop. `prefer` says of every agent whether the admitted one should pass it first (PCR_FIRST) or second, where both are
-/// possible; null for all second. The table must be built, and the memory needs room as for `pcr_fleet_replace`.
+/// Gives an agent a new path and orders for all its regions, with which every agent can finish. The orders between the
+/// other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
+/// least up to where the agent can stop. `prefer` says for every other agent whether the admitted one should pass it
+/// first (PCR_FIRST) or second, where both are possible; if it is null, second. The table must be built, and the memory
+/// needs room as for `pcr_fleet_replace`.
 ///
-/// PCR_STATUS_REFUSED leaves everything as it was; `why` tells who is in the way, and may be null.
+/// PCR_STATUS_REFUSED leaves everything unchanged; `why` then names the agent in the way. `why` may be null.
 #[unsafe(export_name = name!("fleet_admit"))]
 pub extern "C" fn pcr_fleet_admit(
     place: Option<&mut PcrFleet>,
@@ -178,7 +182,7 @@ pub extern "C" fn pcr_fleet_admit(
     })
 }
 
-/// Drops the orders of regions that the first agent has left: they cost no time any more.
+/// Drops the orders of regions that the first agent has left, so that they are not evaluated any more.
 #[unsafe(export_name = name!("fleet_passed"))]
 pub extern "C" fn pcr_fleet_passed(place: Option<&mut PcrFleet>) -> PcrStatus {
     change(place, |fleet| {
@@ -193,7 +197,7 @@ fn brakes(brakes: Option<&PcrBrakes>) -> Result<Brakes<S>, PcrStatus> {
     Ok(Brakes::new(inner(brakes.deceleration), inner(brakes.reaction))?)
 }
 
-/// The way that is needed to stop from a speed (m/s), rounded up (m).
+/// The stopping distance from a speed (m/s), rounded up (m).
 #[unsafe(export_name = name!("stopping_way"))]
 pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakes>, speed: Real, way: Option<&mut Real>) -> PcrStatus {
     status(brakes(how).and_then(|brakes| {
@@ -202,7 +206,8 @@ pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakes>, speed: Real, way: Op
     }))
 }
 
-/// The speed from which this way (m) is enough to stop, rounded down (m/s); 0 where there is no way.
+/// The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above
+/// 0.
 #[unsafe(export_name = name!("stopping_speed"))]
 pub extern "C" fn pcr_stopping_speed(how: Option<&PcrBrakes>, way: Real, speed: Option<&mut Real>) -> PcrStatus {
     status(brakes(how).and_then(|brakes| {

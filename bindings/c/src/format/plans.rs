@@ -1,4 +1,4 @@
-//! Conflicts of motions, and what resolves them.
+//! Conflicts of motions, and functions that resolve them.
 
 use super::number::{Real, S, plain};
 use super::points::{Room, ask, change, given, interval, number, range};
@@ -17,8 +17,8 @@ fn record(conflict: &Conflict<S>) -> PcrConflict {
     }
 }
 
-/// The conflicts of two agents on their motions, in order of time from the first start of any agent to the last arrival,
-/// and their count. It asks the motions, not the table.
+/// The conflicts of two agents on their motions, in order of time from the first start of any agent to the last
+/// arrival, and their count. It uses the motions and not the table.
 #[unsafe(export_name = name!("fleet_conflicts"))]
 pub extern "C" fn pcr_fleet_conflicts(
     place: Option<&PcrFleet>,
@@ -36,7 +36,7 @@ pub extern "C" fn pcr_fleet_conflicts(
 }
 
 /// The earliest conflict of an agent with any other, from the first start of any agent to the last arrival, and whether
-/// there is one. Mere touches are passed over, unless they are asked for: plans make agents touch on purpose.
+/// there is one. Mere touches are skipped unless `touches` is set, because plans make agents touch on purpose.
 #[unsafe(export_name = name!("fleet_first_conflict"))]
 pub extern "C" fn pcr_fleet_first_conflict(
     place: Option<&PcrFleet>,
@@ -58,8 +58,8 @@ pub extern "C" fn pcr_fleet_first_conflict(
     })
 }
 
-/// The least delay of an agent's start, from `from` on (s), with which it meets none of the others, each moving as it does
-/// now. `PCR_STATUS_NO_PLAN` where no delay helps. `pcr_fleet_delay` makes it so.
+/// The least delay of an agent's start, from `from` on (s), with which it meets none of the others, which move as they
+/// do now. `PCR_STATUS_NO_PLAN` if no delay helps. Apply it with `pcr_fleet_delay`.
 #[unsafe(export_name = name!("fleet_earliest_start"))]
 pub extern "C" fn pcr_fleet_earliest_start(
     place: Option<&PcrFleet>,
@@ -75,8 +75,8 @@ pub extern "C" fn pcr_fleet_earliest_start(
     })
 }
 
-/// The times in an interval (s) at which no other agent is in the way on a part of the ego's path (m), wherever on it the ego
-/// is, and how many intervals there are. It asks the motions, not the table.
+/// The times in an interval (s) at which no other agent blocks any of these lengths of the ego's path (m), and the
+/// number of intervals. It uses the motions and not the table.
 #[unsafe(export_name = name!("fleet_safe_intervals"))]
 pub extern "C" fn pcr_fleet_safe_intervals(
     place: Option<&PcrFleet>,
@@ -94,9 +94,10 @@ pub extern "C" fn pcr_fleet_safe_intervals(
     })
 }
 
-/// Delays the starts of all agents so that none overlaps another, each as little as those before it in the order allow.
-/// `order` lists each agent once, the highest priority first, and comes back as it was used. `room` is for a motion an agent,
-/// and free afterwards. Where there is no plan, nobody is delayed and `why` tells who is in the way; it may be null.
+/// Delays the starts of all agents so that none overlap; each delay is as small as the agents before it in the order
+/// allow. `order` lists each agent once, the highest priority first, and returns the order that was used. `room` needs
+/// one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed and `why` names the
+/// agent in the way. `why` may be null.
 #[unsafe(export_name = name!("fleet_plan_delays"))]
 pub extern "C" fn pcr_fleet_plan_delays(
     place: Option<&mut PcrFleet>,

@@ -1,4 +1,4 @@
-//! What all functions do with what C hands over: null pointers are told, numbers are checked, what does not fit is counted.
+//! Handles the arguments of all functions: reports null pointers, checks numbers, and counts results that do not fit.
 
 use super::fleet::Fleet;
 use super::number::{Real, S, inner, plain};
@@ -7,22 +7,22 @@ use crate::memory::{self, Place};
 use crate::status::PcrStatus;
 use pcr_core::{Interval, Scalar};
 
-// SAFETY: it is made of integers, and opaque.
+// SAFETY: the type consists of integers and is opaque.
 unsafe impl Place for PcrFleet {
     type Value = Fleet;
 }
 
-/// What C gets to know.
+/// The status for C.
 pub(super) fn status(outcome: Result<(), PcrStatus>) -> PcrStatus {
     outcome.err().unwrap_or(PcrStatus::Ok)
 }
 
-/// Does something with a fleet.
+/// Calls `work` with a fleet.
 pub(super) fn ask(place: Option<&PcrFleet>, work: impl FnOnce(&Fleet) -> Result<(), PcrStatus>) -> PcrStatus {
     status(given(place).and_then(|place| work(memory::get(place))))
 }
 
-/// Does something to a fleet.
+/// Calls `work` with a mutable fleet.
 pub(super) fn change(
     place: Option<&mut PcrFleet>,
     work: impl FnOnce(&mut Fleet) -> Result<(), PcrStatus>,
@@ -30,12 +30,12 @@ pub(super) fn change(
     status(given(place).and_then(|place| work(memory::get_mut(place))))
 }
 
-/// A pointer that must not be null.
+/// Checks that a pointer is not null.
 pub(super) fn given<T>(pointer: Option<T>) -> Result<T, PcrStatus> {
     pointer.ok_or(PcrStatus::Null)
 }
 
-/// The caller's places for values, and for how many there are.
+/// The caller's buffer for values, and the place for their count.
 pub(super) struct Room<'a, T> {
     places: &'a mut [T],
     count: &'a mut usize,
@@ -46,7 +46,7 @@ impl<'a, T: Copy> Room<'a, T> {
         Ok(Self { places: given(memory::places(out, capacity))?, count: given(count)? })
     }
 
-    /// Copies values out, and tells how many there are; those that do not fit are counted.
+    /// Copies values to the buffer and writes their count; those that do not fit are counted, too.
     pub(super) fn fill(self, all: impl Iterator<Item = T>) -> Result<(), PcrStatus> {
         let mut places = self.places.iter_mut();
         let mut fits = true;
@@ -62,7 +62,7 @@ impl<'a, T: Copy> Room<'a, T> {
     }
 }
 
-/// A number that the format takes.
+/// Checks that a number is valid in the format.
 pub(super) fn number(value: Real) -> Result<S, PcrStatus> {
     let value = inner(value);
     match value {
@@ -72,18 +72,18 @@ pub(super) fn number(value: Real) -> Result<S, PcrStatus> {
     }
 }
 
-/// An interval of such numbers.
+/// Checks an interval of numbers.
 pub(super) fn range(interval: PcrInterval) -> Result<Interval<S>, PcrStatus> {
     let (lo, hi) = (number(interval.lo)?, number(interval.hi)?);
     if lo <= hi { Ok(Interval::new(lo, hi)) } else { Err(PcrStatus::OutOfRange) }
 }
 
-/// An interval as C has it.
+/// Converts an interval to C.
 pub(super) fn interval(interval: Interval<S>) -> PcrInterval {
     PcrInterval { lo: plain(interval.lo), hi: plain(interval.hi) }
 }
 
-/// The index of an agent in a record.
+/// Index of an agent in a record.
 pub(super) fn short(agent: usize) -> u16 {
     u16::try_from(agent).unwrap_or(u16::MAX)
 }

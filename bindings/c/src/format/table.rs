@@ -1,4 +1,4 @@
-//! A fleet, its table of regions, and what the table says.
+//! Functions for a fleet and its table of regions.
 
 use super::fleet::Fleet;
 use super::number::Real;
@@ -8,7 +8,7 @@ use crate::memory::{get, put};
 use crate::status::PcrStatus;
 use pcr_core::RegionRef;
 
-/// Makes a fleet without agents in the caller's memory.
+/// Creates a fleet without agents in the memory of the caller.
 #[unsafe(export_name = name!("fleet_init"))]
 pub extern "C" fn pcr_fleet_init(place: Option<&mut PcrFleet>, memory: Option<&PcrMemory>) -> PcrStatus {
     status(given(place).and_then(|place| {
@@ -17,7 +17,7 @@ pub extern "C" fn pcr_fleet_init(place: Option<&mut PcrFleet>, memory: Option<&P
     }))
 }
 
-/// Adds an agent; agents are numbered from 0. The table does not know it before `pcr_fleet_build`.
+/// Adds an agent; agents are numbered from 0. The table does not include it before `pcr_fleet_build`.
 #[unsafe(export_name = name!("fleet_add"))]
 pub extern "C" fn pcr_fleet_add(place: Option<&mut PcrFleet>, agent: Option<&PcrAgent>) -> PcrStatus {
     change(place, |fleet| fleet.add(given(agent)?))
@@ -29,42 +29,45 @@ pub extern "C" fn pcr_fleet_agents(place: Option<&PcrFleet>) -> usize {
     place.map_or(0, |place| get(place).motions().len())
 }
 
-/// Computes the regions of all pairs of agents; nothing is decided then about who passes them first. Where the table is
-/// full it is empty afterwards.
+/// Computes the regions of all pairs of agents; all their orders are undecided then. If the table is too small, it is
+/// empty afterwards.
 #[unsafe(export_name = name!("fleet_build"))]
 pub extern "C" fn pcr_fleet_build(place: Option<&mut PcrFleet>) -> PcrStatus {
     change(place, Fleet::build)
 }
 
-/// Computes the regions of one agent with all others only: all that a robot needs that looks after itself. What is asked about
-/// others is refused with PCR_STATUS_ONLY_ROW.
+/// Computes the regions of one agent with all others only, which is enough for a robot that computes its own hold.
+/// Queries about other agents return PCR_STATUS_ONLY_ROW.
 #[unsafe(export_name = name!("fleet_build_row"))]
 pub extern "C" fn pcr_fleet_build_row(place: Option<&mut PcrFleet>, agent: usize) -> PcrStatus {
     change(place, |fleet| fleet.build_row(agent))
 }
 
-/// Lets an agent set off later by `delay` (s). The table serves on as it is: lengths do not change, times follow.
+/// Delays the start of an agent by `delay` (s). The table stays valid: its lengths do not change, and times are
+/// computed when queried.
 #[unsafe(export_name = name!("fleet_delay"))]
 pub extern "C" fn pcr_fleet_delay(place: Option<&mut PcrFleet>, agent: usize, delay: Real) -> PcrStatus {
     change(place, |fleet| fleet.delay(agent, number(delay)?))
 }
 
-/// Puts another agent in the place of one, and its regions into the table if that was built. The memory needs room for the
-/// segments and phases of the new one beside those of the old one, which become free. It is at the start of its path, and
-/// nothing is decided about its regions; the orders that the others have with one another stay. Whatever fails leaves all as it
-/// was.
+/// Replaces an agent and, if the table was built, computes its regions. The memory needs room for the segments and
+/// phases of the new agent in addition to those of the old one, which become free. The new agent is at the start of its
+/// path, and its regions are undecided; the orders between the other agents stay. A call that fails leaves everything
+/// unchanged.
 #[unsafe(export_name = name!("fleet_replace"))]
 pub extern "C" fn pcr_fleet_replace(place: Option<&mut PcrFleet>, agent: usize, by: Option<&PcrAgent>) -> PcrStatus {
     change(place, |fleet| fleet.replace(agent, given(by)?))
 }
 
-/// Removes an agent; those behind it move up by one number, with their orders. A table that was built is so afterwards.
+/// Removes an agent; the number of every agent behind it decreases by one, orders included. A table that was built
+/// stays built.
 #[unsafe(export_name = name!("fleet_remove"))]
 pub extern "C" fn pcr_fleet_remove(place: Option<&mut PcrFleet>, agent: usize) -> PcrStatus {
     change(place, |fleet| fleet.remove(agent))
 }
 
-/// The regions that an agent has to keep out of, by the other agent, and their count. Ranges are rounded outward.
+/// The regions that an agent has to keep out of, sorted by the other agent, and their count. Ranges are rounded
+/// outward.
 #[unsafe(export_name = name!("fleet_regions"))]
 pub extern "C" fn pcr_fleet_regions(
     place: Option<&PcrFleet>,
@@ -88,8 +91,8 @@ pub extern "C" fn pcr_fleet_regions(
     })
 }
 
-/// The lengths along the path of the ego at which it overlaps the other agent at a time, and how many intervals there
-/// are: those of one region after the other, rounded outward.
+/// The lengths along the path of the ego at which it overlaps the other agent at a time, and the number of intervals.
+/// Intervals are sorted by region and rounded outward.
 #[unsafe(export_name = name!("fleet_slices"))]
 pub extern "C" fn pcr_fleet_slices(
     place: Option<&PcrFleet>,

@@ -1,54 +1,54 @@
-//! The C types of a number format. SI units: metres, seconds, radians, or what the header says of its numbers; left turns and
-//! counter-clockwise angles are positive.
+//! The C types of a number format. Units are metres, seconds and radians, or those that the header gives; left turns
+//! and counter-clockwise angles are positive.
 
 use super::number::{Heading, MOTION, PIECE, Real, SEGMENT, ZERO};
 use crate::status::PcrHoldKind;
 
-/// A line or an arc of a path; it begins in the pose in which the one before it ends.
+/// A line or an arc of a path. It begins where the one before it ends, with the same heading.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrLeg {
     /// PCR_LINE, PCR_LEFT or PCR_RIGHT.
     pub curve: u8,
-    /// Length (m), of an arc at most one turn; 0 adds nothing.
+    /// Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
     pub length: Real,
-    /// Radius of an arc (m), above 0; of a line it is not looked at.
+    /// Radius of an arc (m), above 0; ignored for a line.
     pub radius: Real,
 }
 
-/// Motion at constant acceleration, part of a profile.
+/// A part of a profile with constant acceleration.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrStretch {
-    /// In s.
+    /// Duration (s).
     pub duration: Real,
-    /// In m/s².
+    /// Acceleration (m/s²).
     pub acceleration: Real,
 }
 
-/// A disc, its path and its motion along it.
+/// A disc, its path and its motion along the path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrAgent {
-    /// Position at the start of the path (m).
+    /// x-coordinate of the start of the path (m).
     pub x: Real,
-    /// In m.
+    /// y-coordinate of the start of the path (m).
     pub y: Real,
-    /// Direction of travel there (rad).
+    /// Direction of travel at the start (rad).
     pub heading: Heading,
-    /// Of the disc (m), above 0.
+    /// Radius of the disc (m), above 0.
     pub radius: Real,
-    /// When it sets off (s); it stands before, and after its arrival.
+    /// Time at which the agent sets off (s). It stands before that, and after its arrival.
     pub start: Real,
-    /// The path; none for an agent that stands.
+    /// Legs of the path; none for an agent that stands.
     pub legs: *const PcrLeg,
     /// Number of legs.
     pub leg_count: usize,
-    /// Largest speed of a motion from rest to rest (m/s); with a profile, the speed at its start.
+    /// Largest speed of a motion from rest to rest (m/s). With a profile, the speed at its start.
     pub speed: Real,
-    /// Largest acceleration of a motion from rest to rest (m/s²); with a profile it is not looked at.
+    /// Largest acceleration of a motion from rest to rest (m/s²); ignored with a profile.
     pub acceleration: Real,
-    /// Profile that travels the length of the path; none for a motion from rest to rest in the least time.
+    /// Profile, which must have the length of the path; none for the fastest motion from rest to rest.
     pub stretches: *const PcrStretch,
     /// Number of stretches.
     pub stretch_count: usize,
@@ -68,37 +68,39 @@ pub struct PcrInterval {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrRegion {
-    /// The agent that keeps out.
+    /// The agent that has to keep out of the region.
     pub ego: u16,
     /// The agent that is in the way.
     pub other: u16,
-    /// Time range (s).
+    /// Range of times (s).
     pub time: PcrInterval,
-    /// Length range along the path of the ego (m).
+    /// Range of lengths along the path of the ego (m).
     pub length: PcrInterval,
-    /// Whether it reaches back to before the other sets off, as a strip.
+    /// Whether the region begins while the other agent stands at its start; the lengths that are covered then are so at
+    /// all earlier times.
     pub open_start: bool,
-    /// Whether it goes on after the other's arrival, as a strip.
+    /// Whether the region ends while the other agent stands at its end; the lengths that are covered then are so at all
+    /// later times.
     pub open_end: bool,
 }
 
-/// A contact of two agents on their given motions.
+/// A contact of two agents that move by their motions.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrConflict {
-    /// From when to when (s).
+    /// Interval of time (s).
     pub time: PcrInterval,
-    /// Lengths along the path of the ego meanwhile (m).
+    /// Lengths along the path of the ego during the contact (m).
     pub length: PcrInterval,
-    /// Lengths along the path of the other meanwhile (m).
+    /// Lengths along the path of the other agent during the contact (m).
     pub other_length: PcrInterval,
     /// Largest overlap of the discs (m).
     pub depth: Real,
-    /// Whether they do no more than touch.
+    /// Whether the discs only touch.
     pub touching: bool,
 }
 
-/// A conflict, and with whom.
+/// A conflict with another agent.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrMet {
@@ -108,21 +110,21 @@ pub struct PcrMet {
     pub conflict: PcrConflict,
 }
 
-/// Room for a segment of a path: one a leg, or one for an agent that stands.
+/// Memory for a segment of a path: one for each leg, or one for an agent that stands.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrSegment {
     opaque: [Real; SEGMENT],
 }
 
-/// Room for a phase of a profile: three an agent, or one a stretch.
+/// Memory for a phase of a profile: three for each agent, or one for each stretch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrPhase {
     opaque: [Real; 7],
 }
 
-/// Room for the motion of an agent.
+/// Memory for the motion of an agent.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMotion {
@@ -130,64 +132,64 @@ pub struct PcrMotion {
     opaque: [Real; MOTION],
 }
 
-/// Room for a region in the table; each serves both agents of its pair.
+/// Memory for a region in the table; each one serves both agents of its pair.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrEntry {
     opaque: [u32; 2],
 }
 
-/// Room for a piece of a region: what one segment of either path has to do with it.
+/// Memory for a piece of a region: the part that belongs to one segment of each path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrPiece {
     opaque: [Real; PIECE],
 }
 
-/// What is known of where an agent is on its path.
+/// What is known about the progress of an agent.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrProgress {
-    /// Where it is (m). The lower end may be old: it counts for what the agent has passed.
+    /// Place of the agent (m). The lower end may be out of date; it decides which regions the agent has left.
     pub at: PcrInterval,
-    /// Where it can be at rest at the latest (m), the upper end of `at` or more. What it has promised not to go beyond
-    /// counts, too.
+    /// The furthest length at which the agent can come to rest (m), at least the upper end of `at`. If it has promised
+    /// not to go beyond a length, it is that length.
     pub stop: Real,
 }
 
-/// How far an agent may go, and may stand there.
+/// How far an agent may go; it may stand there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrHold {
-    /// Whether there is a limit.
+    /// Kind of the limit.
     pub kind: PcrHoldKind,
-    /// The limit (m): of PCR_HOLD_KIND_AT the length along its path, of PCR_HOLD_KIND_FREE the end of it.
+    /// The limit (m): for PCR_HOLD_KIND_AT a length along the path, for PCR_HOLD_KIND_FREE the end of the path.
     pub length: Real,
 }
 
-/// A region of an agent, and who passes it first.
+/// A region of an agent, and the order in which the agent passes it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrPassing {
-    /// The place of the region in the table, for `pcr_fleet_decide_at`.
+    /// Index of the region in the table, for `pcr_fleet_decide_at`.
     pub place: usize,
     /// The other agent.
     pub other: u16,
-    /// PCR_UNDECIDED, PCR_FIRST, PCR_SECOND or PCR_OVER, of the agent that was asked for.
+    /// PCR_UNDECIDED, PCR_FIRST, PCR_SECOND or PCR_OVER, for the agent of the query.
     pub pass: u8,
-    /// Length range along the path of the agent (m).
+    /// Range of lengths along the path of the agent (m).
     pub length: PcrInterval,
-    /// Length range along the path of the other (m).
+    /// Range of lengths along the path of the other agent (m).
     pub other_length: PcrInterval,
 }
 
-/// What a check of orders takes into account.
+/// Parameters of a check of orders.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcrTolerances {
-    /// So far the lower end of an agent's place may be behind it when it stands (m).
+    /// When an agent stands, the known lower end of its place may be behind it by up to this (m).
     pub width: Real,
-    /// Less way than this (m) is no progress; above 0.
+    /// A gain below this (m) does not count as progress; above 0.
     pub gain: Real,
 }
 
@@ -197,18 +199,19 @@ pub struct PcrTolerances {
 pub struct PcrBrakes {
     /// Deceleration (m/s²), above 0.
     pub deceleration: Real,
-    /// Reaction time (s) during which it may go on at its speed: what passes between two controls, and until one takes effect.
+    /// Reaction time (s) during which the agent may continue at its speed: the time between two control steps plus the
+    /// delay until a command takes effect.
     pub reaction: Real,
 }
 
-/// Room for the order of a region.
+/// Memory for the order of a region.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrOrder {
     opaque: [Real; 5],
 }
 
-/// Room for what is known of an agent, and for a check.
+/// Memory for the progress of an agent, and for a check.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrRobot {
@@ -219,32 +222,32 @@ pub struct PcrRobot {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMemory {
-    /// For the paths.
+    /// Memory for the paths.
     pub segments: *mut PcrSegment,
-    /// Number of them.
+    /// Number of segments.
     pub segment_count: usize,
-    /// For the profiles.
+    /// Memory for the profiles.
     pub phases: *mut PcrPhase,
-    /// Number of them.
+    /// Number of phases.
     pub phase_count: usize,
-    /// For the agents.
+    /// Memory for the agents.
     pub motions: *mut PcrMotion,
-    /// Number of them: the most agents.
+    /// Number of motions, which limits the number of agents.
     pub motion_count: usize,
-    /// For the regions.
+    /// Memory for the regions.
     pub entries: *mut PcrEntry,
-    /// Number of them.
+    /// Number of entries.
     pub entry_count: usize,
-    /// For the pieces of the regions.
+    /// Memory for the pieces of the regions.
     pub pieces: *mut PcrPiece,
-    /// Number of them.
+    /// Number of pieces.
     pub piece_count: usize,
-    /// For passing orders: as many as regions; as many more as an agent has that is admitted or replaced. Null where no orders
-    /// are used.
+    /// Memory for passing orders: one for each region, and as many more as an agent has that is admitted or replaced.
+    /// Null if no orders are used.
     pub orders: *mut PcrOrder,
-    /// Number of them; 0 where no orders are used.
+    /// Number of orders; 0 if no orders are used.
     pub order_count: usize,
-    /// For what is known of the agents, as many as `motions`; null where no orders are used.
+    /// Memory for the progress of the agents, as many as `motions`; null if no orders are used.
     pub robots: *mut PcrRobot,
 }
 
@@ -256,41 +259,41 @@ pub struct PcrFleet {
 }
 
 impl PcrFleet {
-    /// A place for a fleet, not yet one.
+    /// Memory for a fleet, not initialized.
     pub const EMPTY: Self = Self { opaque: [0; 32] };
 }
 
 impl PcrSegment {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; SEGMENT] };
 }
 
 impl PcrPhase {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; 7] };
 }
 
 impl PcrMotion {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [ZERO; MOTION] };
 }
 
 impl PcrEntry {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [0; 2] };
 }
 
 impl PcrPiece {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; PIECE] };
 }
 
 impl PcrOrder {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; 5] };
 }
 
 impl PcrRobot {
-    /// A free slot.
+    /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; 7] };
 }

@@ -1,6 +1,6 @@
 """Exact collision regions of discs that move on lines and arcs: will robots collide, where, when, and when may each start?
 
-Units are metres, seconds and radians; left turns are positive. A fleet is what the files of the tool ``pcr`` hold:
+Units are metres, seconds and radians; left turns are positive. The data of a fleet are those of the files of the tool ``pcr``:
 
 >>> fleet = Fleet([
 ...     {"id": 1, "radius": 0.25, "v_max": 1.0, "a_max": 1.0, "start": {"x": -2, "y": 0, "heading": 0},
@@ -14,7 +14,8 @@ Units are metres, seconds and radians; left turns are positive. A fleet is what 
 >>> len(fleet.conflicts()), len(fleet.plan().fleet.conflicts())
 (1, 0)
 
-What cannot be answered is an :class:`Error`, never an empty answer. Other threads run while something is computed.
+If a question cannot be answered, an :class:`Error` is raised; an empty answer always means that there is nothing. Other threads can run
+during a computation.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ Span = tuple[float, float]
 
 
 class ScenarioError(Error):
-    """A scenario was refused; it says what it is about.
+    """A scenario was refused. The attributes say where the fault is.
 
     >>> try:
     ...     Fleet.from_json('{"agents": [{"id": 4, "radius": -1}]}')
@@ -60,7 +61,7 @@ class ScenarioError(Error):
 
 
 def _read(make: Any, *arguments: Any) -> Any:
-    """The core's errors about a scenario have several parts."""
+    """Calls ``make``. An error with five parts is about a scenario."""
     try:
         return make(*arguments)
     except Error as error:
@@ -83,14 +84,14 @@ class _Ranges(NamedTuple):
 class Region(_Ranges):
     """Where and when agent ``i`` would touch agent ``j``: times [s], lengths of ``i`` and of ``j`` along their paths [m].
 
-    It lies within these intervals; :meth:`outline` has its shape.
+    The region lies within these intervals; :meth:`outline` gives its shape.
     """
 
     _fleet: _pcr.Fleet
 
     def outline(self, n: int) -> list[tuple[float, float, float]]:
-        """What it covers at ``n`` evenly spaced times inside: time, from, to. A time comes more than once where it covers more than one
-        stretch then.
+        """The lengths inside the region at ``n`` evenly spaced times: time, from, to. A time is repeated if the region covers more than one
+        interval of lengths then.
 
         >>> path = [{"kind": "line", "length": 4}]
         >>> east, north = {"x": -2, "y": 0, "heading": 0}, {"x": 0, "y": -2, "heading": math.pi / 2}
@@ -106,7 +107,7 @@ class Region(_Ranges):
         return [(slice["t"], lo, hi) for slice in own["slices"] for lo, hi in slice["l"]]
 
     def plot(self, ax: Any, *, columns: int = 60, **style: Any) -> Any:
-        """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.bar``."""
+        """Draws the region on matplotlib's ``ax``, and returns ``ax``: time to the right, length upwards. ``style`` is passed to ``ax.bar``."""
         rows = self.outline(columns)
         width = (self.t[1] - self.t[0]) / (columns + 1)
         ax.bar([t for t, _, _ in rows], [hi - lo for _, lo, hi in rows], bottom=[lo for _, lo, _ in rows], width=width, **style)
@@ -122,12 +123,12 @@ class Conflict(NamedTuple):
     depth: float
     l_i: Span
     l_j: Span
-    #: Whether they but touch, within rounding.
+    #: Whether the discs only touch, within rounding.
     touching: bool
 
 
 class Lock(NamedTuple):
-    """Two edges of a layout, and the lengths [m] of each on which a vehicle can touch one on the other."""
+    """Two edges of a layout, and the lengths [m] of each on which a vehicle can touch a vehicle on the other edge."""
 
     a: Any
     b: Any
@@ -136,24 +137,24 @@ class Lock(NamedTuple):
 
 
 class Delay(NamedTuple):
-    """How much later [s] than on edge ``a`` a vehicle may not set off on edge ``b``, because the two would touch."""
+    """Forbidden delays [s]: a vehicle that sets off on edge ``b`` this much later than another one on edge ``a`` would touch it."""
 
     a: Any
     b: Any
-    #: Less than 0 is earlier.
+    #: Negative delays are earlier.
     delay: Span
-    #: Whether ``a`` is driven from its end to its start.
+    #: Whether the vehicle drives ``a`` from its end to its start.
     a_backward: bool
     b_backward: bool
 
 
-#: The fields of an array of regions, for ``numpy.dtype``.
+#: Fields of an array of regions, for ``numpy.dtype``.
 REGION = [("i", "<f8"), ("j", "<f8"), ("t", "<f8", (2,)), ("l", "<f8", (2,)), ("l_j", "<f8", (2,)), ("open_start", "<f8"), ("open_end", "<f8")]
 _REGION = struct.Struct("=10d")
 
 
 class Regions(Sequence[Region]):
-    """Regions in the order of the tool: by both agents, then by time. Made into objects one by one, as they are asked for."""
+    """Regions, sorted like those of the tool: by both agents, then by time. An object is created each time that a region is accessed."""
 
     __slots__ = ("_fleet", "_rows")
 
@@ -183,7 +184,7 @@ class Regions(Sequence[Region]):
 
     @property
     def array(self) -> Any:
-        """A structured NumPy array of all regions, without a copy: ``regions.array["t"][:, 0]`` are all first times."""
+        """A structured NumPy array of all regions, without a copy. For example, ``regions.array["t"][:, 0]`` are the begins of all regions."""
         import numpy
 
         return numpy.frombuffer(self._rows, dtype=numpy.dtype(REGION))
@@ -199,16 +200,16 @@ def _finite(**numbers: float) -> None:
 
 
 class Plan(NamedTuple):
-    """What :meth:`Fleet.plan` found."""
+    """Result of :meth:`Fleet.plan`."""
 
-    #: The fleet as planned; ``None`` where there is no plan.
+    #: The planned fleet; ``None`` if there is no plan.
     fleet: Optional[Fleet]
-    #: What ``pcr plan --json`` prints: delays, costs, and who cannot be planned, with the reason.
+    #: The output of ``pcr plan --json``: delays, costs, and agents that cannot be planned, with the reason.
     report: dict[str, Any]
 
 
 class Fleet:
-    """Agents on their paths. It does not change; what changes something returns another fleet.
+    """Agents on their paths. A fleet is immutable; methods that change something return another fleet.
 
     ``agents`` are mappings with the fields of the tool's files (``docs/formats.md``).
 
@@ -221,7 +222,7 @@ class Fleet:
     def __init__(self, agents: Sequence[Mapping[str, Any]], name: str = "") -> None:
         text = json.dumps({"name": name, "agents": list(agents)}, allow_nan=False)
         self._fleet: _pcr.Fleet = _read(_pcr.Fleet.from_json, text)
-        #: What was read otherwise than it is written in the file.
+        #: Warnings about parts of the file that were not read exactly as written.
         self.warnings: list[str] = []
 
     @classmethod
@@ -232,19 +233,19 @@ class Fleet:
 
     @classmethod
     def from_json(cls, text: str) -> Fleet:
-        """The fleet in the text of a scenario file."""
+        """Reads a fleet from the text of a scenario file."""
         return cls._of(_read(_pcr.Fleet.from_json, text))
 
     @classmethod
     def read(cls, path: Path, *, radius: Optional[float] = None, speed: Optional[float] = None, acceleration: Optional[float] = None,
              rotation: Optional[float] = None, vehicle: Optional[str] = None, routes: Sequence[str] = (), partial: bool = False) -> Fleet:
-        """The fleet in a file: a scenario, or any format that ``pcr import`` reads, with its options."""
+        """Reads a fleet from a file: a scenario, or any format that ``pcr import`` reads, with the same options."""
         options = _options(radius, speed, acceleration, rotation, vehicle, routes, partial)
         fleet, warnings = _read(_pcr.Fleet.read, path, options)
         return cls._of(fleet, warnings)
 
     def to_json(self) -> str:
-        """The text of a scenario file, which :meth:`from_json` and the tool read."""
+        """The text of a scenario file, which :meth:`from_json` and the tool can read."""
         return self._fleet.to_json()
 
     @property
@@ -259,55 +260,57 @@ class Fleet:
         return [dict(zip(names, agent)) for agent in self._fleet.agents()]
 
     def regions(self, *, margins: bool = False) -> Regions:
-        """All collision regions; with ``margins`` those in which margins overlap."""
+        """All collision regions; with ``margins`` the regions in which margins overlap."""
         return Regions(self._fleet.regions(margins), self._fleet)
 
     def report(self, *, slices: Optional[int] = None, agent: Optional[int] = None) -> dict[str, Any]:
-        """What ``pcr regions --json`` prints: regions with their pieces and slices; of fleets with footprints, too."""
+        """The output of ``pcr regions --json``: regions with their pieces and slices. Also works for fleets with footprints."""
         answer: dict[str, Any] = json.loads(self._fleet.regions_json(slices, agent))
         return answer
 
     def conflicts(self) -> list[Conflict]:
-        """Who collides, moving as given: sorted by the begin. An empty list is the answer "nobody touches"."""
+        """The conflicts of the motions as they are given, sorted by their begin. An empty list means that no agents touch."""
         found = json.loads(self._fleet.check_json())["conflicts"]
         return [Conflict(c["i"], c["j"], tuple(c["t"]), c["depth"], tuple(c["l_i"]), tuple(c["l_j"]), c["touching"]) for c in found]
 
     def map(self, agent: int, start: float, step: float, times: int) -> list[tuple[int, int, float, float]]:
-        """The collision map of an agent at ``times`` times: number of the time, other agent, and the lengths forbidden then, from, to."""
+        """The collision map of an agent at ``times`` times, from ``start`` on in steps of ``step``: index of the time, other agent, forbidden
+        lengths (from, to)."""
         _finite(start=start, step=step)
         rows = struct.iter_unpack("=4d", self._fleet.map(agent, start, step, times))
         return [(int(place), int(other), lo, hi) for place, other, lo, hi in rows]
 
     def places(self, time: float) -> list[tuple[float, float, float, float]]:
-        """Where every agent is at a time: x, y, heading, travelled length."""
+        """The place of every agent at a time: x, y, heading, travelled length."""
         return [(x, y, heading, length) for x, y, heading, length in struct.iter_unpack("=4d", self._fleet.places(time))]
 
     def safe_intervals(self, agent: int, length: Union[float, Span], during: Span) -> list[Span]:
-        """When no other agent blocks a length, or a stretch of lengths, of an agent's path, within ``during``."""
+        """The times within ``during`` at which no other agent blocks a length, or an interval of lengths, of an agent's path."""
         stretch = (length, length) if isinstance(length, (int, float)) else length
         return self._fleet.safe_intervals(agent, stretch, during)
 
     def closest(self, i: int, j: int) -> tuple[float, float, float]:
-        """The least distance of two agents' centres, the first time of it, and the sum of their radii."""
+        """The least distance between the centres of two agents, its first time, and the sum of their radii."""
         return self._fleet.closest(i, j)
 
     def plan(self, method: str = "delay") -> Plan:
-        """Later starts (``"delay"``), or waits and other speeds on the way (``"speed"``), so that nobody collides."""
+        """Plans later starts (``"delay"``), or waits and other speeds on the way (``"speed"``), so that no agents collide."""
         if method not in ("delay", "speed"):
             raise Error(f'method "{method}": it is "delay" or "speed"')
         report, fleet = self._fleet.plan(method == "speed")
         return Plan(None if fleet is None else Fleet._of(fleet), json.loads(report))
 
     def holds(self, places: Sequence[Union[float, Span]]) -> list[float]:
-        """How far every agent may go in the order in which the motions pass one another, whatever the delays.
+        """How far every agent may go if all keep the order in which their motions pass one another, whatever their delays.
 
-        ``places`` are the travelled lengths, exact or from-to, in the order of :attr:`agents`. Infinite where nobody is in the
-        way; minus infinity for an agent that is where it should have waited. Motions that meet have no order: that is an error.
+        ``places`` are the travelled lengths, exact or as (from, to), in the order of :attr:`agents`. A hold is infinite if no other agent is in
+        the way, and minus infinity for an agent that is already where it should have waited. If motions collide, there is no order and an
+        :class:`Error` is raised.
         """
         return self._fleet.holds([(p, p) if isinstance(p, (int, float)) else p for p in places])
 
     def plot(self, ax: Any = None, *, agent: Optional[int] = None, columns: int = 400) -> Any:
-        """Draws the paths, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""
+        """Draws the paths, or the collision map of ``agent``, on matplotlib's ``ax``, and returns ``ax``."""
         import matplotlib.pyplot as plt  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
         axes = plt.subplots()[1] if ax is None else ax
@@ -358,29 +361,29 @@ class Layout:
 
     @classmethod
     def read(cls, path: Path, *, radius: Optional[float] = None, vehicle: Optional[str] = None, partial: bool = False) -> Layout:
-        """A layout file, for vehicles of this radius, or of this type."""
+        """Reads a layout file, for vehicles with this radius, or of this type."""
         return cls(path, _options(radius, None, None, None, vehicle, (), partial))
 
     def _for(self, radius: Optional[float], speed: Optional[float], acceleration: Optional[float]) -> _pcr.Layout:
-        """The layout for another vehicle."""
+        """Reads the layout for another vehicle."""
         own = self._options
         radius = own["radius"] if radius is None else radius
         return _pcr.Layout.read(self._path, _options(radius, speed, acceleration, None, own["vehicle"], (), own["partial"]))
 
     def locks(self, radius: Optional[float] = None) -> list[Lock]:
-        """Which edges exclude one another, and on which lengths: two vehicles on other lengths cannot touch.
+        """Pairs of edges that exclude one another, with the lengths concerned. Vehicles at other lengths cannot touch.
 
-        With a ``radius`` for vehicles of that radius, whatever the layout was read for.
+        With a ``radius``, the locks are for vehicles with that radius instead of the vehicle that the layout was read for.
         """
         layout = self._layout if radius is None else self._for(radius, None, None)
         found = json.loads(layout.locks_json(False))["locks"]
         return [Lock(lock["a"], lock["b"], tuple(lock["a_length"]), tuple(lock["b_length"])) for lock in found]
 
     def delays(self, radius: Optional[float], speed: float, *, acceleration: Optional[float] = None) -> list[Delay]:
-        """Unsafe delays: how much later than on one edge a vehicle may not set off on another. Pairs that are not listed never touch.
+        """Unsafe delays: pairs of edges, and the delays between two departures with which the vehicles would touch. Other pairs never touch.
 
-        Edges are driven at constant ``speed`` (that of the edge, where its limit is lower), with an ``acceleration`` from rest to rest;
-        one that may be driven in both directions is two ways. Without a ``radius`` for vehicles as the layout was read for.
+        Vehicles drive at constant ``speed`` (or at the limit of the edge if that is lower); with an ``acceleration`` they drive from rest to
+        rest. An edge that may be driven in both directions counts as two. Without a ``radius``, the vehicle is that which the layout was read for.
 
         >>> import tempfile
         >>> points = [[-2, 0], [2, 0], [0, -2], [0, 2]]

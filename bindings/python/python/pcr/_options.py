@@ -1,10 +1,10 @@
-"""What the importers may be told."""
+"""Options of the importers."""
 
 from typing import Optional, TypedDict
 
 
 class Options(TypedDict):
-    """The options of ``pcr import`` that fleets and layouts need; ``None`` is left out."""
+    """The options of ``pcr import`` that fleets and layouts need; ``None`` means that an option is not given."""
 
     radius: Optional[float]
     speed: Optional[float]

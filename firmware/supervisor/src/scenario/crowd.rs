@@ -1,12 +1,12 @@
-//! Capacities of a robot among 29 others: for its size, its stack, and what a hold takes.
+//! Capacities for a robot among 29 others, to measure its size, its stack, and the time of a hold.
 
-/// Robots, the last of which is the one whose agent this is.
+/// Number of robots; the last one is the robot whose hold is computed.
 pub const ROBOTS: usize = 30;
-/// The robot itself.
+/// Index of the robot itself.
 pub const OWN: u16 = 29;
-/// Lines and arcs of all.
+/// Number of lines and arcs of all robots.
 pub const SEGMENTS: usize = 32;
-/// Regions of the robot with the others.
+/// Number of regions of the robot with the others.
 pub const REGIONS: usize = 32;
-/// Pieces of these.
+/// Number of pieces of these regions.
 pub const PIECES: usize = 40;

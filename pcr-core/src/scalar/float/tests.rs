@@ -1,4 +1,4 @@
-//! Exact numbers, and those at the ends of what is documented, in both formats.
+//! Tests with exact results, and at the limits of the documented ranges, in both formats.
 
 use super::*;
 use crate::few::Few;
@@ -39,7 +39,7 @@ fn differences_of_close_numbers_do_not_cancel() {
     assert_eq!(f32::difference(0.0, 0.0, 0.0), 0.0);
 }
 
-/// Angles of a format in which numbers are themselves.
+/// Calls the format's function and returns the angles as `f64`.
 fn roots<S>(equations: &[[S; 4]], sector: Sector<S>) -> Vec<f64>
 where
     S: Scalar<Wide = S, Unit = S, Angle = Radians<S>> + Into<f64>,
@@ -57,7 +57,7 @@ macro_rules! exact {
             const E: $t = $t::EPSILON;
             const LIMIT: $t = <$t as Scalar>::LIMIT;
 
-            /// Whole numbers of all digits, up to 2^40 times that, of either sign.
+            /// Whole numbers with all digits in use, and these times up to 2^40, of either sign.
             fn whole_numbers() -> Vec<$t> {
                 let number =
                     |k: u64| ((1 << ($digits - 1)) + (k.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (65 - $digits))) as $t;
@@ -89,7 +89,7 @@ macro_rules! exact {
                         let angle: Radians<$t> = Angle::<$t>::subtended(length, radius);
                         assert_eq!(angle, Radians(length / radius));
                         let rest = angle.subtended_rest(length, radius).0;
-                        // What is left of the length is a number of the format.
+                        // The rest of the length can be represented in the format.
                         let left = libm::fma(-f64::from(angle.0), f64::from(radius), f64::from(length));
                         assert_eq!(f64::from(rest), f64::from((left as $t) / radius), "{length} {radius}");
                         assert_eq!(<Radians<$t> as Angle<$t>>::half_subtended(length, radius), Radians(0.5 * angle.0));
@@ -139,7 +139,7 @@ macro_rules! exact {
                 }
                 assert_eq!([4.0, 0.0, -4.0].map(|x: $t| Wide::<$t>::sqrt(x)), [2.0, 0.0, 0.0]);
                 assert!(Wide::<$t>::sqrt(-0.0 as $t).is_sign_positive());
-                // Of two equal numbers the first.
+                // Of two equal numbers, the first one is returned.
                 assert!(
                     Scalar::min(0.0 as $t, -0.0).is_sign_positive() && Scalar::max(-0.0 as $t, 0.0).is_sign_negative()
                 );
@@ -183,7 +183,7 @@ macro_rules! exact {
                 let steep = 2.0 * 2.0_f64.atan();
                 near(roots(&[equation], Sector::<$t>::all([1.0, 0.0])), &[-steep, FRAC_PI_2]);
                 near(roots(&[equation], Sector::<$t>::all([0.0, 1.0])), &[FRAC_PI_2 - steep, PI]);
-                // Real by doubt alone: one, by the larger of two coefficients.
+                // Real only because of `doubt`: one root, computed with the larger of two coefficients.
                 let all = Sector::<$t>::all([1.0, 0.0]);
                 near(roots(&[[1.0, 1.0, 3.0, 0.5]], all), &[-2.0 * 3.0_f64.atan()]);
                 near(roots(&[[-3.0, 1.0, -1.0, 0.5]], all), &[2.0 * (1.0_f64 / 3.0).atan()]);
@@ -236,7 +236,7 @@ macro_rules! exact {
                         .map(|(v, a, l)| <$t as Scalar>::ramp_time(ramp(v, a), l)),
                     [2.0; 3]
                 );
-                // Far from where roots are exact: as good as a quotient.
+                // Where roots are not exact, as accurate as a quotient.
                 assert_eq!(<$t as Scalar>::ramp_time(ramp(0.1, 0.0), 0.3), (0.3 as $t) / 0.1);
                 assert_eq!(<$t as Scalar>::ramp_time(ramp(0.0, 0.0), 0.0), 0.0);
             }

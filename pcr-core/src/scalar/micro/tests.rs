@@ -1,4 +1,4 @@
-//! `Micro` against `f32`, and against what is documented of its roots and angles.
+//! `Micro` compared with `f32`, and with the documented errors of its roots and angles.
 
 use super::*;
 
@@ -37,7 +37,7 @@ fn arctangents_are_right_to_a_few_last_digits() {
             [(r, 0.0), (0.0, -r), (-r, 0.0)].map(|(y, x)| (atan2(y, x) / core::f32::consts::FRAC_PI_2 * 1e5).round());
         assert_eq!(found, [1e5, 2e5, -1e5], "{r}");
     }
-    // Not beyond half a turn, whose negative is another angle.
+    // Not beyond half a turn, where the negated angle is a different one.
     for step in 0..100_000_u32 {
         let angle = atan2(step as f32 * 1e-11, -1.0);
         assert!(angle <= core::f32::consts::PI && atan2(-(step as f32) * 1e-11, -1.0) >= -core::f32::consts::PI);
@@ -50,7 +50,7 @@ fn the_seeds_alone_would_not_do() {
     assert!((F32Ext::atan2(0.5_f32, 1.0) - libm::atan2f(0.5, 1.0)).abs() > 1e-3);
 }
 
-/// Where neither a root nor an angle is asked for it is `f32`, and where one is, it is near.
+/// Operations without a root or an angle give the result of `f32`; the others are close to it.
 #[test]
 fn all_else_is_that_of_f32() {
     let m = Micro;
@@ -123,7 +123,7 @@ fn half_tangents_are_found_in_their_sector() {
     assert_eq!(roots(equation, [1.0, 0.0], Some(([1.0, 0.0], 0.01))), [9.0; 2]);
     // At the very ends of half a circle.
     assert_eq!(roots([1.0, 0.0, -1.0, 0.0], [1.0, 0.0], Some(([1.0, 0.0], 0.0))), [-15_708.0, 15_708.0]);
-    // Real by doubt alone: one, by the larger of two coefficients.
+    // Real only because of `doubt`: one root, computed with the larger of two coefficients.
     assert_eq!(roots([1.0, 1.0, 3.0, 0.5], [1.0, 0.0], None), [-24_981.0, 9.0]);
     assert_eq!(roots([-3.0, 1.0, -1.0, 0.5], [1.0, 0.0], None), [6_435.0, 9.0]);
     assert_eq!(roots([-1.0, 1.0, -3.0, 0.5], [1.0, 0.0], None), [24_981.0, 9.0]);
