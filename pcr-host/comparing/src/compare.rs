@@ -2,7 +2,7 @@
 //! needs, and its errors.
 //!
 //! ```text
-//! track      discs in motion as plain numbers             Track
+//! track      discs in motion as plain numbers           Track
 //! reference  the definition, evaluated by bisection: the reference for errors
 //! pcr        this library, in every format, on one core and all
 //! sampled    the sampled collision map of the paper's reference [34]
@@ -14,7 +14,7 @@
 //! box2d      the time of impact of Box2D                (feature `peers`)
 //! crowd      random fleets of any size
 //! errors     an answer against the reference
-//! measure    times, in rounds                               Comparison
+//! measure    times, in rounds                           Comparison
 //! chart      time against error
 //! stopwatch  processor time of one core, also on a busy machine
 //! ```

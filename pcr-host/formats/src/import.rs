@@ -10,7 +10,7 @@
 //! opendrive   reference lines of roads (XML)
 //! opentcs     plant models (XML)
 //! ccbs        roadmaps and plans of Continuous-CBS (XML)
-//! grid        plans on grids (text)                                        GridPlan
+//! grid        plans on grids (text)                                          GridPlan
 //! trajectory  NURBS as in VDA 5050 and LIF
 //! nurbs       NURBS to Bézier curves
 //! biarc       curves to lines and arcs, with a certified distance
@@ -20,7 +20,7 @@
 //! trace       lines and arcs anywhere in the plane to one path
 //! speed       the fastest motion under changing limits
 //! route       the shortest way between nodes, corners rounded
-//! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
+//! vehicle     radius, speeds, and the options of the command line            Vehicle, Options
 //! names       unique names for nodes and edges with the same name
 //! useful      which options have an effect on which files                    Kind
 //! warnings    faults that were read nevertheless                             Warnings

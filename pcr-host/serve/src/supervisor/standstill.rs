@@ -1,5 +1,6 @@
-//! Somebody who has something to do and gets nowhere: for whom it waits in the end, and that this one does not go on. What robots keep
-//! from happening is no reason, but how they are sent, or one that stands, is.
+//! Detects a robot that has a mission but does not advance, and reports for which robot it waits in the end and that
+//! this one does not advance. Delays of robots are no cause; the orders that they were given, or a robot that stands,
+//! are.
 
 use super::Supervisor;
 use super::admission::Verdict;
