@@ -1,6 +1,6 @@
-//! Detects a robot that has a mission but does not advance, and reports for which robot it waits in the end and that
-//! this one does not advance. Delays of robots are no cause; the orders that they were given, or a robot that stands,
-//! are.
+//! Detects robots that have a mission but do not advance, and reports the reason once: the robot for which they wait in
+//! the end, or the robots that wait for one another. A robot that is stopped, silent or alarmed has been reported
+//! already.
 
 use super::Supervisor;
 use super::admission::Verdict;

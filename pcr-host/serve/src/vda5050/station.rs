@@ -1,9 +1,9 @@
 //! The bridge at its broker; only one bridge is active at a time.
 //!
-//! The active bridge says so in a retained message, which its last will deletes. A second bridge sees the message and
-//! stays passive. If two begin at the same time, the one whose message the broker receives first continues. A bridge
-//! that is later than that sees no message where there was one: the active bridge then repeats its message, and a claim
-//! only counts if no other bridge has objected for a while.
+//! The active bridge says so in a retained message, which its last will takes back. A second bridge sees the message
+//! and stays passive. If two begin at the same time, the one whose message the broker receives first continues. A
+//! bridge that does not see the message of the active one may still claim its place. Therefore the active bridge then
+//! repeats its message, and a claim counts only if no other bridge has objected for a while.
 
 use super::bridge::{Bridge, Publish};
 use super::header::Header;
