@@ -39,7 +39,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius), and
-    /// [`Invalid::LengthMismatch`] if the lengths of profile and path differ by more than [`LENGTH_TOLERANCE_LOG2`] or
+    /// [`Invalid::LengthMismatch`] if the lengths of profile and path differ by more than [`LENGTH_TOLERANCE_LOG2`] and
     /// rounding allow. A smaller difference is added to [`Motion::lag`], and twice the difference to ε
     /// ([`excess`](crate::excess)).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {

@@ -2,14 +2,14 @@
 //! delays (docs/theory.md).
 //!
 //! ```text
-//! hold        how far the second may go past one region             Hold, RegionRef::hold
-//! brakes      stopping ways                                         Brakes
-//! order       who passes first                                      Pass, Order, Progress
-//! table       the orders of a fleet, kept                           Orders
+//! hold        how far the second agent may go at one region         Hold, RegionRef::hold
+//! brakes      stopping distances                                    Brakes
+//! order       which agent passes first                              Pass, Order, Progress
+//! table       the orders of a fleet                                 Orders
 //! refused     why orders are refused                                Refused
-//! check       whether everybody can finish                          Orders::check
+//! check       whether all agents can finish                         Orders::check
 //! admit       orders for a new path                                 Orders::admit
-//! told        who waits for whom, and orders as decided             Orders::wait, Decision
+//! told        which agent waits for which, and decisions            Orders::wait, Decision
 //! grow        storage that grows                                    Orders::grow
 //! ```
 

@@ -1,17 +1,17 @@
 //! Plans without collisions, agent by agent in the order of their priorities: start delays and speed profiles.
 //!
 //! ```text
-//! order       agents one after the other, and who moves up       Unsolved
-//! delays      who starts when, moving as before                  plan_delays
+//! order       one agent after the other, and changes of order    Unsolved
+//! delays      start delays of a fleet                            plan_delays
 //! times       sets of times of fixed capacity                    (internal)
-//! constraint  where an agent must not be when                    Constraint
-//! lattice     the motions among which a speed plan is chosen     Drive
-//! station     what is remembered of a place along the path       Station
+//! constraint  lengths that an agent must avoid during a time     Constraint
+//! lattice     the motions from which a speed plan is chosen      Drive
+//! station     data for each border of cells along the path       Station
 //! outcome     a speed plan, or why there is none                 SpeedPlan
-//! search      the fastest of them that meets nobody              (internal)
-//! tighten     its waits made as short as contacts allow          (internal)
-//! speed       both                                               plan_speed
-//! speeds      a fleet of them                                    plan_speeds
+//! search      the fastest of these motions without a conflict    (internal)
+//! tighten     shortens its waits as far as contacts allow        (internal)
+//! speed       speed plan of one agent                            plan_speed
+//! speeds      speed plans of a fleet                             plan_speeds
 //! ```
 
 mod constraint;

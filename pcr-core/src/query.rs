@@ -2,16 +2,16 @@
 //! free.
 //!
 //! ```text
-//! legs        a motion, cut where its formula changes          (internal)
-//! windows     the legs of two, while they may be near         (internal)
-//! chord       the relative motion between two instants          (internal)
+//! legs        a motion, split where its formula changes          (internal)
+//! windows     pairs of legs, while the agents may be near        (internal)
+//! chord       the relative motion between two instants           (internal)
 //! contact     when two discs are in contact                      Encounter, Contacts
-//! clearance   how near they come                                 Approach
-//! conflict    both: from when to when, where, how deep           Conflict, Conflicts, first_conflict, first_overlap
-//! broad_phase who of a fleet can be in contact, and when         BroadPhase
+//! clearance   the closest approach of two discs                  Approach
+//! conflict    contacts with their place and depth                Conflict, Conflicts, first_conflict, first_overlap
+//! broad_phase which pairs of a fleet can be in contact, and when BroadPhase
 //! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
-//! bracket     the end of what is forbidden                        (internal)
-//! delay       delays that lead to a conflict                     earliest_start
+//! bracket     the end of a forbidden interval                    (internal)
+//! delay       start delays that lead to a conflict               earliest_start
 //! depart      waits on the way                                   earliest_departure
 //! stretch     speed scale factors                                least_duration
 //! ```

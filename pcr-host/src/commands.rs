@@ -1,4 +1,4 @@
-//! The commands of the tool, a file each: their arguments, what they do with them, and how that may end.
+//! The commands of the tool, one file each: their arguments, their work, and their exit statuses.
 
 mod certify;
 mod check;

@@ -1,4 +1,4 @@
-//! The command `pcr`: its exit statuses, and nothing else.
+//! The command `pcr`; this file only sets its exit status.
 
 mod commands;
 mod progress;

@@ -1,4 +1,4 @@
-//! A line on the terminal about work that takes its time.
+//! A line on the terminal that shows the progress of long work.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;

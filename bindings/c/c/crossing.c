@@ -2,7 +2,7 @@
 #include "pcr.h"
 #include <stdio.h>
 
-/* Room for 2 agents of up to 2 legs, and for the table. All of it is the fleet's from pcr_fleet_init on. */
+/* Room for 2 agents of up to 2 legs, and for the table. All of it belongs to the fleet from pcr_fleet_init on. */
 static PcrSegment segments[4];
 static PcrPhase phases[6];
 static PcrMotion motions[2];

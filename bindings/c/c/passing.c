@@ -1,5 +1,5 @@
-/* Three robots that keep passing orders, however late they are: orders from a plan, a hold for each, a new mission that is
- * admitted, one that is refused, and a robot that looks after itself with its own row only. */
+/* Three robots that keep passing orders, however late they are: orders from a plan, a hold for each robot, a new mission that is
+ * admitted, one that is refused, and a robot that computes its own hold from its own row. */
 #include "pcr.h"
 #include <stdio.h>
 
@@ -22,7 +22,7 @@ static int failed(const char *what, PcrStatus status) {
   return 1;
 }
 
-/* How far each may go now, and how fast it may be at its start. */
+/* Prints how far each robot may go now, and how fast it may be at its start. */
 static int holds(void) {
   for (size_t agent = 0; agent < pcr_fleet_agents(&fleet); agent++) {
     PcrHold hold;
@@ -75,7 +75,7 @@ int main(void) {
   printf("agent 0 is at 2.600 m\n");
   progress = at(2.6f);
   if (failed("report", pcr_fleet_report(&fleet, 0, &progress))) return 1;
-  progress = at(1.0f); /* an old report comes late, and takes nothing back */
+  progress = at(1.0f); /* an old report that comes late changes nothing */
   if (failed("report", pcr_fleet_report(&fleet, 0, &progress))) return 1;
   if (holds()) return 1;
 

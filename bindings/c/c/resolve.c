@@ -1,5 +1,5 @@
-/* Three robots through one place: who meets whom first, when one may start, when the place is free, a plan for all, another
- * path for one of them. */
+/* Three robots that pass through one place: the first conflict of each, the earliest start of one, the times at which the place
+ * is free, a plan for all, and another path for one of them. */
 #include "pcr.h"
 #include <stdio.h>
 
@@ -19,7 +19,7 @@ static int failed(const char *what, PcrStatus status) {
   return 1;
 }
 
-/* What each meets first; how many meet anybody. */
+/* Prints the first conflict of each robot; returns the number of robots that have one. */
 static int conflicts(void) {
   int meeting = 0;
   for (size_t ego = 0; ego < pcr_fleet_agents(&fleet); ego++) {

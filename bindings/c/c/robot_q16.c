@@ -1,5 +1,5 @@
-/* One robot that looks after itself, in fixed point: no floating-point instruction on the target but in what prints. It knows
- * its row, who goes first, and what the other has reported. */
+/* One robot that computes its own hold, in fixed point: only the code that prints uses floating-point instructions. The robot knows
+ * its row, which robot goes first, and the reports of the other one. */
 #include "pcr_q16.h"
 #include <stdio.h>
 

@@ -7,17 +7,17 @@
 //! messages.
 //!
 //! ```text
-//! pcr_input()                          -> address of 24 rows of pcr_stride() numbers, an agent each:
-//!                                         x, y, heading, radius, start, v_max, a_max, number of legs, then two a leg:
+//! pcr_input()                          -> address of 24 rows of pcr_stride() numbers, one for each agent:
+//!                                         x, y, heading, radius, start, v_max, a_max, number of legs, then two for each leg:
 //!                                         length, 0 for a line; radius, sweep (left is positive) for an arc
 //! pcr_build(agents)                    -> regions      reads them and computes the table
 //! pcr_regions()                        -> rows of 8    ego, other, times, lengths of the ego, lengths of the other (from, to)
-//! pcr_map(ego, from, step, times)      -> rows of 4    number of the time, other, lengths that are forbidden then (from, to)
-//! pcr_conflicts()                      -> rows of 10   both agents, times, depth, 1 if they but touch, lengths of both
+//! pcr_map(ego, from, step, times)      -> rows of 4    index of the time, other, lengths that are forbidden then (from, to)
+//! pcr_conflicts()                      -> rows of 10   both agents, times, depth, 1 if they only touch, lengths of both
 //! pcr_places(time)                     -> rows of 6    x, y, heading, travelled length, length of the path, arrival
 //! pcr_track(agent, from, step, times)  -> rows of 1    travelled length at these times
-//! pcr_plan()                           -> rows of 1    delay of each agent's start so that nobody collides
-//! pcr_holds(time)                      -> rows of 1    how far each may go in the order of the motions, if the others stop now
+//! pcr_plan()                           -> rows of 1    delay of each agent's start so that none collide
+//! pcr_holds(time)                      -> rows of 1    how far each agent may go in the order of the motions, if the others stop now
 //! pcr_first(), pcr_last()              -> first start, last arrival; NaN without a fleet
 //! pcr_output()                         -> address of the answer
 //! pcr_message(), pcr_message_length()  -> address and length of the last message, UTF-8

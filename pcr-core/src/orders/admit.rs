@@ -42,9 +42,9 @@ where
     /// `prefer` is called for regions, whose ego is the agent, and says which one should go first: [`Pass::First`] or
     /// [`Pass::Second`]. Its answer is used if both orders are possible: the second agent must be able to stop before
     /// the region, and the first one to leave it. An agent that is in a region, or cannot stop before it, never loses
-    /// its right to go on. The new orders can lower the hold of another agent, so `Progress::stop` must not be out of
-    /// date: places and stopping points have to be current, or promised, and an agent must not go beyond its promise
-    /// any more.
+    /// its right to go on. The new orders can lower the hold of another agent, which must not have set out beyond the
+    /// new hold. So places and stopping points (`Progress::stop`) must be current, or lengths that agents have promised
+    /// not to exceed.
     ///
     /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds for each region of the row, and at most
     /// one check more than the row has regions.

@@ -1,9 +1,9 @@
-//! Ways to find collisions, side by side: what each of them answers, how long it takes, how much it keeps, and how far it
-//! is off.
+//! Methods that find collisions, side by side: the answers of each method, the time that it takes, the memory that it
+//! needs, and its errors.
 //!
 //! ```text
-//! track      discs in motion as plain numbers             Track
-//! reference  the definition, by halving: what errors are measured by
+//! track      discs in motion as plain numbers           Track
+//! reference  the definition, evaluated by bisection: the reference for errors
 //! pcr        this library, in every format, on one core and all
 //! sampled    the sampled collision map of the paper's reference [34]
 //! polyline   flattened paths, closed-form discs piece by piece
@@ -14,13 +14,13 @@
 //! box2d      the time of impact of Box2D                (feature `peers`)
 //! crowd      random fleets of any size
 //! errors     an answer against the reference
-//! measure    times, in rounds                               Comparison
+//! measure    times, in rounds                           Comparison
 //! chart      time against error
-//! stopwatch  one core's time, also while others are at work
+//! stopwatch  processor time of one core, also on a busy machine
 //! ```
 //!
-//! All methods start from the same paths and motions, already placed; sampling, flattening and meshes are part of a
-//! method, and of its time.
+//! All methods start from the same paths and motions, already placed in the plane. Sampling, flattening and the
+//! construction of meshes are part of a method, and of its time.
 
 #[cfg(feature = "peers")]
 mod box2d;

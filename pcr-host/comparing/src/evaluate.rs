@@ -1,16 +1,17 @@
-//! The paper's evaluation and more, as a document with pictures: everything in it is measured or computed when it is written.
+//! The paper's evaluation and more, as a document with pictures. All its figures are measured or computed when it is
+//! written.
 //!
 //! ```text
-//! machine     what it runs on
+//! machine     the machine
 //! fleets      Table VI, and all methods on the same fleets
-//! shares      Fig. 12: finding pairs, and making regions
+//! shares      Fig. 12: time to find pairs, and to compute regions
 //! figures     Fig. 13 and 14
 //! grazing     contacts and near misses down to a ten-millionth of a metre
-//! memory      what is kept of a collision, and what goes over a wire
+//! memory      memory for a collision, and bytes to transmit it
 //! traffic     random missions in a real warehouse
-//! plans       costs of start delays, and what is proved of them
-//! lifelong    fleets that run there for an hour
-//! execution   plans on grids carried out while robots are late
+//! plans       costs of start delays, and proved bounds
+//! lifelong    fleets that run in the warehouse for an hour
+//! execution   execution of plans on grids while robots are late
 //! roadmaps    tables of locks and of unsafe delays
 //! scale       fleets of up to 100,000 agents
 //! ```

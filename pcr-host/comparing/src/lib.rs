@@ -1,7 +1,7 @@
-//! The library beside other methods, and the paper's evaluation.
+//! Compares the library with other methods, and runs the paper's evaluation.
 //!
 //! ```text
-//! compare   other methods beside this one                  Comparison
+//! compare   this library and other methods                Comparison
 //! report    comparisons as JSON, CSV and tables
 //! evaluate  the paper's evaluation and more, as a document
 //! ```

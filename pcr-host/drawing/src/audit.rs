@@ -1,4 +1,5 @@
-//! An audit as a picture, and as layers of the page of locks: groups as written, what they leave out, what they exclude in vain.
+//! An audit as a picture, and as layers of the page of locks: groups as written, contacts that they do not exclude, and
+//! pairs that they exclude in vain.
 
 use super::axis::Frame;
 use super::layout::{Ground, STEPS, path};

@@ -1,11 +1,11 @@
 //! The outline of a collision region in the plane of time and travelled length.
 //!
-//! The exact slices of the region are taken at *columns* of time, which lie between neighbouring events
-//! ([`events`]) at the cosines of equal angles: the vertical tangents at the ends of a region, where its slices shrink
-//! like a square root, are then as well resolved as its flanks. A column is added wherever a straight line would
-//! leave the outline by more than [`TOLERANCE`]. Between two columns whose intervals correspond one to one the outline
-//! follows their ends. Where slices begin, end, split or merge, the columns close in on that time, and the
-//! outline crosses over along the vertical line there: the ends that lie on it belong together in pairs from below.
+//! The exact slices of the region are computed at *columns* of time. Columns lie between neighbouring events
+//! ([`events`]) at the cosines of equal angles, so that the vertical tangents at the ends of a region, where its slices
+//! shrink like a square root, are resolved as well as its flanks. A column is added where a straight line would deviate
+//! from the outline by more than [`TOLERANCE`]. Between two columns whose intervals correspond one to one, the outline
+//! follows their ends. Where slices begin, end, split or merge, columns are added close to that time, and the outline
+//! follows the vertical line there: the ends on it are joined in pairs from below.
 
 mod events;
 mod outline;

@@ -1,4 +1,4 @@
-//! Places for labels: each goes to the first of its candidate places that is free, or to the least crowded one.
+//! Positions of labels: each label gets the first of its candidate positions that is free, or the least crowded one.
 
 use std::collections::HashMap;
 

@@ -1,7 +1,7 @@
 //! A layout as a picture: the corridors of a vehicle on the edges of a level.
 //!
-//! The corridor that a disc sweeps is the stroke of its path with round ends, as wide as the disc: SVG draws it exactly. That of a
-//! footprint is the union of those of its discs.
+//! The corridor that a disc sweeps is the stroke of its path, as wide as the disc and with round ends; SVG draws this
+//! exactly. The corridor of a footprint is the union of the corridors of its discs.
 
 use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
 use super::svg::{PathData, Pixels, Svg};

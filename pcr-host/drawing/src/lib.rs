@@ -4,18 +4,18 @@
 //! scene       motions, regions and their outlines, shared by all pictures
 //! contour     the exact outline of a region in time and travelled length
 //! axis        metres and seconds to pixels, ticks
-//! labels      where labels go
+//! labels      positions of labels
 //! palette     colours of the agents
 //! workspace   paper Fig. 10: paths and discs
 //! map         paper Fig. 11: the extended collision map of an agent
 //! overview    both side by side
 //! page        the same in a browser, with a time slider
-//! audit       what an audit of exclusions has found
+//! audit       result of an audit of exclusions
 //! layout      the corridors on the edges of a layout
-//! locks       a page in which the edges of a layout show what they block
-//! replay      a page on which to watch a simulation
-//! live        a page on which to watch a fleet that runs
-//! template    pages with everything in them
+//! locks       a page on which the edges of a layout show the lengths that they block
+//! replay      a page that replays a simulation
+//! live        a page that shows a running fleet
+//! template    pages that contain everything they need
 //! svg         the writer of SVG files
 //! raster      SVG to PNG (feature `png`)
 //! ```

@@ -1,4 +1,4 @@
-//! The page on which to watch a fleet that runs: it asks the server that it comes from, and nobody else.
+//! The page that shows a running fleet. It sends requests only to the server that it comes from.
 
 use crate::template::Page;
 use crate::{map, with_scene};

@@ -1,4 +1,4 @@
-//! The page of a layout and its locks, in which an edge shows what it blocks.
+//! The page of a layout and its locks; a selected edge shows the lengths that it blocks.
 
 use super::layout::{STEPS, bounds, line};
 use super::template::Page;

@@ -1,4 +1,4 @@
-//! The collision map of an agent over what samples say of it (paper Fig. 13).
+//! The collision map of an agent over the sampled collision map (paper Fig. 13).
 
 use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
 use super::map::spans;

@@ -1,7 +1,8 @@
-//! The page to explore a scenario: one HTML file with everything in it, no request to anywhere.
+//! A page to explore a scenario: one HTML file that contains everything and sends no requests.
 //!
-//! It holds the paths and profiles as numbers, and evaluates the closed forms of the library itself, so that the discs
-//! are exactly where they are at every time of the slider. Outlines of regions are traced here and drawn there.
+//! It contains the paths and profiles as numbers, and evaluates the closed forms of the library itself, so that the
+//! discs are exactly at their places at every time of the slider. Outlines of regions are computed by this module and
+//! drawn by the page.
 
 use super::axis::Frame;
 use super::contour::{Outline, is_thin};

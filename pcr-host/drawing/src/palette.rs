@@ -1,10 +1,10 @@
 //! Colours of the agents.
 //!
-//! The first twelve were found by a random search for the largest smallest distance in OKLab, seen with normal vision
-//! and, at half the weight, with each of the three dichromacies (Machado, Oliveira and Fernandes 2009), at a relative luminance
-//! below 0.45 so that thin lines stand out on white. From the thirteenth on hues follow one another by the golden
-//! angle, in three lightnesses. Colours repeat for nobody below 100 agents, but they cannot be told apart by eye
-//! beyond a dozen or so: that is what the labels are for.
+//! The first twelve were found by a random search that maximizes the smallest distance in OKLab, for normal vision and,
+//! at half the weight, for each of the three dichromacies (Machado, Oliveira and Fernandes 2009), at a relative
+//! luminance below 0.45 so that thin lines are visible on white. From the thirteenth colour on, hues advance by the
+//! golden angle, in three lightnesses. No colour repeats below 100 agents, but beyond a dozen or so the eye cannot
+//! distinguish them; labels are for that.
 
 use std::fmt;
 

@@ -1,7 +1,7 @@
-//! A page on which to watch runs: one HTML file with everything in it, no request to anywhere.
+//! A page that replays runs: one HTML file that contains everything and sends no requests.
 //!
-//! Discs move as they did; beside them is the collision map of a robot as its last plan saw it: regions, planned
-//! motion, and how far the robot really is.
+//! Discs move as they did in the run. Beside them is the collision map of a robot as of its last plan: regions, planned
+//! motion, and the length that the robot has really travelled.
 
 use crate::contour::trace;
 use crate::palette::colour;

@@ -1,4 +1,4 @@
-//! What all pictures of a scenario share: motions, regions with their outlines, colours and spans.
+//! Data that all pictures of a scenario share: motions, regions with their outlines, colours and spans.
 
 use super::contour::{Outline, trace};
 use super::layout::Ground;

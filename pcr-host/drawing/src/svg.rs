@@ -1,4 +1,4 @@
-//! A small writer of SVG: elements are closed, texts escaped, numbers finite and short.
+//! A small writer of SVG. It closes elements, escapes texts, and writes finite and short numbers.
 
 use std::fmt::{self, Display, Write as _};
 

@@ -1,4 +1,4 @@
-//! Pages that are one HTML file with everything in it, and ask for nothing from anywhere.
+//! Pages as single HTML files that contain everything and send no requests.
 
 use super::svg::Escaped;
 use serde_json::Value;

@@ -1,8 +1,9 @@
-//! The rules of a file against the exact table of locks: what can touch and is not excluded, and what is excluded and cannot touch.
+//! Compares the rules of a file with the exact table of locks: finds contacts that are not excluded, and exclusions of
+//! pairs that cannot touch.
 //!
-//! Two vehicles on one edge can always touch, so that an edge has to exclude itself. A vehicle that comes to a node has been on an edge
-//! that ends there, and that edge touches whatever the node does; hence for a node and an edge it is enough that a vehicle
-//! at the node keeps others off the edge, and two nodes need nothing more.
+//! Two vehicles on one edge can always touch, so an edge has to exclude itself. A vehicle that arrives at a node was on
+//! an edge that ends there, and the corridor of that edge contains the node. Hence for a node and an edge it is enough
+//! that a vehicle at the node keeps others off the edge, and two nodes need nothing more.
 
 use crate::meetings::Meetings;
 use crate::{Group, Rules, Target, Way, nearest, stretch};

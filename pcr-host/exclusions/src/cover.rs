@@ -1,8 +1,8 @@
-//! Cliques that cover the edges of a graph: groups of places of which any two exclude each other.
+//! Covers the edges of a graph by cliques: groups of places of which any two exclude each other.
 //!
-//! Fewest cliques are hard to find (Kou, Stockmeyer, Wong 1978). Here each edge that is not covered yet grows to a clique by the vertex
-//! that covers most of what is left; then what others cover as well is left out. How good that is tells a lower bound: edges of which
-//! no two are in one clique need a clique each.
+//! The least number of cliques is hard to find (Kou, Stockmeyer, Wong 1978). Here each uncovered edge grows to a clique
+//! by adding the vertex that covers most of the remaining edges; then redundant cliques are removed. A lower bound
+//! shows how good the result is: edges of which no two are in one clique need one clique each.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Changes of a text at spans of bytes; everything else is kept as it is.
+//! Replaces spans of bytes in a text and keeps everything else.
 
 use std::ops::Range;
 

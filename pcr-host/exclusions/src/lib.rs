@@ -1,7 +1,8 @@
-//! What keeps vehicles apart in the files that fleets load: groups, blocks, zones and lists of closed edges, read, written and audited.
+//! Mutual exclusion rules in layout files of fleet software (groups, blocks, zones and lists of closed edges): read,
+//! written and audited.
 //!
-//! Every format is read as [`Rules`]: what a vehicle takes on an edge or at a node, and what it bars the others from. The rules
-//! are those of the program that loads the file:
+//! Every format is read as [`Rules`]: the resources that a vehicle takes on an edge or at a node, and those that it
+//! bars for others. The rules follow the program that loads the file:
 //!
 //! | format | a vehicle on an edge from u to v | a vehicle at a node |
 //! |---|---|---|
@@ -12,18 +13,18 @@
 //! | pcr | takes the locks of the stretch it is on | bars the stretches of its locks |
 //!
 //! ```text
-//! way       an edge in one direction, with what a vehicle has on its stretches
+//! way       an edge in one direction, and the resources of its stretches
 //! nearest   the least distance of two stretches
 //! meetings  tokens by which two edges can exclude each other
-//! audit     what can touch and is not excluded, and what is excluded and cannot touch   Audit
-//! cover     cliques that cover the pairs of a graph, and how many it takes at least
+//! audit     contacts that are not excluded, and exclusions that are not needed          Audit
+//! cover     covers of a graph by cliques, and a lower bound of their number
 //! edit      changes of a text at spans; the rest is kept byte for byte
 //! json      JSON with the span of every value
 //! yaml      YAML with the span of every value
-//! settings  what writers are told, and what they have to say
+//! settings  options and warnings of writers
 //! outline   polygons around corridors
 //! nav2, opentcs, rmf, vda5050, own   the formats
-//! report    what has been written and found, as text
+//! report    results of writing and of audits, as text
 //! ```
 
 mod audit;

@@ -1,5 +1,5 @@
-//! Tokens by which two edges can exclude each other, found from the tokens: most pairs of edges have nothing to do with each other, and
-//! edges with hundreds of locks have few in common.
+//! Finds the tokens by which two edges can exclude each other, starting from the tokens: most pairs of edges have no
+//! token in common, and edges with hundreds of locks have few in common.
 
 use crate::{Mark, Rules};
 

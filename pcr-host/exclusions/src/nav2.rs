@@ -1,8 +1,10 @@
-//! Route graphs of nav2: the edges that are closed for the others while a vehicle is on an edge or at a node.
+//! Route graphs of nav2: lists of the edges that are closed for other vehicles while a vehicle is on an edge or at a
+//! node.
 //!
-//! Each edge and node has them in its metadata as [`KEY`], as the service `DynamicEdgesScorer/adjust_edges` takes them
-//! (`closed_edges` when the vehicle comes, `opened_edges` when it has left). An edge is among its own: two vehicles on one edge can touch.
-//! The service and its lists know edges by their ids, of 16 bits; edges of one id are closed together.
+//! The metadata of each edge and node have such a list as [`KEY`], in the form that the service
+//! `DynamicEdgesScorer/adjust_edges` takes (`closed_edges` when the vehicle arrives, `opened_edges` when it has left).
+//! An edge is in its own list, because two vehicles on one edge can touch. The service identifies edges by their ids,
+//! which have 16 bits; edges with the same id are closed together.
 
 use crate::edit::{Edits, ending};
 use crate::json::{Spanned, Value as Kind};

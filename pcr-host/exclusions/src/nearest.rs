@@ -1,4 +1,5 @@
-//! The least distance of two stretches of lines and arcs: exact for lines, else by cutting until a bound tells.
+//! The least distance of two stretches of lines and arcs: exact for lines; for arcs by subdivision until a bound
+//! decides.
 
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;

@@ -1,12 +1,13 @@
 //! Plant models of openTCS: blocks, or envelopes.
 //!
-//! Points and paths are resources of one vehicle each; a vehicle on a path has the path and both of its points until it reports
-//! that it is at the second one. With a resource it has all blocks `SINGLE_VEHICLE_ONLY` in which that is a member. Where the vehicle has an
-//! envelope key, the envelopes of its resources with this key may not meet those of others.
+//! Points and paths are resources of one vehicle each. A vehicle on a path holds the path and both of its points until
+//! it reports that it is at the second point. With a resource it holds all blocks `SINGLE_VEHICLE_ONLY` that contain
+//! it. If the vehicle has an envelope key, the envelopes of its resources with this key must not overlap those of
+//! others.
 //!
-//! Blocks are written only for what points do not exclude: two paths with a common point have it both. Of places that touch, points
-//! come first, since a block of two points is one of all paths that end there.
-//! `SAME_DIRECTION_ONLY` keeps off nothing that can touch: it lets vehicles in that follow one another.
+//! Blocks are written only for contacts that points do not exclude: two paths with a common point exclude each other.
+//! Blocks of points are preferred, because a block of two points applies to all paths that end there.
+//! `SAME_DIRECTION_ONLY` excludes no contact: it lets vehicles in that follow one another.
 
 mod cut;
 

@@ -1,4 +1,4 @@
-//! Convex polygons around corridors, outward.
+//! Convex polygons that contain corridors.
 
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;

@@ -1,6 +1,7 @@
-//! The project's own lock file: for each edge and node the stretches of edges that are locked while a vehicle is there.
+//! The project's own lock file: for each edge and node, the stretches of edges that are locked while a vehicle is
+//! there.
 //!
-//! An edge locks itself. Lengths are those of the table of locks, outward to the next micrometre but one.
+//! An edge locks itself. Lengths are those of the table of locks, rounded outward to the next micrometre but one.
 
 use crate::{Claim, Group, Mark, Rules, Way};
 use pcr_formats::import::{Id, ImportError, Imported};

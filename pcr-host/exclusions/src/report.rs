@@ -1,4 +1,4 @@
-//! What is written into the files of fleets, and what audits find, for reading and as CSV.
+//! Reports of written exclusions and of audits, for reading and as CSV.
 
 use crate::{Audit, Gap, Spot, Written};
 use pcr_planning::locks::LockVehicle;

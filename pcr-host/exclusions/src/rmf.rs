@@ -1,12 +1,13 @@
 //! Buildings and navigation graphs of Open-RMF: mutex groups of vertices and lanes.
 //!
-//! A vertex or a lane is in one group at most. Before a robot sets off to a vertex it locks the group of the lane and that of the
-//! vertex; that of the vertex which it leaves is unlocked on the way, unless the lane is in it, too. Hence a lane is put into the group
-//! of the vertex where it begins: on the way a robot has both ends. A lane for both ways cannot be in the groups of both, so that it becomes two,
-//! which is what the building tools make of it anyway.
+//! A vertex or a lane is in one group at most. Before a robot sets off to a vertex it locks the group of the lane and
+//! that of the vertex. The group of the vertex that it leaves is unlocked on the way, unless the lane is in it, too.
+//! Hence a lane is put into the group of the vertex where it begins: on the way a robot then holds the groups of both
+//! ends. A lane for both directions cannot be in both groups, so it is split into two, which the building tools do
+//! anyway.
 //!
-//! At first every vertex is a group of its own, so that lanes with a common vertex exclude each other. What else can touch is excluded by
-//! uniting the groups of two vertices, again and again those that exclude most for their size.
+//! At first every vertex is a group of its own, so that lanes with a common vertex exclude each other. Other contacts
+//! are excluded by merging the groups of two vertices, repeatedly those that exclude most for their size.
 
 mod cut;
 mod units;

@@ -1,4 +1,4 @@
-//! What writers are told, and what they have to say.
+//! Options and warnings of writers.
 
 use crate::Target;
 

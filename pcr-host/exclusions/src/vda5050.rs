@@ -1,8 +1,9 @@
 //! Zone sets of VDA 5050 (3.0): RELEASE zones, each granted to one vehicle at a time.
 //!
-//! Where two vehicles touch, there is a point in the contours of both. A RELEASE zone is entered with any part of the contour; hence zones
-//! that cover all corridors keep vehicles apart, whichever zones these are. Here each line or arc of an edge is one, or
-//! each part of it if it is cut, and both directions of one way are the same one. A `BLOCKED` zone is not entered at all.
+//! If two vehicles touch, some point is in the contours of both. A vehicle needs a RELEASE zone as soon as any part of
+//! its contour enters it. Hence any zones that cover all corridors keep vehicles apart. Here each line or arc of an
+//! edge is a zone, or each part of it if it is cut; both directions of one way share a zone. Vehicles do not enter a
+//! `BLOCKED` zone at all.
 
 use crate::outline::{around, distance};
 use crate::settings::{Notes, Settings};

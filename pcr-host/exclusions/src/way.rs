@@ -1,4 +1,4 @@
-//! An edge in one direction, with what a vehicle has on its stretches.
+//! An edge in one direction, and the resources that a vehicle holds on its stretches.
 
 use crate::Claim;
 use std::sync::Arc;

@@ -1,6 +1,7 @@
-//! Exclusions written into the files of others, and what they exclude beyond the exact table.
+//! Writes exclusions into layout files of fleet software, and counts what they exclude beyond the exact table.
 //!
-//! A written file is read again, by the reader that audits files of others, and is not given away if anything can touch.
+//! A written file is read again, by the reader that audits files of other origin; it is refused if any contact is not
+//! excluded.
 
 use crate::settings::{Notes, Settings};
 use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};

@@ -1,8 +1,8 @@
-//! Footprints that are no discs: a polygon, covered by discs that move with it.
+//! Footprints that are polygons, covered by discs that move with them.
 //!
-//! The box around the polygon is cut into cells of equal size; the part of the polygon in a cell is covered by a disc around
-//! its box. The cells become smaller until no disc reaches further out of the polygon than is allowed, the *overhang*: a
-//! disc of radius r whose centre is at the depth d inside the polygon reaches at most r - d out of it.
+//! The box around the polygon is cut into cells of equal size. The part of the polygon in a cell is covered by the disc
+//! around its box. The cells become smaller until no disc reaches further out of the polygon than allowed, the
+//! *overhang*: a disc of radius r whose centre is at the depth d inside the polygon reaches at most r - d out of it.
 
 use serde::Serialize;
 

@@ -1,34 +1,34 @@
-//! Layouts, orders and plans in the formats that fleets use already, read leniently.
+//! Reads layouts, orders and plans in the formats that fleets use, leniently.
 //!
 //! ```text
 //! nav2        route graphs of the nav2 route server (GeoJSON)
 //! lif         layouts of the VDMA (JSON)
 //! vda5050     orders and states (JSON)
-//! loads       what a vehicle of VDA 5050 carries
+//! loads       the load that a vehicle of VDA 5050 carries
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
 //! opendrive   reference lines of roads (XML)
 //! opentcs     plant models (XML)
 //! ccbs        roadmaps and plans of Continuous-CBS (XML)
-//! grid        plans on grids (text)                                        GridPlan
-//! trajectory  NURBS as VDA 5050 and LIF write them
+//! grid        plans on grids (text)                                          GridPlan
+//! trajectory  NURBS as in VDA 5050 and LIF
 //! nurbs       NURBS to Bézier curves
 //! biarc       curves to lines and arcs, with a certified distance
 //! samples     paths by their points (text)
 //! timed       plans of points and times
-//! layout      what they all become: nodes, and edges of lines and arcs     Layout
+//! layout      the common form: nodes, and edges of lines and arcs            Layout
 //! trace       lines and arcs anywhere in the plane to one path
 //! speed       the fastest motion under changing limits
 //! route       the shortest way between nodes, corners rounded
-//! vehicle     radius, speeds, and the options of the command line          Vehicle, Options
-//! names       names that tell apart what a file gives one name
-//! useful      which of them do something with which files                  Kind
-//! warnings    what was wrong and was read nevertheless                     Warnings
+//! vehicle     radius, speeds, and the options of the command line            Vehicle, Options
+//! names       unique names for nodes and edges with the same name
+//! useful      which options have an effect on which files                    Kind
+//! warnings    faults that were read nevertheless                             Warnings
 //! ```
 //!
-//! What is in a file is in what is read, or the file is refused with an [`ImportError`] that names all that would be left out;
-//! with [`Options::partial`] it is left out. What is read otherwise than it is written is warned about, and the warnings go into
-//! the answers. No input makes it panic.
+//! A reader either reads everything in a file, or refuses it with an [`ImportError`] that names all parts that would be
+//! left out; with [`Options::partial`] these are left out. Parts that are not read exactly as written cause warnings,
+//! which are also in the answers. No input causes a panic.
 
 mod biarc;
 mod ccbs;

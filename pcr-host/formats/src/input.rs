@@ -1,4 +1,4 @@
-//! Where scenarios come from, and errors that say where the fault is.
+//! Sources of scenarios, and errors that name the place of the fault.
 
 mod lines;
 

@@ -1,8 +1,8 @@
-//! JSON text as a tree that forgets nothing a refusal needs.
+//! Parses JSON to a tree that keeps everything that error messages need.
 //!
-//! A general parser stops at `NaN` (which Python writes) and at `1e999`, and keeps the last of two equal keys. A
-//! scenario with such a fault is to be refused with its agent, segment and field, which are known only when the tree
-//! is walked. So numbers stay as written here, words for what is not finite count as numbers, equal keys are kept,
+//! A general parser stops at `NaN` (which Python writes) and at `1e999`, and keeps the last of two equal keys. The
+//! error for a scenario with such a fault should name agent, segment and field, which are known only when the tree is
+//! traversed. So numbers keep their text, words for values that are not finite count as numbers, equal keys are kept,
 //! and every value knows its line. Otherwise this is RFC 8259; the tests compare it with `serde_json`.
 
 /// A value and where it begins.

@@ -1,11 +1,11 @@
-//! What the tool `pcr` reads and writes: scenarios, layouts, orders and plans in the formats of others.
+//! The files that the tool `pcr` reads and writes: scenarios; layouts, orders and plans in other formats.
 //!
 //! ```text
-//! scenario   what a file says, and everything that is refused     Scenario, Agent
-//! footprint  outlines that are no discs, covered by discs         Footprint
-//! import     layouts, orders and plans in the formats of others   Format, Layout
+//! scenario   scenario files, and their errors                   Scenario, Agent
+//! footprint  outlines other than discs, covered by discs        Footprint
+//! import     layouts, orders and plans in other formats         Format, Layout
 //! input      files and JSON Lines, errors with their places
-//! output     files that are written whole or not at all
+//! output     files that are written completely or not at all
 //! paper      the embedded scenario and the paper's numbers
 //! ```
 

@@ -1,7 +1,8 @@
-//! Files that are there whole or as they were before: never a part of one.
+//! Writes files so that they are complete or unchanged, and never partial.
 //!
-//! What is written goes to a temporary file in the same folder, onto the disk, and only then takes the name of the file that it
-//! replaces. Whatever stops the program, a full disk, a limit or a signal, the old file is untouched until the new one is complete.
+//! The contents are written to a temporary file in the same folder and flushed to the disk; only then it takes the name
+//! of the file that it replaces. If a full disk, a limit or a signal stops the program, the old file is still
+//! untouched.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Write};

@@ -1,4 +1,4 @@
-//! The paper's simulation of 12 agents, and what the paper prints about it.
+//! The paper's simulation of 12 agents, and the figures that the paper prints about it.
 
 /// The scenario, rebuilt from the paper's tables (the paper gives no coordinates).
 pub const SCENARIO: &str = include_str!("../scenarios/paper12.json");

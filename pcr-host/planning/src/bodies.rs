@@ -1,5 +1,5 @@
-//! The agents of a scenario as discs: those of their footprints, or the one that they are; with loads one for each stretch of
-//! the path on which the outline is the same.
+//! The agents of a scenario as discs: the discs of a footprint, or a single one. With loads there is one set of discs
+//! for each stretch of the path on which the outline does not change.
 
 mod offset;
 

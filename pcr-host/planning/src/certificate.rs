@@ -1,6 +1,6 @@
-//! Tables as plain numbers for [`pcr_certify`], which shares nothing with what has computed them.
+//! Tables as plain numbers for [`pcr_certify`], which shares no code with the library that computed them.
 //!
-//! All numbers are those that the library holds: nothing is rounded or computed again here.
+//! All numbers are those that the library holds; this module neither rounds nor computes.
 
 use crate::fleet::{Fleet, Format, HostEcm};
 use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Region, Segment, Share, Table, Travel};

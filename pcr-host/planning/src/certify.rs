@@ -1,6 +1,6 @@
-//! Tables and motions proved by [`pcr_certify`]: what `pcr certify` prints in every format.
+//! Proofs of tables and motions by [`pcr_certify`]: the answer of `pcr certify` in every format.
 //!
-//! The types are the JSON output, field for field in this order.
+//! The types match the JSON output, field by field in this order.
 
 mod motions;
 

@@ -1,7 +1,7 @@
-//! Whether the agents of a scenario collide as they move: what `pcr check` prints in every format.
+//! Conflicts of the agents of a scenario as they move: the answer of `pcr check` in every format.
 //!
-//! The types are the JSON output, field for field in this order. All motions run from the earliest start to the latest
-//! arrival; every agent stands at its start before and at its end after its motion.
+//! The types match the JSON output, field by field in this order. All motions run from the earliest start to the latest
+//! arrival; every agent stands at its start before its motion and at its end afterwards.
 
 use crate::bodies::{Bodies, Disced};
 use crate::certify::Proof;

@@ -1,12 +1,14 @@
-//! Plans on graphs carried out while robots are late: by passing orders on the geometry of discs, or by the cells of a grid.
+//! Executes plans on graphs while robots are late: by passing orders on the geometry of discs, or by the cells of a
+//! grid.
 //!
-//! Robots are as such plans take them: each goes at one speed or stands, and changes between the two at once. Now and then one is
-//! stopped, whatever it is doing. Nobody has a clock: who passes whom first is as planned, and whoever passes second waits.
+//! Robots move as such plans assume: each one drives at one speed or stands, and changes between the two at once. At
+//! random times a robot is stopped, whatever it is doing. Robots have no clock: the passing order is that of the plan,
+//! and the robot that passes second waits.
 //!
 //! ```text
-//! orders     who passes each collision region first, as in the plan     Orders of pcr-core
-//! switching  orders that are turned round where that is sooner
-//! cells      who enters each cell after whom: an action dependency graph (Hoenig et al. 2019)
+//! orders     passing orders for collision regions, as in the plan       Orders of pcr-core
+//! switching  orders that are reversed if all arrive sooner
+//! cells      the order in which robots enter each cell: an action dependency graph (Hoenig et al. 2019)
 //! ```
 
 mod cells;

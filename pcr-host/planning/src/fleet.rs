@@ -1,4 +1,4 @@
-//! From scenarios to motions and maps, in any number format of the tool.
+//! Converts scenarios to motions and tables, in any number format of the tool.
 
 mod fixed;
 #[cfg(feature = "micromath")]

@@ -1,25 +1,26 @@
-//! What a desktop computes for a scenario: regions, conflicts, plans, locks, traffic, simulations, and their text.
+//! Everything that the tool computes for a scenario: regions, conflicts, plans, locks, traffic, simulations, and their
+//! output as text.
 //!
 //! ```text
-//! fleet        its paths and motions in a number format              Fleet, build_ecm
-//! bodies       agents with footprints as discs                       Bodies
+//! fleet        paths and motions in a number format                Fleet, build_ecm
+//! bodies       agents with footprints as discs                     Bodies
 //! certificate  tables as plain numbers for the checker
-//! certify      what the checker proves of them                       Certified, Proof
-//! regions      the answer as plain numbers, and its JSON             Answer, Request
-//! rows         regions of fleets of any size, an agent at a time     Row, Grid
-//! check        the conflicts of the motions as given                 Verdict
-//! locks        which edges of a layout exclude one another           Locks
-//! memory       what cannot be held is refused                        TooLarge
-//! checksum     of files that are read in parts
-//! nodes        what a layout holds                                   Listing
-//! plan         delays without conflicts                              Plan
-//! queue        the conflicts of a fleet whose motions change         Queue
-//! traffic      random missions on a layout, and their plan           Traffic
-//! execution    plans of others carried out while robots are late   Execution
-//! lifelong     robots that get a new mission whenever one is done    run, Outcome
-//! simulate     plans in closed loop, with noise and delays           run, Task
+//! certify      proofs by the checker                               Certified, Proof
+//! regions      regions as plain numbers, and their JSON            Answer, Request
+//! rows         regions of fleets of any size, an agent at a time   Row, Grid
+//! check        the conflicts of the given motions                  Verdict
+//! locks        which edges of a layout exclude one another         Locks
+//! memory       refuses what does not fit into memory               TooLarge
+//! checksum     checksums of files that are read in parts
+//! nodes        nodes and edges of a layout                         Listing
+//! plan         delays without conflicts                            Plan
+//! queue        the conflicts of a fleet while its motions change   Queue
+//! traffic      random missions on a layout, and their plan         Traffic
+//! execution    execution of plans while robots are late            Execution
+//! lifelong     robots that get a new mission after each one        run, Outcome
+//! simulate     plans in closed loop, with noise and delays         run, Task
 //! report       JSON, CSV and tables
-//! random       the same numbers on every machine
+//! random       random numbers that are the same on every machine
 //! ```
 
 pub mod bodies;

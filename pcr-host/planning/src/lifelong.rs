@@ -1,38 +1,39 @@
-//! Fleets that run for hours: missions come one after the other, ways and orders are admitted when a robot needs them, and
-//! robots keep their orders however late anybody is.
+//! Fleets that run for hours: robots get one mission after the other. A path and its passing orders are admitted when a
+//! robot needs them, and robots keep their orders, whatever the delays.
 //!
-//! A robot goes to its goal and on to a node where it may stand for good, so that nobody ever waits for somebody without a
-//! mission; where its next mission is admitted on the way it turns off. Who passes whom first is settled when a way is admitted
-//! (`docs/theory.md`); locks and start delays do the same missions under the same delays, for comparison.
+//! A robot drives to its goal and on to a node where it may stand for good, so that no robot ever waits for one without
+//! a mission. If its next mission is admitted on the way, it turns off. Passing orders are decided when a path is
+//! admitted (`docs/theory.md`). For comparison, the same missions are run with locks and with start delays, under the
+//! same random delays.
 //!
 //! ```text
-//! gates      holds as lists of places to wait                  Contact, Gate
-//! site       pieces of way, and how robots on them touch       Site
-//! ends       where robots may stand for good                   WellFormedness
+//! gates      holds as lists of places to wait                     Contact, Gate
+//! site       atoms: pieces of way, and how robots on them touch   Site
+//! ends       nodes where robots may stand for good                WellFormedness
 //! places     places to stand on dead ends, for more robots than ends
 //! routes     quickest routes
-//! abilities  what a robot can do
+//! abilities  speed and acceleration of a robot
 //! robot      how robots move and are delayed
-//! way        from node to node, and times without waits
-//! book       regions of the ways, and who goes first
-//! timetable  when robots would be where                        Timetable
+//! way        a path from node to node, and its times without waits
+//! book       regions of the ways, and their orders
+//! timetable  when robots would be where                           Timetable
 //! waits      what robots wait for on their ways
 //! forecast   whether all can finish, and when
-//! tasks      places where robots begin, and tasks that come      Tasks
-//! locks      edges one at a time, for comparison
-//! scene      the fleet as it is now, and routes through it
+//! tasks      first places of robots, and a stream of tasks        Tasks
+//! locks      locks on one edge after the other, for comparison
+//! scene      the present fleet, and routes through it
 //! search     orders on a way
 //! dispatch   ways and orders for a mission
-//! clearing   robots that stand in the way of a mission
-//! record     what was done, for the independent checker        Certificate
-//! outcome    what comes of a run                               Outcome
-//! draws      goals, delays, starts
-//! streets    a generated site of any size                      streets
-//! state      the fleet, its missions, what has come of it
-//! turns      whose turn it is, and who makes way for it
-//! decide     who looks for a way when
+//! clearing   moves robots out of the way of a mission
+//! record     motions of the robots, for the independent checker   Certificate
+//! outcome    results of a run                                     Outcome
+//! draws      random goals, delays and starts
+//! streets    a generated site of any size                         streets
+//! state      the fleet, its missions, and results so far
+//! turns      the order in which missions are tried
+//! decide     which robot looks for a way at what time
 //! run        a run
-//! answer     what `pcr traffic --hours` prints                 Lifelong
+//! answer     the answer of `pcr traffic --hours`                  Lifelong
 //! ```
 
 mod abilities;

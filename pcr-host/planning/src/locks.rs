@@ -1,11 +1,13 @@
-//! Which edges of a layout may not be used at the same time, and on which lengths: the table of locks of a fleet control.
+//! The table of locks for fleet control: which edges of a layout must not be used at the same time, and on which
+//! lengths.
 //!
-//! Two vehicles are anywhere on two edges. The lengths (l₁, l₂) at which their discs overlap are the collision regions of the two
-//! edges in coordination space: the kernels of the library find them, whatever the motions. The extents of a connected region
-//! are the lengths within which one edge is blocked while the other is used. They contain the true ones, the deviation of arcs from the
-//! curves of the file included. A footprint is the union of its discs in every pose that the vehicle has on an edge, its turns at both ends included; extents that
-//! overlap are joined, so that the locks of two edges are apart. A vehicle that stops or turns at a node is at the end of an edge, so
-//! that nodes are part of their edges; on their own they can be asked for.
+//! Let two vehicles be anywhere on two edges. The lengths (l₁, l₂) at which their discs overlap are the collision
+//! regions of the two edges in coordination space, which the kernels of the library compute, whatever the motions. The
+//! ranges of a connected region are the lengths on which one edge is blocked while the other is used. They contain the
+//! exact ones, including the deviation of arcs from the curves of the file. A footprint is the union of its discs in
+//! every pose that the vehicle has on an edge, including its turns at both ends. Ranges that overlap are joined, so the
+//! locks of two edges are disjoint. A vehicle that stops or turns at a node is at the end of an edge, so nodes are part
+//! of their edges; locks of nodes alone can be requested, too.
 
 mod change;
 mod delays;

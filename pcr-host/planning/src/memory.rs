@@ -1,4 +1,4 @@
-//! How much memory there is yet: what cannot be held is refused before an allocation fails, which would end the program.
+//! The available memory: data that do not fit are refused before an allocation fails, which would abort the program.
 
 use std::fmt;
 use std::fs;

@@ -1,4 +1,5 @@
-//! What a layout holds, to be listed: what `pcr nodes` prints. The types are the JSON output, field for field in this order.
+//! The nodes and edges of a layout: the answer of `pcr nodes`. The types match the JSON output, field by field in this
+//! order.
 
 use pcr_formats::import::{Edge, Id, Layout, Node};
 use serde::Serialize;

@@ -1,9 +1,10 @@
-//! Plans without collisions: what `pcr plan` prints and writes.
+//! Plans without collisions: the answer and the file of `pcr plan`.
 //!
-//! By start delays: the best ones by branch and bound, or one agent after the other in an order of priority. By speeds: each agent
-//! arrives as early as those before it in an order allow, and the delays are a plan, too. Starts are planned with the discs of footprints, speeds with the one disc
-//! around them: another speed along the path is none of a disc beside it. Every plan is checked as `pcr check` does and proved by the
-//! independent checker before it is returned.
+//! Start delays: the best ones by branch and bound, or one agent after the other in an order of priority. Speeds: each
+//! agent arrives as early as the agents before it in an order allow, and the start delays are also tried. Start delays
+//! use the discs of footprints, speeds use one disc around them, because a disc beside the reference point does not
+//! have the same speed. Every plan is checked like `pcr check` does, and proved by the independent checker, before it
+//! is returned.
 
 mod bound;
 mod circle;

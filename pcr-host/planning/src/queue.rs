@@ -1,4 +1,5 @@
-//! The conflicts of a fleet by their times, kept while motions change: what a search over plans resolves next.
+//! The conflicts of a fleet sorted by time, and updated when motions change. A search over plans resolves them one
+//! after the other.
 
 use pcr_core::{Conflict, Encounter, Motion};
 use std::collections::{BTreeMap, BTreeSet};

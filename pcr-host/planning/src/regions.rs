@@ -1,7 +1,7 @@
-//! The collision regions of a scenario as plain numbers: what `pcr regions` prints in every format.
+//! The collision regions of a scenario as plain numbers: the answer of `pcr regions` in every format.
 //!
-//! The types are the JSON output, field for field in this order. All numbers are `f64` and hold
-//! the results of the chosen number format exactly, hence rounded outward.
+//! The types match the JSON output, field by field in this order. All numbers are `f64` and hold the results of the
+//! chosen number format exactly, hence rounded outward.
 
 mod outlines;
 mod record;

@@ -1,9 +1,9 @@
-//! Collision regions of fleets of any size, an agent at a time: a row is the table of an agent with those after it that
-//! come near. Rows are independent of one another: they are computed on all cores, and a fleet of which no table would fit
-//! into memory can be worked through row by row.
+//! Collision regions of fleets of any size, one agent at a time: a row is the table of an agent with the later agents
+//! that come near it. Rows are independent of one another, so they are computed on all cores, and a fleet whose table
+//! would not fit into memory can be processed row by row.
 //!
-//! Agents are taken along a curve that fills the plane, so that the paths of neighbours are still in the cache, and each thread
-//! has one row, whose storage it keeps.
+//! Agents are processed along a space-filling curve, so that the paths of neighbours are still in the cache. Each
+//! thread has one row and reuses its storage.
 
 mod grid;
 

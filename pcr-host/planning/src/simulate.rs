@@ -1,27 +1,28 @@
-//! Closed loop: robots that slip, drift and are held up, seen by a camera that errs, under three controllers.
+//! Simulation in closed loop: robots that slip, drift and are held up, observed by an inaccurate camera, under three
+//! controllers.
 //!
 //! ```text
-//! task        robots, missions, obstacles: of a scenario              Task
+//! task        robots, missions, obstacles of a scenario           Task
 //! forage      the paper's experiment (Section 4.2)
 //! tangents    shortest ways around discs
 //! course      the path of a mission, and drives along it
 //! noise       random numbers by seed, robot and purpose
-//! body        a robot as it really is                                 Disturbance
+//! body        the true state of a robot                           Disturbance
 //! supervisor  plans with collision regions every few seconds:
 //!   observer    where a robot can be
 //!   replan      motions for the rest of the paths
 //!   guard       passing orders in between
 //!   braking     speeds frame by frame
-//! steering    what the reactive controllers have in common:
+//! steering    common code of the reactive controllers:
 //!   potential   artificial potential field
 //!   orca        optimal reciprocal collision avoidance
 //! world       true positions and missions, frame by frame
 //! contact     collisions on the true positions
-//! outcome     what comes out                                          Outcome, Run, Trace
+//! outcome     results                                             Outcome, Run, Trace
 //! ```
 //!
-//! Time goes in frames of the camera. The same task, seed and settings give the same run, down to the last digit; only the
-//! time that planning takes on the machine differs.
+//! Time advances in frames of the camera. The same task, seed and settings give the same run, down to the last digit;
+//! only the time that planning takes differs between machines.
 
 mod body;
 mod braking;

@@ -1,7 +1,8 @@
-//! Random traffic on a layout: what `pcr traffic` prints and draws.
+//! Random traffic on a layout: the answer and the pictures of `pcr traffic`.
 //!
-//! Every agent has one mission, the shortest way between two random nodes. All would set off at once; the plan delays them.
-//! Agents for which there is no delay, because they meet others whenever they start, are left out and counted.
+//! Every agent has one mission, the shortest way between two random nodes. Without a plan all would set off at once;
+//! the plan delays them. Agents for which there is no delay, because they meet others whenever they start, are left out
+//! and counted.
 
 mod crowd;
 mod missions;

@@ -1,4 +1,4 @@
-//! What the thread that owns the supervisor shows to others: how fast it is, and what has happened lately.
+//! Data that the supervisor's thread publishes for others: its speed, and recent events.
 
 use crate::event::Event;
 use crate::metrics::Latency;

@@ -1,4 +1,4 @@
-//! Owned paths of lines, arcs and turns in place: what is kept of them when they go on otherwise.
+//! Owned paths of lines, arcs and turns in place, and the part that is kept when a path is changed.
 
 use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, Turn};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What the journal holds: everything that must be the same after a restart.
+//! The entries of the journal: everything that must be the same after a restart.
 
 use crate::course::Course;
 use crate::robot::{Abilities, Alarm, Waiting};

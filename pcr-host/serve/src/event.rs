@@ -1,4 +1,4 @@
-//! What the supervisor says by itself.
+//! Events: messages that the supervisor sends without a request.
 
 use crate::robot::Alarm;
 use serde::{Deserialize, Serialize};

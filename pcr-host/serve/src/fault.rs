@@ -1,4 +1,4 @@
-//! Why a request is refused.
+//! The reasons why a request is refused.
 
 use serde::Serialize;
 use std::fmt;

@@ -1,4 +1,5 @@
-//! A small server of HTTP/1.1 for the live page and the metrics: it answers GET, nothing can be changed through it.
+//! A small HTTP/1.1 server for the live page and the metrics. It only answers GET, so that nothing can be changed
+//! through it.
 
 use crate::metrics;
 use crate::query::View;

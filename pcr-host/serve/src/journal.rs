@@ -1,12 +1,12 @@
-//! A file of entries that is only ever appended to: frames of a length, a checksum and JSON, each on the disc before anything in it is
-//! told to anybody.
+//! A file of entries to which the program only appends. An entry is a frame with a length, a checksum and JSON; it is
+//! on the disk before anything in it is sent to anyone.
 //!
-//! A frame that the end of the process, or of the power, has left incomplete is the last one, and nobody has been told what is in it: it
-//! is left out. Anything else that is wrong is damage, and no journal to go on with.
+//! If the process or the power fails, the last frame may be incomplete; nothing in it has been sent yet, so it is
+//! ignored. Any other error is damage, and the journal is refused.
 //!
-//! After the last frame there are zeros: what is written over them is on the disc sooner than what makes a file longer. So what has not come to
-//! the disc of an incomplete frame is zeros, of which no whole one has any but in its first bytes: a last frame that is wrong otherwise was
-//! whole once, and what is in it told.
+//! Zeros follow the last frame, because overwriting them reaches the disk sooner than extending a file. So the missing
+//! part of an incomplete frame is zeros, and a complete frame has zeros only in its first bytes. A last frame that is
+//! wrong in any other way was complete once, and its contents have been sent.
 
 use crate::entry::{Entry, Keep};
 use std::fs::{self, File, OpenOptions, TryLockError};

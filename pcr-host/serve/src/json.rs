@@ -1,4 +1,4 @@
-//! JSON in which no name comes twice in one object: which of its values counts would be up to whoever reads it.
+//! JSON in which no object has the same name twice, because readers would disagree about which value counts.
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};

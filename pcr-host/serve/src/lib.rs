@@ -1,31 +1,32 @@
-//! A supervisor of fleets: it decides by exact passing orders how far each robot may go, and says so. `docs/serve.md` says how to use
-//! it, and what it promises.
+//! A supervisor of fleets: it decides by exact passing orders how far each robot may go, and sends that to the robots.
+//! `docs/serve.md` describes how to use it, and what it guarantees.
 //!
 //! ```text
-//! course       owned paths                                              Course, Shape
-//! robot        what is known of a robot                                 Robot, Abilities
-//! event        what it says by itself                                   Event
-//! fault        why it refuses a request                                 Fault
-//! entry        what has to outlive the process                          Entry, Keep
-//! journal      a file of entries                                        Journal
-//! json         JSON in which no name comes twice                        Once
-//! writer       a journal on a thread of its own                         Writer, Kept
-//! supervisor   robots, missions, positions, holds                       Supervisor
-//! query        what can be asked                                        Question
-//! lines        the line protocol                                        handle
-//! metrics      what is measured, for Prometheus
-//! log          what is written to standard error                        Log
-//! board        what that thread shows                                   Board
-//! server       the thread that owns the supervisor                      serve, Handle
+//! course       owned paths                                            Course, Shape
+//! robot        state of a robot                                       Robot, Abilities
+//! event        messages that it sends without a request               Event
+//! fault        reasons why it refuses a request                       Fault
+//! entry        data that have to survive the process                  Entry, Keep
+//! journal      a file of entries                                      Journal
+//! json         JSON without repeated names                            Once
+//! writer       a journal on a thread of its own                       Writer, Kept
+//! supervisor   robots, missions, positions, holds                     Supervisor
+//! query        queries about a fleet                                  Question
+//! lines        the line protocol                                      handle
+//! metrics      metrics for Prometheus
+//! log          log on standard error                                  Log
+//! board        data that the supervisor's thread publishes            Board
+//! server       the thread that owns the supervisor                    serve, Handle
 //! clients      standard input and output, and TCP
 //! http         the live page
-//! vda5050      VDA 5050 between a fleet manager and vehicles            Bridge, Station
-//! vehicles     simulated vehicles and a fleet manager                   Vehicle, Fleet
+//! vda5050      VDA 5050 between a fleet manager and vehicles          Bridge, Station
+//! vehicles     simulated vehicles and a fleet manager                 Vehicle, Fleet
 //! ```
 //!
-//! One thread owns the [`Supervisor`](supervisor::Supervisor); what others send it is handled in any number of calls, then
-//! [`settle`](supervisor::Supervisor::settle) decides, writes the journal, and returns what may be told. With a journal on a thread
-//! of its own it is told as soon as it is on the disc, and what comes meanwhile is decided.
+//! One thread owns the [`Supervisor`](supervisor::Supervisor). It handles messages of other threads in any number of
+//! calls; then [`settle`](supervisor::Supervisor::settle) decides, writes the journal, and returns the messages to be
+//! sent. If the journal has a thread of its own, they are sent as soon as it is on the disk, and messages that arrive
+//! meanwhile are processed.
 
 pub mod board;
 pub mod clients;

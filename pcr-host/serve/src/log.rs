@@ -1,4 +1,4 @@
-//! Logs: a line each, `key=value`, from a level on.
+//! Log messages, one line each, as `key=value`, from a level on.
 
 use crate::event::Event;
 use std::fmt::Display;

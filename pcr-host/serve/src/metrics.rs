@@ -1,4 +1,4 @@
-//! What is measured, in the text format of Prometheus.
+//! Metrics in the text format of Prometheus.
 
 use crate::supervisor::Supervisor;
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! What can be asked about a fleet.
+//! Queries about a fleet.
 
 use crate::course::{Course, Shape, Start};
 use crate::entry::Side;

@@ -1,4 +1,4 @@
-//! What is known of a robot: what it can do, the path that it has, where it is on it, and how far it has been allowed to go.
+//! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
 use crate::course::Course;
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};

@@ -1,5 +1,5 @@
-//! One thread owns the supervisor. Others read what comes in and write what goes out; between them are queues with an end, so that
-//! whoever sends too fast has to wait, and whoever reads too slowly is let go.
+//! The thread that owns the supervisor. Other threads read input and write output; bounded queues connect them, so that
+//! a client that sends too fast has to wait, and one that reads too slowly is disconnected.
 
 use crate::board::Board;
 use crate::event::Event;

@@ -1,7 +1,7 @@
-//! The supervisor: who may go how far.
+//! The supervisor decides how far each robot may go.
 //!
-//! What is asked of it changes what it knows; [`Supervisor::settle`] then lets robots go on, keeps in the journal what must not be
-//! forgotten, and only then hands out what may be told. Times are seconds of any clock that does not go back.
+//! Requests change its state. [`Supervisor::settle`] then lets robots go on, writes data that must not be lost to the
+//! journal, and only then returns the messages to be sent. Times are seconds of any monotonic clock.
 
 mod admission;
 mod alarms;

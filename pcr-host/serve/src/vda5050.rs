@@ -3,21 +3,21 @@
 //! ```text
 //! stamp      time stamps
 //! bounds     sizes, counts and numbers of a message                 Limits
-//! door       bytes to values                                        Refusal
+//! door       conversion of bytes to values                          Refusal
 //! version    which edition of the standard                          Version
 //! topics     names of topics                                        Interface, Key, Kind
-//! header     what every message begins with                         Header
+//! header     header of every message                                Header
 //! order      orders                                                 Order
 //! state      states, positions                                      State
-//! ahead      what is ahead of an order, to be written                NodeAhead, EdgeAhead
-//! messages   the others                                             Connection, InstantActions
+//! ahead      nodes and edges ahead, in states                       NodeAhead, EdgeAhead
+//! messages   the other messages                                     Connection, InstantActions
 //! held       an order as its receiver keeps it, updates stitched    Held
 //! way        the path of an order, lengths of its nodes             Way
 //! lane       one vehicle between its manager and the supervisor     Lane
 //! bridge     the lanes of a fleet, no input or output of its own    Bridge
 //! tls        certificates of brokers
 //! mqtt       a connection to a broker                               Link
-//! station    the bridge at its broker, one at a time                Station
+//! station    the bridge at its broker; only one is active           Station
 //! ```
 
 pub mod ahead;

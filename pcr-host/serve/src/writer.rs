@@ -1,5 +1,5 @@
-//! A journal that is written by a thread of its own. While one write is on its way to the disc what comes meanwhile is collected, and is
-//! the next write; whoever tells others waits until [`Kept`] says that it is there.
+//! A journal that is written by a thread of its own. Entries that arrive during one write to the disk are collected for
+//! the next write. Messages are sent only after [`Kept`] says that their entries are on the disk.
 
 use crate::entry::{Entry, Keep};
 use crate::fault::Fault;

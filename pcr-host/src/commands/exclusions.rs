@@ -1,4 +1,4 @@
-//! What `pcr locks` writes into the files of fleets, and finds in them.
+//! The part of `pcr locks` that writes exclusions into layout files, and audits such files.
 
 use super::help::STANDING;
 use super::sources::layout;

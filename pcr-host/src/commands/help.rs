@@ -1,7 +1,7 @@
-//! The command line: what its words mean, and the help.
+//! The command line: the meaning of its words, and the help texts.
 //!
-//! `-h` shows the options of a command that are always of use, in a line each; `--help` adds those about layouts and other formats,
-//! examples and exit statuses. Options that do nothing in a command are in neither.
+//! `-h` shows the common options of a command, one line each; `--help` adds those about layouts and other formats,
+//! examples and exit statuses. Options without effect in a command are not shown.
 
 use super::{Arguments, Stop};
 use clap::{Command, CommandFactory, FromArgMatches};

@@ -1,4 +1,4 @@
-//! In what form answers are printed, and where.
+//! The format of printed answers, and where they are printed.
 
 use clap::{Args, ValueEnum};
 use std::io::{self, BufWriter, Write};

@@ -1,4 +1,4 @@
-//! `pcr serve`, if the tool is built with it.
+//! `pcr serve`, if the tool is built with `serve`.
 
 #[cfg(feature = "serve")]
 mod bridge;

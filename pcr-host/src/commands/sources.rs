@@ -1,4 +1,4 @@
-//! Where scenarios come from: the files that are named, else standard input, never anything else.
+//! Sources of scenarios: the files that are named, otherwise standard input.
 
 use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, warn};

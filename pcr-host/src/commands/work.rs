@@ -1,4 +1,4 @@
-//! What commands share that answer scenario after scenario.
+//! Shared code of commands that process one scenario after the other.
 
 use super::sources::{Source, gathered};
 use super::{Form, Printed, Stop, WRONG_INPUT, complain};

@@ -1,5 +1,5 @@
-//! The time of impact of Box2D, line by line with boxes in front. Its bodies move evenly on lines between two times, so paths are
-//! flattened to a tenth of a millimetre. A pair is done with its first contact.
+//! The time of impact of Box2D, for pairs of lines whose boxes meet. Its bodies move uniformly on lines between two
+//! times, so paths are flattened to a tenth of a millimetre. It finds only the first contact of a pair.
 
 use super::polyline::knots;
 use super::program::{Peer, Program};

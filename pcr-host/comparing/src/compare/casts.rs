@@ -1,8 +1,10 @@
-//! Generic continuous collision detection: nonlinear shape casts of the crate `parry2d`, for each time in which both agents
-//! are on one line or arc at constant speed, with boxes in front. Accelerations are cut into pieces of constant speed that
-//! are off by a tenth of a millimetre. A cast tells the first time of contact, so a pair is done with its first one.
+//! Generic continuous collision detection: nonlinear shape casts of the crate `parry2d`, for each interval of time in
+//! which both agents are on one line or arc at constant speed, if their boxes meet. Phases of acceleration are cut into
+//! pieces of constant speed, with an error of a tenth of a millimetre. A cast returns the first time of contact, so it
+//! finds only the first contact of a pair.
 //!
-//! Every cast begins at the time 0 and takes [`LONGEST`] at most: with times above some 16 s version 0.31 does not return
+//! Every cast begins at the time 0 and covers [`LONGEST`] at most: version 0.31 does not return for times above some 16
+//! s
 //! (`cargo run --release --features peers --example parry_times`).
 
 use super::polyline::cuts;

@@ -1,4 +1,4 @@
-//! Comparisons as charts: time against error.
+//! Charts of comparisons: time against error.
 
 use super::{Comparison, Errors, Question};
 use pcr_drawing::plot::{Chart, Series};

@@ -1,4 +1,4 @@
-//! An answer against the reference.
+//! The errors of an answer, compared with the reference.
 
 use super::reference::{self, Contact};
 use super::track::near;

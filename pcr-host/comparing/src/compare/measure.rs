@@ -1,5 +1,5 @@
-//! Times, in rounds: in each round all methods run, one after the other, so that what slows the machine down
-//! for a while slows all of them down. A ratio is the median of the ratios of the rounds.
+//! Times, measured in rounds: in each round all methods run, one after the other, so that anything that slows the
+//! machine down for a while affects all of them. A ratio is the median of the ratios of the rounds.
 
 use super::errors::{Errors, Truth, errors};
 use super::{Answer, Field, Input, Method, Question, methods};

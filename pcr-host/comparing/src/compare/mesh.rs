@@ -1,5 +1,5 @@
-//! Proximity of meshes at every sample of time, as the paper uses the library PQP: cylinders of 100 triangles, here with the
-//! discrete queries of the crate `parry3d`, and boxes in front. The cylinders are drawn around the discs.
+//! Proximity of meshes at every sample of time, as the paper uses the library PQP: cylinders of 100 triangles, here
+//! with the discrete queries of the crate `parry3d`, for pairs whose boxes meet. The cylinders circumscribe the discs.
 
 use super::track::{Point, Track};
 use super::{Answer, BEYOND, Field, Found, Method, Outcome, Question};

@@ -1,4 +1,4 @@
-//! This library.
+//! The method of this library.
 
 use super::{Answer, BEYOND, Field, Found, Method, Number, Outcome, Question, Regions};
 use pcr_core::{Bounds, BroadPhase, Interval, Motion, Piece, Region, RegionRef};

@@ -1,6 +1,6 @@
-//! Conservative polylines: paths flattened and speeds made constant piece by piece, so that no position is off by more than
-//! a tolerance, and discs grown by it; then two discs on two lines, in closed form. That is what planners for many
-//! agents do that know lines only.
+//! Conservative polylines: paths are flattened and speeds made piecewise constant, so that no position is off by more
+//! than a tolerance, and discs are enlarged by it; then each pair of discs on two lines is solved in closed form.
+//! Planners for many agents that only support lines work like this.
 
 use super::track::{EMPTY, Point, Track, hull, near};
 use super::{Answer, Field, Found, Method, Outcome, Question};

@@ -1,6 +1,6 @@
-//! Methods of libraries in C++, as programs beside the tool: the build script compiles them from `peers/` where the libraries are
-//! installed. They read numbers, and write the time that the work took, then the contacts; starting them and
-//! carrying the numbers does not count.
+//! Methods of C++ libraries, run as separate programs: the build script compiles them from `peers/` if the libraries
+//! are installed. They read numbers, and write the time of the computation and the contacts. The time to start them and
+//! to transfer the numbers does not count.
 
 use super::stopwatch::{Stopwatch, steady};
 use super::{Answer, Field, Found, Method, Outcome, Question};

@@ -1,5 +1,5 @@
-//! What the answers are measured by: contacts and slices by the definition, found by halving until the way that can be
-//! travelled decides. No formula of any method is used.
+//! The reference for all answers: contacts and slices by the definition, found by bisection until the distance that can
+//! be travelled in the rest decides. It uses no formula of any method.
 
 use super::track::{Point, Track, near};
 

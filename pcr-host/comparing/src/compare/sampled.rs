@@ -1,6 +1,6 @@
-//! The sampled collision map: both paths are sampled at even times, and every pair of samples within the sum of the radii
-//! is a point of a region. That is the computational method that the paper compares with (its reference [34]), made
-//! as fast as it goes: single precision, sixteen distances at a time, runs of points instead of points.
+//! The sampled collision map: both paths are sampled at even times, and every pair of samples within the sum of the
+//! radii is a point of a region. This is the computational method that the paper compares with (its reference [34]),
+//! here optimized: single precision, sixteen distances at a time, runs of points instead of single points.
 
 use super::track::{EMPTY, Track, hull, near};
 use super::{Answer, Field, Method, Outcome, Question, Regions};

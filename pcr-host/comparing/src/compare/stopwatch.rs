@@ -1,6 +1,6 @@
-//! Time that work on one core takes. Long work is interrupted on a machine that does something else, too, short work is not:
-//! for a fair ratio, long work counts by the time that the processor spent on it, where the system tells. Short work would be
-//! measured with what others have left in the caches: it is repeated.
+//! Measures the time of work on one core. On a machine that is busy with other work, long computations are interrupted
+//! and short ones are not. For fair ratios, long computations are measured in processor time, if the system reports it.
+//! Short ones would be measured with caches that other work has filled, so they are repeated.
 
 use std::fs;
 use std::hint::black_box;

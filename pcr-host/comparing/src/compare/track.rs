@@ -1,4 +1,5 @@
-//! Discs in motion as plain numbers: what every method but pcr starts from. Nothing here is shared with pcr-core.
+//! Discs in motion as plain numbers, from which every method except pcr starts. This module shares no code with
+//! pcr-core.
 
 use pcr_formats::scenario::{Agent, PathSegment};
 

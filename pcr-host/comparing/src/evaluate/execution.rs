@@ -1,4 +1,5 @@
-//! Plans of others on grids, carried out while robots are late: by passing orders on the geometry of discs, and by cells.
+//! Executes plans on grids from other planners while robots are late: by passing orders on the geometry of discs, and
+//! by cells.
 
 use super::{Extent, Fleets, Problem, Section};
 use pcr_formats::import::GridPlan;

@@ -1,4 +1,5 @@
-//! Fleets that run for an hour on a real warehouse, under orders, locks and start delays: same missions, same delays.
+//! Fleets that run for an hour in a real warehouse, under orders, locks and start delays, with the same missions and
+//! the same random delays.
 
 use super::{Extent, Fleets, Problem, Section};
 use pcr_formats::import::Imported;

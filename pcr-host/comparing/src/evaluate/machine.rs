@@ -1,4 +1,4 @@
-//! What the evaluation runs on.
+//! Describes the machine on which the evaluation runs.
 
 use super::Extent;
 use crate::compare::libraries;

@@ -1,4 +1,4 @@
-//! What is kept of a collision, and what goes over a wire.
+//! The memory that is needed for a collision, and the bytes to transmit it.
 
 use super::{Extent, Fleets, Problem, Section};
 use crate::compare::Answer;

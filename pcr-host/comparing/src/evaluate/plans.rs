@@ -1,4 +1,4 @@
-//! How good start delays are: what they cost, what is proved of that, and how long it takes.
+//! The quality of start delays: their cost, the proved bound, and the time to compute them.
 
 use super::{Extent, Fleets, Problem, Section};
 use crate::compare::crowd;

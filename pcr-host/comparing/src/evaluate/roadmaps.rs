@@ -1,4 +1,5 @@
-//! Roadmaps of growing size, as planners draw them: how long the tables of locks and of unsafe delays take.
+//! Roadmaps of growing size, like those that planners generate: the time to compute the tables of locks and of unsafe
+//! delays.
 
 use super::scale::exponent;
 use super::{Extent, Fleets, Problem, Section};

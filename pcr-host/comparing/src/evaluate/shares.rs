@@ -1,4 +1,4 @@
-//! Fig. 12: time to find the pairs that come near, and to make their regions.
+//! Fig. 12: the time to find the pairs that come near each other, and the time to compute their regions.
 
 use super::{Extent, Fleets, Problem, Section, picture};
 use crate::compare::measure::median;

@@ -1,8 +1,8 @@
 //! Where, along the other agent's path, the slices of a region can begin, end, split or merge.
 //!
-//! Between these lengths the number of intervals in a slice is constant. It can change where the other's disc, grown
-//! by the ego's radius, touches a segment of the ego from the side (the distance to its carrier is R) or reaches an
-//! end of it (the distance to that point is R), and where a piece of the region ends. Too many events do no harm.
+//! Between these lengths the number of intervals in a slice is constant. It can change where the other's disc, enlarged
+//! by the ego's radius, touches a segment of the ego from the side (the distance to its carrier is R) or an end of it
+//! (the distance to that point is R), and where a piece of the region ends. Additional events do no harm.
 
 use pcr_core::{Curve, PieceRef, Point, RegionRef, Segment, Turn};
 use std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! From columns of slices to closed outlines.
+//! Connects columns of slices to closed outlines.
 
 use super::TOLERANCE;
 use pcr_core::Interval;

@@ -1,4 +1,4 @@
-//! Outlines against the definition and the reference regions.
+//! Compares outlines with the definition and with the reference regions.
 
 use super::*;
 use pcr_formats::scenario::Scenario;

@@ -1,4 +1,4 @@
-//! What the lines and colours of a map mean.
+//! The legend of the lines and colours of a map.
 
 use super::super::axis::TICK_SIZE;
 use super::super::palette::{Colour, DISTINCT};

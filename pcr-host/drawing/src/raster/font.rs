@@ -1,5 +1,5 @@
-//! Texts as outlines, in a font that is part of the program: the same picture on every machine. A text engine for all languages would
-//! take longer to build than all else that draws.
+//! Draws text as outlines, in a font that is part of the program, so that pictures are the same on every machine. A
+//! text engine for all languages would take longer to build than the rest of the drawing code.
 
 use crate::svg::{Escaped, Pixels};
 use roxmltree::{Document, Node};

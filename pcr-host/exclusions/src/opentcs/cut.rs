@@ -1,7 +1,8 @@
-//! Straight paths of a plant model cut into parts, with points in between.
+//! Cuts straight paths of a plant model into parts, with points in between.
 //!
-//! Vehicles have the ways that they had: the points of a path are its own, also where another path leads back along it, so that no way
-//! begins or ends there, and nobody turns around in between. The first part keeps the name of the path. What belongs to all of a path leaves it whole.
+//! The routes of vehicles do not change. Each path has its own points, also if another path leads back along it, so
+//! that no route begins, ends or turns around in between. The first part keeps the name of the path. A path with a
+//! property that belongs to the whole of it is not cut.
 
 use super::{elements, escaped, name, parse};
 use crate::edit::{Edits, ending, indent};

@@ -1,4 +1,4 @@
-//! Which vertices have to be in one group.
+//! Finds vertices that have to be in one group.
 
 use pcr_formats::import::{Id, Layout};
 use pcr_planning::locks::Locks;

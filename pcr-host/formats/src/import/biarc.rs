@@ -1,15 +1,15 @@
-//! Lines and arcs in the place of curves, with a certified distance.
+//! Approximates curves by lines and arcs, with a certified distance.
 //!
-//! Two arcs with a common tangent (a biarc) join the ends of a piece of the curve in the directions that it has there; a piece
-//! that is farther from its biarc than the tolerance is halved. The distance is bounded, not sampled: in the frame of an arc
-//! with signed curvature k the point (x, y) is off by d with
+//! Two arcs with a common tangent (a biarc) join the ends of a piece of the curve in the directions of the curve there;
+//! a piece that is further from its biarc than the tolerance is bisected. The distance is bounded and not sampled: in
+//! the frame of an arc with signed curvature k, the point (x, y) is off by d with
 //!
 //! ```text
 //! g = k (x² + y²) / 2 - y,    (1 - k d)² = 1 + 2 k g    to the left of which d is counted
 //! ```
 //!
-//! and on a rational Bézier curve w² g is a polynomial, which the largest of its Bernstein coefficients bounds. That every point
-//! lies between the ends of the arc follows from the hull of the control points.
+//! and on a rational Bézier curve w² g is a polynomial, which the largest of its Bernstein coefficients bounds. The
+//! hull of the control points shows that every point lies between the ends of the arc.
 
 use super::ImportError;
 use super::nurbs::Bezier;

@@ -1,6 +1,7 @@
 //! Continuous-CBS: roadmaps (GraphML) as layouts, and logs of plans as scenarios.
 //!
-//! A section goes straight at constant speed, one that goes nowhere is a wait. Agents begin at time 0 and stay at their goals.
+//! A section goes straight at constant speed; a section without length is a wait. Agents begin at time 0 and stay at
+//! their goals.
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;

@@ -1,4 +1,5 @@
-//! Plans on grids, as CBS, PBS, LNS and their kin write them: an agent a line, a cell a step.
+//! Plans on grids, in the format of CBS, PBS, LNS and similar planners: one line for each agent, one cell for each
+//! step.
 //!
 //! ```text
 //! 2
@@ -6,7 +7,8 @@
 //! Agent 1: (0,0)->(1,0)->
 //! ```
 //!
-//! Cells are squares of 1 m, steps 1 s; the first number of a cell is x. A cell twice is a wait. Agents stay in their last cells.
+//! Cells are squares of 1 m, steps take 1 s; the first number of a cell is x. A repeated cell is a wait. Agents stay in
+//! their last cells.
 
 use super::ImportError;
 use super::timed::{self, Stop};

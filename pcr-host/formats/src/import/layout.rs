@@ -1,4 +1,4 @@
-//! A layout: nodes, and edges between them with their true geometry, whatever file they come from.
+//! A layout: nodes, and edges between them with their exact geometry; the common form of all layout files.
 
 use crate::scenario::Placed;
 use serde::{Deserialize, Serialize};

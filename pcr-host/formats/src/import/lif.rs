@@ -1,7 +1,7 @@
 //! The Layout Interchange Format of the VDMA (LIF 0.11 to 1.x): layouts of nodes and edges with properties by vehicle type.
 //!
-//! An edge is the NURBS trajectory of the vehicle type, or the straight line between its nodes. Without a type asked for,
-//! every edge is there, and more than once where types have trajectories of their own.
+//! An edge is the NURBS trajectory of the vehicle type, or the straight line between its nodes. If no type is chosen,
+//! all edges are read, and an edge is repeated if types have trajectories of their own.
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;

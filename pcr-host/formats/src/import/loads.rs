@@ -1,4 +1,4 @@
-//! Loads in a state of VDA 5050: what they add to the outline of the vehicle.
+//! Loads in a state of VDA 5050, which enlarge the outline of the vehicle.
 //!
 //! A load is a box of a length and a width around its reference in the frame of the vehicle. The outline becomes the convex
 //! hull of contour and loads; a disc becomes the disc around both.

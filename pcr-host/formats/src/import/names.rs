@@ -1,7 +1,7 @@
-//! Names that tell apart what a file gives one name.
+//! Makes the names of nodes and edges unique.
 //!
-//! Files give one name to two different nodes or edges, and the programs that they are for go on with both. So does this: the
-//! second one is called `name#2`. Only a copy, which differs in nothing, is there once.
+//! Files may give the same name to two different nodes or edges, and the programs that load them accept that. This
+//! reader does, too: the second one is called `name#2`. An exact copy, which differs in nothing, is read once.
 
 use super::Warnings;
 use super::layout::{Edge, Id, Node};

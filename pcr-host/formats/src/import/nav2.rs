@@ -1,8 +1,8 @@
-//! Route graphs of the nav2 route server: GeoJSON with a point a node and a line an edge.
+//! Route graphs of the nav2 route server: GeoJSON with a point for each node and a line for each edge.
 //!
-//! As there, an edge is the straight line between its nodes, whatever its own coordinates are; `speed_limit` in its metadata
-//! is a fraction of the full speed up to 1 and a percentage above it. Zero-length edges are kept, and so are several edges
-//! of one id.
+//! As in nav2, an edge is the straight line between its nodes, whatever its own coordinates are; `speed_limit` in its
+//! metadata is a fraction of the full speed if it is at most 1, and a percentage above that. Edges of length 0 are
+//! kept, and so are several edges with the same id.
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;

@@ -1,8 +1,8 @@
-//! NURBS curves as chains of rational Bézier curves, by their polar form.
+//! Converts NURBS curves to chains of rational Bézier curves, by their polar form.
 //!
-//! On a span [a, b] of the knots, the control points of the Bézier curve are the values of the polar form at (a, ..., a, b, ...,
-//! b), and de Boor's recursion evaluates it with one argument for each of its levels. Points are homogeneous, (wx, wy, w) with
-//! w > 0, so that a rational curve is no special case.
+//! On a span [a, b] of the knots, the control points of the Bézier curve are the values of the polar form at (a, ...,
+//! a, b, ..., b); de Boor's recursion evaluates it with one argument for each of its levels. Points are homogeneous,
+//! (wx, wy, w) with w > 0, so that rational curves need no special case.
 
 use super::ImportError;
 

@@ -1,9 +1,10 @@
-//! OpenDRIVE: the reference lines of roads, whose lines and arcs are taken as they are.
+//! OpenDRIVE: the reference lines of roads, whose lines and arcs are used unchanged.
 //!
-//! A road is an edge that may be travelled both ways; its ends are nodes, which linked roads share where their reference lines meet: then
-//! the node has the names of all ends. Where lines of linked roads are apart, mostly sideways by lanes, no path leads from one onto the
-//! other, and there is a warning. Joints within a road that are open by what maps are off by are closed: the rest of the road
-//! keeps its place, and the gap counts as deviation of its path. Lanes are not read.
+//! A road is an edge that may be travelled in both directions; its ends are nodes. Linked roads share a node if their
+//! reference lines meet; the node then has the names of all these ends. If the lines of linked roads do not meet,
+//! mostly because lanes shift them sideways, no path leads from one to the other, and there is a warning. Small gaps at
+//! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
+//! counts as deviation of its path. Lanes are not read.
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;

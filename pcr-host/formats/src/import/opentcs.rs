@@ -1,7 +1,7 @@
 //! Plant models of openTCS: points in millimetres, paths straight or as Bézier curves.
 //!
-//! Control points are in units of the visual layout, y down. The `length` of a path is what its author typed; where it
-//! differs from the geometry, the geometry counts and there is a warning.
+//! Control points are in units of the visual layout, y down. The `length` of a path was typed by its author; if it
+//! differs from the geometry, the geometry is used and there is a warning.
 
 use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node};

@@ -1,9 +1,10 @@
 //! Buildings of Open-RMF (`*.building.yaml`), navigation graphs (`nav_graphs/*.yaml`) and the configuration of a fleet.
 //!
-//! Vertices of a building are pixels of a floor plan, y down; the scale of a level is the mean of its measurements, metres by the
-//! distance of two vertices. Those of a navigation graph, which the building tools make of it and fleet adapters load, are in metres,
-//! y up, and each lane leads one way. A lane is straight; the vehicle stops and turns where two meet at an angle. Lanes and vertices
-//! have no names of their own: they are called by their level and their place in its list, from 0, as in `L1/12`.
+//! Vertices of a building are pixels of a floor plan, y down; the scale of a level is the mean of its measurements,
+//! metres divided by the distance of two vertices. Vertices of a navigation graph, which the building tools generate
+//! and fleet adapters load, are in metres, y up, and each lane leads in one direction. A lane is straight; the vehicle
+//! stops and turns where two lanes meet at an angle. Lanes and vertices have no names of their own; they are named by
+//! their level and their index in its list, from 0, as in `L1/12`.
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::value::Object;

@@ -1,9 +1,9 @@
 //! Routes on a layout: the shortest way from node to node, and its path.
 //!
-//! Corners between straight edges are rounded where the layout has a rule for it, which is nav2's: an arc of radius R touches
-//! both edges at the distance R / tan(α/2) from the node, α the angle between them. It is left out where that is not less
-//! than what is left of the edge before (the arc of the corner before has taken its part) or than the edge after. Without an
-//! arc the vehicle stops and turns.
+//! Corners between straight edges are rounded if the layout has a rule for it, which is that of nav2: an arc of radius
+//! R touches both edges at the distance R / tan(α/2) from the node, where α is the angle between them. The arc is left
+//! out if this distance is not less than the rest of the edge before (the arc of the previous corner has taken its
+//! part), or than the edge after. Without an arc the vehicle stops and turns.
 
 use super::layout::{Edge, Layout};
 use super::trace::{Trace, Tracer};

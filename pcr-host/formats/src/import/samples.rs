@@ -1,8 +1,8 @@
-//! Paths by their points: a line `x y` for each point (further columns, such as a heading, are not used), separated by blanks, commas
-//! or semicolons; an agent's path ends at an empty line. `#` begins a comment.
+//! Paths given by points: a line `x y` for each point (further columns, such as a heading, are ignored), separated by
+//! blanks, commas or semicolons. The path of an agent ends at an empty line. `#` begins a comment.
 //!
-//! The path is the polyline through the points. Where biarcs pass within the tolerance of a stretch of it they take its place; the
-//! bound of their distance is that of curves. What remains of corners is turned in place.
+//! The path is the polyline through the points. Biarcs replace a stretch of it if they are within the tolerance; their
+//! distance is bounded as for curves. At the remaining corners the vehicle turns in place.
 
 use super::biarc::{Fit, ROUNDINGS, biarc, distance, is_beyond};
 use super::nurbs::Bezier;

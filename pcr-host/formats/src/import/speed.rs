@@ -1,8 +1,9 @@
 //! The fastest motion along a path under limits that change from segment to segment.
 //!
-//! Between the speeds at two joints a segment is travelled with full acceleration, its limit, and full deceleration. The
-//! speeds at the joints follow from one pass forward (what can be reached) and one backward (what can be braked
-//! from). A turn in place of angle θ(t) is the motion ε θ(t) on its arc of radius ε.
+//! Between the speeds at two joints, a segment is travelled with full acceleration, at its speed limit, and with full
+//! deceleration. The speeds at the joints follow from a forward pass (which speeds can be reached) and a backward pass
+//! (from which speeds the vehicle can brake). A turn in place of angle θ(t) is the motion ε θ(t) on its arc of radius
+//! ε.
 
 use super::Vehicle;
 use super::trace::Stretch;

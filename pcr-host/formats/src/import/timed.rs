@@ -1,8 +1,8 @@
-//! Plans with times: points and when they are reached, with constant speed between them.
+//! Plans with times: points and the times at which they are reached, with constant speed in between.
 //!
-//! Such plans change their speed at once; a profile of constant accelerations changes it within [`RAMP`], before the slower
-//! of two sections and after it, so that every point is reached exactly when it has to be. In between the vehicle is off by at most the
-//! half of its speed times that, nanometres.
+//! The speed of such a plan jumps at its points. A profile of constant accelerations changes it within [`RAMP`], before
+//! the slower of two sections and after it, so that every point is reached exactly at its time. In between the vehicle
+//! is off by at most half of its speed times that, which is nanometres.
 
 use super::ImportError;
 use super::trace::Tracer;

@@ -1,8 +1,8 @@
-//! From lines and arcs anywhere in the plane to one path: a G1 chain of lines and arcs.
+//! Converts lines and arcs anywhere in the plane to one path: a G1 chain of lines and arcs.
 //!
-//! Where two pieces meet at an angle, the vehicle turns in place: an arc of [`TURN`] radius, over which it comes to rest if
-//! the angle is more than [`KINK`]. A line is aimed at its end from where the path really is, so that what turns
-//! and gaps displace does not add up; the largest distance from the geometry that was asked for is kept.
+//! Where two pieces meet at an angle, the vehicle turns in place: an arc of [`TURN`] radius, on which it comes to rest
+//! if the angle is more than [`KINK`]. A line is aimed at its end from the point that the path has really reached, so
+//! that displacements by turns and gaps do not add up. The largest distance from the requested geometry is recorded.
 
 use crate::scenario::{KINK, PathSegment, Placed, TURN};
 use std::f64::consts::{PI, TAU};

@@ -1,4 +1,4 @@
-//! Which options do something with which files: one that does nothing is refused, since whoever gave it expects something of it.
+//! Which options have an effect on which files. An option without effect is refused, because its user expects one.
 
 use super::{Format, Options, xml};
 

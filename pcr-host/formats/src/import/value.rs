@@ -1,4 +1,4 @@
-//! Lenient reading of JSON: `null` is as good as nothing, and what has the wrong type is named.
+//! Lenient reading of JSON: `null` counts as missing, and errors name a value of the wrong type.
 
 use super::ImportError;
 use crate::scenario::LIMIT;

@@ -1,10 +1,12 @@
-//! VDA 5050: orders (2.x and 3.0) and states (3.0), an agent each.
+//! VDA 5050: orders (2.x and 3.0) and states (3.0); each message becomes an agent.
 //!
-//! A file holds one message, a list of them, or one after the other. `null` is as good as nothing.
-//! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed limits; the base
-//!   ends where the first node or edge is not released, and the horizon is travelled only if asked for.
-//! - A state with an `intermediatePath` is a plan with times, seconds since the time stamp of the first state; one with a
-//!   `plannedPath` travels that from rest; one with neither stands where it is, and is refused if it has nodes to go to. Its loads make the vehicle larger.
+//! A file holds one message, a list of them, or several one after the other. `null` counts as missing.
+//! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed
+//!   limits; the base ends where the first node or edge is not released, and the horizon is travelled only if
+//!   requested.
+//! - A state with an `intermediatePath` is a plan with times, in seconds since the time stamp of the first state; one
+//!   with a `plannedPath` travels that from rest; one with neither stands where it is, and is refused if it has nodes
+//!   to go to. Loads in a state enlarge the vehicle.
 
 use super::timed::{self, seconds};
 use super::trace::Tracer;

@@ -1,4 +1,4 @@
-//! The vehicle that travels a layout, and what the command line says about it and its routes.
+//! The vehicle that travels a layout, and the options of the command line about it and its routes.
 
 use super::{Format, ImportError, Warnings};
 use crate::footprint::Footprint;

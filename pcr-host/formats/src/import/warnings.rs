@@ -1,4 +1,4 @@
-//! What a reader has to say about a file: what it read otherwise than written, and what it could not read.
+//! Warnings about a file: parts that were not read exactly as written, and parts that could not be read.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Scenarios one after the other: a line each (JSON Lines), or over several lines as files have them.
+//! Scenarios one after the other: one in each line (JSON Lines), or over several lines as in files.
 
 use super::InputError;
 use crate::import::Format;

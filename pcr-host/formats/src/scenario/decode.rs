@@ -1,4 +1,4 @@
-//! From JSON to a scenario: what each field means, and what holds between fields.
+//! Decodes a scenario from JSON: the meaning of each field, and conditions between fields.
 
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
 use super::labels::{self, called};

@@ -1,4 +1,4 @@
-//! From a scenario to its file.
+//! Encodes a scenario as a file.
 
 use super::decode::{FORMAT, VERSION};
 use super::{Agent, Load, MotionSpec, PathSegment, Scenario, TURN};

@@ -1,4 +1,4 @@
-//! What people call the agents: text beside their numbers.
+//! Labels of agents: texts that people use in addition to numbers.
 
 use super::{Agent, Scenario};
 use serde::Serialize;

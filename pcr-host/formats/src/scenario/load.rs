@@ -1,4 +1,4 @@
-//! Outlines that change along the path: what a vehicle carries on some of its segments.
+//! Outlines that change along the path, because a vehicle carries a load on some of its segments.
 
 use super::Agent;
 use crate::footprint::Footprint;

@@ -1,4 +1,4 @@
-//! The motion of an agent segment by segment, and the agent on some of its segments.
+//! The motion of an agent on each of its segments, and the agent on a range of its segments.
 
 use super::{Agent, MotionSpec, PathSegment, Placed};
 

@@ -1,4 +1,4 @@
-//! Lines and arcs anywhere in the plane, and turns in place among them.
+//! Lines and arcs anywhere in the plane, with turns in place between them.
 
 use super::PathSegment;
 

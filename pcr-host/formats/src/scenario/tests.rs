@@ -1,4 +1,4 @@
-//! Every kind of refusal, with the whole message; and what must not be refused.
+//! Tests for every kind of refusal, with the whole message, and for inputs that must not be refused.
 
 use super::*;
 use serde_json::{Value, json};

@@ -1,5 +1,5 @@
-//! Motions with turns in place: an arc of [`TURN`] radius, before and after which the vehicle is at rest. Its motion over an
-//! angle θ(t) is the length [`TURN`] θ(t).
+//! Motions with turns in place: an arc of [`TURN`] radius; the vehicle is at rest before and after it. A turn by the
+//! angle θ(t) is a motion of the length [`TURN`] θ(t).
 
 use super::{Agent, KINK, MotionSpec, PathSegment, TURN};
 use crate::json::{Data, Json};

@@ -1,11 +1,11 @@
-//! The motion of a disc that is fixed to a vehicle beside its reference point.
+//! The motion of a disc that is fixed to a vehicle, beside its reference point.
 //!
-//! On a line it runs on the parallel line. On an arc of curvature κ it runs on the concentric arc with lengths scaled by
-//! g = √((κ a)² + (1 - κ b)²), in a heading that differs by atan2(κ a, 1 - κ b), where a is how far ahead and b how far left of the
-//! reference point it is. That its path is continuous but has corners where the curvature changes is met as in imported paths,
-//! by turns in place of [`TURN`] radius; that its speed jumps there from g v to g′ v by a change within a nanosecond, in other formats than `f64` a
-//! millisecond. What these
-//! displace it by at most is added to its radius.
+//! On a line the disc runs on the parallel line. On an arc of curvature κ it runs on the concentric arc, with lengths
+//! scaled by g = √((κ a)² + (1 - κ b)²) and a heading that differs by atan2(κ a, 1 - κ b), where the disc is a ahead
+//! and b to the left of the reference point. Where the curvature changes, its path has corners; these become turns in
+//! place of [`TURN`] radius, as in imported paths. Its speed jumps there from g v to g′ v; the profile changes it
+//! within a nanosecond, in formats other than `f64` within a millisecond. The largest displacement by this is added to
+//! the radius of the disc.
 
 use crate::fleet::{Format, Rounding};
 use pcr_formats::footprint::Disc;

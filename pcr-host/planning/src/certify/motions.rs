@@ -1,4 +1,4 @@
-//! Motions proved to be without contact at any time, by [`pcr_certify`].
+//! Proofs by [`pcr_certify`] that motions have no contact at any time.
 
 use crate::bodies::Bodies;
 use crate::certificate;

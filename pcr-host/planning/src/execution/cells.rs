@@ -1,4 +1,5 @@
-//! Execution by cells: whoever enters a cell after somebody else sets off towards it when that one has come to its next cell.
+//! Execution by cells: a robot that enters a cell after another one sets off towards it when the other one has reached
+//! its next cell.
 
 use super::{Holds, NEAR};
 use std::collections::HashMap;

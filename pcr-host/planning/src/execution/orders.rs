@@ -1,4 +1,4 @@
-//! The passing orders of a plan, kept: each robot looks at the regions ahead that it passes second.
+//! Keeps the passing orders of a plan: each robot looks at the regions ahead that it passes second.
 
 use super::{Holds, ROOM};
 use crate::fleet::{HostOrders, build_orders};

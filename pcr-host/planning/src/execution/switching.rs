@@ -1,8 +1,8 @@
-//! Orders that are turned round while robots are late: whoever has not come to a region yet may let the other one go first, if all can
-//! still finish and arrive sooner by that.
+//! Reverses orders while robots are late: a robot that has not reached a region yet may let the other one go first, if
+//! all can still finish and arrive sooner then.
 //!
-//! Every order that counts is one of a region, so nobody touches; all can finish when they are switched, so nobody waits for ever
-//! (`docs/theory.md`, Theorem 6). What is forecast decides only which of them are better.
+//! Every order belongs to a collision region, so robots do not touch; after each reversal all robots can still finish,
+//! so none waits for ever (`docs/theory.md`, Theorem 6). Forecasts only decide which orders are better.
 
 use super::orders::Kept;
 use super::{Holds, LEAST, SPEED};

@@ -1,4 +1,4 @@
-//! How far a motion in a number format is from the one in the scenario, which lose digits on the way there.
+//! How far a motion in a number format is from that in the scenario: the conversion loses digits.
 
 use super::{Format, turn_in_place};
 use pcr_core::Motion;

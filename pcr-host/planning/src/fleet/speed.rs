@@ -1,4 +1,4 @@
-//! A scenario's speed profile as phases of the core.
+//! Converts the speed profile of a scenario to phases of the core.
 
 use super::{Format, derived, number};
 use pcr_core::Phase;

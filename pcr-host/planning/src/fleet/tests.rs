@@ -1,4 +1,4 @@
-//! What a number format refuses, and that nothing else is lost on the way into it.
+//! Tests of what a number format refuses, and that the conversion to it loses nothing else.
 
 use super::*;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! What a robot can do.
+//! The abilities of a robot.
 
 use pcr_formats::import::Vehicle;
 

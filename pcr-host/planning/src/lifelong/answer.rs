@@ -1,4 +1,4 @@
-//! What `pcr traffic --hours` prints: runs of one fleet with the same missions and delays.
+//! The answer of `pcr traffic --hours`: runs of one fleet with the same missions and random delays.
 
 use super::{Delays, Method, Outcome, Report, Request, WellFormedness, run};
 use pcr_formats::import::Imported;

@@ -1,7 +1,7 @@
-//! Who passes whom first: the regions of the ways of a fleet, found by robot.
+//! Passing orders: the regions of the ways of a fleet, indexed by robot.
 //!
-//! A region is a set of pairs of atoms of two ways at which the robots touch and that hang together. Whoever is second at
-//! it waits at its gates.
+//! A region is a connected set of pairs of atoms of two ways at which the robots touch. The robot that passes second
+//! waits at the gates of the region.
 
 use super::gates::{Contact, Gate, Timed, hold, pruned};
 use super::robot::Robot;

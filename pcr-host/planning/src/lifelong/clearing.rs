@@ -1,5 +1,5 @@
-//! Robots in the way of a mission: who stands there, and where they may go; and places that cut off few others, where there are more
-//! robots than safe ends.
+//! Finds the robots in the way of a mission, and where they may go. Also finds places that cut off few other places, if
+//! there are more robots than safe ends.
 
 use super::dispatch::Admitted;
 use super::scene::{Scene, TOLLS};

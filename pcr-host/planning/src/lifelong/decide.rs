@@ -1,5 +1,5 @@
-//! Who looks for a way when: the missions that have waited longest, the next missions of those who soon are at their goals, and better
-//! ways for those who wait.
+//! Which robot looks for a way at what time: missions that have waited longest, next missions of robots that will soon
+//! reach their goals, and better ways for robots that wait.
 
 use super::Method;
 use super::draws;

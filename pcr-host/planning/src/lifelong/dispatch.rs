@@ -1,5 +1,5 @@
-//! Ways and orders for a mission: some routes and ends are tried, orders by what is forecast, mended where somebody would wait for
-//! ever; what lets everybody arrive soonest is taken.
+//! Finds a way and orders for a mission: tries some routes and ends with orders by forecast, repairs orders if a robot
+//! would wait for ever, and takes the result with which all robots arrive soonest.
 
 use super::Method;
 use super::book::Region;

@@ -1,4 +1,4 @@
-//! What is drawn at random: goals, delays and starts; the same for all methods.
+//! Random goals, delays and starts, which are the same for all methods.
 
 use super::Request;
 use super::ends::Ends;

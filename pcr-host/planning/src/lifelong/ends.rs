@@ -1,4 +1,5 @@
-//! Where robots may stand for good on a layout without cutting others off, and what makes a layout hard.
+//! Nodes of a layout where robots may stand for good without cutting off others, and properties that make a layout
+//! difficult.
 
 use super::site::Site;
 use crate::random::Random;

@@ -1,7 +1,8 @@
-//! Whether everybody can finish under some orders, and about when: robots are taken from gate to gate, each as soon as what it waits
-//! for has happened. Whoever is left has to wait for ever.
+//! Forecasts whether all robots can finish under some orders, and about when: robots advance from gate to gate, each as
+//! soon as the event that it waits for has happened. The robots that are left wait for ever.
 //!
-//! In a large fleet only those are taken that something changes for. The others keep to the timetable, which shows that all can finish.
+//! In a large fleet only robots that are affected by a change are advanced. The others keep to the timetable, which
+//! shows that all can finish.
 
 use super::abilities::Abilities;
 use super::book::Region;

@@ -1,5 +1,6 @@
-//! Holds as a list: where the second of two has to wait, and for what. Holds are taken at some lengths of the first and
-//! rounded down in between, so that they are never too high; what is kept is what is checked.
+//! Holds as a list: places where the second of two robots has to wait, and the event that it waits for. Holds are
+//! computed at some lengths of the first robot and rounded down in between, so they are never too high. The checker
+//! checks the stored list.
 
 use crate::fleet::build_ecm;
 use pcr_core::{Hold, Interval, Motion, RegionRef};

@@ -1,6 +1,7 @@
-//! Locks on edges: a robot has the edges that it is on, and gets the next one if nobody else has an edge on which they would touch,
-//! and if all could still finish one after the other from there (the banker's check, Dijkstra 1965). That is what locks of edges
-//! with avoidance of deadlocks amount to; a robot's end is on nobody else's way, so that who finishes first makes no difference.
+//! Locks on edges: a robot holds the edges that it is on. It gets the next edge if no other robot holds an edge on
+//! which they would touch, and if all could then still finish one after the other (the banker's check, Dijkstra 1965).
+//! Locks on edges with deadlock avoidance do the same. No robot's end is on the way of another one, so the order in
+//! which robots finish does not matter.
 
 use super::robot::{Robot, SHORT};
 use super::site::Site;

@@ -1,4 +1,4 @@
-//! What comes of a run.
+//! Results of a run.
 
 use super::Method;
 use super::ends::WellFormedness;

@@ -1,5 +1,5 @@
-//! Places to stand one behind the other on dead ends, for fleets that have more robots than safe ends: between nodes, where nobody has a
-//! goal and nobody passes.
+//! Places to stand one behind the other on dead ends, for fleets that have more robots than safe ends. They are between
+//! nodes, where no robot has a goal and none passes.
 
 use super::site::Site;
 use pcr_formats::import::{Edge, Id, Imported, Layout, Node};

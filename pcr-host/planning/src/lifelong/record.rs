@@ -1,4 +1,4 @@
-//! What robots have done, as motions for the independent checker: no contact at any time of a run, or it is found.
+//! Records the motions of robots for the independent checker, which finds any contact during a run.
 
 use super::robot::{Phase, Robot};
 use super::site::Site;

@@ -1,4 +1,4 @@
-//! A robot on its way: it stops before its hold, at corners and goals, slips, and is stopped at random.
+//! A robot in motion: it stops before its hold, at corners and at goals; it slips, and is stopped at random.
 
 use super::abilities::Abilities;
 use super::way::Way;

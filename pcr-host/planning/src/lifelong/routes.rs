@@ -1,7 +1,7 @@
-//! Quickest routes over a layout, with the turns at its nodes, and what else an atom is made to cost.
+//! Quickest routes on a layout, including turns at nodes and additional costs of atoms.
 //!
-//! A* over atoms. What is left to a goal is exact but for tolls: the least times to it from everywhere are computed once for a goal, and
-//! kept for the goals that were asked for last.
+//! A* over atoms. The heuristic is exact except for tolls: the least times from everywhere to a goal are computed once,
+//! and kept for the most recent goals.
 
 use super::abilities::Abilities;
 use super::site::{From, Site, wrapped};

@@ -1,4 +1,4 @@
-//! A run: missions, decisions, motion, and what comes of it.
+//! A run: missions, decisions, motions and results.
 
 use super::draws::{STEP, disturb};
 use super::outcome::{Outcome, Report, Shares};

@@ -1,4 +1,4 @@
-//! What a decision is about: the fleet as it is now, and routes through it.
+//! The data for a decision: the present fleet, and routes through it.
 
 use super::Method;
 use super::abilities::Abilities;

@@ -1,5 +1,5 @@
-//! Orders on a way of one robot: by what is forecast, mended where somebody would wait for ever, and turned round where all arrive
-//! sooner by that.
+//! Finds orders on the way of one robot: by forecast; repaired if a robot would wait for ever; reversed if all arrive
+//! sooner then.
 
 use super::book::Region;
 use super::forecast::{Forecast, Stuck, Trial};

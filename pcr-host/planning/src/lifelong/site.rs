@@ -1,5 +1,5 @@
-//! A layout as robots use it: pieces of way from node to node, and how robots on two of them touch. What depends on
-//! the layout and the radius only is computed once, when it is first asked for.
+//! A layout for lifelong runs: pieces of way from node to node, and how robots on two of them touch. Data that depend
+//! only on the layout and the radius are computed once, when they are first needed.
 
 use super::gates::Contact;
 use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, Turn};

@@ -1,4 +1,4 @@
-//! The state of a run: the fleet, its missions, and what has come of it so far.
+//! The state of a run: the fleet, its missions, and the results so far.
 
 use super::abilities::Abilities;
 use super::book::Book;

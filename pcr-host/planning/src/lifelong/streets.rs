@@ -1,4 +1,4 @@
-//! A site of any size: one-way streets that cross, with bays on both sides of them.
+//! A generated site of any size: crossing one-way streets, with bays on both sides.
 
 use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
 use pcr_formats::scenario::{PathSegment, Placed};

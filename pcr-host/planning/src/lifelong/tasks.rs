@@ -1,4 +1,4 @@
-//! Where robots begin, and tasks that come one after the other and that any robot may do.
+//! Starting places of robots, and a stream of tasks, each of which any robot may do.
 
 use super::site::Site;
 use std::collections::VecDeque;

@@ -1,7 +1,7 @@
-//! When robots would be where: what forecasts are made of, and what a large fleet keeps to between them.
+//! Times at which robots would be at places. Forecasts use it, and a large fleet keeps to it between forecasts.
 //!
-//! A timetable that keeps all orders shows that all can finish, however late they really are (`docs/theory.md`): it need not be right,
-//! only in order.
+//! A timetable that keeps all orders shows that all robots can finish, however late they really are (`docs/theory.md`).
+//! Its times need not be right, only its order.
 
 use super::book::Region;
 use super::gates::Timed;

@@ -1,4 +1,4 @@
-//! Whose turn it is: missions are tried by age, and whoever has waited longest is made way for.
+//! Missions are tried in the order of their age, and others make way for the robot that has waited longest.
 
 use super::decide::{AGAIN, TRIES};
 use super::state::{Mission, Run};

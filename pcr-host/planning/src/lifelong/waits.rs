@@ -1,4 +1,4 @@
-//! What robots wait for on their ways: the gates that they have still to pass, by the orders of the fleet.
+//! The waits of robots on their ways: the gates that they have still to pass, given the orders of the fleet.
 
 use super::book::{Book, Region};
 use super::gates::Timed;

@@ -1,4 +1,4 @@
-//! The path of a robot from node to node, where it stops on it, and when it would be where with nobody in its way.
+//! The path of a robot from node to node, its stops, and its times if no other robot is in the way.
 
 use super::abilities::Abilities;
 use super::site::{From, Site, wrapped};

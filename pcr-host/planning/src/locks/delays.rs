@@ -1,10 +1,12 @@
-//! Unsafe delays: how much later than on one edge a vehicle may not set off on another, and at what times it may not be at a node,
-//! because the two would touch. Planners of the families of CCBS and SIPP compute them for each pair that they look at.
+//! Unsafe delays: how much later a vehicle must not set off on one edge than another vehicle on another edge, and at
+//! what times it must not be at a node, because the two would touch. Planners of the CCBS and SIPP families compute
+//! such delays for each pair that they consider.
 //!
-//! Both vehicles are on their edges from when they set off until they arrive; what stands before or after that stands at a node. An
-//! edge that may be travelled in both directions is two *ways*. A way has delays with itself as well: one vehicle behind another.
+//! Both vehicles are on their edges from their start until they arrive; before and after that they stand at a node. An
+//! edge that may be travelled in both directions counts as two *ways*. A way also has delays with itself, for two
+//! vehicles that follow each other.
 //!
-//! Straight ways at constant speed have a closed form (`straight`); of all others the library brackets the ends.
+//! Straight ways at constant speed have a closed form (`straight`); for all others the library brackets the ends.
 
 use super::pass::{PIECES, Told, in_stretches};
 use super::rides::Rides;

@@ -1,4 +1,5 @@
-//! Tables of locks of any size in a file: an edge is looked up without reading the others (docs/formats.md, "Lock tables").
+//! Tables of locks of any size in a file, in which an edge is found without reading the others (docs/formats.md, "Lock
+//! tables").
 
 use super::pass::{Pass, Told};
 use super::rides::reversed;

@@ -1,4 +1,4 @@
-//! Of what layout and vehicle a table of locks is: a checksum, so that one that is out of date is told from one that is not.
+//! A checksum of the layout and the vehicle of a table of locks, which shows whether the table is out of date.
 
 use crate::checksum::crc32;
 use pcr_formats::import::Imported;

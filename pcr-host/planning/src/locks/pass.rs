@@ -1,5 +1,5 @@
-//! Which of all that vehicles sweep on a layout can touch, in one pass over those that come near one another: a grid finds them, and rows
-//! are computed on all cores.
+//! Finds all pairs of swept areas on a layout that can touch, in one pass: a grid finds the areas that are near one
+//! another, and rows are computed on all cores.
 
 use super::sweep::{STRETCH, Sweep, Track};
 use super::{Extents, joined};

@@ -1,8 +1,8 @@
-//! What a vehicle sweeps on an edge: its motions along it, and its turns at both ends.
+//! The area that a vehicle sweeps on an edge: its motions along the edge, and its turns at both ends.
 //!
-//! A disc is the same in every heading. Any other outline is another one on the way back along a two-way edge, and sweeps more where the
-//! vehicle turns: at each end of an edge these are the turns in place from the edges that come before it, and to those that go on
-//! from it. Back along the same line it turns only where no other way leads on.
+//! A disc is the same in every heading. Any other outline differs on the way back along a two-way edge, and sweeps more
+//! where the vehicle turns. At each end of an edge it turns in place from the edges that lead there, and to those that
+//! continue from it. It turns back along the same line only if no other way continues.
 
 use crate::bodies::tracks;
 use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};

@@ -1,6 +1,6 @@
-//! Straight edges that are driven at constant speed, in closed form: the start delays at which two vehicles touch, and the times
-//! at which one touches what stands (docs/equations.md, "Delays of straight edges"). Nothing is allocated: a solver may ask for a
-//! pair whenever it looks at one.
+//! Closed forms for straight edges that are driven at constant speed: the start delays with which two vehicles touch,
+//! and the times at which a vehicle touches one that stands (docs/equations.md, "Delays of straight edges"). They do
+//! not allocate, so that a solver can compute them whenever it considers a pair.
 
 /// Unit roundoff.
 const ULP: f64 = f64::EPSILON / 2.0;

@@ -1,7 +1,7 @@
-//! All that vehicles sweep on the edges and nodes of a layout.
+//! The areas that vehicles sweep on the edges and nodes of a layout.
 //!
-//! Two edges that are one line in both directions are a *track*: what is blocked on one is blocked on the other, and it is
-//! computed once.
+//! Two edges that are the same line in opposite directions form a *track*: lengths that are blocked on one are blocked
+//! on the other, and they are computed once.
 
 use super::rides::{Lengths, Ride, Rides, reversed};
 use crate::bodies::{Bodies, Disced};

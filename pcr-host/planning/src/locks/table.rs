@@ -1,5 +1,5 @@
-//! The locks of a layout that changes: an edge that is added, moved or removed costs a comparison with the box of every other
-//! edge, and its own locks.
+//! The locks of a layout that changes. An edge that is added, moved or removed costs a comparison with the box of every
+//! other edge, and the computation of its own locks.
 
 use super::Lock;
 use super::rides::Rides;

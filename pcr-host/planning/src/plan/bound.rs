@@ -1,4 +1,4 @@
-//! What no speed plan of an agent falls below.
+//! A lower bound for the speed plans of an agent.
 
 use pcr_core::{Drive, Limits};
 

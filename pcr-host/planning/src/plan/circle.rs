@@ -1,9 +1,10 @@
-//! Circular waits: agents of which each has to let the next one pass first, all around, so that none of them can.
+//! Circular waits: agents of which each one has to let the next one pass first, all around, so that none of them can
+//! arrive.
 //!
-//! A region that comes to the end of the ego's path, or to the start of the other's, is passed by the other first, however
-//! both move: the ego reaches the length l of any of its points (l, s) after the other has left s behind. These points
-//! are gates. From the start on every agent is let as far as the gates allow that are not open yet, again and again; who is
-//! stuck in the end can never arrive, and waits for another one that is stuck.
+//! If a region contains the end of the ego's path, or the start of the other's, the other agent passes it first,
+//! however both move: the ego reaches the length l of any of its points (l, s) after the other agent has left s. These
+//! points are gates. Beginning at the starts, every agent advances as far as the closed gates allow, again and again.
+//! An agent that is stuck in the end can never arrive, and waits for another one that is stuck.
 
 use crate::fleet::HostEcm;
 use pcr_core::{Interval, Motion, RegionRef};

@@ -1,13 +1,13 @@
-//! Start delays that know how good they are: the best ones by an objective, a bound below which no delays cost, and a proof
-//! of impossibility where there are none.
+//! Start delays with a proof of their quality: the best ones for an objective, a lower bound of the cost of all delays,
+//! or a proof that there are none.
 //!
 //! ```text
-//! problem   what pairs forbid, in ticks                  Problem
+//! problem   forbidden delays of pairs, in ticks          Problem
 //! net       difference constraints, longest paths        (internal)
 //! search    branch and bound over sides                  (internal)
 //! improve   large neighbourhood search                   (internal)
 //! groups    a bound from groups of agents                (internal)
-//! precedence  who has to start before whom               (internal)
+//! precedence  which agents have to start before others   (internal)
 //! insert    one agent after the other                    (internal)
 //! leave     the fewest agents to leave out               (internal)
 //! ```

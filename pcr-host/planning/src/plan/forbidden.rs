@@ -1,17 +1,17 @@
-//! Start delays by what every pair of agents forbids.
+//! Start delays from the forbidden delays of every pair of agents.
 //!
-//! What a region forbids depends on the difference of two delays only: T_other(s) + τ_other = T_ego(l) + τ_ego. The intervals
-//! are computed once for all pairs; then a schedule for any order of priority is a comparison of numbers. The discs of a
-//! footprint are delayed together, so that what two agents forbid is what any two of their discs do. With loads, which are there on some
-//! segments only, the disc around all outlines is taken.
+//! The forbidden delays of a region depend only on the difference of two delays: T_other(s) + τ_other = T_ego(l) +
+//! τ_ego. The intervals are computed once for all pairs; a schedule for any order of priority then only compares
+//! numbers. The discs of a footprint are delayed together, so the forbidden delays of two agents are the union of those
+//! of any two of their discs. With loads, which exist on some segments only, the disc around all outlines is used.
 //!
-//! An interval without a lower end says that the other one goes first, one without an upper end that it goes last. Where no circle of
-//! agents has to go before one another, an order that keeps to this has a schedule for all of them: each waits until those
-//! before it are out of its way, at the latest until they have arrived.
+//! An interval without a lower end means that the other agent goes first, one without an upper end that it goes last.
+//! If no cycle of agents have to go before one another, an order that respects this has a schedule for all of them:
+//! each agent waits until those before it are out of its way, at the latest until they have arrived.
 //!
-//! `plan_delays` of pcr-core needs no heap: it finds delays by contacts, anew for every order, each motion with its own. It serves
-//! neither discs that are delayed together nor searches over thousands of orders. What a region forbids is the core's in both
-//! (`RegionRef::forbidden_delays`).
+//! `plan_delays` of pcr-core needs no heap: it finds delays from contacts, again for every order, and delays each
+//! motion by itself. So it supports neither discs that are delayed together nor searches over thousands of orders. Both
+//! take the forbidden delays of a region from the core (`RegionRef::forbidden_delays`).
 
 use super::delays::{self, NEVER, Objective, Pair, Problem, Ticks, earliest};
 use super::grown;

@@ -1,4 +1,4 @@
-//! One plan of a fleet: from delays or speeds to what is printed, checked and proved.
+//! One plan of a fleet, from delays or speeds to the printed answer; it is checked and proved.
 
 use super::delays::Objective;
 use super::starts::Known;

@@ -1,4 +1,5 @@
-//! Why two agents cannot be planned, and where: which of their starts and ends are in the way of the other, on what lengths.
+//! Why and where two agents cannot be planned: which of their starts and ends are in the way of the other agent, and on
+//! what lengths.
 
 use super::{grown, sides};
 use crate::fleet::Fleet;

@@ -1,5 +1,5 @@
-//! Speeds for a fleet: delays, what `plan_speeds` finds in several orders, priorities by need, and each agent again while all others
-//! move as planned.
+//! Speed plans for a fleet: start delays, `plan_speeds` with several orders, priority-based search, and replanning of
+//! each agent while all others move as planned.
 
 mod branching;
 

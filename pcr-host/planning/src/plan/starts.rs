@@ -1,4 +1,4 @@
-//! Start delays of a scenario, for all of its agents or for as many as can have one, and how good they are.
+//! Start delays of a scenario, for all of its agents or for as many as possible, with their quality.
 
 use super::delays::{self, Objective, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};

@@ -1,4 +1,4 @@
-//! What all attempts at a plan have in common: the fleet, what is asked for, orders to be tried, and what a plan costs.
+//! Data that all attempts at a plan share: the fleet, the options, orders to try, and the cost of a plan.
 
 use super::circle;
 use super::delays::Objective;

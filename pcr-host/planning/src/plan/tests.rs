@@ -1,4 +1,4 @@
-//! Fleets of which not all agents can have a plan.
+//! Tests with fleets of which not all agents can have a plan.
 
 use super::*;
 

@@ -1,7 +1,8 @@
-//! Regions of agents with footprints: the unions of those of their discs.
+//! Regions of agents with footprints: the unions of the regions of their discs.
 //!
-//! The discs of an agent move with one motion, so that the regions of all pairs of discs lie in the same plane of time and
-//! length once their lengths are those of the reference point. A region of the agents is a connected union of them.
+//! The discs of an agent share one motion, so the regions of all pairs of discs lie in the same plane of time and
+//! length, once lengths are converted to those of the reference point. A region of two agents is a connected union of
+//! them.
 
 use super::record::{Piece, Region, Slice, Work, slice};
 use crate::bodies::Disced;

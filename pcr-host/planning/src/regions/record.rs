@@ -1,4 +1,4 @@
-//! Regions of the table as records: numbers of agents and segments, lengths, and crossings with their descriptors.
+//! Regions of the table as records: ids of agents, indices of segments, lengths, and crossings with their descriptors.
 
 use crate::fleet::{Fleet, Format, HostEcm};
 use pcr_core::{Crossing, Curve, Motion, RegionRef, Turn, crossings};

@@ -1,5 +1,5 @@
-//! The regions of a fleet of any size, an agent at a time, in the order of their numbers: agents that come near are found by a
-//! grid, rows are computed on all cores, and none is held longer than it takes to hand it on.
+//! The regions of a fleet of any size, one agent at a time, sorted by id. A grid finds the agents that come near each
+//! other, and rows are computed on all cores. Each row is freed after it has been passed on.
 
 use super::record::Work;
 use super::{Answer, Cover, Failure, Region, Request, outlines};

@@ -1,4 +1,4 @@
-//! The tables of a scenario as the checker takes them, for fleets of any size.
+//! The tables of a scenario in the form that the checker takes, for fleets of any size.
 
 use super::Failure;
 use crate::bodies::Bodies;

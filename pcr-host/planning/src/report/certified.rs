@@ -1,4 +1,4 @@
-//! Verdicts about tables as text.
+//! Results of the checker for tables, as text.
 
 use super::columns::Columns;
 use super::{heading, quoted};

@@ -1,4 +1,4 @@
-//! The paper's simulation, ours beside the paper's numbers.
+//! Our results for the paper's simulation beside the paper's figures.
 
 use super::columns::Columns;
 use super::table::{Numbered, arc, numbered};

@@ -1,4 +1,5 @@
-//! The regions of large fleets: what [`csv`](super::csv) and [`json`](super::json) print, without holding it all.
+//! Prints the regions of large fleets like [`csv`](super::csv) and [`json`](super::json), but without holding all of
+//! them in memory.
 
 use super::{csv_rows, json};
 use crate::fleet::Format;

@@ -1,5 +1,5 @@
-//! Which boxes meet: an even grid, each box in all cells that it covers. Cells are as large as the boxes are on average, so
-//! that a box of a fleet of constant density has a constant number of neighbours, wherever it is.
+//! Finds boxes that meet, with an even grid: each box is in all cells that it covers. A cell has the average size of
+//! the boxes, so in a fleet of constant density a box has a constant number of neighbours.
 
 use rayon::prelude::*;
 

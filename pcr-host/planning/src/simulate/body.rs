@@ -1,7 +1,7 @@
-//! A robot as it really is: its wheels slip, it is held up, and it is never exactly on its path.
+//! The true state of a robot: its wheels slip, it is held up, and it is never exactly on its path.
 //!
-//! On a path its position is ρ(s) + d: s grows by the speed of the wheels less the slip, and not at all while something
-//! holds it; d is a drift of at most [`Disturbance::drift`]. Between two frames it moves uniformly.
+//! On a path its position is ρ(s) + d. s grows by the speed of the wheels minus the slip, and not at all while the
+//! robot is held up; d is a drift of at most [`Disturbance::drift`]. Between two frames the robot moves uniformly.
 
 use super::FRAME;
 use super::braking::speed_within;

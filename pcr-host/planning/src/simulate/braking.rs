@@ -1,4 +1,4 @@
-//! Braking in frames: a robot keeps a speed for a whole frame, and changes it by a bounded step from one to the next.
+//! Braking in frames: a robot keeps its speed during a frame, and changes it by a bounded step between frames.
 
 use pcr_core::Limits;
 

@@ -1,4 +1,5 @@
-//! Collisions on the true positions: exact for discs that move uniformly from frame to frame, and unaware of any plan.
+//! Collisions on the true positions: exact for discs that move uniformly from frame to frame, and independent of any
+//! plan.
 
 use super::vector::{Vector, add, dot, norm, scale, sub};
 

@@ -1,4 +1,4 @@
-//! The path of a mission, and how an agent moves along the rest of it.
+//! The path of a mission, and the motion of an agent along the rest of it.
 
 use crate::fleet::speed;
 use pcr_core::{Curve, Invalid, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};

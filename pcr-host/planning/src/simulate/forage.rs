@@ -11,8 +11,8 @@
 //!  0.0                    r  x
 //! ```
 //!
-//! The paper gives neither the plan of its arena nor the data of its robots; radius and speed are those of the e-puck
-//! (Mondada et al. 2009: 70 mm across, 13 cm/s), the ways are as long as the 8.1 s of the paper suggest.
+//! The paper gives neither the plan of its arena nor the data of its robots. Radius and speed are those of the e-puck
+//! (Mondada et al. 2009: 70 mm across, 13 cm/s); the lengths of the paths match the 8.1 s of the paper.
 
 use super::course::Course;
 use super::noise::{Noise, Purpose};

@@ -1,14 +1,14 @@
-//! The passing orders of a plan, kept at every frame, however late a robot is.
+//! Keeps the passing orders of a plan in every frame, however late a robot is.
 //!
-//! In the coordination space of two robots (l, l') a plan leads past each collision region on one side: one robot
-//! passes first. As the regions of coordination space depend on the paths alone, nobody collides if everybody keeps to
-//! these orders, whatever the times: a robot that passes second stays before all lengths that the first one
-//! still blocks on the rest of its way through the region. (The same idea under the name RMTRACK: Čáp, Gregoire and
-//! Frazzoli, Provably safe and deadlock-free execution of multi-robot plans under delaying disturbances, IROS 2016.)
+//! In the coordination space (l, l') of two robots, a plan passes each collision region on one side: one robot passes
+//! first. Regions in coordination space depend on the paths alone. So robots that keep these orders do not collide,
+//! whatever the times: a robot that passes second stays before all lengths that the first one still blocks on the rest
+//! of its way through the region. (The same idea is called RMTRACK in: Čáp, Gregoire and Frazzoli, Provably safe and
+//! deadlock-free execution of multi-robot plans under delaying disturbances, IROS 2016.)
 //!
-//! Regions are those of discs that are larger by what the robots may be off their paths; where along it they are is
-//! known as an interval, of which the worse end counts. A robot goes no faster than it can brake before the
-//! length at which it is held, so it can always do so in the next frame as well.
+//! The discs are enlarged by the distance that robots may be off their paths. The place of a robot along its path is an
+//! interval, of which the worse end is used. A robot drives only as fast as it can brake before the length at which it
+//! is held, so it can still do so in the next frame.
 
 use super::course::{Course, Drive};
 use crate::fleet::{HostEcm, build_ecm};

@@ -1,4 +1,4 @@
-//! Random numbers of a run: each robot has streams of its own, so that the same seed means the same disturbances under
+//! Random numbers of a run. Each robot has streams of its own, so that the same seed gives the same disturbances with
 //! every controller.
 
 use super::vector::{Vector, norm, scale};

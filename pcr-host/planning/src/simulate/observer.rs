@@ -1,8 +1,8 @@
-//! Where a robot can be on its path: an interval that holds its progress for certain.
+//! The place of a robot on its path, as an interval that certainly contains its progress.
 //!
-//! A robot has gone at most as far as its wheels have turned, and never back; and a camera that is right within a known
-//! distance sees it from a part of its path only. That part is what a standing disc of that radius blocks, a
-//! question that the collision regions answer.
+//! A robot has travelled at most as far as its wheels have turned, and never back. A camera whose error is at most a
+//! known distance can see it at its measured position only from a part of its path. That part is the stretch that a
+//! standing disc with this radius blocks, which the collision regions give.
 
 use super::course::{Course, Drive};
 use pcr_core::{Encounter, Interval, Pose, Radians};

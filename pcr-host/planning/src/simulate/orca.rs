@@ -1,7 +1,8 @@
 //! Optimal reciprocal collision avoidance (van den Berg, Guy, Lin and Manocha 2011), by the crate `dodgy_2d`.
 //!
-//! Each robot knows the velocities of all others and takes half of what is needed to avoid each for some time ahead; discs
-//! are larger by what the camera may be off. It heads for a point of its path a little ahead, as ORCA knows no way around obstacles. Obstacles are octagons around their discs.
+//! Each robot knows the velocities of all others, and takes half of the change that avoids each of them for some time
+//! ahead. Discs are enlarged by the error of the camera. A robot heads for a point of its path a little ahead, because
+//! ORCA finds no way around obstacles. Obstacles are octagons around their discs.
 
 use super::body::Command;
 use super::course::Course;

@@ -1,4 +1,4 @@
-//! What comes out of a run: a record of the true positions, and the figures that follow from it.
+//! Results of a run: a record of the true positions, and the figures that follow from it.
 
 use super::contact::{contacts, separation};
 use super::replan::InTheWay;

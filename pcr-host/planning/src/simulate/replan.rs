@@ -1,9 +1,9 @@
-//! Plans for robots on the way: each goes on from where it is, at the speed it has, and waits at most once.
+//! Plans for robots in motion: each one continues from where it is, at its present speed, and waits at most once.
 //!
-//! Robots are planned one after the other in an order of priority, each against the motions of those before it and of
-//! what stands. A robot goes through if it can. Otherwise it stops, waits, and goes on from rest: as early as it can brake, or
-//! just before one of the regions on its way; [`earliest_start`] says how long it has to wait there. The place with the
-//! earliest arrival counts.
+//! Robots are planned one after the other in an order of priority; each one avoids the motions of those before it and
+//! standing robots. If a robot can go through without a wait, it does. Otherwise it stops, waits, and continues from
+//! rest: as early as it can brake, or just before one of the regions on its way; [`earliest_start`] gives the time that
+//! it has to wait there. The place with the earliest arrival is used.
 
 use super::braking::to_rest;
 use super::course::{Course, Drive};

@@ -1,4 +1,4 @@
-//! What the reactive controllers have in common: a robot that heads for a target.
+//! Common code of the reactive controllers: a robot that heads for a target.
 
 use super::FRAME;
 use super::course::Course;

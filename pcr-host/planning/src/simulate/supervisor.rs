@@ -1,12 +1,12 @@
-//! The supervisor: sees the robots at every frame, plans every few seconds, and keeps the passing orders in between.
+//! The supervisor observes the robots in every frame, plans every few seconds, and keeps the passing orders in between.
 //!
 //! ```text
 //! camera ──> observer: where each robot can be ──┬──> guard: how far it may go ──┐
 //!                                                └──> replan: how it should go ──┴──> speed of each robot
 //! ```
 //!
-//! Plans keep a margin for what the camera and the robots may be off ([`Errors`]). A robot that is late is no danger:
-//! the guard holds those that pass after it. Where no new plan is found the old orders stay.
+//! Plans keep a margin for the errors of the camera and of the robots ([`Errors`]). A late robot is no danger: the
+//! guard holds those that pass after it. If no new plan is found, the old orders stay.
 
 use super::braking::{speed_within, stopping_length};
 use super::course::{Course, Drive};

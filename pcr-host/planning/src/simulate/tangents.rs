@@ -1,9 +1,9 @@
-//! Shortest paths around discs: taut strings, hence lines that touch the discs and arcs along them.
+//! Shortest paths around discs: taut strings, which consist of lines that touch the discs, and arcs along them.
 //!
-//! A line from a disc that is passed on the side σ (+1: it lies to the left) to one that is passed on the side τ has the
-//! direction u with D · n = τ r' - σ r, where D leads from centre to centre and n is u turned left. Points are discs of
-//! radius 0. Lines that cross a disc are left out; Dijkstra's algorithm does the rest, over lines, as the arc between two
-//! of them depends on both.
+//! A line from a disc that it passes on the side σ (+1: the disc is to the left) to one that it passes on the side τ
+//! has the direction u with D · n = τ r' - σ r, where D leads from centre to centre and n is u turned left. Points are
+//! discs of radius 0. Lines that cross a disc are left out. Dijkstra's algorithm finds the shortest path; its nodes are
+//! lines, because the arc between two lines depends on both.
 
 use super::vector::{Vector, add, dot, norm, scale, sub};
 use pcr_core::{Point, Pose, Radians};

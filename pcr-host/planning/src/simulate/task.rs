@@ -1,4 +1,4 @@
-//! What the robots have to do, and among what.
+//! The tasks of the robots, and the obstacles.
 
 use super::course::Course;
 use super::vector::Vector;

@@ -1,7 +1,7 @@
-//! Agents that can all arrive if they start in some order.
+//! Selects agents that can all arrive if they start in some order.
 //!
-//! A region of two agents that holds the start of one, or the end of the other, is passed by the first before the second, whenever they
-//! start. Where two have to go before one another, or all around a circle, there is no order.
+//! If a region of two agents contains the start of the first, or the end of the second, the first passes it before the
+//! second, whenever they start. If two agents have to go before one another, or several in a cycle, there is no order.
 
 use crate::bodies::Bodies;
 use crate::fleet::build_ecm_of;

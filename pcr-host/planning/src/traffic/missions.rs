@@ -1,4 +1,4 @@
-//! Random missions: pairs of nodes with a way between them, that some order of starts lets through.
+//! Random missions: pairs of nodes with a way between them, which some order of starts allows.
 
 use super::crowd::Crowd;
 use crate::random::Random;

@@ -1,6 +1,7 @@
-//! Start delays for as many agents as can have one: many orders of priority are tried.
+//! Start delays for as many agents as possible: many orders of priority are tried.
 //!
-//! Agents that cannot start because of others go first in the next order that is tried; where all can, the one that waits longest.
+//! Agents that cannot start because of others go first in the next order that is tried; if all can start, the one that
+//! waits longest goes first.
 
 use crate::plan::{Forbidden, Schedule};
 use crate::random::Random;

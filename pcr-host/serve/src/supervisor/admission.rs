@@ -1,4 +1,5 @@
-//! Missions: another path for a robot, with orders so that everybody can finish, or the reason why not.
+//! Admission of missions: another path for a robot, with orders with which all robots can finish, or the reason why
+//! there are none.
 
 use super::{Supervisor, fleet};
 use crate::course::{Course, Shape, Start};

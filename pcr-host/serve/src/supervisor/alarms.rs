@@ -1,4 +1,4 @@
-//! Robots that are not where they may be: everybody else keeps away from wherever they can have got to.
+//! Robots that are not where they may be: all others keep away from everywhere that such a robot can have reached.
 
 use super::{Supervisor, fleet};
 use crate::course::{Course, Start};

@@ -1,4 +1,4 @@
-//! What robots say about where they are.
+//! Reports of robots about their places.
 
 use super::Supervisor;
 use crate::course::FAR;

@@ -1,5 +1,5 @@
-//! How far robots may go on. A hold is computed again only when the one that is waited for has moved, and only for robots that would
-//! go further: what others do is no news to the rest.
+//! How far robots may go on. A hold is computed again only if the robot that is waited for has moved, and only for
+//! robots that would go further; other robots are not affected.
 
 use super::alarms::Limit;
 use super::{Supervisor, fleet};

@@ -1,4 +1,4 @@
-//! A supervisor as its journal says it was.
+//! Restores a supervisor from its journal.
 
 use super::{Settings, Supervisor, Table, fleet};
 use crate::entry::{Entry, Keep, Kept, Known, Layout};

@@ -1,5 +1,6 @@
-//! Somebody who has something to do and gets nowhere: for whom it waits in the end, and that this one does not go on. What robots keep
-//! from happening is no reason, but how they are sent, or one that stands, is.
+//! Detects robots that have a mission but do not advance, and reports the reason once: the robot for which they wait in
+//! the end, or the robots that wait for one another. A robot that is stopped, silent or alarmed has been reported
+//! already.
 
 use super::Supervisor;
 use super::admission::Verdict;

@@ -1,4 +1,4 @@
-//! Nodes and edges of an order that are still ahead, as states tell them.
+//! Nodes and edges of an order that are still ahead, as listed in states.
 
 use super::order::{Edge, Node, NodePosition};
 use serde::Serialize;

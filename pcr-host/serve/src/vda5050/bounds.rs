@@ -1,4 +1,4 @@
-//! Bounds of all values of a message, and the types of what is in every header, in one pass that keeps nothing.
+//! Checks the bounds of all values of a message, and the types in its header, in one pass that stores nothing.
 
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};

@@ -1,4 +1,5 @@
-//! All vehicles of a fleet between their manager and the supervisor: messages in, messages out, no input or output of its own.
+//! Connects all vehicles of a fleet with their manager and the supervisor. It only converts messages, and does no input
+//! or output itself.
 
 use super::door::Limits;
 use super::lane::{Lane, Post, Profile, To};

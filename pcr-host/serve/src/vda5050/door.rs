@@ -1,4 +1,5 @@
-//! From bytes to values: what is too large, no JSON, or holds numbers that nobody computes with is refused by name.
+//! Converts bytes to values. Messages that are too large, are not JSON, or contain numbers that cannot be computed with
+//! are refused with a reason.
 
 use super::bounds::{self, VERBATIM};
 use crate::json::Once;

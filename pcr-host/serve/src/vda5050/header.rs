@@ -1,4 +1,4 @@
-//! What every message begins with.
+//! The header of every message.
 
 use super::door::Refusal;
 use super::topics::Key;

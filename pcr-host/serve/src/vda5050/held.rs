@@ -1,4 +1,4 @@
-//! An order as its receiver keeps it: updates are stitched to its base as the standard says.
+//! An order as its receiver holds it; updates are stitched to its base as the standard says.
 
 use super::door::Refusal;
 use super::order::{Edge, Node, Order};

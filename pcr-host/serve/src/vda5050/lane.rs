@@ -1,8 +1,8 @@
-//! One vehicle between its fleet manager and the supervisor.
+//! Connects one vehicle with its fleet manager and the supervisor.
 //!
-//! The manager's order is kept as it is ([`Held`](super::held::Held)); the vehicle gets it under the same name, with its base cut to what the supervisor has
-//! allowed, and numbers of its own for nodes and updates, as the base may end in the middle of an edge. What the vehicle says is
-//! told to the manager in the manager's numbers.
+//! The manager's order is stored unchanged ([`Held`](super::held::Held)). The vehicle gets it under the same name, with
+//! its base cut to the part that the supervisor has allowed, and with its own numbers of nodes and updates, because the
+//! base may end in the middle of an edge. Reports of the vehicle are sent to the manager with the manager's numbers.
 
 mod actions;
 mod job;

@@ -1,4 +1,4 @@
-//! The messages that are not orders or states. What is not named here is kept as it came, in `rest`.
+//! Messages other than orders and states. Fields that are not named here are kept unchanged in `rest`.
 
 use super::door::Refusal;
 use super::header::{Header, message};

@@ -1,8 +1,9 @@
-//! The bridge at its broker: one at a time.
+//! The bridge at its broker; only one bridge is active at a time.
 //!
-//! Whoever supervises says so in a retained message that its last will takes back. A second one sees it and does nothing. Of two that
-//! begin at once, the one whose message the broker takes first goes on. One that is late by more than that sees no message where one was:
-//! whoever supervises already says so again, and a claim counts when nobody has objected for a while.
+//! The active bridge says so in a retained message, which its last will takes back. A second bridge sees the message
+//! and stays passive. If two begin at the same time, the one whose message the broker receives first continues. A
+//! bridge that does not see the message of the active one may still claim its place. Therefore the active bridge then
+//! repeats its message, and a claim counts only if no other bridge has objected for a while.
 
 use super::bridge::{Bridge, Publish};
 use super::header::Header;

@@ -1,4 +1,4 @@
-//! Editions of the standard, and what they call things.
+//! Editions of the standard, and the names that they use.
 
 use std::fmt;
 

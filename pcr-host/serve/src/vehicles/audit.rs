@@ -1,5 +1,5 @@
-//! Whether two vehicles have the right to one place at one time, by what they have themselves: the released ways that are still before them
-//! may come as near to one another as they may themselves, and no nearer.
+//! Checks from the data of the vehicles that no two of them hold the same place at the same time: their released ways
+//! ahead may come as near to one another as vehicles may, and no nearer.
 
 use super::locks::distance;
 use super::vehicle::Vehicle;

@@ -1,4 +1,4 @@
-//! How a vehicle drives along a way: it stops where it has to, and turns in place at corners.
+//! The motion of a vehicle along a way: it stops where it has to, and turns in place at corners.
 
 use super::random::Random;
 use crate::course::Shape;

@@ -1,6 +1,7 @@
-//! What fleet managers do without a supervisor, to compare with: locks. A vehicle has the edges that it is on, and gets more of its way if
-//! nobody else has an edge on which they would touch: all of it at once, or one edge after the other if all could still finish one after the
-//! other from there (the banker's check, Dijkstra 1965). Their ends are on nobody else's way, so that who finishes first makes no difference.
+//! Locks, which fleet managers use without a supervisor, for comparison. A vehicle holds the edges that it is on, and
+//! gets more of its way if no other vehicle holds an edge on which they would touch: either all of it at once, or one
+//! edge after the other if all vehicles could still finish one after the other then (the banker's check, Dijkstra
+//! 1965). No vehicle's end is on the way of another one, so the order in which vehicles finish does not matter.
 
 use pcr_formats::import::Layout;
 use serde::Serialize;

@@ -1,6 +1,6 @@
-//! A fleet manager that gives every vehicle one mission after the other, to goals that nobody else is at or goes to, on ways that
-//! keep clear of all other goals: whoever stands at one is in nobody's way, so that every mission can be done whatever the others do.
-//! A vehicle that has lost its order gets another one, for the rest of the way from where it stands.
+//! A fleet manager that gives every vehicle one mission after the other. No two vehicles have the same goal, and ways
+//! keep clear of all other goals, so a vehicle at a goal is in no one's way, and every mission can be finished whatever
+//! the others do. A vehicle that has lost its order gets another one, for the rest of the way from where it stands.
 
 use super::locks::{Leg, Locks, Method, to_line};
 use super::random::Random;

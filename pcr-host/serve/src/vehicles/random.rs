@@ -1,4 +1,4 @@
-//! Numbers from a seed: the same seed gives the same ones.
+//! Random numbers from a seed; the same seed gives the same numbers.
 
 /// SplitMix64.
 #[derive(Clone, Debug)]

@@ -1,8 +1,9 @@
-//! Where vehicles really were, in a file of lines, and the proof that they never touched.
+//! A file with the true positions of vehicles, and the proof that they never touched.
 //!
-//! The first line names the vehicles: `{"format":"pcr-record","version":1,"vehicles":[{"name":"sim/1","radius":0.4}]}`. Each further one is
-//! `[vehicle, time, x, y]`, vehicles counted from 0, times \[s\] of a vehicle in their order: between two of its lines a vehicle goes
-//! straight on at a constant speed, before the first and after the last one it stands.
+//! The first line names the vehicles: `{"format":"pcr-record","version":1,"vehicles":[{"name":"sim/1","radius":0.4}]}`.
+//! Each other line is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\] of a vehicle increase.
+//! Between two of its lines a vehicle moves straight at a constant speed; before the first and after the last line it
+//! stands.
 
 use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};

@@ -1,4 +1,4 @@
-//! What a vehicle says.
+//! Messages of a vehicle.
 
 use super::vehicle::Vehicle;
 use crate::vda5050::ahead::{EdgeAhead, NodeAhead};

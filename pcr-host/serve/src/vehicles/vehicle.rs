@@ -1,4 +1,5 @@
-//! A simulated vehicle that keeps to the standard: it drives the released base only, stitches updates, and says what it does.
+//! A simulated vehicle that follows the standard: it drives on the released base only, stitches updates, and reports
+//! its state.
 
 use super::drive::{Abilities, Drive};
 use super::random::Random;

@@ -1,4 +1,4 @@
-//! Messages that are lost, late, sent twice or in another order.
+//! Messages that are lost, late, repeated or out of order.
 
 use super::random::Random;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,5 @@
-//! Vehicles, their manager and a supervisor without a broker, in steps of their time: the same seed is the same run, on any machine.
+//! Vehicles, their manager and a supervisor without a broker, in steps of simulated time: the same seed gives the same
+//! run on any machine.
 
 use super::audit::Audit;
 use super::locks::Method;

@@ -1,4 +1,4 @@
-//! VDA 5050 beside the thread that owns the supervisor.
+//! Runs the VDA 5050 bridge beside the thread that owns the supervisor.
 
 use super::super::Stop;
 use super::Arguments;

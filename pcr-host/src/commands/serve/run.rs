@@ -1,4 +1,4 @@
-//! The supervisor and what is around it: journal, clients, page.
+//! Runs the supervisor with its journal, clients and page.
 
 use super::super::printed::quiet;
 use super::super::{NOT_WRITTEN, Stop};

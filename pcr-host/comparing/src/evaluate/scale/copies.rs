@@ -1,4 +1,4 @@
-//! Copies of a layout side by side, with random routes: a warehouse of any size, as dense as one copy.
+//! Copies of a layout side by side, with random routes: a warehouse of any size with the same density as one copy.
 
 use pcr_formats::import::{self, ImportError, Imported};
 use pcr_formats::scenario::{Agent, Scenario};

@@ -1,4 +1,4 @@
-//! All regions of fleets of one size: time and memory.
+//! Time and memory for all regions of fleets of one size.
 
 use super::super::machine::line;
 use super::super::{Extent, Problem};

@@ -1,4 +1,4 @@
-//! A bound from groups: what each group of agents costs at least if the others were not there adds up.
+//! A lower bound from groups of agents: the least costs of each group alone add up.
 
 use super::problem::{Objective, Problem};
 use super::search::{Search, Stop};

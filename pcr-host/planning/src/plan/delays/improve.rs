@@ -1,5 +1,5 @@
-//! Better delays by large neighbourhood search (Shaw 1998): some agents are freed, all others keep their sides among one another,
-//! and what is left is solved exactly.
+//! Improves delays by large neighbourhood search (Shaw 1998): some agents are freed, all others keep their sides among
+//! one another, and the remaining problem is solved exactly.
 
 use super::problem::Problem;
 use super::search::{Search, Stop};

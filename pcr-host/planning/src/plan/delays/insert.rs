@@ -1,7 +1,8 @@
-//! Delays one agent after the other, each as early as those before it allow: found in no time, for all agents or for most of them.
+//! Delays for one agent after the other, each one as early as those before it allow. This is fast, and plans all agents
+//! or most of them.
 //!
-//! Whoever cannot start goes first the next time, again and again (squeaky wheels, Joslin and Clements 1999), behind those that have to
-//! go before it.
+//! An agent that cannot start goes first in the next attempt, again and again (squeaky wheels, Joslin and Clements
+//! 1999), but after the agents that have to go before it.
 
 use super::precedence::respecting;
 use super::problem::{Constraint, Problem, earliest};

@@ -1,10 +1,11 @@
-//! Whom to leave out so that all others have delays: the fewest agents that hit all conflicts, which are found one after the other.
+//! Which agents to leave out so that all others have delays: the fewest agents that hit all conflicts; conflicts are
+//! found one after the other.
 //!
-//! A conflict is a set of agents that have no delays together. Whoever has to be left out, at least one of each conflict is. A
-//! least set that hits all known conflicts is tried; where the others have no delays yet, they hold a conflict that is not
-//! known. So the first set that suffices is one of the fewest.
+//! A conflict is a set of agents that have no delays together; at least one agent of each conflict has to be left out.
+//! A least set that hits all known conflicts is tried. If the remaining agents have no delays, they contain a conflict
+//! that is not known yet. So the first set that suffices has the fewest agents.
 //!
-//! Where that takes too long, agents are inserted one after the other, and whoever does not fit is left out.
+//! If that takes too long, agents are inserted one after the other, and those that do not fit are left out.
 
 use super::insert;
 use super::problem::Problem;

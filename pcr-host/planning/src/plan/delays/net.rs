@@ -1,7 +1,8 @@
-//! Difference constraints, and the least delays that fulfil them: longest paths, kept up to date constraint by constraint.
+//! Difference constraints, and the least delays that satisfy them: longest paths, updated for each new constraint.
 //!
-//! A constraint raises the delay it ends in, and that raises others. A circle of constraints that adds up to more than 0 has no solution;
-//! as there was one before, it goes through the new constraint, so that the raise comes back to where that one begins.
+//! A constraint raises the delay at its end, which raises others. A cycle of constraints whose sum is above 0 has no
+//! solution. Since there was a solution before, such a cycle contains the new constraint, so the raise comes back to
+//! its beginning.
 
 use super::problem::{Constraint, NEVER};
 use std::collections::VecDeque;

@@ -1,4 +1,4 @@
-//! Orders of priority in which nobody comes before those that have to start before it.
+//! Orders of priority in which every agent comes after those that have to start before it.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -1,8 +1,9 @@
 //! Start delays as difference constraints on whole numbers of ticks.
 //!
-//! What a pair forbids depends on the difference of its two delays. Ends of intervals are rounded outward to ticks, a power
-//! of two of a second, and once more by a tick for what a start time in a file is rounded by: then sums are exact, and
-//! delays that keep all intervals in ticks keep them in the numbers that are written.
+//! The constraint of a pair depends on the difference of its two delays. Ends of intervals are rounded outward to
+//! ticks, which are a power of two of a second, and moved outward by one more tick for the rounding of a start time in
+//! a file. Then sums are exact, and delays that satisfy all constraints in ticks satisfy them in the numbers that are
+//! written.
 
 /// An end of an interval that stands for infinity \[ticks\].
 pub(crate) const NEVER: i64 = i64::MAX / 4;

@@ -1,9 +1,10 @@
 //! Delays of least cost, by branch and bound over the sides of forbidden intervals.
 //!
-//! A node has constraints for the sides that were chosen. The least delays that fulfil them cost least by either objective:
-//! that is its bound. Where they violate no pair they are its best solution; otherwise a pair that they violate is branched
-//! upon, with its difference below the interval or above it. No solution is lost by that, and every branch adds one of finitely many
-//! constraints. `docs/theory.md` has the proofs.
+//! A node of the search tree has constraints for the sides that were chosen. The least delays that satisfy them have
+//! the least cost for either objective, which is the lower bound of the node. If they violate no pair, they are its
+//! best solution. Otherwise the search branches on a violated pair: its difference is below the interval, or above it.
+//! No solution is lost by that, and every branch adds one of finitely many constraints. `docs/theory.md` has the
+//! proofs.
 
 use super::net::Net;
 use super::problem::{Constraint, Objective, Problem};

@@ -1,4 +1,4 @@
-//! Against all choices of sides of small fleets, one by one.
+//! Compares with all choices of sides, for small fleets.
 
 use super::problem::Constraint;
 use super::search::Found;

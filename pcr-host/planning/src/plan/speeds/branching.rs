@@ -1,5 +1,6 @@
-//! Priorities by need (priority-based search, Ma, Harabor, Stuckey, Li, Koenig 2019): two agents that collide are put in order, either way
-//! round, and who comes second is planned again, and so are those who come after it; depth first, the cheaper way first.
+//! Priority-based search (Ma, Harabor, Stuckey, Li, Koenig 2019): two agents that collide get an order, either way
+//! round; the second agent is planned again, and so are those that come after it. Depth first, the cheaper branch
+//! first.
 
 use super::{PHASES, Room};
 use crate::fleet::HostEcm;

@@ -1,4 +1,4 @@
-//! The order of a vehicle: as the manager has given it, and what of it the vehicle has.
+//! The order of a vehicle: as given by the manager, and the part of it that the vehicle has.
 
 use super::super::held::Held;
 use super::super::order::{Edge, Node, NodePosition};

@@ -1,4 +1,4 @@
-//! What the manager is told of the vehicle: its state, in the manager's numbers.
+//! The state of the vehicle for the manager, in the manager's numbers.
 
 use super::super::ahead::{EdgeAhead, NodeAhead};
 use super::super::door::{self, Limits, Refusal};

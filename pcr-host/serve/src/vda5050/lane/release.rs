@@ -1,4 +1,4 @@
-//! Updates for the vehicle: its base goes as far as the supervisor allows.
+//! Updates for the vehicle: its base ends where the supervisor allows.
 
 use super::super::order::Order;
 use super::super::state::ActionState;

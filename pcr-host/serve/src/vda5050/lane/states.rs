@@ -1,4 +1,4 @@
-//! What the vehicle says.
+//! Messages of the vehicle.
 
 use super::super::door::{self, Limits, Refusal};
 use super::super::header::Header;
