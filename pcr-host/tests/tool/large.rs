@@ -97,7 +97,6 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
 }
 
 /// A path of so many segments that crosses a line again and again.
-#[cfg(target_os = "linux")]
 fn comb(segments: usize) -> String {
     let turn = |sweep: f64| json!({ "kind": "arc", "radius": 0.5, "sweep": sweep });
     let piece = |k: usize| match k % 4 {
@@ -108,8 +107,23 @@ fn comb(segments: usize) -> String {
     let agent = |id: u64, x: f64, y: f64, heading: f64, path: serde_json::Value| json!({ "id": id, "radius": 0.3, "v_max": 1, "a_max": 1, "start": { "x": x, "y": y, "heading": heading }, "path": path });
     let north = std::f64::consts::FRAC_PI_2;
     let path = (0..segments).map(piece).collect::<Vec<_>>();
-    let line = json!([{ "kind": "line", "length": 3000 }]);
+    let line = json!([{ "kind": "line", "length": segments / 2 + 3000 }]);
     json!({ "agents": [agent(1, -2.0, 0.0, 0.0, path.into()), agent(2, 0.0, -10.0, north, line)] }).to_string()
+}
+
+/// Each crossing is looked for among the pieces of its own two segments: among all of them this takes minutes.
+#[test]
+fn a_path_that_crosses_another_ten_thousand_times_has_each_crossing_in_its_region() {
+    let name = file("large", "comb.json", comb(20_001));
+    let csv = run(&["regions", &name, "--format", "csv"]).ok();
+    let mut rows = [0, 0];
+    for line in csv.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!(fields[10], "1", "one crossing: {line}");
+        rows[fields[1].parse::<usize>().unwrap() - 1] += 1;
+    }
+    // Every second segment is a line, and crosses.
+    assert_eq!(rows, [10_001, 10_001]);
 }
 
 #[cfg(target_os = "linux")]

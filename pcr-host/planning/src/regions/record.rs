@@ -130,8 +130,9 @@ impl<S: Format> Work<'_, S> {
         let (Some(own), Some(their)) = (self.motions.get(ego), self.motions.get(other)) else {
             return records;
         };
+        let held = by_segments(&records);
         for crossing in crossings(own, their) {
-            let place = self.place_of(ego, other, &crossing, pair, &records);
+            let place = self.place_of(ego, other, &crossing, pair, &records, &held);
             let piece = place.and_then(|[region, piece]| records.get_mut(region)?.pieces.get_mut(piece));
             if let Some(piece) = piece {
                 piece.crossings.push(Descriptor::of(&crossing));
@@ -151,18 +152,17 @@ impl<S: Format> Work<'_, S> {
         crossing: &Crossing<S>,
         pair: &[RegionRef<'_, S>],
         records: &[Region],
+        held: &[Held],
     ) -> Option<[usize; 2]> {
         let (length, other_length) = (crossing.length.to_f64(), crossing.other_length.to_f64());
         let segments = self.segments(ego, other, crossing.segments);
         let within = |[lo, hi]: [f64; 2], length: f64| lo <= length && length <= hi;
-        let holds = |piece: &Piece| {
-            [piece.i_segment, piece.j_segment] == segments
-                && within(piece.i_length, length)
-                && within(piece.j_length, other_length)
+        let holds = |&[region, piece]: &[usize; 2]| {
+            let piece = &records[region].pieces[piece];
+            within(piece.i_length, length) && within(piece.j_length, other_length)
         };
-        let places = records.iter().enumerate().flat_map(|(k, record)| {
-            record.pieces.iter().enumerate().filter(|(_, piece)| holds(piece)).map(move |(piece, _)| [k, piece])
-        });
+        let first = held.partition_point(|(of, _)| *of < segments);
+        let places = held[first..].iter().take_while(|(of, _)| *of == segments).map(|(_, place)| *place).filter(holds);
         // Regions may interlock, then the ranges of several hold the crossing, but only one contains it.
         let contains = |k: usize| pair.get(k).is_some_and(|region| region.contains(crossing.time, crossing.length));
         let mut candidates: Vec<[usize; 2]> = places.collect();
@@ -218,6 +218,21 @@ impl<S: Format> Work<'_, S> {
     pub(super) fn in_fleet(&self, agent: usize) -> usize {
         self.agents.get(agent).map_or(usize::MAX, |&agent| agent as usize)
     }
+}
+
+/// The segments of a piece, and the place of its region and its own place there.
+type Held = ([Option<usize>; 2], [usize; 2]);
+
+/// All pieces by their segments: paths may cross ten thousand times, and none of these crossings looks at all pieces.
+fn by_segments(records: &[Region]) -> Vec<Held> {
+    let pieces = records.iter().enumerate().flat_map(|(region, record)| {
+        let pieces = record.pieces.iter().enumerate();
+        pieces.map(move |(piece, it)| ([it.i_segment, it.j_segment], [region, piece]))
+    });
+    let mut held: Vec<Held> = pieces.collect();
+    // Stable: those of the same segments stay in their order.
+    held.sort_by_key(|(segments, _)| *segments);
+    held
 }
 
 pub(super) fn slice<S: Format>(region: &RegionRef<'_, S>, time: S) -> Slice {
