@@ -6,8 +6,8 @@
 use crate::disc::{Course, Disc, Leg};
 use crate::execution::Table;
 use crate::generators::{Dice, leg, pair};
-use crate::oracle::line::below;
 use crate::oracle::Pair;
+use crate::oracle::line::below;
 use pcr_core::{
     Hold, Interval, Mission, Motion, Order, Pass, Piece, Progress, Reach, Refused, Region, Tolerances, excess,
 };
@@ -174,9 +174,8 @@ fn placed<S: Format>(dice: &mut Dice, way: Way) -> Option<Vec<Agent<S>>> {
     }
     let width = S::from_f64(if dice.chance(0.5) { 0.0 } else { dice.range(0.001, 0.1) });
     let agents: Vec<Agent<S>> = discs.iter().map(|disc| Agent::new(disc, width)).collect::<Option<_>>()?;
-    let apart = (0..agents.len()).all(|i| {
-        (0..i).all(|j| Pair::new(&agents[i].disc, &agents[j].disc).clearance(0.0, 0.0) > 0.0)
-    });
+    let apart = (0..agents.len())
+        .all(|i| (0..i).all(|j| Pair::new(&agents[i].disc, &agents[j].disc).clearance(0.0, 0.0) > 0.0));
     if way == Way::Decided {
         return apart.then_some(agents);
     }
@@ -294,7 +293,12 @@ fn finish<S: Format>(
         }
     }
     for (agent, it) in fleet.iter().enumerate() {
-        assert!(it.known.at.hi >= it.end() - S::from_f64(1e-3), "seed {seed}: {agent} stands at {:?} of {:?}", it.known, it.end());
+        assert!(
+            it.known.at.hi >= it.end() - S::from_f64(1e-3),
+            "seed {seed}: {agent} stands at {:?} of {:?}",
+            it.known,
+            it.end()
+        );
     }
     tally.arrived += 1;
 }

@@ -18,7 +18,10 @@ fn audited<S: Format>() {
     println!("{all:?}");
     let seeds = SEEDS as u32;
     // What they are asked for is not easy.
-    assert!(all.fleets > seeds / 2 && all.admitted > seeds && all.amid > seeds / 8 && all.refused > seeds / 4, "{all:?}");
+    assert!(
+        all.fleets > seeds / 2 && all.admitted > seeds && all.amid > seeds / 8 && all.refused > seeds / 4,
+        "{all:?}"
+    );
     assert!(all.to_the_hold > seeds && all.close > seeds / 10, "{all:?}");
 }
 

@@ -57,7 +57,8 @@ impl Starts {
             schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Vec<Option<i64>>>()
         };
         let known: Vec<Vec<Option<i64>>> = schedules.iter().map(in_ticks).collect();
-        let Outcome { delays, bound, proved, conflicts, fewest } = delays::best(&problem, &known, request.effort);
+        let Outcome { delays, bound, proved, conflicts, fewest } =
+            delays::best(&problem, &known, request.effort, request.leave_out);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
         let found = Self {
