@@ -86,7 +86,7 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
             let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
             // The other half is for the delays of those that stay.
             let clock = || after(time / 2);
-            leave::left(problem, Stop { nodes, clock: &clock }, leave_out)
+            leave::left(problem, &alone(problem), Stop { nodes, clock: &clock }, leave_out)
         }
     };
     let staying: Vec<usize> = (0..problem.len()).filter(|&agent| left.delays[agent].is_some()).collect();
@@ -108,14 +108,20 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
     }
 }
 
-/// Delays of all agents, or of most of them, in milliseconds where a fleet has dozens of agents: not the best ones.
-pub(crate) fn some(problem: &Problem) -> Vec<Option<i64>> {
+/// Delays of all agents, or of as many as there are delays for, in milliseconds where a fleet has dozens of agents: not the best ones. `with`
+/// has for each agent all that have none if it has none, itself among them.
+pub(crate) fn some(problem: &Problem, with: &[Vec<usize>]) -> Vec<Option<i64>> {
     let clock = || false;
     let found = insert::inserted(problem);
     match found.iter().copied().collect::<Option<Vec<i64>>>() {
         Some(all) => improve::improved(problem, all, SOME, &clock).into_iter().map(Some).collect(),
-        None => leave::left(problem, Stop { nodes: NODES, clock: &clock }, true).delays,
+        None => leave::left(problem, with, Stop { nodes: NODES, clock: &clock }, true).delays,
     }
+}
+
+/// Everybody is left out for itself.
+fn alone(problem: &Problem) -> Vec<Vec<usize>> {
+    (0..problem.len()).map(|agent| vec![agent]).collect()
 }
 
 struct Solved {

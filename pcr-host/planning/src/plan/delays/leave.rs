@@ -48,11 +48,14 @@ pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
 
 /// Whom to leave out. Where a search is stopped the answer is the best one that was found until then: all that stay have delays. If
 /// the fewest are not asked for, the first one that is found, with the conflicts that led to it.
-pub(super) fn left(problem: &Problem, stop: Stop<'_>, ask_fewest: bool) -> Left {
+///
+/// `with` has for each agent all that are left out if it is, itself among them.
+pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_fewest: bool) -> Left {
     let mut best = Left { conflicts: impossible(problem), delays: insert::inserted(problem), fewest: true };
+    close(&mut best.delays, with);
     let mut budget = Budget { stop, left: stop.nodes.saturating_mul(SEARCHES) };
     loop {
-        let mut out = hitting(&best.conflicts, problem.len(), stop, &mut best.fewest);
+        let mut out = hitting(&best.conflicts, with, stop, &mut best.fewest);
         let (least, before) = (out.len(), best.conflicts.len());
         // Until all that stay have delays, one more of each further conflict goes as well.
         let found = loop {
@@ -60,12 +63,14 @@ pub(super) fn left(problem: &Problem, stop: Stop<'_>, ask_fewest: bool) -> Left 
             let found = together(problem, &staying, &mut budget);
             best.fewest &= !found.stopped;
             if found.conflicts.is_empty() {
-                break found.delays;
+                let mut delays = found.delays;
+                close(&mut delays, with);
+                break delays;
             }
             best.conflicts.extend(found.conflicts.iter().cloned());
             for conflict in &found.conflicts {
                 let frequency = |agent: &usize| best.conflicts.iter().filter(|other| other.contains(agent)).count();
-                out.extend(conflict.iter().copied().max_by_key(frequency));
+                out.extend(conflict.iter().copied().max_by_key(frequency).into_iter().flat_map(|agent| &with[agent]));
             }
         };
         if Left::count(&found) <= Left::count(&best.delays) {
@@ -76,10 +81,17 @@ pub(super) fn left(problem: &Problem, stop: Stop<'_>, ask_fewest: bool) -> Left 
             best.fewest &= few;
             if !best.fewest {
                 take_in(problem, &mut best.delays, &mut budget);
+                close(&mut best.delays, with);
             }
             return best;
         }
     }
+}
+
+/// Leaves out all that have to be if those without delays are.
+fn close(delays: &mut [Option<i64>], with: &[Vec<usize>]) {
+    let out: Vec<usize> = (0..delays.len()).filter(|&agent| delays[agent].is_none()).collect();
+    out.iter().flat_map(|&agent| &with[agent]).for_each(|&agent| delays[agent] = None);
 }
 
 /// What is left of the nodes of all searches.
@@ -156,11 +168,13 @@ fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_
 }
 
 /// The fewest agents of which each conflict has one. If the search for them is stopped `fewest` becomes false, and they are few.
-fn hitting(conflicts: &[Vec<usize>], agents: usize, stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
+fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
+    let agents = with.len();
     let mut hit = Vec::new();
-    for conflicts in without_common_agents(conflicts) {
+    for conflicts in apart(conflicts, with) {
         let mut search = Hitting {
             conflicts: &conflicts,
+            with,
             out: vec![false; agents],
             kept: vec![false; agents],
             best: None,
@@ -176,21 +190,30 @@ fn hitting(conflicts: &[Vec<usize>], agents: usize, stop: Stop<'_>, fewest: &mut
     hit
 }
 
-/// The conflicts in groups, so that those of two groups have no agent in common.
-fn without_common_agents(conflicts: &[Vec<usize>]) -> Vec<Vec<&Vec<usize>>> {
-    let mut groups: Vec<Vec<&Vec<usize>>> = Vec::new();
+/// The conflicts in groups: nobody who is left out because of one is because of another one.
+fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Vec<usize>>> {
+    // The agents and the conflicts of each.
+    let mut groups: Vec<(Vec<usize>, Vec<&Vec<usize>>)> = Vec::new();
     for conflict in conflicts {
-        let has_one = |other: &&Vec<usize>| other.iter().any(|agent| conflict.contains(agent));
-        let (with, without): (Vec<_>, Vec<_>) = groups.into_iter().partition(|group| group.iter().any(has_one));
-        groups = without;
-        groups.push(with.into_iter().flatten().chain([conflict]).collect());
+        let mut agents: Vec<usize> = conflict.iter().flat_map(|&agent| with[agent].iter().copied()).collect();
+        let mut all = vec![conflict];
+        groups.retain_mut(|(theirs, others)| {
+            let is_apart = !theirs.iter().any(|agent| agents.contains(agent));
+            if !is_apart {
+                agents.append(theirs);
+                all.append(others);
+            }
+            is_apart
+        });
+        groups.push((agents, all));
     }
-    groups
+    groups.into_iter().map(|(_, conflicts)| conflicts).collect()
 }
 
 /// Branch and bound over which agent of a conflict is left out.
 struct Hitting<'a> {
     conflicts: &'a [&'a Vec<usize>],
+    with: &'a [Vec<usize>],
     out: Vec<bool>,
     kept: Vec<bool>,
     best: Option<Vec<usize>>,
@@ -203,8 +226,8 @@ struct Hitting<'a> {
 impl Hitting<'_> {
     fn node(&mut self, count: usize) {
         self.nodes += 1;
-        let open: Vec<&Vec<usize>> =
-            self.conflicts.iter().copied().filter(|conflict| !conflict.iter().any(|&agent| self.out[agent])).collect();
+        let is_open = |conflict: &&Vec<usize>| !conflict.iter().any(|&agent| self.out[agent]);
+        let open: Vec<&Vec<usize>> = self.conflicts.iter().copied().filter(is_open).collect();
         // Conflicts that have no agent in common need one each.
         let mut used = vec![false; self.out.len()];
         let mut needed = 0;
@@ -228,9 +251,10 @@ impl Hitting<'_> {
         let mut choices: Vec<usize> = conflict.iter().copied().filter(|&agent| !self.kept[agent]).collect();
         choices.sort_by_key(|&agent| std::cmp::Reverse(frequency(agent)));
         for &agent in &choices {
-            self.out[agent] = true;
-            self.node(count + 1);
-            self.out[agent] = false;
+            let more: Vec<usize> = self.with[agent].iter().copied().filter(|&other| !self.out[other]).collect();
+            more.iter().for_each(|&other| self.out[other] = true);
+            self.node(count + more.len());
+            more.iter().for_each(|&other| self.out[other] = false);
             // With it the search has been done.
             self.kept[agent] = true;
         }

@@ -128,6 +128,41 @@ fn the_fewest_are_left_out_and_every_conflict_is_one() {
 }
 
 #[test]
+fn who_is_left_out_takes_others_along() {
+    let mut along = 0;
+    for seed in 0..FLEETS {
+        let problem = random(seed, Objective::Sum);
+        let count = problem.len();
+        let mut dice = Random(!seed);
+        let mut with: Vec<Vec<usize>> = (0..count).map(|agent| vec![agent, dice.below(count)]).collect();
+        // All that are taken along by those that are, too.
+        for _ in 0..count {
+            let further =
+                |agents: &Vec<usize>| agents.iter().flat_map(|&agent| with[agent].clone()).collect::<Vec<_>>();
+            let mut longer: Vec<Vec<usize>> = with.iter().map(further).collect();
+            longer.iter_mut().for_each(|agents| {
+                agents.sort_unstable();
+                agents.dedup();
+            });
+            with = longer;
+        }
+        let stay = |mask: u32| (0..count).filter(|agent| mask >> agent & 1 == 1).collect::<Vec<_>>();
+        let possible = |agents: &Vec<usize>| {
+            let stays = |agent: usize| agents.contains(&agent);
+            (0..count).all(|agent| stays(agent) || !with[agent].iter().any(|&other| stays(other)))
+                && by_force(&problem.of(agents), 0, &mut Vec::new()).is_some()
+        };
+        let most = (0..1_u32 << count).map(stay).filter(possible).map(|agents| agents.len()).max().expect("nobody");
+        let left = leave::left(&problem, &with, Stop { nodes: 1_000, clock: &never }, true);
+        let staying: Vec<usize> = (0..count).filter(|&agent| left.delays[agent].is_some()).collect();
+        assert!(left.fewest && possible(&staying) && staying.len() == most, "{seed}: {staying:?} {most}");
+        assert!(problem.of(&staying).allows(&left.delays.iter().flatten().copied().collect::<Vec<_>>()), "{seed}");
+        along += usize::from(left.delays.contains(&None));
+    }
+    assert!(along > 20, "{along}");
+}
+
+#[test]
 fn whether_there_are_delays_is_known_without_the_best_ones() {
     let (mut possible, mut stopped) = (0_u64, 0_u64);
     for seed in 0..FLEETS {
