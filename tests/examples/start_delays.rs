@@ -1,31 +1,34 @@
 //! What random fleets forbid, and the start delays that are found for them, a line of JSON a fleet, for `start_delays.py`:
-//! `start_delays FIRST_SEED COUNT LEAST LARGEST`, or files of scenarios.
+//! `start_delays SECONDS FIRST_SEED COUNT LEAST LARGEST`, or `start_delays SECONDS FILE...`. SECONDS is the time limit, 0 for none.
 //!
 //! Fleets have LEAST to LARGEST agents, one size after the other; agents that cannot go together with the others are left out.
 
 use pcr_comparing::compare::crowd;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::plan::{Forbidden, Objective, Plan, Request};
+use pcr_planning::plan::{Effort, Forbidden, Objective, Plan, Request};
 use serde_json::{Value, json};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments = std::env::args().skip(1);
+    let seconds: f64 = arguments.next().and_then(|seconds| seconds.parse().ok()).expect("a time limit");
+    let effort = Effort { time: (seconds > 0.0).then(|| Duration::from_secs_f64(seconds)), prove: false };
+    let arguments: Vec<String> = arguments.collect();
     let numbers: Vec<u64> = arguments.iter().map_while(|argument| argument.parse().ok()).collect();
     if let &[first, count, least, largest] = &numbers[..] {
         for seed in first..first + count {
             let agents = least + seed % (largest + 1 - least);
-            println!("{}", answered(&format!("seed {seed}"), &crowd(agents as usize, seed)));
+            println!("{}", answered(&format!("seed {seed}"), &crowd(agents as usize, seed), effort));
         }
         return;
     }
     for file in &arguments {
         let text = std::fs::read_to_string(file).expect("a file");
-        println!("{}", answered(file, &Scenario::from_json(&text).expect("a scenario")));
+        println!("{}", answered(file, &Scenario::from_json(&text).expect("a scenario"), effort));
     }
 }
 
-fn answered(name: &str, scenario: &Scenario) -> Value {
+fn answered(name: &str, scenario: &Scenario, effort: Effort) -> Value {
     let forbidden = Forbidden::of(scenario).expect("a fleet");
     let count = forbidden.len();
     let pairs = (0..count).flat_map(|i| (0..i).map(move |j| [i, j])).filter_map(|[i, j]| {
@@ -37,7 +40,7 @@ fn answered(name: &str, scenario: &Scenario) -> Value {
     let pairs: Vec<Value> = pairs.collect();
     let plans = [Objective::Sum, Objective::Makespan].map(|objective| {
         let begin = Instant::now();
-        let request = Request { objective, leave_out: true, ..Request::default() };
+        let request = Request { objective, leave_out: true, effort, ..Request::default() };
         let (plan, _) = Plan::of(scenario, &request).expect("an answer");
         let taken = begin.elapsed().as_secs_f64();
         let delays: Vec<Value> = plan.agents.iter().map(|planned| json!([planned.id, planned.delay])).collect();

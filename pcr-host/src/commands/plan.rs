@@ -4,6 +4,7 @@ use super::map::draw;
 use super::printed::notes;
 use super::sources::{Source, gathered};
 use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, is_standard, write_to};
+use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
@@ -202,7 +203,12 @@ impl Arguments {
             leave_out: self.leave_out,
             effort: Effort { prove: self.prove, time: self.time_limit },
         };
-        let (plan, solved) = Plan::of(&scenario, &request).map_err(wrong)?;
+        // How long it takes nobody knows before.
+        let agents = scenario.agents.len();
+        let progress = Progress::new(format!("{}: planning {agents} agents", source.file().display()));
+        let planned = Plan::of(&scenario, &request);
+        drop(progress);
+        let (plan, solved) = planned.map_err(wrong)?;
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
             write_to(output, &solved.to_json())?;
         }

@@ -4,18 +4,20 @@
 //! ```text
 //! problem   forbidden delays of pairs, in ticks          Problem
 //! net       difference constraints, longest paths        (internal)
-//! search    branch and bound over sides                  (internal)
+//! search    branch and bound over sides, depth first     (internal)
+//! lowest    the same, the lowest bound first             (internal)
+//! feasible  whether there are delays at all              (internal)
 //! improve   large neighbourhood search                   (internal)
-//! groups    a bound from groups of agents                (internal)
 //! precedence  which agents have to start before others   (internal)
 //! insert    one agent after the other                    (internal)
 //! leave     the fewest agents to leave out               (internal)
 //! ```
 
-mod groups;
+mod feasible;
 mod improve;
 mod insert;
 mod leave;
+mod lowest;
 mod net;
 mod precedence;
 mod problem;
@@ -23,6 +25,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
+use leave::Left;
 pub(crate) use precedence::respecting;
 pub use problem::Objective;
 pub(crate) use problem::{NEVER, Pair, Problem, Ticks, earliest, slack};
@@ -38,12 +41,13 @@ pub struct Effort {
     pub time: Option<Duration>,
 }
 
-/// Nodes and rounds of the first attempt. Each later one has more by a factor.
+/// Nodes of the first search, and rounds of the improvement after it. Each later one has more by a factor.
 const NODES: u64 = 2_000;
 const ROUNDS: usize = 200;
-const FACTOR: u32 = 8;
-/// Attempts if nothing has to be proved.
-const ATTEMPTS: u32 = 2;
+const FACTOR: u32 = 5;
+/// Searches if nothing has to be proved, and pairs of agents from which on they have fewer nodes and rounds: each takes longer then.
+const SEARCHES: u32 = 3;
+const WIDE: usize = 1_200;
 /// Rounds where some delays are enough.
 const SOME: usize = 20;
 /// Nodes of a search in which it matters whether there are delays at all, for few agents and for many: less for more of them, as each
@@ -69,80 +73,83 @@ pub(crate) struct Outcome {
     pub(crate) fewest: bool,
 }
 
-/// The best delays, or who cannot have any together and the best delays of all others. `known` delays are the worst that
-/// come out, in each part in which all have one.
-pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort) -> Outcome {
+/// The best delays, or who cannot have any together and, if agents may be left out, the best delays of all others. `known` delays are
+/// the worst that come out, in each part in which all have one.
+pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, leave_out: bool) -> Outcome {
     let begin = Instant::now();
-    let clock = || effort.time.is_some_and(|time| begin.elapsed() >= time);
-    let of_all = solved(problem, known, effort, &clock);
-    if let Some(delays) = of_all.delays {
-        let delays = Some(delays.into_iter().map(Some).collect());
-        return Outcome { delays, bound: of_all.bound, proved: of_all.proved, conflicts: Vec::new(), fewest: true };
-    }
-    let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
-    let left = leave::left(problem, Stop { nodes, clock: &clock });
+    let after = |time: Duration| effort.time.is_some() && begin.elapsed() >= time;
+    let time = effort.time.unwrap_or_default();
+    let of_all = known.iter().filter_map(|delays| delays.iter().copied().collect::<Option<Vec<i64>>>());
+    let left = match of_all.filter(|delays| problem.allows(delays)).next() {
+        Some(delays) => Left::nobody(delays),
+        None => {
+            let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
+            // The other half is for the delays of those that stay.
+            let clock = || after(time / 2);
+            leave::left(problem, &alone(problem), Stop { nodes, clock: &clock }, leave_out)
+        }
+    };
     let staying: Vec<usize> = (0..problem.len()).filter(|&agent| left.delays[agent].is_some()).collect();
+    if !leave_out && staying.len() < problem.len() {
+        return Outcome { delays: None, bound: 0, proved: false, conflicts: left.conflicts, fewest: left.fewest };
+    }
     let part = problem.of(&staying);
-    let known: Vec<Option<i64>> = left.delays.iter().filter(|delay| delay.is_some()).copied().collect();
-    let rest = solved(&part, &[known], effort, &clock);
-    let delays = rest.delays.map(|found| {
-        let mut delays = vec![None; problem.len()];
-        staying.iter().zip(found).for_each(|(&agent, delay)| delays[agent] = Some(delay));
-        delays
-    });
-    Outcome { delays, bound: rest.bound, proved: rest.proved, conflicts: left.conflicts, fewest: left.fewest }
+    let of_part = |delays: &Vec<Option<i64>>| staying.iter().map(|&agent| delays[agent]).collect::<Vec<_>>();
+    let known: Vec<Vec<Option<i64>>> = known.iter().chain([&left.delays]).map(of_part).collect();
+    let rest = solved(&part, &known, effort, &|| after(time));
+    let mut delays = vec![None; problem.len()];
+    staying.iter().zip(rest.delays).for_each(|(&agent, delay)| delays[agent] = Some(delay));
+    Outcome {
+        delays: Some(delays),
+        bound: rest.bound,
+        proved: rest.proved,
+        conflicts: left.conflicts,
+        fewest: left.fewest,
+    }
 }
 
-/// Delays of all agents, or of most of them, in milliseconds where a fleet has dozens of agents: not the best ones.
-pub(crate) fn some(problem: &Problem) -> Vec<Option<i64>> {
+/// Delays of all agents, or of as many as there are delays for, in milliseconds where a fleet has dozens of agents: not the best ones. `with`
+/// has for each agent all that have none if it has none, itself among them.
+pub(crate) fn some(problem: &Problem, with: &[Vec<usize>]) -> Vec<Option<i64>> {
     let clock = || false;
     let found = insert::inserted(problem);
     match found.iter().copied().collect::<Option<Vec<i64>>>() {
         Some(all) => improve::improved(problem, all, SOME, &clock).into_iter().map(Some).collect(),
-        None => leave::left(problem, Stop { nodes: NODES, clock: &clock }).delays,
+        None => leave::left(problem, with, Stop { nodes: NODES, clock: &clock }, true).delays,
     }
 }
 
-struct Solved {
-    delays: Option<Vec<i64>>,
-    bound: i128,
-    proved: bool,
-    /// False if it is proved that there are no delays.
-    possible: bool,
+/// Everybody is left out for itself.
+fn alone(problem: &Problem) -> Vec<Vec<usize>> {
+    (0..problem.len()).map(|agent| vec![agent]).collect()
 }
 
-/// The parts that forbid one another nothing, each for itself.
+struct Solved {
+    delays: Vec<i64>,
+    bound: i128,
+    proved: bool,
+}
+
+/// The parts that forbid one another nothing, each for itself, from delays that are known.
 fn solved(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, clock: &dyn Fn() -> bool) -> Solved {
-    let mut delays = Some(vec![0; problem.len()]);
+    let mut delays = vec![0; problem.len()];
     let (mut bound, mut proved) = (0_i128, true);
     for (agents, part) in problem.apart() {
         let known = known.iter().filter_map(|known| agents.iter().map(|&agent| known[agent]).collect());
         let found = connected(&part, known, effort, clock);
-        if !found.possible {
-            return found;
-        }
-        match (&mut delays, found.delays) {
-            (Some(delays), Some(found)) => {
-                agents.iter().zip(found).for_each(|(&agent, delay)| delays[agent] = delay);
-            }
-            (delays, _) => *delays = None,
-        }
+        agents.iter().zip(found.delays).for_each(|(&agent, delay)| delays[agent] = delay);
         bound = match problem.objective {
             Objective::Sum => bound + found.bound,
             Objective::Makespan => bound.max(found.bound),
         };
         proved &= found.proved;
     }
-    let bound = bound - slack(problem);
     // A part that is not proved does not matter if the last arrival is in another one.
-    let proved = match (&delays, problem.objective) {
-        (Some(delays), Objective::Makespan) => problem.cost(delays) <= bound + slack(problem),
-        _ => proved,
-    };
-    Solved { proved: proved && delays.is_some(), delays, bound, possible: true }
+    proved |= problem.objective == Objective::Makespan && problem.cost(&delays) <= bound;
+    Solved { delays, bound: bound - slack(problem), proved }
 }
 
-/// Search, improvement and bounds in turn, with more and more effort.
+/// Search and improvement in turn, with more and more effort.
 fn connected(
     problem: &Problem,
     known: impl Iterator<Item = Vec<i64>>,
@@ -151,32 +158,33 @@ fn connected(
 ) -> Solved {
     let inserted = insert::inserted(problem).into_iter().collect::<Option<Vec<i64>>>();
     let known = known.filter(|delays| problem.allows(delays)).chain(inserted);
-    let mut delays = known.min_by_key(|delays| problem.cost(delays));
-    let limit = |delays: &Option<Vec<i64>>| delays.as_ref().map_or(i128::MAX, |delays| problem.cost(delays));
+    let mut delays = known.min_by_key(|delays| problem.cost(delays)).expect("delays that were found before");
     let mut bound = problem.cost(&vec![0; problem.len()]);
     if problem.pairs.len() > SEARCHED && effort == Effort::default() {
-        // What all plans have in common: none of it, and there is no plan.
+        // What all plans have in common.
         let root = Search::new(problem, Stop { nodes: 0, clock }).root();
-        bound = root.as_ref().map_or(bound, |root| bound.max(problem.cost(root))).min(limit(&delays));
-        return Solved { proved: bound >= limit(&delays), delays, bound, possible: root.is_some() };
+        bound = root.map_or(bound, |root| bound.max(problem.cost(&root)));
+        return Solved { proved: bound >= problem.cost(&delays), delays, bound };
     }
-    let (mut nodes, mut rounds, mut attempt) = (NODES, ROUNDS, 0);
+    let share = |effort_of_all: u64| match effort.prove {
+        true => effort_of_all,
+        false => effort_of_all * WIDE as u64 / problem.pairs.len().max(WIDE) as u64,
+    };
+    let (mut search, mut nodes, mut rounds) = (1, NODES, ROUNDS as u64);
     loop {
-        let found = Search::new(problem, Stop { nodes, clock }).run([], limit(&delays));
-        bound = bound.max(found.bound.min(limit(&delays)));
-        delays = found.delays.or(delays);
-        if found.complete {
-            let possible = delays.is_some();
-            return Solved { bound: limit(&delays), delays, proved: possible, possible };
+        let next = Search::new(problem, Stop { nodes: share(nodes), clock });
+        let limit = problem.cost(&delays);
+        // At first for delays, then for a bound, until that takes too much memory.
+        let found = if search == 1 || nodes > lowest::MOST { next.run([], limit) } else { next.lowest(limit) };
+        bound = bound.max(found.bound);
+        delays = found.delays.unwrap_or(delays);
+        let proved = found.complete || bound >= problem.cost(&delays);
+        if proved || clock() || (!effort.prove && search == SEARCHES) {
+            return Solved { bound: if proved { problem.cost(&delays) } else { bound }, delays, proved };
         }
-        attempt += 1;
-        bound = bound.max(groups::bound(problem, Stop { nodes: NODES, clock }).min(limit(&delays)));
-        delays = delays.map(|delays| improve::improved(problem, delays, rounds, clock));
-        if bound >= limit(&delays) || clock() || (!effort.prove && attempt == ATTEMPTS) {
-            let proved = bound >= limit(&delays);
-            return Solved { delays, bound, proved, possible: true };
-        }
+        delays = improve::improved(problem, delays, share(rounds) as usize, clock);
         nodes = nodes.saturating_mul(FACTOR.into());
-        rounds = rounds.saturating_mul(FACTOR as usize);
+        rounds = rounds.saturating_mul(FACTOR.into());
+        search += 1;
     }
 }

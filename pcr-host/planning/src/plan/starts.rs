@@ -20,11 +20,12 @@ pub(super) struct Known {
     pub(super) proved: bool,
 }
 
-/// Start delays of motions \[s\], none for those that are left out because of others; all of them where they can be found in no time.
-pub(crate) fn some(motions: &[Motion<'_, f64>]) -> Option<Vec<Option<f64>>> {
+/// Start delays of motions \[s\], none for as few as can be: those that have none because of others. `with` has for each motion all that
+/// have none if it has none, itself among them. All of them where they can be found in no time.
+pub(crate) fn some(motions: &[Motion<'_, f64>], with: &[Vec<usize>]) -> Option<Vec<Option<f64>>> {
     let forbidden = Forbidden::of_motions(motions).ok()?;
     let ticks = forbidden.ticks();
-    let found = delays::some(&forbidden.problem(Objective::Sum));
+    let found = delays::some(&forbidden.problem(Objective::Sum), with);
     Some(found.into_iter().map(|delay| delay.map(|delay| ticks.seconds(delay.into()))).collect())
 }
 
@@ -57,7 +58,8 @@ impl Starts {
             schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Vec<Option<i64>>>()
         };
         let known: Vec<Vec<Option<i64>>> = schedules.iter().map(in_ticks).collect();
-        let Outcome { delays, bound, proved, conflicts, fewest } = delays::best(&problem, &known, request.effort);
+        let Outcome { delays, bound, proved, conflicts, fewest } =
+            delays::best(&problem, &known, request.effort, request.leave_out);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
         let found = Self {

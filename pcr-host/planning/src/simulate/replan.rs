@@ -21,9 +21,6 @@ const FIRST: usize = 8;
 /// orders are kept without.
 pub(super) const SEARCHED: usize = 15;
 
-/// Robots that are made to stay, each once, where not all can go.
-const STAYING: usize = 20;
-
 /// A robot as it is now.
 #[derive(Clone, Debug)]
 pub(super) struct State {
@@ -88,7 +85,8 @@ impl Problem<'_> {
         {
             return None;
         }
-        let mut found = start_delays(&going)?.into_iter();
+        let alone: Vec<Vec<usize>> = (0..going.len()).map(|robot| vec![robot]).collect();
+        let mut found = start_delays(&going, &alone)?.into_iter();
         let delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
         let delays = motions.iter().map(delay).collect::<Option<Vec<f64>>>()?;
         let later = |(robot, delay): (&State, &f64)| Problem { now: self.now + delay, ..*self }.through(robot);
@@ -99,38 +97,31 @@ impl Problem<'_> {
         Some(Plan { drives, order, cost })
     }
 
-    /// Of robots that all stand, as many as have start delays together while all others stay where they are; of those that shall go. Who stays
-    /// matters: all whose paths lead past there stay, too. So each is made to stay once.
+    /// Of robots that all stand, as many as have start delays together while all others stay where they are; of those that are `wanted`. Who
+    /// stays matters: all whose paths lead past there stay, too.
     pub(super) fn most(&self, wanted: &[bool]) -> Option<Vec<bool>> {
-        let count = |going: &Vec<bool>| going.iter().filter(|goes| **goes).count();
-        let without = |robot: Option<usize>| {
-            let going = wanted.iter().enumerate().map(|(place, &wanted)| wanted && robot != Some(place));
-            self.with_delays(going.collect())
-        };
-        let robots = (0..wanted.len()).filter(|&robot| wanted[robot]).take(STAYING);
-        std::iter::once(None).chain(robots.map(Some)).filter_map(without).max_by_key(count)
-    }
-
-    /// Of robots that all stand, those that have start delays together while all others stay where they are. `wanted` are those that
-    /// shall go.
-    fn with_delays(&self, mut wanted: Vec<bool>) -> Option<Vec<bool>> {
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
         let stays: Vec<Drive> = self.robots.iter().map(|robot| self.staying(robot)).collect::<Option<_>>()?;
         let stays = self.motions(&stays)?;
-        loop {
-            let mut standing = self.standing()?;
-            standing.extend(stays.iter().zip(&wanted).filter(|(_, wanted)| !**wanted).map(|(motion, _)| *motion));
-            let going: Vec<usize> =
-                (0..wanted.len()).filter(|&robot| wanted[robot] && is_clear(&motions[robot], &standing)).collect();
-            let delays = start_delays(&going.iter().map(|&robot| motions[robot]).collect::<Vec<_>>())?;
-            let mut rest = vec![false; wanted.len()];
-            going.iter().zip(&delays).for_each(|(&robot, delay)| rest[robot] = delay.is_some());
-            if rest == wanted {
-                return wanted.contains(&true).then_some(wanted);
-            }
-            wanted = rest;
-        }
+        let standing = self.standing()?;
+        let robots = 0..wanted.len();
+        let passes = |robot: usize, other: usize| {
+            robot != other && wanted[robot] && !is_clear(&motions[robot], std::slice::from_ref(&stays[other]))
+        };
+        // Whose path leads past the place of a robot.
+        let past: Vec<Vec<usize>> =
+            robots.clone().map(|other| robots.clone().filter(|&robot| passes(robot, other)).collect()).collect();
+        let with: Vec<Vec<usize>> = robots.clone().map(|robot| reached(robot, &past)).collect();
+        let mut goes = vec![true; wanted.len()];
+        let stay = |robot: &usize| !wanted[*robot] || !is_clear(&motions[*robot], &standing);
+        robots.clone().filter(stay).flat_map(|robot| &with[robot]).for_each(|&robot| goes[robot] = false);
+        let going: Vec<usize> = robots.filter(|&robot| goes[robot]).collect();
+        let places = |with: &Vec<usize>| with.iter().filter_map(|robot| going.binary_search(robot).ok()).collect();
+        let with: Vec<Vec<usize>> = going.iter().map(|&robot| places(&with[robot])).collect();
+        let delays = start_delays(&going.iter().map(|&robot| motions[robot]).collect::<Vec<_>>(), &with)?;
+        going.iter().zip(&delays).for_each(|(&robot, delay)| goes[robot] = delay.is_some());
+        goes.contains(&true).then_some(goes)
     }
 
     /// The motion of one robot among others that go on as they are planned.
@@ -299,6 +290,18 @@ fn speed_that_stops(robot: &State) -> f64 {
 fn first(order: &[usize], robot: usize) -> Vec<usize> {
     let others = order.iter().copied().filter(|&other| other != robot);
     [robot].into_iter().chain(others).collect()
+}
+
+/// A robot, and all that are reached from it step by step.
+fn reached(robot: usize, steps: &[Vec<usize>]) -> Vec<usize> {
+    let mut reached = vec![robot];
+    let mut next = 0;
+    while let Some(&robot) = reached.get(next) {
+        let more: Vec<usize> = steps[robot].iter().copied().filter(|other| !reached.contains(other)).collect();
+        reached.extend(more);
+        next += 1;
+    }
+    reached
 }
 
 fn is_clear(motion: &Motion<'_, f64>, others: &[Motion<'_, f64>]) -> bool {

@@ -5,11 +5,13 @@
 //! A least set that hits all known conflicts is tried. If the remaining agents have no delays, they contain a conflict
 //! that is not known yet. So the first set that suffices has the fewest agents.
 //!
-//! If that takes too long, agents are inserted one after the other, and those that do not fit are left out.
+//! On the way there, one more agent of each new conflict is left out until the others have delays. These are an answer
+//! too: if the search is stopped, the best of them is kept.
 
+use super::feasible::{Feasible, feasible};
 use super::insert;
 use super::problem::Problem;
-use super::search::{Search, Stop};
+use super::search::Stop;
 
 /// Conflicts, and whom to leave out because of them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,8 +25,21 @@ pub(super) struct Left {
     pub(super) fewest: bool,
 }
 
-/// Once a search was stopped, further ones have their nodes divided by this.
-const HASTE: u64 = 50;
+impl Left {
+    /// All have delays.
+    pub(super) fn nobody(delays: Vec<i64>) -> Self {
+        Self { conflicts: Vec::new(), delays: delays.into_iter().map(Some).collect(), fewest: true }
+    }
+
+    fn count(delays: &[Option<i64>]) -> usize {
+        delays.iter().filter(|delay| delay.is_none()).count()
+    }
+}
+
+/// All searches together have as many nodes as so many that are not stopped.
+const SEARCHES: u64 = 10;
+/// Nodes of a search whether a conflict is one without an agent.
+const SHORT: u64 = 200;
 
 /// The pairs that meet whatever their delays are.
 pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
@@ -32,71 +47,104 @@ pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
     pairs.map(|pair| pair.agents.to_vec()).collect()
 }
 
-/// Whom to leave out. Where a search is stopped the answer is one that is found without: all that stay have delays.
-pub(super) fn left(problem: &Problem, mut stop: Stop<'_>) -> Left {
-    let mut left = Left { conflicts: impossible(problem), delays: Vec::new(), fewest: true };
+/// Whom to leave out. Where a search is stopped the answer is the best one that was found until then: all that stay have delays. If
+/// the fewest are not asked for, the first one that is found, with the conflicts that led to it.
+///
+/// `with` has for each agent all that are left out if it is, itself among them.
+pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_fewest: bool) -> Left {
+    let mut best = Left { conflicts: impossible(problem), delays: insert::inserted(problem), fewest: true };
+    close(&mut best.delays, with);
+    let mut budget = Budget { stop, left: stop.nodes.saturating_mul(SEARCHES) };
     loop {
-        let out = hitting(&left.conflicts, problem.len(), stop, &mut left.fewest);
-        left.delays = vec![None; problem.len()];
-        let staying: Vec<usize> = (0..problem.len()).filter(|agent| !out.contains(agent)).collect();
-        // Parts that forbid one another nothing have conflicts of their own.
-        let parts = problem.of(&staying).parts().into_iter();
-        let parts = parts.map(|part| part.into_iter().map(|place| staying[place]).collect::<Vec<_>>());
-        let before = left.conflicts.len();
-        for part in parts {
-            match delays(problem, &part, stop) {
-                Delays::All(found) => {
-                    part.iter().zip(found).for_each(|(&agent, delay)| left.delays[agent] = Some(delay));
+        let mut out = hitting(&best.conflicts, with, stop, &mut best.fewest);
+        let (least, before) = (out.len(), best.conflicts.len());
+        // Until all that stay have delays, one more of each further conflict goes as well.
+        let found = loop {
+            let staying: Vec<usize> = (0..problem.len()).filter(|agent| !out.contains(agent)).collect();
+            let found = together(problem, &staying, &mut budget);
+            best.fewest &= !found.stopped;
+            if found.conflicts.is_empty() {
+                let mut delays = found.delays;
+                close(&mut delays, with);
+                break delays;
+            }
+            best.conflicts.extend(found.conflicts.iter().cloned());
+            for conflict in &found.conflicts {
+                let frequency = |agent: &usize| best.conflicts.iter().filter(|other| other.contains(agent)).count();
+                out.extend(conflict.iter().copied().max_by_key(frequency).into_iter().flat_map(|agent| &with[agent]));
+            }
+        };
+        if Left::count(&found) <= Left::count(&best.delays) {
+            best.delays = found;
+        }
+        let few = Left::count(&best.delays) == least;
+        if few || best.conflicts.len() == before || !ask_fewest || !best.fewest || budget.left == 0 || (stop.clock)() {
+            best.fewest &= few;
+            if !best.fewest {
+                take_in(problem, &mut best.delays, &mut budget);
+                close(&mut best.delays, with);
+            }
+            return best;
+        }
+    }
+}
+
+/// Leaves out all that have to be if those without delays are.
+fn close(delays: &mut [Option<i64>], with: &[Vec<usize>]) {
+    let out: Vec<usize> = (0..delays.len()).filter(|&agent| delays[agent].is_none()).collect();
+    out.iter().flat_map(|&agent| &with[agent]).for_each(|&agent| delays[agent] = None);
+}
+
+/// What is left of the nodes of all searches.
+struct Budget<'a> {
+    stop: Stop<'a>,
+    left: u64,
+}
+
+impl Budget<'_> {
+    fn feasible(&mut self, problem: &Problem, nodes: u64) -> Feasible {
+        let (found, taken) = feasible(problem, Stop { nodes: nodes.min(self.left), ..self.stop });
+        self.left = self.left.saturating_sub(taken);
+        found
+    }
+}
+
+/// What becomes of agents that shall all stay.
+struct Together {
+    /// Of all, or of as many as can be inserted in a part in which a search was stopped.
+    delays: Vec<Option<i64>>,
+    /// A conflict of each part that has no delays.
+    conflicts: Vec<Vec<usize>>,
+    stopped: bool,
+}
+
+fn together(problem: &Problem, staying: &[usize], budget: &mut Budget<'_>) -> Together {
+    let mut found = Together { delays: vec![None; problem.len()], conflicts: Vec::new(), stopped: false };
+    // Parts that forbid one another nothing have conflicts of their own.
+    for part in problem.of(staying).parts() {
+        let part: Vec<usize> = part.into_iter().map(|place| staying[place]).collect();
+        let own = problem.of(&part);
+        let mut delays = insert::inserted(&own);
+        if delays.contains(&None) {
+            match budget.feasible(&own, budget.stop.nodes) {
+                Feasible::Delays(all) => delays = all.into_iter().map(Some).collect(),
+                Feasible::Never => {
+                    found.conflicts.push(least_conflict(problem, part, budget));
+                    continue;
                 }
-                Delays::Never => left.conflicts.push(least_conflict(problem, part, stop)),
-                Delays::Some(found) => {
-                    part.iter().zip(found).for_each(|(&agent, delay)| left.delays[agent] = delay);
-                    left.fewest = false;
-                }
+                Feasible::Stopped => found.stopped = true,
             }
         }
-        if left.conflicts.len() == before {
-            if !left.fewest {
-                take_in(problem, &mut left.delays, stop);
-            }
-            return left;
-        }
-        if !left.fewest {
-            stop.nodes = stop.nodes.min(super::DECIDING / HASTE);
-        }
+        part.iter().zip(delays).for_each(|(&agent, delay)| found.delays[agent] = delay);
     }
+    found
 }
 
-/// Delays of some agents.
-enum Delays {
-    /// Of all of them.
-    All(Vec<i64>),
-    /// There are none for all of them: it is proved.
-    Never,
-    /// A search was stopped before either was known. Of as many as could be inserted.
-    Some(Vec<Option<i64>>),
-}
-
-fn delays(problem: &Problem, agents: &[usize], stop: Stop<'_>) -> Delays {
-    let part = problem.of(agents);
-    let inserted = insert::inserted(&part);
-    if let Some(all) = inserted.iter().copied().collect::<Option<Vec<i64>>>() {
-        return Delays::All(all);
-    }
-    // Any will do: the first ones that are found end the search.
-    let found = Search::new(&part, stop).first();
-    match found.delays {
-        Some(all) => Delays::All(all),
-        None if found.complete => Delays::Never,
-        None => Delays::Some(inserted),
-    }
-}
-
-/// Those of a conflict that are left if everybody is taken out without whom it is one, as far as searches tell.
-fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, stop: Stop<'_>) -> Vec<usize> {
+/// Those of a conflict that are left if everybody is taken out without whom it is one, as far as short searches tell.
+fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, budget: &mut Budget<'_>) -> Vec<usize> {
     for agent in conflict.clone() {
         let others: Vec<usize> = conflict.iter().copied().filter(|&other| other != agent).collect();
-        if matches!(delays(problem, &others, stop), Delays::Never) {
+        if budget.feasible(&problem.of(&others), SHORT) == Feasible::Never {
             conflict = others;
         }
     }
@@ -104,44 +152,69 @@ fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, stop: Stop<'_>) -
 }
 
 /// Gives delays to those that have none where a short search finds some for them and all that have.
-fn take_in(problem: &Problem, delays: &mut [Option<i64>], stop: Stop<'_>) {
-    let stop = Stop { nodes: stop.nodes.min(super::DECIDING / HASTE / HASTE), ..stop };
+fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_>) {
     for agent in 0..delays.len() {
         let impossible = |pair: &super::Pair| {
             let other = pair.agents[usize::from(pair.agents[0] == agent)];
             pair.agents.contains(&agent) && pair.is_impossible() && delays[other].is_some()
         };
-        if delays[agent].is_some() || problem.pairs.iter().any(impossible) || (stop.clock)() {
+        if delays[agent].is_some() || problem.pairs.iter().any(impossible) || (budget.stop.clock)() {
             continue;
         }
         let together: Vec<usize> = (0..delays.len()).filter(|&it| it == agent || delays[it].is_some()).collect();
-        let part = problem.of(&together);
-        if let Some(found) = Search::new(&part, stop).first().delays {
+        if let Feasible::Delays(found) = budget.feasible(&problem.of(&together), SHORT) {
             together.iter().zip(found).for_each(|(&agent, delay)| delays[agent] = Some(delay));
         }
     }
 }
 
 /// The fewest agents of which each conflict has one. If the search for them is stopped `fewest` becomes false, and they are few.
-fn hitting(conflicts: &[Vec<usize>], agents: usize, stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
-    let mut search = Hitting {
-        conflicts,
-        out: vec![false; agents],
-        kept: vec![false; agents],
-        best: None,
-        nodes: 0,
-        cut: false,
-        stop,
-    };
-    search.node(0);
-    *fewest &= !search.cut;
-    // The first dive ends with some, however many nodes it takes.
-    search.best.unwrap_or_else(|| (0..agents).collect())
+fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
+    let agents = with.len();
+    let mut hit = Vec::new();
+    for conflicts in apart(conflicts, with) {
+        let mut search = Hitting {
+            conflicts: &conflicts,
+            with,
+            out: vec![false; agents],
+            kept: vec![false; agents],
+            best: None,
+            nodes: 0,
+            cut: false,
+            stop,
+        };
+        search.node(0);
+        *fewest &= !search.cut;
+        // The first dive ends with some, however many nodes it takes.
+        hit.extend(search.best.unwrap_or_else(|| (0..agents).collect()));
+    }
+    hit
+}
+
+/// The conflicts in groups: nobody who is left out because of one is because of another one.
+fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Vec<usize>>> {
+    // The agents and the conflicts of each.
+    let mut groups: Vec<(Vec<usize>, Vec<&Vec<usize>>)> = Vec::new();
+    for conflict in conflicts {
+        let mut agents: Vec<usize> = conflict.iter().flat_map(|&agent| with[agent].iter().copied()).collect();
+        let mut all = vec![conflict];
+        groups.retain_mut(|(theirs, others)| {
+            let is_apart = !theirs.iter().any(|agent| agents.contains(agent));
+            if !is_apart {
+                agents.append(theirs);
+                all.append(others);
+            }
+            is_apart
+        });
+        groups.push((agents, all));
+    }
+    groups.into_iter().map(|(_, conflicts)| conflicts).collect()
 }
 
 /// Branch and bound over which agent of a conflict is left out.
 struct Hitting<'a> {
-    conflicts: &'a [Vec<usize>],
+    conflicts: &'a [&'a Vec<usize>],
+    with: &'a [Vec<usize>],
     out: Vec<bool>,
     kept: Vec<bool>,
     best: Option<Vec<usize>>,
@@ -154,8 +227,8 @@ struct Hitting<'a> {
 impl Hitting<'_> {
     fn node(&mut self, count: usize) {
         self.nodes += 1;
-        let open: Vec<&Vec<usize>> =
-            self.conflicts.iter().filter(|conflict| !conflict.iter().any(|&agent| self.out[agent])).collect();
+        let is_open = |conflict: &&Vec<usize>| !conflict.iter().any(|&agent| self.out[agent]);
+        let open: Vec<&Vec<usize>> = self.conflicts.iter().copied().filter(is_open).collect();
         // Conflicts that have no agent in common need one each.
         let mut used = vec![false; self.out.len()];
         let mut needed = 0;
@@ -179,9 +252,10 @@ impl Hitting<'_> {
         let mut choices: Vec<usize> = conflict.iter().copied().filter(|&agent| !self.kept[agent]).collect();
         choices.sort_by_key(|&agent| std::cmp::Reverse(frequency(agent)));
         for &agent in &choices {
-            self.out[agent] = true;
-            self.node(count + 1);
-            self.out[agent] = false;
+            let more: Vec<usize> = self.with[agent].iter().copied().filter(|&other| !self.out[other]).collect();
+            more.iter().for_each(|&other| self.out[other] = true);
+            self.node(count + more.len());
+            more.iter().for_each(|&other| self.out[other] = false);
             // With it the search has been done.
             self.kept[agent] = true;
         }

@@ -79,7 +79,6 @@ impl Pair {
     }
 
     /// What is forbidden: open, disjoint and in order \[ticks\].
-    #[cfg(test)]
     pub(super) fn intervals(&self) -> &[[i64; 2]] {
         &self.forbidden
     }

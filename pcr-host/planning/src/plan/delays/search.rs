@@ -54,7 +54,7 @@ impl Violated {
 }
 
 /// What a node does next.
-enum Step {
+pub(super) enum Step {
     /// Nothing is left.
     End,
     /// One side is possible only.
@@ -64,20 +64,18 @@ enum Step {
 }
 
 pub(super) struct Search<'a> {
-    problem: &'a Problem,
+    pub(super) problem: &'a Problem,
     /// Places of the pairs that may be violated.
     pairs: Vec<usize>,
-    net: Net,
+    pub(super) net: Net,
     stop: Stop<'a>,
     best: Option<Vec<i64>>,
     /// Only what costs less is of interest.
-    limit: i128,
+    pub(super) limit: i128,
     /// The least bound of the nodes that were not looked at.
     open: i128,
     nodes: u64,
     stopped: bool,
-    /// Whether the first solution is as good as any other.
-    any: bool,
 }
 
 impl<'a> Search<'a> {
@@ -98,13 +96,7 @@ impl<'a> Search<'a> {
             open: i128::MAX,
             nodes: 0,
             stopped: false,
-            any: false,
         }
-    }
-
-    /// With delays that are at least these.
-    pub(super) fn from(self, least: Vec<i64>) -> Self {
-        Self { net: Net::new(least), ..self }
     }
 
     /// The delays that cost least, and less than a limit, under constraints.
@@ -113,14 +105,14 @@ impl<'a> Search<'a> {
         if constraints.into_iter().all(|constraint| self.net.impose(constraint)) && self.force() {
             self.tree();
         }
-        let Self { best, open, limit, stopped, nodes, .. } = self;
-        Found { delays: best, bound: open.min(limit), complete: !stopped, nodes }
+        let open = self.open;
+        self.found(open)
     }
 
-    /// Any delays, or that there are none.
-    pub(super) fn first(mut self) -> Found {
-        self.any = true;
-        self.run([], i128::MAX)
+    /// What was found, where nothing that is open costs less than this.
+    pub(super) fn found(self, open: i128) -> Found {
+        let Self { best, limit, stopped, nodes, .. } = self;
+        Found { delays: best, bound: open.min(limit), complete: !stopped, nodes }
     }
 
     /// The least delays that keep to what is forced upon all plans, if there are any.
@@ -128,7 +120,7 @@ impl<'a> Search<'a> {
         self.force().then_some(self.net.least)
     }
 
-    fn force(&mut self) -> bool {
+    pub(super) fn force(&mut self) -> bool {
         let (problem, net) = (self.problem, &mut self.net);
         let forced = self.pairs.iter().flat_map(|&pair| problem.pairs[pair].forced());
         forced.into_iter().all(|constraint| net.impose(constraint))
@@ -153,17 +145,26 @@ impl<'a> Search<'a> {
     }
 
     /// Adds a constraint; whether what is left is of interest.
-    fn takes(&mut self, side: Constraint) -> bool {
+    pub(super) fn takes(&mut self, side: Constraint) -> bool {
         self.net.impose(side) && self.problem.cost(&self.net.least) < self.limit
+    }
+
+    /// Whether the search ends here, at one node more.
+    pub(super) fn is_over(&mut self) -> bool {
+        self.nodes += 1;
+        self.stopped |= self.nodes > self.stop.nodes || (self.nodes.is_multiple_of(TICK) && (self.stop.clock)());
+        self.stopped
+    }
+
+    /// What all plans cost at least that keep the constraints.
+    pub(super) fn bound(&self) -> i128 {
+        self.problem.cost(&self.net.least) + self.surplus(&self.violated())
     }
 
     /// Looks at a node: the sides to branch upon, the more promising one first.
     fn node(&mut self) -> Option<[Constraint; 2]> {
-        self.nodes += 1;
-        self.stopped |= self.nodes > self.stop.nodes || (self.nodes.is_multiple_of(TICK) && (self.stop.clock)());
-        if self.stopped {
-            let bound = self.problem.cost(&self.net.least) + self.surplus(&self.violated());
-            self.open = self.open.min(bound);
+        if self.is_over() {
+            self.open = self.open.min(self.bound());
             return None;
         }
         loop {
@@ -176,14 +177,14 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn step(&mut self) -> Step {
+    pub(super) fn step(&mut self) -> Step {
         let cost = self.problem.cost(&self.net.least);
         if cost >= self.limit {
             return Step::End;
         }
         let violated = self.violated();
         if violated.is_empty() {
-            self.limit = if self.any { i128::MIN } else { cost };
+            self.limit = cost;
             self.best = Some(self.net.least.clone());
             return Step::End;
         }

@@ -1,5 +1,6 @@
 //! Compares with all choices of sides, for small fleets.
 
+use super::feasible::{Feasible, feasible};
 use super::problem::Constraint;
 use super::search::Found;
 use super::*;
@@ -85,7 +86,7 @@ fn small_fleets_have_the_best_delays_of_all_choices() {
         for objective in OBJECTIVES {
             let problem = random(seed, objective);
             let least = by_force(&problem, 0, &mut Vec::new());
-            let found = best(&problem, &[], Effort::default());
+            let found = best(&problem, &[], Effort::default(), true);
             let Some(least) = least else {
                 assert!(!found.conflicts.is_empty() && found.delays.is_none_or(|all| all.contains(&None)), "{seed}");
                 continue;
@@ -106,7 +107,7 @@ fn the_fewest_are_left_out_and_every_conflict_is_one() {
     for seed in 0..FLEETS {
         let problem = random(seed, Objective::Sum);
         let possible = |agents: &[usize]| by_force(&problem.of(agents), 0, &mut Vec::new()).is_some();
-        let found = best(&problem, &[], Effort::default());
+        let found = best(&problem, &[], Effort::default(), true);
         let stay = |mask: u32| (0..problem.len()).filter(|agent| mask >> agent & 1 == 1).collect::<Vec<_>>();
         let most =
             (0..1_u32 << problem.len()).map(stay).filter(|agents| possible(agents)).map(|agents| agents.len()).max();
@@ -127,6 +128,62 @@ fn the_fewest_are_left_out_and_every_conflict_is_one() {
 }
 
 #[test]
+fn who_is_left_out_takes_others_along() {
+    let mut along = 0;
+    for seed in 0..FLEETS {
+        let problem = random(seed, Objective::Sum);
+        let count = problem.len();
+        let mut dice = Random(!seed);
+        let mut with: Vec<Vec<usize>> = (0..count).map(|agent| vec![agent, dice.below(count)]).collect();
+        // All that are taken along by those that are, too.
+        for _ in 0..count {
+            let further =
+                |agents: &Vec<usize>| agents.iter().flat_map(|&agent| with[agent].clone()).collect::<Vec<_>>();
+            let mut longer: Vec<Vec<usize>> = with.iter().map(further).collect();
+            longer.iter_mut().for_each(|agents| {
+                agents.sort_unstable();
+                agents.dedup();
+            });
+            with = longer;
+        }
+        let stay = |mask: u32| (0..count).filter(|agent| mask >> agent & 1 == 1).collect::<Vec<_>>();
+        let possible = |agents: &Vec<usize>| {
+            let stays = |agent: usize| agents.contains(&agent);
+            (0..count).all(|agent| stays(agent) || !with[agent].iter().any(|&other| stays(other)))
+                && by_force(&problem.of(agents), 0, &mut Vec::new()).is_some()
+        };
+        let most = (0..1_u32 << count).map(stay).filter(possible).map(|agents| agents.len()).max().expect("nobody");
+        let left = leave::left(&problem, &with, Stop { nodes: 1_000, clock: &never }, true);
+        let staying: Vec<usize> = (0..count).filter(|&agent| left.delays[agent].is_some()).collect();
+        assert!(left.fewest && possible(&staying) && staying.len() == most, "{seed}: {staying:?} {most}");
+        assert!(problem.of(&staying).allows(&left.delays.iter().flatten().copied().collect::<Vec<_>>()), "{seed}");
+        along += usize::from(left.delays.contains(&None));
+    }
+    assert!(along > 20, "{along}");
+}
+
+#[test]
+fn whether_there_are_delays_is_known_without_the_best_ones() {
+    let (mut possible, mut stopped) = (0_u64, 0_u64);
+    for seed in 0..FLEETS {
+        let problem = random(seed, Objective::Sum);
+        let least = by_force(&problem, 0, &mut Vec::new());
+        for nodes in [0, 1, 1_000] {
+            match (feasible(&problem, Stop { nodes, clock: &never }).0, least) {
+                (Feasible::Delays(found), Some(_)) => {
+                    assert!(problem.allows(&found), "{seed}: {found:?}");
+                    possible += 1;
+                }
+                (Feasible::Never, None) => {}
+                (Feasible::Stopped, _) if nodes < 1_000 => stopped += 1,
+                (found, least) => panic!("{seed}: {found:?} {least:?}"),
+            }
+        }
+    }
+    assert!(possible > FLEETS && stopped > 0, "{possible} {stopped}");
+}
+
+#[test]
 fn bounds_of_stopped_searches_are_below_the_optimum() {
     let mut stopped = 0_u64;
     for seed in 0..FLEETS {
@@ -135,13 +192,24 @@ fn bounds_of_stopped_searches_are_below_the_optimum() {
             let Some(least) = by_force(&problem, 0, &mut Vec::new()) else { continue };
             for nodes in [0, 1, 2, 4] {
                 let stop = Stop { nodes, clock: &never };
-                let found = Search::new(&problem, stop).run([], i128::MAX);
-                stopped += u64::from(!found.complete);
-                assert!(found.bound <= least, "{seed}, {nodes} nodes: {} {least}", found.bound);
-                assert!(groups::bound(&problem, stop) <= least, "{seed}, {nodes} nodes");
+                let searches = [
+                    Search::new(&problem, stop).run([], i128::MAX),
+                    Search::new(&problem, stop).lowest(i128::MAX),
+                    Search::new(&problem, stop).lowest(least + 1),
+                ];
+                for found in searches {
+                    stopped += u64::from(!found.complete);
+                    assert!(found.bound <= least, "{seed}, {nodes} nodes: {} {least}", found.bound);
+                    assert!(
+                        !found.complete || found.delays.is_some_and(|found| problem.cost(&found) == least),
+                        "{seed}"
+                    );
+                }
+                assert!(Search::new(&problem, stop).lowest(least).bound <= least, "{seed}, {nodes} nodes");
             }
-            let stop = Stop { nodes: 1, clock: &never };
-            let Some(delays) = Search::new(&problem, stop).first().delays else { continue };
+            let (Feasible::Delays(delays), _) = feasible(&problem, Stop { nodes: 1_000, clock: &never }) else {
+                panic!("{seed}: there are delays");
+            };
             let better = improve::improved(&problem, delays.clone(), 20, &never);
             assert!(
                 problem.allows(&better) && (least..=problem.cost(&delays)).contains(&problem.cost(&better)),
@@ -173,7 +241,9 @@ fn a_queue_of_thirty_is_stopped_with_a_bound_and_is_the_same_every_time() {
     assert!(problem.allows(&delays) && !complete && nodes > 600);
     let cost = problem.cost(&delays);
     assert!(bound <= i128::from(least) && i128::from(least) <= cost, "{bound} {least} {cost}");
-    assert!(groups::bound(&problem, Stop { nodes: 20, clock: &never }) <= i128::from(least));
+    let bounds =
+        [20, 200, 2_000].map(|nodes| Search::new(&problem, Stop { nodes, clock: &never }).lowest(cost + 1).bound);
+    assert!(bounds.is_sorted() && bounds[0] > bound && bounds[2] <= i128::from(least), "{bounds:?} {least}");
     assert_eq!(found().delays, Some(delays.clone()));
     let improved = || improve::improved(&problem, delays.clone(), 5, &never);
     assert!(problem.allows(&improved()) && problem.cost(&improved()) <= cost);
