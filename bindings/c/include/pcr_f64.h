@@ -444,7 +444,7 @@ PcrStatus pcr_f64_fleet_regions(const struct PcrF64Fleet *place,
 
 /*
  The lengths along the path of the ego at which it overlaps the other agent at a time, and how many intervals there
- are: those of one region after the other, rounded outward.
+ are: those of one region after the other, rounded outward. PCR_STATUS_NO_SUCH_AGENT where both are one.
  */
 PcrStatus pcr_f64_fleet_slices(const struct PcrF64Fleet *place,
                                size_t ego,
@@ -456,7 +456,7 @@ PcrStatus pcr_f64_fleet_slices(const struct PcrF64Fleet *place,
 
 /*
  The conflicts of two agents on their motions, in order of time from the first start of any agent to the last arrival,
- and their count. It asks the motions, not the table.
+ and their count. It asks the motions, not the table. PCR_STATUS_NO_SUCH_AGENT where both are one.
  */
 PcrStatus pcr_f64_fleet_conflicts(const struct PcrF64Fleet *place,
                                   size_t ego,
