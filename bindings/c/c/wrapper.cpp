@@ -69,6 +69,18 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
     full.add(north);
     EXPECT(!"there is no room");
   } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_ROOM); }
+  try {
+    fleet.conflicts(1, 1);
+    EXPECT(!"nobody is in conflict with itself");
+  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_SUCH_AGENT); }
+  // Vectors without elements have null pointers.
+  Fleet empty(pcr::Capacity{0, 0, 0, 0, 0, 0});
+  EXPECT(empty.size() == 0);
+  empty.build();
+  try {
+    empty.add(east);
+    EXPECT(!"there is no room at all");
+  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_ROOM); }
   std::printf("%s: %s\n", name, failures == 0 ? "passed" : "failed");
 }
 

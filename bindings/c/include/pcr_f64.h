@@ -450,8 +450,8 @@ PcrStatus pcr_f64_fleet_regions(const struct PcrF64Fleet *place,
                                 size_t *count);
 
 /*
- The lengths along the path of the ego at which it overlaps the other agent at a time, and the number of intervals.
- Intervals are sorted by region and rounded outward.
+ The lengths along the path of the ego at which it overlaps the other agent at a time, and how many intervals there
+ are: those of one region after the other, rounded outward. PCR_STATUS_NO_SUCH_AGENT where both are one.
  */
 PcrStatus pcr_f64_fleet_slices(const struct PcrF64Fleet *place,
                                size_t ego,
@@ -462,8 +462,8 @@ PcrStatus pcr_f64_fleet_slices(const struct PcrF64Fleet *place,
                                size_t *count);
 
 /*
- The conflicts of two agents on their motions, in order of time from the first start of any agent to the last
- arrival, and their count. It uses the motions and not the table.
+ The conflicts of two agents on their motions, in order of time from the first start of any agent to the last arrival,
+ and their count. It asks the motions, not the table. PCR_STATUS_NO_SUCH_AGENT where both are one.
  */
 PcrStatus pcr_f64_fleet_conflicts(const struct PcrF64Fleet *place,
                                   size_t ego,

@@ -15,9 +15,12 @@ pub(crate) struct Stack<R> {
 }
 
 impl<R: Copy + 'static> Stack<R> {
-    /// Uses C records that have room for an `R` each; `None` for a null pointer.
+    /// In C records that have room for an `R` each; `None` for a null pointer, but where there is none of them.
     pub(crate) fn new<C>(first: *mut C, room: usize) -> Option<Self> {
         const { assert!(size_of::<C>() == size_of::<R>() && align_of::<C>() >= align_of::<R>()) };
+        if room == 0 {
+            return Some(Self::none());
+        }
         NonNull::new(first.cast::<R>()).map(|first| Self { first, room, len: 0 })
     }
 
@@ -82,8 +85,8 @@ impl<R: Copy + 'static> Stack<R> {
     }
 }
 
-/// Divides C records that have room for an `A` and a `B` each into memory for all `A`, then for all `B`. `None` for a
-/// null pointer.
+/// C records that have room for an `A` and a `B` each: first all of the one, then all of the other. `None` for a null pointer, but
+/// where there is none of them.
 pub(crate) fn both<C, A: Copy + 'static, B: Copy + 'static>(
     first: *mut C,
     room: usize,
@@ -92,6 +95,9 @@ pub(crate) fn both<C, A: Copy + 'static, B: Copy + 'static>(
         assert!(size_of::<C>() == size_of::<A>() + size_of::<B>() && size_of::<A>().is_multiple_of(align_of::<B>()));
         assert!(align_of::<C>() >= align_of::<A>() && align_of::<C>() >= align_of::<B>());
     };
+    if room == 0 {
+        return Some((Stack::none(), Stack::none()));
+    }
     let first = NonNull::new(first.cast::<A>())?;
     // SAFETY: the caller promises room for this number of both.
     let behind = unsafe { first.add(room) }.cast::<B>();

@@ -166,6 +166,12 @@ fn what_is_wrong_is_told_and_changes_nothing() {
     assert_eq!(pcr_fleet_delay(Some(&mut fleet), 9, 1.0), PcrStatus::NoSuchAgent);
     let slices = pcr_fleet_slices(Some(&fleet), 0, 1, f32::NAN, null_mut(), 0, Some(&mut count));
     assert_eq!(slices, PcrStatus::NonFinite);
+    // Nobody is in conflict with itself.
+    for (ego, other) in [(0, 0), (1, 1), (0, 9), (9, 0)] {
+        let none = pcr_fleet_conflicts(Some(&fleet), ego, other, null_mut(), 0, Some(&mut count));
+        let slices = pcr_fleet_slices(Some(&fleet), ego, other, 2.0, null_mut(), 0, Some(&mut count));
+        assert_eq!([none, slices], [PcrStatus::NoSuchAgent; 2]);
+    }
 }
 
 #[test]
@@ -175,6 +181,23 @@ fn null_pointers_are_told() {
     assert_eq!(pcr_fleet_init(Some(&mut fleet), None), PcrStatus::Null);
     let without = PcrMemory { motions: null_mut(), ..memory(1, 1, 1) };
     assert_eq!(pcr_fleet_init(Some(&mut fleet), Some(&without)), PcrStatus::Null);
+    // Where there is none of something its pointer may be null, as that of an empty vector is.
+    let nothing = PcrMemory {
+        segments: null_mut(),
+        segment_count: 0,
+        phases: null_mut(),
+        phase_count: 0,
+        motions: null_mut(),
+        motion_count: 0,
+        entries: null_mut(),
+        entry_count: 0,
+        pieces: null_mut(),
+        piece_count: 0,
+        ..memory(1, 1, 1)
+    };
+    assert_eq!(pcr_fleet_init(Some(&mut fleet), Some(&nothing)), PcrStatus::Ok);
+    assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&agent(0.0))), PcrStatus::NoRoom);
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
     assert_eq!(pcr_fleet_add(None, Some(&agent(0.0))), PcrStatus::Null);
     assert_eq!(pcr_fleet_build(None), PcrStatus::Null);
     assert_eq!(pcr_fleet_agents(None), 0);

@@ -1,19 +1,20 @@
 //! The Rust part of the Python package: reads scenarios, and returns rows of numbers and JSON. `python/pcr/__init__.py`
 //! turns these into arrays, objects and errors, and documents them; nothing else imports this module.
 //!
-//! Rows are bytes of `f64` in the byte order of the machine. NumPy uses them without a copy, and the standard library
-//! can read them without NumPy; the stable interface of CPython 3.9 has no buffers of foreign types. Computations
-//! release the interpreter lock.
+//! Rows are bytes, numbers of 8 bytes of which the lowest comes first, so that NumPy takes them as they are and the standard library reads
+//! them without it: the stable interface of CPython 3.9 has no buffers of foreign types. The interpreter is released meanwhile.
 
-use pcr_core::{Encounter, Hold, Interval, Order, Orders, Piece, Progress, Region, safe_intervals};
-use pcr_formats::import::{Imported, Options};
+use pcr_core::{
+    Encounter, Hold, Interval, Motion, Order, Orders, Pass, Piece, Progress, Refused, Region, safe_intervals,
+};
+use pcr_formats::import::{Format, Imported, Options};
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::{Fleet as Parts, HostEcm};
 use pcr_planning::locks::{Delays, Driving, Locks};
 use pcr_planning::plan::{self, Method, Plan};
-use pcr_planning::regions::{Answer, Request, find, table};
+use pcr_planning::regions::{Answer, Request, table};
 use pcr_planning::report::{self, DelayTable, Document};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -22,7 +23,7 @@ use pyo3::types::PyBytes;
 use std::fmt::Display;
 use std::path::PathBuf;
 
-create_exception!(_pcr, Error, PyValueError, "What was asked for cannot be answered, with the reason.");
+create_exception!(pcr, Error, PyValueError, "What was asked for cannot be answered, with the reason.");
 
 fn refused(reason: impl Display) -> PyErr {
     Error::new_err(reason.to_string())
@@ -42,13 +43,23 @@ fn json(answer: &impl Document) -> PyResult<String> {
     Ok(String::from_utf8(text)?)
 }
 
-fn bytes<const N: usize>(py: Python<'_>, rows: impl IntoIterator<Item = [f64; N]>) -> Bound<'_, PyBytes> {
-    let numbers: Vec<u8> = rows.into_iter().flatten().flat_map(f64::to_ne_bytes).collect();
-    PyBytes::new(py, &numbers)
+/// A row of numbers, then of truths, in bytes: each truth takes one, and what is left of eight is 0.
+fn row<const WHOLE: usize, const REAL: usize>(
+    into: &mut Vec<u8>,
+    whole: [u64; WHOLE],
+    real: [f64; REAL],
+    truths: &[bool],
+) {
+    whole.iter().for_each(|number| into.extend(number.to_le_bytes()));
+    real.iter().for_each(|number| into.extend(number.to_le_bytes()));
+    into.extend(truths.iter().map(|&truth| u8::from(truth)));
+    into.resize(into.len().next_multiple_of(8), 0);
 }
 
+type HostOrders = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
+
 /// A scenario, with the paths and motions that follow from it.
-#[pyclass(frozen)]
+#[pyclass(frozen, module = "pcr._pcr")]
 struct Fleet {
     scenario: Scenario,
     parts: Parts<f64>,
@@ -73,29 +84,54 @@ impl Fleet {
         place.ok_or_else(|| refused(format!("no agent {id}")))
     }
 
-    /// The regions of every agent in the order of the tool: ego, other, times, lengths, lengths of the other, and
-    /// whether they are open at the start and at the end.
-    fn rows(&self, inflated: bool) -> PyResult<Vec<[f64; 10]>> {
+    /// The number of an agent that a table names.
+    fn id(&self, place: usize) -> PyResult<u64> {
+        self.scenario
+            .agents
+            .get(place)
+            .map(|agent| agent.id)
+            .ok_or_else(|| refused(format!("no agent at place {place}")))
+    }
+
+    /// The regions of every agent in the order of the tool: ego, other, times, lengths, lengths of the other, and whether it is open
+    /// at the start and at the end.
+    fn rows(&self, inflated: bool) -> PyResult<Vec<u8>> {
         let mut motions = self.parts.motions();
         if inflated {
             motions = motions.into_iter().map(|motion| motion.inflated()).collect();
         }
-        let ids: Vec<f64> = self.scenario.agents.iter().map(|agent| agent.id as f64).collect();
         let ecm = table(&self.scenario, &motions).map_err(refused)?;
-        let regions = ecm.regions(&motions).map_err(refused)?;
-        let id = |agent: usize| ids.get(agent).copied().unwrap_or(f64::NAN);
-        let truth = |yes: bool| f64::from(u8::from(yes));
-        let mut rows: Vec<[f64; 10]> = regions
-            .map(|region| {
-                let (t, l, s) = (region.time(), region.length(), region.other_length());
-                let open = [truth(region.is_open_at_start()), truth(region.is_open_at_end())];
-                [id(region.ego()), id(region.other()), t.lo, t.hi, l.lo, l.hi, s.lo, s.hi, open[0], open[1]]
-            })
-            .collect();
-        rows.sort_by(|a, b| {
-            [0, 1, 2, 4].iter().fold(std::cmp::Ordering::Equal, |order, &k| order.then(a[k].total_cmp(&b[k])))
-        });
+        let mut found = Vec::with_capacity(2 * ecm.len());
+        for region in ecm.regions(&motions).map_err(refused)? {
+            let (t, l, s) = (region.time(), region.length(), region.other_length());
+            let agents = [self.id(region.ego())?, self.id(region.other())?];
+            found.push((
+                agents,
+                [t.lo, t.hi, l.lo, l.hi, s.lo, s.hi],
+                [region.is_open_at_start(), region.is_open_at_end()],
+            ));
+        }
+        found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[2].total_cmp(&b.1[2])));
+        let mut rows = Vec::with_capacity(72 * found.len());
+        found.iter().for_each(|(agents, spans, open)| row(&mut rows, *agents, *spans, open));
         Ok(rows)
+    }
+
+    /// Who passes first, as the motions do.
+    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostOrders> {
+        let ecm = table(&self.scenario, motions).map_err(refused)?;
+        let (regions, pieces) = (ecm.len(), ecm.pieces());
+        let storage = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; regions]);
+        let mut orders = Orders::build(storage.0, storage.1, storage.2, motions).map_err(refused)?;
+        orders.as_planned(motions).map_err(|refusal| match refusal {
+            // The library counts places.
+            Refused::Meeting([i, j]) => match (self.id(i), self.id(j)) {
+                (Ok(i), Ok(j)) => refused(format!("agents {i} and {j} meet: there is no order in which they pass")),
+                _ => refused(refusal),
+            },
+            _ => refused(refusal),
+        })?;
+        Ok(orders)
     }
 }
 
@@ -110,7 +146,8 @@ impl Fleet {
     #[staticmethod]
     #[pyo3(signature = (path, options))]
     fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<(Self, Vec<String>)> {
-        py.detach(|| match input::read(&path, &options.into()) {
+        let options = options.options()?;
+        py.detach(|| match input::read(&path, &options) {
             Ok((scenario, _)) => {
                 let warnings = scenario.warnings.clone();
                 Ok((Self::new(scenario)?, warnings))
@@ -128,25 +165,22 @@ impl Fleet {
         &self.scenario.name
     }
 
-    fn agents(&self) -> Vec<(u64, String, f64, f64, f64)> {
+    fn agents(&self) -> Vec<(u64, String, f64, f64, f64, f64)> {
         let motions = self.parts.motions();
         let agents = self.scenario.agents.iter().zip(&motions);
         agents
             .map(|(agent, motion)| {
-                (agent.id, agent.label.clone(), agent.radius, motion.path().length(), motion.time().hi)
+                let (path, time) = (motion.path().length(), motion.time());
+                (agent.id, agent.label.clone(), agent.radius, path, time.lo, time.hi)
             })
             .collect()
-    }
-
-    fn find(&self, asked: &str) -> PyResult<u64> {
-        find(&self.scenario, asked).map_err(refused)
     }
 
     #[pyo3(signature = (inflated = false))]
     fn regions<'py>(&self, py: Python<'py>, inflated: bool) -> PyResult<Bound<'py, PyBytes>> {
         self.discs()?;
         let rows = py.detach(|| self.rows(inflated))?;
-        Ok(bytes(py, rows))
+        Ok(PyBytes::new(py, &rows))
     }
 
     /// The output of `pcr regions --json`, also for fleets with footprints.
@@ -174,7 +208,7 @@ impl Fleet {
     ) -> PyResult<Bound<'py, PyBytes>> {
         self.discs()?;
         let ego = self.place(agent)?;
-        let rows = py.detach(|| -> PyResult<Vec<[f64; 4]>> {
+        let rows = py.detach(|| -> PyResult<Vec<u8>> {
             let motions = self.parts.motions();
             let mut ecm: HostEcm<f64> = pcr_core::Ecm::new(Vec::new(), Vec::new());
             while let Err(full) = ecm.fill_row(&motions, ego) {
@@ -182,15 +216,16 @@ impl Fleet {
             }
             let mut rows = Vec::new();
             for region in ecm.row(&motions, ego).map_err(refused)? {
-                let other = self.scenario.agents.get(region.other()).map_or(f64::NAN, |agent| agent.id as f64);
+                let other = self.id(region.other())?;
                 for place in 0..times {
-                    let slices = region.slice_at(from + step * place as f64);
-                    rows.extend(slices.map(|slice| [place as f64, other, slice.lo, slice.hi]));
+                    for slice in region.slice_at(from + step * place as f64) {
+                        row(&mut rows, [place as u64, other], [slice.lo, slice.hi], &[]);
+                    }
                 }
             }
             Ok(rows)
         })?;
-        Ok(bytes(py, rows))
+        Ok(PyBytes::new(py, &rows))
     }
 
     /// The place of every agent at a time: x, y, heading, travelled length.
@@ -199,12 +234,13 @@ impl Fleet {
             return Err(refused(format!("time: {time} is not a finite number")));
         }
         let motions = self.parts.motions();
-        let rows = motions.iter().map(|motion| {
+        let mut rows = Vec::new();
+        for motion in &motions {
             let length = motion.length_at(time);
             let pose = motion.path().pose_at(length);
-            [pose.position.x, pose.position.y, pose.heading.0, length]
-        });
-        Ok(bytes(py, rows.collect::<Vec<_>>()))
+            row(&mut rows, [], [pose.position.x, pose.position.y, pose.heading.0, length], &[]);
+        }
+        Ok(PyBytes::new(py, &rows))
     }
 
     /// The times at which no other agent blocks these lengths of an agent's path.
@@ -224,6 +260,11 @@ impl Fleet {
         }
         py.detach(|| {
             let motions = self.parts.motions();
+            // What is not on the path is nobody's way: "free" would be no answer.
+            let end = motions.get(ego).map_or(0.0, |motion| motion.path().length());
+            if length.1 < 0.0 || length.0 > end {
+                return Err(refused(format!("length: {} to {} is not on the path, 0 to {end}", length.0, length.1)));
+            }
             let (length, during) = (Interval::new(length.0, length.1), Interval::new(during.0, during.1));
             let free = safe_intervals(&motions, ego, length, during).map_err(refused)?;
             Ok(free.map(|free| (free.lo, free.hi)).collect())
@@ -233,6 +274,9 @@ impl Fleet {
     /// The least distance of two agents, its time, and the sum of their radii.
     fn closest(&self, i: u64, j: u64) -> PyResult<(f64, f64, f64)> {
         self.discs()?;
+        if i == j {
+            return Err(refused(format!("agents {i} and {j} are one and the same")));
+        }
         let motions = self.parts.motions();
         let [Some(own), Some(other)] = [self.place(i)?, self.place(j)?].map(|place| motions.get(place)) else {
             return Err(refused(format!("no agents {i} and {j}")));
@@ -247,12 +291,36 @@ impl Fleet {
         py.detach(|| {
             let method = if speeds { Method::Speed } else { Method::Delay };
             let (plan, scenario) = Plan::of(&self.scenario, &plan::Request::of(method)).map_err(refused)?;
-            Ok((json(&plan)?, scenario.map(Self::new).transpose()?))
+            // As a file of it is read: the same bits as the tool's.
+            let read = |scenario: Scenario| Scenario::from_json(&scenario.to_json()).map_err(|error| misread(&error));
+            Ok((json(&plan)?, scenario.map(|scenario| Self::new(read(scenario)?)).transpose()?))
         })
     }
 
-    /// How far each agent may go in the order in which the motions pass one another. Places are intervals; a hold is
-    /// infinite if no agent is in the way.
+    /// The regions of an agent and who passes them first: ego, other, lengths of both, and whether the ego does.
+    fn passings<'py>(&self, py: Python<'py>, agent: u64) -> PyResult<Bound<'py, PyBytes>> {
+        self.discs()?;
+        let ego = self.place(agent)?;
+        let rows = py.detach(|| -> PyResult<Vec<u8>> {
+            let motions = self.parts.motions();
+            let orders = self.orders(&motions)?;
+            let mut rows = Vec::new();
+            for (_, region, pass) in orders.row(&motions, ego).map_err(refused)? {
+                let first = match pass {
+                    Pass::First => true,
+                    Pass::Second => false,
+                    Pass::Undecided | Pass::Over => return Err(refused("a region without an order")),
+                };
+                let (l, s) = (region.length(), region.other_length());
+                row(&mut rows, [agent, self.id(region.other())?], [l.lo, l.hi, s.lo, s.hi], &[first]);
+            }
+            Ok(rows)
+        })?;
+        Ok(PyBytes::new(py, &rows))
+    }
+
+    /// How far each agent may go in the order in which the motions pass, for places that are known from-to; infinite where nobody is
+    /// in the way.
     fn holds(&self, py: Python<'_>, places: Vec<(f64, f64)>) -> PyResult<Vec<f64>> {
         self.discs()?;
         let motions = self.parts.motions();
@@ -263,11 +331,7 @@ impl Fleet {
             return Err(refused(format!("place: {lo} to {hi} is not an interval of finite numbers")));
         }
         py.detach(|| {
-            let ecm = table(&self.scenario, &motions).map_err(refused)?;
-            let (regions, pieces) = (ecm.len(), ecm.pieces());
-            let storage = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; regions]);
-            let mut orders = Orders::build(storage.0, storage.1, storage.2, &motions).map_err(refused)?;
-            orders.as_planned(&motions).map_err(refused)?;
+            let orders = self.orders(&motions)?;
             let progress: Vec<_> =
                 places.iter().map(|&(lo, hi)| Progress { at: Interval::new(lo, hi), stop: hi }).collect();
             let hold = |agent: usize| match orders.hold(&motions, agent, &progress) {
@@ -281,11 +345,17 @@ impl Fleet {
     }
 }
 
-/// The options of the importers.
+/// The options of the importers, by their names on the command line.
 #[derive(FromPyObject)]
 struct Choices {
     #[pyo3(item)]
+    format: Option<String>,
+    #[pyo3(item)]
+    routes: Vec<String>,
+    #[pyo3(item)]
     radius: Option<f64>,
+    #[pyo3(item)]
+    margin: Option<f64>,
     #[pyo3(item)]
     speed: Option<f64>,
     #[pyo3(item)]
@@ -293,32 +363,71 @@ struct Choices {
     #[pyo3(item)]
     rotation: Option<f64>,
     #[pyo3(item)]
+    rotation_acceleration: Option<f64>,
+    #[pyo3(item)]
     vehicle: Option<String>,
     #[pyo3(item)]
-    routes: Vec<String>,
+    fleet: Option<PathBuf>,
+    #[pyo3(item)]
+    corner_radius: Option<f64>,
+    #[pyo3(item)]
+    tolerance: Option<f64>,
+    #[pyo3(item)]
+    graph: Option<u64>,
+    #[pyo3(item)]
+    horizon: bool,
     #[pyo3(item)]
     partial: bool,
 }
 
-impl From<Choices> for Options {
-    fn from(choices: Choices) -> Self {
-        let Choices { radius, speed, acceleration, rotation, vehicle, routes, partial } = choices;
-        Self { radius, speed, acceleration, rotation, vehicle, routes, partial, ..Self::default() }
+impl Choices {
+    fn options(self) -> PyResult<Options> {
+        let from = match self.format {
+            None => None,
+            Some(name) => match Format::ALL.into_iter().find(|format| format.to_string() == name) {
+                Some(format) => Some(format),
+                None => {
+                    let known: Vec<_> = Format::ALL.iter().map(Format::to_string).collect();
+                    return Err(refused(format!("format {name}: there are {}", known.join(", "))));
+                }
+            },
+        };
+        let Self { format: _, routes, radius, margin, speed, acceleration, rotation, rotation_acceleration, .. } = self;
+        let Self { vehicle, fleet, corner_radius, tolerance, graph, horizon, partial, .. } = self;
+        Ok(Options {
+            from,
+            routes,
+            radius,
+            margin,
+            speed,
+            acceleration,
+            rotation,
+            rotation_acceleration,
+            vehicle,
+            fleet,
+            corner_radius,
+            tolerance,
+            graph,
+            horizon,
+            partial,
+        })
     }
 }
 
-/// A layout for one vehicle.
-#[pyclass(frozen)]
+/// A layout, for a vehicle.
+#[pyclass(frozen, module = "pcr._pcr")]
 struct Layout(Imported);
 
 #[pymethods]
 impl Layout {
-    /// With an acceleration, vehicles drive from rest to rest.
+    /// With an acceleration for vehicles that drive from rest to rest. The warnings of its reader come with it.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<Self> {
+    fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<(Self, Vec<String>)> {
+        let options = options.options()?;
         py.detach(|| {
             let moves = options.acceleration.is_some();
-            input::read_layout(&path, &options.into(), moves).map(|(imported, _)| Self(imported)).map_err(refused)
+            let (imported, warnings) = input::read_layout(&path, &options, moves).map_err(refused)?;
+            Ok((Self(imported), warnings.all()))
         })
     }
 

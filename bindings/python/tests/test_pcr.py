@@ -1,10 +1,15 @@
 """The package against the tool: the same bits, the same refusals; and its own errors."""
 
+import copy
 import json
 import math
 import os
+import pickle
 import subprocess
+import sys
+import tempfile
 import threading
+import types
 import unittest
 from pathlib import Path
 from typing import Any
@@ -15,6 +20,15 @@ TOP = Path(__file__).resolve().parents[3]
 TOOL = os.environ["PCR"]
 TWELVE = TOP / "tests/data/paper12.json"
 GRAPH = TOP / "tests/data/real/nav2/warehouse_graph.geojson"
+
+
+AGENT = {"radius": 0.25, "v_max": 1.0, "a_max": 1.0, "path": [{"kind": "line", "length": 4}]}
+CROSSING: list[dict[str, Any]] = [{"id": 1, "start": {"x": -2, "y": 0, "heading": 0}, **AGENT},
+                                  {"id": 2, "start": {"x": 0, "y": -2, "heading": math.pi / 2}, **AGENT}]
+
+
+def crossing(first: int, second: int) -> pcr.Fleet:
+    return pcr.Fleet([dict(CROSSING[0], id=first), dict(CROSSING[1], id=second)])
 
 
 def tool(*arguments: Any) -> Any:
@@ -37,6 +51,15 @@ class Tool(unittest.TestCase):
         self.assertEqual(plan.report["agents"], tool("plan", TWELVE)["agents"])
         assert plan.fleet is not None
         self.assertEqual([c for c in plan.fleet.conflicts() if not c.touching], [])
+        # What the tool writes and reads again has the same bits.
+        for method in ("delay", "speed"):
+            with tempfile.TemporaryDirectory() as folder:
+                written = Path(folder) / "plan.json"
+                subprocess.run([TOOL, "plan", str(TWELVE), "--method", method, "-o", str(written), "-q"], check=True, stdout=subprocess.DEVNULL)
+                planned = fleet.plan(method).fleet
+                assert planned is not None
+                self.assertEqual(planned, pcr.Fleet.read(written))
+                self.assertEqual(planned.regions(), pcr.Fleet.read(written).regions())
 
     def test_locks_are_those_of_the_tool(self) -> None:
         found = [[lock.a, lock.b, list(lock.a_length), list(lock.b_length)] for lock in pcr.Layout.read(GRAPH, radius=0.4).locks()]
@@ -72,10 +95,47 @@ class Tool(unittest.TestCase):
         self.assertEqual(pcr.Layout.read(GRAPH, radius=0.1).locks(0.4), wide)
         self.assertLess(len(pcr.Layout.read(GRAPH, radius=0.4).locks(0.1)), len(wide))
 
+    def test_fleets_of_every_format_are_read(self) -> None:
+        real, small = TOP / "tests/data/real", TOP / "tests/data/small"
+        files: list[tuple[str, Path, list[str], dict[str, Any]]] = [
+            ("nav2", GRAPH, ["--route", "0:5", "--radius", "0.3"], {"routes": ["0:5"], "radius": 0.3}),
+            ("lif", real / "lif/example_02.lif.json", ["--route", "N1:N2", "--radius", "0.3"], {"routes": ["N1:N2"], "radius": 0.3}),
+            ("rmf", real / "rmf/hotel.building.yaml", ["--graph", "2", "--route", "L1/81:L1/80", "--radius", "0.3"],
+             {"graph": 2, "routes": ["L1/81:L1/80"], "radius": 0.3}),
+            ("opendrive", small / "track.xodr", ["--route", "1/start:2/end", "--radius", "0.3"], {"routes": ["1/start:2/end"], "radius": 0.3}),
+            ("opentcs", real / "opentcs/Demo-01.xml", ["--route", "Point-0001:Point-0002", "--radius", "0.3"], {"routes": ["Point-0001:Point-0002"], "radius": 0.3}),
+            ("ccbs", real / "ccbs/solved/sparse_01_n15_log.xml", [], {}),
+            ("grid", small / "grid.path", [], {}),
+            ("path", small / "points.path", ["--radius", "0.3", "--tolerance", "0.01", "--margin", "0.1"], {"radius": 0.3, "tolerance": 0.01, "margin": 0.1}),
+            ("vda5050", real / "vda5050/order_v2_flywei.json", ["--fleet", str(small / "factsheet.json"), "--horizon"], {"fleet": small / "factsheet.json", "horizon": True}),
+        ]
+        for form, file, options, named in files:
+            with self.subTest(file.name), tempfile.TemporaryDirectory() as folder:
+                made = Path(folder) / "fleet.json"
+                run = subprocess.run([TOOL, "import", form, str(file), *options, "-o", str(made), "-q"], capture_output=True, text=True, check=False)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                fleet = pcr.Fleet.read(file, **named)
+                self.assertEqual(fleet.to_json(), pcr.Fleet.read(made).to_json())
+                self.assertGreater(len(fleet), 0)
+                self.assertEqual(fleet.warnings, json.loads(made.read_text()).get("warnings", []))
+
+    def test_layouts_tell_their_warnings(self) -> None:
+        # Two levels: with a graph named it can be read, and the rest is warned of.
+        file = TOP / "tests/data/real/rmf/hotel.building.yaml"
+        layout, told = pcr.Layout.read(file, graph=2, radius=0.3), tool("locks", file, "--graph", 2, "--radius", 0.3)
+        self.assertEqual(layout.warnings, told["warnings"])
+        self.assertEqual(len(layout.locks()), len(told["locks"]))
+
     def test_files_go_both_ways(self) -> None:
-        fleet = pcr.Fleet.read(TWELVE)
-        self.assertEqual(pcr.Fleet.from_json(fleet.to_json()).to_json(), fleet.to_json())
-        self.assertEqual(len(fleet), 12)
+        twelve, data = pcr.Fleet.read(TWELVE), TOP / "tests/data"
+        self.assertEqual(len(twelve), 12)
+        # Profiles are fitted to their paths when they are read: once.
+        faster = twelve.plan("speed").fleet
+        assert faster is not None
+        for fleet in (twelve, faster, pcr.Fleet.read(data / "real/ccbs/solved/sparse_01_n15_log.xml"), pcr.Fleet.read(data / "small/points.path", radius=0.3)):
+            self.assertEqual(pcr.Fleet.from_json(fleet.to_json()), fleet)
+            self.assertEqual(pickle.loads(pickle.dumps(fleet)), fleet)
+            self.assertEqual(pcr.Fleet.from_json(fleet.to_json()).regions(), fleet.regions())
 
 
 class Answers(unittest.TestCase):
@@ -132,21 +192,138 @@ class Answers(unittest.TestCase):
         self.assertTrue(numpy.array_equal(array["t"], [region.t for region in regions]))
         self.assertTrue(numpy.array_equal(array["i"], [region.i for region in regions]))
 
+    def test_arrays_outlive_their_fleets_and_cannot_be_written_to(self) -> None:
+        import numpy
+
+        fleet = pcr.Fleet.read(TWELVE)
+        array, told = fleet.regions().array, [region.t for region in fleet.regions()]
+        del fleet
+        self.assertTrue(numpy.array_equal(array["t"], told))
+        with self.assertRaises(ValueError):
+            array["t"][0] = 0
+        regions = pcr.Fleet.read(TWELVE).regions()
+        self.assertTrue(numpy.array_equal(numpy.asarray(regions), array))
+        writable = numpy.array(regions)
+        writable["t"] = 0
+        self.assertEqual([region.t for region in regions], told)
+        self.assertEqual([array.dtype[name].kind for name in ("i", "j", "open_start", "open_end")], ["u", "u", "b", "b"])
+        self.assertEqual(pcr.Fleet([]).regions().array.shape, (0,))
+
+    def test_numbers_of_agents_are_exact(self) -> None:
+        # Two that are one and the same number in floating point.
+        first, second = 2**60 + 1, 2**60 + 2
+        fleet = crossing(first, second)
+        self.assertEqual([(r.i, r.j) for r in fleet.regions()], [(first, second), (second, first)])
+        self.assertEqual(fleet.regions().array["i"].tolist(), [first, second])
+        self.assertEqual({row[1] for row in fleet.map(first, 0.0, 0.25, 40)}, {second})
+        self.assertEqual(len(fleet.regions()[0].outline(3)), 3)
+        self.assertEqual([(c.i, c.j) for c in fleet.conflicts()], [(first, second)])
+        with self.assertRaisesRegex(pcr.Error, f"{first} and {second} meet"):
+            fleet.passings(first)
+
+    def test_passings_are_those_of_both(self) -> None:
+        plan = pcr.Fleet.read(TWELVE).plan().fleet
+        assert plan is not None
+        regions = plan.regions()
+        found = {agent["id"]: plan.passings(agent["id"]) for agent in plan.agents}
+        self.assertEqual(sum(map(len, found.values())), len(regions))
+        for i, passings in found.items():
+            for p in passings:
+                self.assertEqual(p.i, i)
+                self.assertIn((p.j, i, p.l_j, p.l, not p.first), found[p.j])
+                self.assertTrue(any((r.i, r.j, r.l, r.l_j) == (i, p.j, p.l, p.l_j) for r in regions))
+        # Whoever has to wait has a hold before the region; who goes first has not.
+        holds = plan.holds([0.0] * 12)
+        for agent, hold in zip(plan.agents, holds):
+            waits = [p.l[0] for p in found[agent["id"]] if not p.first]
+            self.assertEqual(math.isfinite(hold), bool(waits))
+            self.assertTrue(all(hold <= begin for begin in waits))
+
+    def test_fleets_are_values(self) -> None:
+        fleet = pcr.Fleet.read(TWELVE)
+        for same in (pickle.loads(pickle.dumps(fleet)), copy.copy(fleet), copy.deepcopy(fleet), pcr.Fleet.read(TWELVE)):
+            self.assertEqual(same, fleet)
+            self.assertEqual(hash(same), hash(fleet))
+            self.assertEqual(same.regions(), fleet.regions())
+        self.assertNotEqual(fleet, pcr.Fleet([]))
+        self.assertNotEqual(fleet, "fleet")
+        region = fleet.regions()[5]
+        for other in (pickle.loads(pickle.dumps(region)), copy.deepcopy(region)):
+            self.assertEqual((other, other.outline(4)), (region, region.outline(4)))
+        self.assertEqual(pickle.loads(pickle.dumps(fleet.regions())), fleet.regions())
+        with self.assertRaises(pcr.Error):
+            region._replace(i=region.j).outline(4)
+
+    def test_what_numpy_holds_is_taken(self) -> None:
+        import numpy
+
+        agents = [dict(agent, radius=numpy.float32(0.25), id=numpy.int64(agent["id"]), path=tuple(agent["path"])) for agent in CROSSING]
+        fleet = pcr.Fleet(types.MappingProxyType(agent) for agent in agents)
+        self.assertEqual(fleet, pcr.Fleet(CROSSING))
+        told = fleet.safe_intervals(1, 2.0, (0.0, 9.0))
+        self.assertEqual(len(told), 2)
+        for length in (numpy.float32(2), numpy.int64(2), numpy.array(2.0), [2, 2], numpy.array([2.0, 2.0])):
+            self.assertEqual(fleet.safe_intervals(numpy.uint8(1), length, numpy.array([0.0, 9.0])), told)
+        later = pcr.Fleet([CROSSING[0], dict(CROSSING[1], t_start=5.0)])
+        self.assertEqual(later.holds(numpy.zeros(2, dtype=numpy.float32)), later.holds([0.0, (0.0, 0.0)]))
+        self.assertEqual(fleet.places(numpy.float32(1)), fleet.places(1))
+
+    def test_who_sets_off_before_0_is_drawn_from_there(self) -> None:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        early = pcr.Fleet([dict(CROSSING[0], t_start=-8.0), CROSSING[1]])
+        ax = early.plot()
+        self.assertEqual(ax.lines[0].get_xdata()[0], -2.0)
+        ax = early.plot(agent=1)
+        self.assertEqual((ax.lines[0].get_xdata()[0], ax.lines[0].get_ydata()[0]), (-8.0, 0.0))
+        ax = early.regions()[0].plot(ax)
+        self.assertIs(pcr.Fleet([]).plot(ax), ax)
+
     def test_other_threads_run_meanwhile(self) -> None:
         agents = json.loads(TWELVE.read_text())["agents"]
-        copies = [dict(agent, id=100 * k + agent["id"]) for k in range(8) for agent in agents]
-        fleet, ticks, done = pcr.Fleet(copies), 0, threading.Event()
+        fleet = pcr.Fleet([dict(agent, id=100 * k + agent["id"]) for k in range(8) for agent in agents])
+        begun, ended, between = threading.Event(), threading.Event(), False
 
         def compute() -> None:
+            begun.set()
             fleet.conflicts()
-            done.set()
+            ended.set()
 
-        worker = threading.Thread(target=compute)
-        worker.start()
-        while not done.is_set():
-            ticks += 1
-        worker.join()
-        self.assertGreater(ticks, 0)
+        # Nobody is made to give up the interpreter between two lines: who sees one of them done and not the other one ran
+        # while the library computed.
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(1e6)
+        try:
+            for _ in range(1000):
+                for event in (begun, ended):
+                    event.clear()
+                worker = threading.Thread(target=compute)
+                worker.start()
+                begun.wait()
+                between = not ended.is_set()
+                worker.join()
+                if between:
+                    break
+        finally:
+            sys.setswitchinterval(interval)
+        self.assertTrue(between)
+
+    def test_threads_get_the_same_answers(self) -> None:
+        fleet = pcr.Fleet.read(TWELVE)
+        told, wrong = (fleet.regions(), fleet.conflicts(), fleet.places(3.0)), []
+
+        def ask() -> None:
+            for _ in range(5):
+                if (fleet.regions(), fleet.conflicts(), fleet.places(3.0)) != told:
+                    wrong.append(1)
+
+        threads = [threading.Thread(target=ask) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
 
 
 class Refusals(unittest.TestCase):
@@ -159,6 +336,12 @@ class Refusals(unittest.TestCase):
         self.assertEqual((error.agent, error.segment, error.field), ("agent 7", "segment 2", "radius"))
         self.assertIn("allowed", str(error))
         self.assertIsInstance(error, ValueError)
+        again = pickle.loads(pickle.dumps(error))
+        self.assertEqual((type(again), str(again), vars(again)), (pcr.ScenarioError, str(error), vars(error)))
+        for field, wrong in (("radius", {"radius": math.nan}), ("v_max", {"v_max": math.inf}), ("start.x", {"start": {"x": -math.inf, "y": 0, "heading": 0}})):
+            with self.assertRaises(pcr.ScenarioError) as caught:
+                pcr.Fleet([dict(CROSSING[0], **wrong)])
+            self.assertEqual((caught.exception.agent, caught.exception.field), ("agent 1", field))
 
     def test_what_cannot_be_answered_is_an_error(self) -> None:
         fleet = pcr.Fleet.read(TWELVE)
@@ -168,11 +351,20 @@ class Refusals(unittest.TestCase):
                     lambda: fleet.closest(1, 99), lambda: pcr.Fleet.read("no such file"), lambda: pcr.Layout.read(TWELVE),
                     lambda: pcr.Layout.read(GRAPH, radius=-1.0), lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, 0.0),
                     lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, math.nan), lambda: pcr.Layout.read(GRAPH).delays(0.4, 1.0, acceleration=-1.0),
-                    lambda: pcr.Fleet.read(TWELVE, radius=0.5)):
+                    lambda: pcr.Fleet.read(TWELVE, radius=0.5), lambda: pcr.Fleet.read(TWELVE, format="xml"), lambda: pcr.Layout.read(GRAPH, tolerance=2e6),
+                    # What is nowhere on the path is not "free".
+                    lambda: fleet.safe_intervals(1, -0.5, (0.0, 50.0)), lambda: fleet.safe_intervals(1, 99.0, (0.0, 50.0)),
+                    lambda: fleet.closest(1, 1), lambda: fleet.map(-1, 0.0, 1.0, 5), lambda: fleet.map(1, 0.0, 1.0, -5), lambda: fleet.map(1, 0.0, 1.0, 2**70),
+                    lambda: fleet.map(2**70, 0.0, 1.0, 5), lambda: fleet.report(slices=2**40), lambda: fleet.safe_intervals(1, (1.0, 2.0, 3.0), (0.0, 1.0)),
+                    lambda: fleet.plot(columns=0), lambda: fleet.passings(1), lambda: fleet.passings(99)):
             with self.assertRaises(pcr.Error):
                 ask()
         with self.assertRaises(IndexError):
             fleet.regions()[10_000]
+        for mistaken in (lambda: pcr.Fleet(None), lambda: pcr.Fleet([{1, 2}]), lambda: fleet.map("1", 0.0, 1.0, 5), lambda: fleet.places("1"),  # type: ignore[arg-type, list-item]
+                         lambda: pcr.Layout.read(GRAPH, raduis=0.4), lambda: pcr.Layout.read(GRAPH, routes="1:2")):  # type: ignore[call-arg]
+            with self.assertRaises(TypeError):
+                mistaken()
 
 
 if __name__ == "__main__":

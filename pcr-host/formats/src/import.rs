@@ -98,6 +98,21 @@ pub enum Format {
     Vda5050,
 }
 
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Nav2,
+        Self::Lif,
+        Self::Rmf,
+        Self::OpenDrive,
+        Self::OpenTcs,
+        Self::Ccbs,
+        Self::Grid,
+        Self::Path,
+        Self::Vda5050,
+    ];
+}
+
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -95,6 +95,11 @@ impl Fleet {
         self.motions.values()
     }
 
+    /// Two agents, not one and the same.
+    pub(super) fn two(&self, ego: usize, other: usize) -> Result<[&Motion<'static, S>; 2], PcrStatus> {
+        if ego == other { Err(PcrStatus::NoSuchAgent) } else { Ok([self.motion(ego)?, self.motion(other)?]) }
+    }
+
     pub(super) fn motion(&self, agent: usize) -> Result<&Motion<'static, S>, PcrStatus> {
         self.motions().get(agent).ok_or(PcrStatus::NoSuchAgent)
     }

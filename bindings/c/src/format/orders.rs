@@ -75,6 +75,7 @@ pub extern "C" fn pcr_fleet_orders_as_planned(place: Option<&mut PcrFleet>, why:
 pub extern "C" fn pcr_fleet_decide(place: Option<&mut PcrFleet>, ego: usize, other: usize, pass: u8) -> PcrStatus {
     change(place, |fleet| {
         let pass = decision(pass)?;
+        fleet.two(ego, other)?;
         let OrderedMut { orders, motions, progress, .. } = fleet.ordered_mut()?;
         let second = if pass == Pass::First { other } else { ego };
         let since = progress.get(second).ok_or(PcrStatus::NoSuchAgent)?.at.lo;

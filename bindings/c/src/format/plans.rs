@@ -17,8 +17,8 @@ fn record(conflict: &Conflict<S>) -> PcrConflict {
     }
 }
 
-/// The conflicts of two agents on their motions, in order of time from the first start of any agent to the last
-/// arrival, and their count. It uses the motions and not the table.
+/// The conflicts of two agents on their motions, in order of time from the first start of any agent to the last arrival,
+/// and their count. It asks the motions, not the table. PCR_STATUS_NO_SUCH_AGENT where both are one.
 #[unsafe(export_name = name!("fleet_conflicts"))]
 pub extern "C" fn pcr_fleet_conflicts(
     place: Option<&PcrFleet>,
@@ -30,7 +30,8 @@ pub extern "C" fn pcr_fleet_conflicts(
 ) -> PcrStatus {
     ask(place, |fleet| {
         let room = Room::new(out, capacity, count)?;
-        let encounter = Encounter::new(fleet.motion(ego)?, fleet.motion(other)?);
+        let [own, others] = fleet.two(ego, other)?;
+        let encounter = Encounter::new(own, others);
         room.fill(encounter.conflicts(fleet.duration()).map(|conflict| record(&conflict)))
     })
 }

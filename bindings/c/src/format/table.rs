@@ -91,8 +91,8 @@ pub extern "C" fn pcr_fleet_regions(
     })
 }
 
-/// The lengths along the path of the ego at which it overlaps the other agent at a time, and the number of intervals.
-/// Intervals are sorted by region and rounded outward.
+/// The lengths along the path of the ego at which it overlaps the other agent at a time, and how many intervals there
+/// are: those of one region after the other, rounded outward. PCR_STATUS_NO_SUCH_AGENT where both are one.
 #[unsafe(export_name = name!("fleet_slices"))]
 pub extern "C" fn pcr_fleet_slices(
     place: Option<&PcrFleet>,
@@ -109,6 +109,7 @@ pub extern "C" fn pcr_fleet_slices(
         fleet.motion(ego)?;
         fleet.motion(other)?;
         let regions = fleet.table().pair(fleet.motions(), ego, other)?;
+        fleet.two(ego, other)?;
         room.fill(regions.flat_map(|region| region.slice_at(time)).map(interval))
     })
 }

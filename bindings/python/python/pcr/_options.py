@@ -1,15 +1,70 @@
 """Options of the importers."""
 
-from typing import Optional, TypedDict
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Any, Optional, SupportsFloat, SupportsIndex, TypedDict, Union
+
+from ._numbers import whole
+from ._pcr import Error
+
+Path = Union[str, PathLike[str]]
 
 
-class Options(TypedDict):
-    """The options of ``pcr import`` that fleets and layouts need; ``None`` means that an option is not given."""
+class Options(TypedDict, total=False):
+    """The options of ``pcr import``, by their names there. ``None`` is as if it was not there."""
 
-    radius: Optional[float]
-    speed: Optional[float]
-    acceleration: Optional[float]
-    rotation: Optional[float]
+    #: nav2, lif, rmf, opendrive, opentcs, ccbs, grid, path or vda5050; by name and content if left out.
+    format: Optional[str]
+    #: Ways of agents, FROM:TO or FROM:TO@TIME.
+    routes: Sequence[str]
+    #: Of the vehicle [m].
+    radius: Optional[SupportsFloat]
+    #: To keep around discs that have none of their own [m].
+    margin: Optional[SupportsFloat]
+    #: [m/s], [m/s²], [rad/s], [rad/s²]
+    speed: Optional[SupportsFloat]
+    acceleration: Optional[SupportsFloat]
+    rotation: Optional[SupportsFloat]
+    rotation_acceleration: Optional[SupportsFloat]
+    #: Type of the vehicle, where a layout has several (LIF).
     vehicle: Optional[str]
-    routes: list[str]
+    #: Fleet configuration (Open-RMF) or factsheet (VDA 5050).
+    fleet: Optional[Path]
+    #: Of corners (nav2) [m].
+    corner_radius: Optional[SupportsFloat]
+    #: Largest distance of arcs from curves [m].
+    tolerance: Optional[SupportsFloat]
+    #: Navigation graph, where there are several (Open-RMF).
+    graph: Optional[SupportsIndex]
+    #: Travel the horizon of an order, not only its base (VDA 5050).
+    horizon: bool
+    #: Read what can be read of a layout; without it, a file is refused for anything that would be left out.
     partial: bool
+
+
+ABOVE_0 = ("radius", "speed", "acceleration", "rotation", "rotation_acceleration", "tolerance")
+FROM_0 = ("margin", "corner_radius")
+MOST = 1e6
+
+
+def checked(given: Options) -> dict[str, Any]:
+    """All options, as the command line takes them."""
+    unknown = [name for name in given if name not in Options.__annotations__]
+    if unknown:
+        raise TypeError(f"there is no option {unknown[0]!r}; there are {', '.join(Options.__annotations__)}")
+    found: dict[str, Any] = {name: None for name in Options.__annotations__}
+    found.update(given)
+    for name in (*ABOVE_0, *FROM_0):
+        if found[name] is not None:
+            number = float(found[name])
+            if not (0 <= number <= MOST) or (number == 0 and name in ABOVE_0):
+                raise Error(f"{name}: {number} is out of range; allowed is {'above' if name in ABOVE_0 else 'from'} 0, up to {MOST:.0f}")
+            found[name] = number
+    if found["graph"] is not None:
+        found["graph"] = whole("graph", found["graph"])
+    if isinstance(found["routes"], str):
+        raise TypeError("routes: a list of FROM:TO is expected, not one text")
+    found.update(routes=list(found["routes"] or ()), horizon=bool(found["horizon"]), partial=bool(found["partial"]))
+    return found

@@ -314,27 +314,27 @@ impl MotionSpec {
     fn decode(agent: &Fields<'_>, length: f64) -> Result<Self, ScenarioError> {
         let fields = agent.object("profile", "profile.", &["v0", "pieces"])?;
         let v0 = fields.number("v0", Range::NotNegative)?;
-        let (mut speed, mut fastest, mut travelled) = (v0, v0, 0.0);
-        let mut pieces = Vec::new();
+        let (mut given, mut lines) = (Vec::new(), Vec::new());
         for (index, json) in fields.array("pieces")?.iter().enumerate() {
             let place = agent.place.part("profile piece", index);
             let fields = place.fields(json, &["duration", "accel"])?;
             let duration = fields.number("duration", Range::NotNegative)?;
             let accel = fields.number("accel", Range::Any)?;
-            let after = speed + accel * duration;
-            if after < -SPEED_TOLERANCE * f64::max(1.0, fastest) {
-                let problem =
-                    format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
-                return Err(fields.error(json.line, "accel", problem));
-            }
-            let after = speed_after(after, fastest);
-            travelled += 0.5 * (speed + after) * duration;
-            pieces.push((duration, if duration > 0.0 { (after - speed) / duration } else { 0.0 }));
-            (speed, fastest) = (after, fastest.max(after));
+            given.push((duration, accel));
+            lines.push((fields, json.line));
         }
-        if fastest > LIMIT || (travelled - length).abs() > LENGTH_TOLERANCE * length {
-            let problem = if fastest > LIMIT {
-                format!("reaches {} m/s; allowed is up to {LIMIT:e}", figure(fastest))
+        let mut profile = Settled::new(v0, given).map_err(|(index, after, accel)| {
+            let problem =
+                format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
+            match lines.get(index) {
+                Some((fields, line)) => fields.error(*line, "accel", problem),
+                None => agent.error(fields.line, "profile", problem),
+            }
+        })?;
+        let travelled = profile.travelled;
+        if profile.fastest > LIMIT || (travelled - length).abs() > LENGTH_TOLERANCE * length {
+            let problem = if profile.fastest > LIMIT {
+                format!("reaches {} m/s; allowed is up to {LIMIT:e}", figure(profile.fastest))
             } else {
                 format!(
                     "travels {} m on a path of {} m; allowed is a relative difference of {LENGTH_TOLERANCE:.2e}",
@@ -344,11 +344,51 @@ impl MotionSpec {
             };
             return Err(agent.error(fields.line, "profile", problem));
         }
-        let scale = if travelled > 0.0 { length / travelled } else { 1.0 };
-        for (_, accel) in &mut pieces {
-            *accel *= scale;
+        // What differs by rounding only stays as it is: what is written is then read as it was.
+        if travelled > 0.0 && (travelled - length).abs() > profile.rounding {
+            let scale = length / travelled;
+            let pieces = profile.pieces.iter().map(|&(duration, accel)| (duration, accel * scale)).collect();
+            profile = Settled::new(profile.v0 * scale, pieces).unwrap_or(profile);
         }
-        Ok(Self::Profile { v0: v0 * scale, pieces })
+        Ok(Self::Profile { v0: profile.v0, pieces: profile.pieces })
+    }
+}
+
+/// A profile whose stops are stops, as they are after it has been written and read.
+struct Settled {
+    v0: f64,
+    pieces: Vec<(f64, f64)>,
+    fastest: f64,
+    travelled: f64,
+    /// By how much that can differ from the length for which the numbers were written.
+    rounding: f64,
+}
+
+impl Settled {
+    /// From durations and accelerations. Refuses the first that brings the speed below zero: its index, that speed, its acceleration.
+    fn new(v0: f64, mut pieces: Vec<(f64, f64)>) -> Result<Self, (usize, f64, f64)> {
+        let (mut speed, mut fastest, mut travelled) = (v0, v0, 0.0);
+        // Each number is off by a rounding when it is written, and each sum and product by one more; at a stop no speed is off.
+        let (mut off, mut rounding) = (0.0, 0.0);
+        for (index, (duration, accel)) in pieces.iter_mut().enumerate() {
+            let reached = speed + *accel * *duration;
+            if reached < -SPEED_TOLERANCE * f64::max(1.0, fastest) {
+                return Err((index, reached, *accel));
+            }
+            let after = speed_after(reached, fastest);
+            let part = 0.5 * (speed + after) * *duration;
+            travelled += part;
+            let then = if after == 0.0 { 0.0 } else { off + 4.0 * f64::EPSILON * fastest.max(after) };
+            rounding += (off + then) * *duration + 4.0 * f64::EPSILON * (part + travelled);
+            off = then;
+            if *duration == 0.0 {
+                *accel = 0.0;
+            } else if after != reached {
+                *accel = (after - speed) / *duration;
+            }
+            (speed, fastest) = (after, fastest.max(after));
+        }
+        Ok(Self { v0, pieces, fastest, travelled, rounding })
     }
 }
 

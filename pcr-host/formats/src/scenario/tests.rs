@@ -232,6 +232,40 @@ fn what_is_allowed_is_accepted() {
     assert_eq!(Scenario::from_value(&standing).unwrap().agents[1].duration(), 5.0);
 }
 
+/// Profiles that are read are fitted to their paths; after that nothing changes any more, however often they are written and read.
+#[test]
+fn profiles_that_are_written_are_read_as_they_were() {
+    // Numbers of all sizes, the same in each run.
+    let mut state = 1_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut written = 0;
+    for _ in 0..2000 {
+        // Speeds at the ends of pieces, of which some are stops.
+        let (mut speed, mut travelled, mut pieces) = (0.0, 0.0, Vec::new());
+        for k in 0..(1 + (next() * 9.0) as usize) {
+            let to = if k % 3 == 2 || next() < 0.2 { 0.0 } else { next() * 10_f64.powf(4.0 * next() - 3.0) };
+            let duration = 10_f64.powf(5.0 * next() - 2.0);
+            pieces.push(json!({ "duration": duration, "accel": (to - speed) / duration }));
+            travelled += 0.5 * (speed + to) * duration;
+            speed = to;
+        }
+        if travelled == 0.0 {
+            continue;
+        }
+        // As far off as a file of few digits is.
+        let length = travelled * (1.0 + 1e-7 * (next() - 0.5));
+        let mut scenario = with("/profile", &json!({ "v0": 0, "pieces": pieces }));
+        scenario["agents"][1]["path"] = json!([{ "kind": "line", "length": length }]);
+        let read = Scenario::from_value(&scenario).unwrap();
+        assert_eq!(Scenario::from_json(&read.to_json()), Ok(read));
+        written += 1;
+    }
+    assert!(written > 1500);
+}
+
 #[test]
 fn labels_are_printable_text() {
     assert_eq!(Scenario::from_value(&with("/label", &json!("AGV 7 → Ω"))).unwrap().agents[1].called(), "7 AGV 7 → Ω");

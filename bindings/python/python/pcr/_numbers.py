@@ -1,0 +1,48 @@
+"""Numbers as callers write them: of Python, of NumPy, and ranges of them."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Mapping, Sequence
+from typing import Any, SupportsFloat, SupportsIndex, Union
+
+from ._pcr import Error
+
+Span = tuple[float, float]
+#: A number, or from and to.
+Ranged = Union[SupportsFloat, Sequence[SupportsFloat]]
+
+
+def finite(**numbers: SupportsFloat) -> None:
+    for name, number in numbers.items():
+        if not math.isfinite(number):
+            raise Error(f"{name}: {number} is not a finite number")
+
+
+def whole(name: str, number: SupportsIndex, most: int = 2**64 - 1) -> int:
+    """A whole number from 0."""
+    found = operator.index(number)
+    if not 0 <= found <= most:
+        raise Error(f"{name}: {found} is out of range; allowed is 0 to {most}")
+    return found
+
+
+def span(name: str, value: Ranged) -> Span:
+    """The same number twice where there is one."""
+    try:
+        lo, hi = value  # type: ignore[misc]
+    except TypeError:
+        lo = hi = value
+    except ValueError:
+        raise Error(f"{name}: {value} is neither a number nor from and to") from None
+    return float(lo), float(hi)
+
+
+def plain(value: object) -> Any:
+    """What JSON has for a value that it does not know itself: numbers and arrays of NumPy, and any mapping."""
+    if isinstance(value, Mapping):
+        return dict(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is nothing that a scenario file can hold")

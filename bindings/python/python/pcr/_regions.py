@@ -1,0 +1,115 @@
+"""Collision regions, one by one and as an array."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsIndex, Union, overload
+
+from ._numbers import Span, whole
+from ._pcr import Error
+
+if TYPE_CHECKING:
+    from ._fleet import Fleet
+
+
+class _Ranges(NamedTuple):
+    i: int
+    j: int
+    t: Span
+    l: Span
+    l_j: Span
+    #: Whether it reaches the start of the path, where ``i`` stands before it sets off, or the end.
+    open_start: bool
+    open_end: bool
+
+
+class Region(_Ranges):
+    """Where and when agent ``i`` would touch agent ``j``: times [s], lengths of ``i`` and of ``j`` along their paths [m].
+
+    It lies within these intervals; :meth:`outline` has its shape.
+    """
+
+    # None in one that was not made by a fleet, such as by `_replace`.
+    _fleet: Optional[Fleet] = None
+
+    def outline(self, n: SupportsIndex) -> list[tuple[float, float, float]]:
+        """What it covers at ``n`` evenly spaced times inside: time, from, to. A time comes more than once where it covers more than one
+        stretch then.
+
+        >>> path = [{"kind": "line", "length": 4}]
+        >>> east, north = {"x": -2, "y": 0, "heading": 0}, {"x": 0, "y": -2, "heading": 1.5707963267948966}
+        >>> fleet = Fleet([{"id": k, "radius": 0.25, "v_max": 1, "a_max": 1, "start": start, "path": path} for k, start in ((1, east), (2, north))])
+        >>> [[round(number, 3) for number in row] for row in fleet.regions()[0].outline(3)]
+        [[2.25, 1.567, 2.433], [2.5, 1.5, 2.5], [2.75, 1.567, 2.433]]
+        """
+        if self._fleet is None:
+            raise Error("this region is not of a fleet")
+        answer = self._fleet.report(slices=n, agent=self.i)
+        rows = [*answer["regions"], *answer.get("margin_regions", [])]
+        own = [row for row in rows if (row["j"], row["t"], row["l"]) == (self.j, list(self.t), list(self.l))]
+        if not own:
+            raise Error("this region is not one of its fleet")
+        return [(slice["t"], lo, hi) for slice in own[0]["slices"] for lo, hi in slice["l"]]
+
+    def plot(self, ax: Any, *, columns: SupportsIndex = 60, **style: Any) -> Any:
+        """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.bar``."""
+        rows = self.outline(columns)
+        width = (self.t[1] - self.t[0]) / (whole("columns", columns) + 1)
+        ax.bar([t for t, _, _ in rows], [hi - lo for _, lo, hi in rows], bottom=[lo for _, lo, _ in rows], width=width, **style)
+        return ax
+
+
+#: The fields of an array of regions, for ``numpy.dtype``, aligned.
+REGION = [("i", "<u8"), ("j", "<u8"), ("t", "<f8", (2,)), ("l", "<f8", (2,)), ("l_j", "<f8", (2,)), ("open_start", "?"), ("open_end", "?")]
+_REGION = struct.Struct("<QQ6d??6x")
+
+
+class Regions(Sequence[Region]):
+    """Regions in the order of the tool: by both agents, then by time. Made into objects one by one, as they are asked for.
+
+    ``numpy.asarray(regions)`` is a structured array of them, without a copy.
+    """
+
+    __slots__ = ("_fleet", "_rows")
+
+    def __init__(self, rows: bytes, fleet: Fleet) -> None:
+        self._rows, self._fleet = rows, fleet
+
+    def __len__(self) -> int:
+        return len(self._rows) // _REGION.size
+
+    @overload
+    def __getitem__(self, place: SupportsIndex) -> Region: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Region]: ...
+    def __getitem__(self, place: Union[SupportsIndex, slice]) -> Union[Region, list[Region]]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(*place.indices(len(self)))]
+        i, j, *spans, start, end = _REGION.unpack_from(self._rows, range(len(self))[place] * _REGION.size)
+        region = Region(i, j, (spans[0], spans[1]), (spans[2], spans[3]), (spans[4], spans[5]), start, end)
+        region._fleet = self._fleet
+        return region
+
+    def __iter__(self) -> Iterator[Region]:
+        return (self[k] for k in range(len(self)))
+
+    def __eq__(self, other: object) -> bool:
+        return self._rows == other._rows if isinstance(other, Regions) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._rows)
+
+    @property
+    def array(self) -> Any:
+        """A structured NumPy array of all regions, without a copy: ``regions.array["t"][:, 0]`` are all first times. It cannot be written to."""
+        import numpy
+
+        return numpy.frombuffer(self._rows, dtype=numpy.dtype(REGION, align=True))
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Any:
+        array = self.array if dtype is None else self.array.astype(dtype)
+        return array.copy() if copy else array
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} regions>"
