@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # hours.sh PCR FOLDER [SECONDS] [LAYOUT...]: vehicles at work for an hour of theirs on each layout of tests/data, on as many of its safe ends as
-# there are but one, 100 at most: with the supervisor over mosquitto, ten of their seconds in one of ours; with it in steps of time; and in the same
+# there are but one, 100 at most: with the supervisor over mosquitto, ten of their seconds (PACE) in one of ours; with it in steps of time; and in the same
 # steps with locks on whole routes and on edges. The same vehicles, missions drawn from the same numbers, and the same delays: hold-ups of
 # up to 2 s about every 20 s, up to 5 % slower, 1 % of the messages lost, 1 % twice, 1 % up to 3 s late, no connection for 1 % of the time.
+# (NO_BROKER=1, METHODS="supervisor ...": some of the columns.)
 # Then no more missions, and all have to come to their ends. Prints the table of docs/serve.md; where vehicles were is in FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
@@ -36,7 +37,7 @@ found() {
 
 # The same over a broker.
 broker() {
-  local layout=$1 vehicles=$2 name=$3 port=$((20000 + RANDOM % 20000)) pace=10
+  local layout=$1 vehicles=$2 name=$3 port=$((20000 + RANDOM % 20000)) pace=${PACE:-10}
   local mosquitto=mosquitto own=()
   command -v mosquitto >/dev/null || mosquitto=/usr/sbin/mosquitto
   printf 'listener %s 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\n' $port >"$out/mosquitto.conf"
@@ -47,7 +48,7 @@ broker() {
   rm -rf "$out/journal"
   "$pcr" serve --journal "$out/journal" --stay --broker localhost:$port --fleet "$out/vehicles.json" --log error </dev/null 2>"$out/$name.log" & own+=($!)
   children+=("${own[@]}")
-  "$pcr" fleet "$layout" --vehicles "$vehicles" --manager --pace $pace --drops 24 --broker localhost:$port "${trouble[@]}" \
+  "$pcr" fleet "$layout" --vehicles "$vehicles" --manager --pace $pace --drops $((24 * pace / 10)) --broker localhost:$port "${trouble[@]}" \
     --record "$out/record" >"$out/text"
   kill "${own[@]}"
   wait "${own[@]}" 2>/dev/null || true
@@ -59,9 +60,9 @@ echo "|---|---|---|---|---|---|---|"
 for layout in "${layouts[@]}"; do
   places=$({ "$pcr" fleet "$layout" --vehicles 100000 --alone supervisor --time 1 2>&1 || true; } | sed -n "s/.*there are \([0-9]*\)/\1/p")
   vehicles=$((places - 1 < 100 ? places - 1 : 100))
-  name=$(basename "$layout" | sed 's/[._].*//; s/--//; s/=/-/')
+  name=$(basename -- "$layout" | sed 's/[._].*//; s/--//; s/=/-/')
   row="| $name | $places | $vehicles | $([ -n "${NO_BROKER:-}" ] && echo - || broker "$layout" "$vehicles" "$name") |"
-  for method in supervisor route-locks edge-locks; do
+  for method in ${METHODS-supervisor route-locks edge-locks}; do
     "$pcr" fleet "$layout" --vehicles "$vehicles" --alone $method --drops 2.4 "${trouble[@]}" --record "$out/record" >"$out/text"
     row+=" $(found "$out/text" "$out/record") |"
   done

@@ -149,6 +149,12 @@ fn a_vehicle_that_has_passed_its_base_is_not_where_it_may_be() {
     let ahead = state["nodeStates"].as_array().unwrap().last().unwrap()["sequenceId"].clone();
     (state["lastNodeId"], state["lastNodeSequenceId"], state["agvPosition"]["x"]) = (json!("n2"), ahead, json!(10.0));
     state["nodeStates"] = json!([]);
+    // A client of others says the number of an order before until it has passed the first node of this one.
+    let mut early = state.clone();
+    early["agvPosition"]["x"] = json!(own.robot_at());
+    own.hears(Kind::State, &early);
+    assert!(!own.has_alarm());
+    state["headerId"] = json!(1 << 20);
     own.hears(Kind::State, &state);
     assert!(own.has_alarm());
 }

@@ -110,8 +110,9 @@ impl Lane {
             Some(job) if job.held.order_id == state.order_id => {
                 let place = job.stop(state.last_node_sequence_id);
                 let Some(place) = place else {
-                    // A node that it was not released yet, or one that it was never told of.
-                    if is_new && state.last_node_sequence_id > job.last().sequence {
+                    // A node that it was not released yet; or that of an order before, at the beginning of this one.
+                    let is_beyond = state.last_node_sequence_id > job.last().sequence;
+                    if is_new && is_beyond && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, now);
                     }
                     return Ok(());
