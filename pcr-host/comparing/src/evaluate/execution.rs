@@ -18,11 +18,18 @@ const LONGEST: u32 = 2000;
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let mut text = format!(
-        "## Plans on grids, carried out\n\nPlans that others publish for discs of up to half a cell (PBS, `tests/data/real/stpg`), carried out by robots of one cell a \
-        second that change their speed at once, as in these plans, and are stopped: as published with the plan, one situation of few late robots, or each with a probability of {} % a second, for 10 to 20 s. *Orders*: who \
-        passes each collision region first is as planned, holds are those of discs of that radius, in cells. *Cells*: an action dependency graph (Hönig et al. 2019), in which a cell is entered when who was \
-        there before has come to its next one. *Alone*: what the stops cost if nobody waited for anybody, below which no execution is. *Switching*: orders are turned round where somebody is late who has not used its right, if all can still finish and arrive sooner by that; looked at once a second, for how long who is stopped now will be is taken as known, as it is published with these situations. Means of the times until robots arrive, the same stops for all; \
-        *faster*: than real time, with the time to find the regions and orders, by switching; *contact*: what the independent checker says of the recorded motions, of orders, switching and cells. The other plans of that source: \
+        "## Plans on grids, carried out\n\nPublished plans for discs of up to half a cell (PBS, `tests/data/real/stpg`) are carried out by robots that drive one \
+        cell per second and change their speed at once, as in these plans. Robots are stopped: either as published with the \
+        plan (one situation with few late robots), or each with a probability of {} % a second, for 10 to 20 s. *Orders*: \
+        robots pass each collision region in the planned order; holds are those of discs of the given radius, in cells. \
+        *Cells*: an action dependency graph (Hönig et al. 2019), in which a robot enters a cell when the robot that was there \
+        before has reached its next cell. *Alone*: the time with these stops if nobody waited for anybody; no execution can be \
+        faster. *Switching*: the order of two robots is reversed if one is late and has not used its right, and if all can \
+        still finish and arrive sooner that way. This is checked once a second; it is known for how long a robot will be \
+        stopped, as published with these situations. The times are means until robots arrive, with the same stops for all \
+        methods. *Faster*: how many times faster than real time, with the time to find the regions and orders, for switching; \
+        *contact*: verdict of the independent checker on the recorded motions, for orders, switching and cells. For the other \
+        plans of that source: \
         `cargo run --release -p pcr-tests --example execution -- DIRECTORY`.\n\n\
         | plan | robots | stops | radius | alone | cells | orders | switching | orders / cells | switching / cells | stuck | faster | contact |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|---:|---|\n",
         100.0 * RATE

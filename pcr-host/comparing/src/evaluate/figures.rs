@@ -23,8 +23,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let drawn =
         |svg: io::Result<String>| svg.map_err(|error| Problem::File(PathBuf::from("picture"), error.to_string()));
     let mut text = String::from(
-        "## Fig. 13: agent 3\n\nOutlines in closed form over what the sampled maps say, every sample as the stretch of path and time that it \
-        stands for.\n\n",
+        "## Fig. 13: agent 3\n\nOutlines in closed form, drawn over the sampled maps. Every sample is drawn as the stretch of path and time that it \
+        represents.\n\n",
     );
     let mut pictures = Vec::new();
     if let Some(fleet) = fleets.paper12() {
@@ -43,8 +43,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         }
     }
     text.push_str(
-        "\n## Fig. 14: three special cases\n\nPaths that do not cross but come near; two regions that overlap and are one; a region \
-        across a joint of a path. None is special to the library.\n\n",
+        "\n## Fig. 14: three special cases\n\nThe cases are paths that do not cross but come near, two regions that overlap and form one, and a \
+        region across a joint of a path. The library needs no special treatment for them.\n\n",
     );
     for (name, title, scenario) in cases() {
         pictures.push((name, drawn(picture::overview(&scenario, None))?));

@@ -36,11 +36,12 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     Ok(Section { text, pictures })
 }
 
-const WORDS: &str = "First all collision regions, both directions of every pair: *area off* is the area of the symmetric difference to the \
-regions by the definition (found by halving), as a part of theirs; kept is what the answer takes, for sampled maps a time and a \
-length in single precision for each point. Then the conflicts of the motions as they are: missed and invented ones, and the largest error of a \
-begin or end. Casts tell the first time of a pair only. Pairs are sorted out first: here by boxes in space and time, which the others could \
-have as well, elsewhere by boxes of paths and of their pieces.\n";
+const WORDS: &str = "The first table is about all collision regions, both directions of every pair. *Area off* is the area of the symmetric \
+difference to the exact regions (computed from the definition by bisection), divided by their area. *Kept* is the \
+memory of the answer; sampled maps take a time and a length in single precision for each point. The second table is \
+about the conflicts of the given motions: missed and invented ones, and the largest error of a beginning or end. Casts \
+only find the first time of a pair. All methods exclude distant pairs first: pcr with boxes in space and time, which \
+the others could use as well, the others with boxes of paths and of their pieces.\n";
 
 fn find<'c>(comparison: &'c Comparison, question: Question, name: &str) -> Option<&'c Row> {
     comparison.rows.iter().find(|row| row.question == question && row.method == name)
@@ -49,10 +50,11 @@ fn find<'c>(comparison: &'c Comparison, question: Question, name: &str) -> Optio
 /// Ours and the paper's side by side.
 fn table(fleets: &Fleets, all: &[Comparison]) -> String {
     let mut text = String::from(
-        "## Table VI\n\nThe paper's fleets are not published; these have as many agents and regions as its own, by its count, which is that of \
-        crossings. The analytic method against the computational one, which samples both paths every 0.01 s, and mesh \
-        proximity every 0.01 s with cylinders of 100 triangles: the paper's by PQP, ours by parry3d and by FCL. *Paper*: a Pentium IV at 2.33 GHz. A ratio is that of a method's time to \
-        that of the analytic method; ours are against the fastest sampled map that we could write, without boxes and with them.\n\n\
+        "## Table VI\n\nThe paper's fleets are not published. Ours have as many agents and regions as the paper's, counted as in the paper, \
+        which counts crossings. The table compares the analytic method with the computational one, which samples both paths \
+        every 0.01 s, and with mesh proximity every 0.01 s on cylinders of 100 triangles (by PQP in the paper, by parry3d and \
+        FCL here). *Paper*: measured on a Pentium IV at 2.33 GHz. A ratio is a method's time divided by that of the analytic \
+        method. Ours use the fastest sampled map that we could write, without boxes and with boxes.\n\n\
         | agents | crossings | analytic, paper | ours | sampled / analytic, paper | ours | ours, boxes | mesh / analytic, paper | parry3d | FCL | \
         memory analytic / sampled, paper | ours |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
@@ -96,8 +98,8 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
         let _ = writeln!(
             text,
             "\nA sampled map takes {plain} times as long as the analytic one here, {paper} times in the paper. Boxes around paths and runs \
-            of samples, which the paper's method does not have, bring that down to {boxes} times; the memory stays. Its area \
-            is off by {area} %."
+            of samples, which the paper's method does not have, bring that down to {boxes} times; the memory stays the same. \
+            The area of a sampled map is off by {area} %."
         );
     }
     text

@@ -21,9 +21,9 @@ const LOOK: f64 = 1e-3;
 
 pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let mut text = String::from(
-        "## Grazing pairs\n\nTwo discs at constant speeds that miss each other, or overlap, by 10⁻² to 10⁻⁷ m: on opposite lines, on \
-        crossing lines, on concentric arcs, and on a line and an arc with a common tangent. Each cell: collisions found of 4, and \
-        collisions invented of 4 near misses; right is `4 · 0`. Maps are asked along the own motion.\n\n| method |",
+        "## Grazing pairs\n\nTwo discs at constant speeds that miss each other, or overlap, by 10⁻² to 10⁻⁷ m: on opposite lines, on crossing lines, \
+        on concentric arcs, and on a line and an arc with a common tangent. Each cell has the number of collisions found of 4, and of collisions \
+        invented of 4 near misses; the right answer is `4 · 0`. Maps are queried along the agent's own motion.\n\n| method |",
     );
     for depth in DEPTHS {
         let _ = write!(text, " {depth:e} m |");
@@ -71,9 +71,9 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
         let _ = writeln!(text, " {count} | {places} |");
     }
     text.push_str(
-        "\nFixed point and single precision round outward: what is nearer than their ε counts as a contact \
-        ([errors.md](errors.md)). Meshes and polylines are drawn around the discs and paths. \
-        Box2D, in single precision, goes no nearer than a quarter of its slop of 5 mm.\n",
+        "\nFixed point and single precision round outward: discs that are nearer than ε count as touching \
+        ([errors.md](errors.md)). Meshes and polylines enclose the discs and paths. Box2D, in single precision, stops at a \
+        distance of a quarter of its slop of 5 mm.\n",
     );
     Ok(Section { text, pictures: Vec::new() })
 }

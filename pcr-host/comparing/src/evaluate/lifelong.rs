@@ -18,12 +18,13 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let imported = fleets.warehouse(RADIUS)?;
     let usual = Delays::default();
     let mut text = format!(
-        "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; every robot gets a random mission whenever one is done, for {hours} h \
-        (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up to {} % slower than asked. Missions are \
-        drawn once and never exchanged; all methods have the same ones and the same delays; orders look for the way to the next goal up to 10 s \
-        before a goal is reached. Locks on edges are given one by one, if all could still finish then (the banker's check). *An hour*: missions after the first tenth of the time; *travel*: mean time \
-        of a mission over that of a robot alone; *starved*: missions that have waited for more than ten minutes in the end; *decision*: a way and orders, 99 of 100 within; \
-        *contact*: what the independent checker says of the recorded motions.\n\n\
+        "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; a robot that has finished a mission gets a new \
+        random one, for {hours} h (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up \
+        to {} % slower than commanded. Missions are drawn once and never exchanged; all methods have the same missions and the same delays. Only \
+        with orders, a robot looks for the way to its next goal up to 10 s before it reaches a goal. Locks on edges are granted one by one, if all \
+        could still finish afterwards (the banker's algorithm). *An hour*: missions per hour, without the first tenth of the time; *travel*: mean \
+        time of a mission divided by that of a robot alone; *starved*: missions that have waited for more than ten minutes at the end; *decision*: \
+        time to decide on a way and orders, 99th percentile; *contact*: verdict of the independent checker on the recorded motions.\n\n\
         | robots | method | missions | an hour | travel | starved | stuck | decision | contact |\n|---:|---|---:|---:|---:|---:|---:|---:|---|\n",
         100.0 * usual.stopped,
         usual.stop,
@@ -37,7 +38,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     }
     let _ = writeln!(
         text,
-        "\nThe graph has {safe} safe ends: with more robots somebody always stands in the way of somebody else, and missions may wait for ever."
+        "\nThe graph has {safe} safe ends. With more robots, some robot is always in the way of another one, and missions may wait \
+        for ever."
     );
     text.push_str(&large(extent)?);
     Ok(Section { text, pictures: Vec::new() })
@@ -50,9 +52,9 @@ fn large(extent: Extent) -> Result<String, Problem> {
         Extent::Quick => (&[[70, 10]], 0.005),
     };
     let mut text = format!(
-        "\nLarge fleets, by orders: streets that cross every 6 m, one-way to and fro by turns, with two bays a block, the same robots and delays, {hours} h \
-        (`cargo run --release -p pcr-planning --example streets -- ROBOTS {hours} STREETS`). *Faster*: than real time, on one core, with all decisions and the simulation \
-        of the robots, without the certificate.\n\n\
+        "\nLarge fleets, with orders: streets that cross every 6 m, one-way with alternating directions and two bays for each block; the same robots \
+        and delays, {hours} h (`cargo run --release -p pcr-planning --example streets -- ROBOTS {hours} STREETS`). *Faster*: how many times faster \
+        than real time, on one core, with all decisions and the simulation of the robots, without the certificate.\n\n\
         | nodes | robots | missions | an hour | travel | stuck | decision | faster | contact |\n|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
     );
     for &[agents, count] in sizes {

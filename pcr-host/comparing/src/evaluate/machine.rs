@@ -22,14 +22,14 @@ pub(super) fn preamble(extent: Extent) -> String {
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(
         "# Evaluation\n\n\
-        Written by `cargo run --release --features peers -- evaluate`, the text with all numbers and pictures; nothing is \
+        `cargo run --release --features peers -- evaluate` writes this document with all numbers and pictures; nothing is \
         edited by hand.{quick}\n\n\
-        **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} (of {cores} if \
-        nothing waits). **Libraries in C++**: {libraries}. Times are medians. What is claimed is *ratios*: in each round all methods run one after \
-        the other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; \
-        sampling, flattening and meshes are part of its time. What takes less than 5 ms is repeated for as long in each round, after a first \
-        time that does not count, so that it is not measured with the caches that the others have left. Methods run on one core where nothing else is said, and work of more than \
-        40 ms counts by the time that the processor spent on it, so that other work on the machine does not count.\n"
+        **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} ({cores} would keep all cores \
+        busy). **Libraries in C++**: {libraries}. Times are medians. The results are the *ratios*: in each round all methods run one after the \
+        other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; the time for \
+        sampling, flattening and making meshes counts. Work of less than 5 ms is repeated for 5 ms in each round, after a first run that does not \
+        count, so that the caches that other methods have filled do not matter. Methods run on one core unless stated otherwise. For work of more \
+        than 40 ms the processor time counts, so that other work on the machine does not matter.\n"
     )
 }
 

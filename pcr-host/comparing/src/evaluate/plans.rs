@@ -68,10 +68,12 @@ impl Row {
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let mut text = format!(
-        "## Plans and their bounds\n\nStart delays of least sum of costs (`pcr plan --leave-out`). *Left out*: agents of the fleets that have no delays together \
-        with the others, the fewest possible. *Proved*: fleets of which the delays are proved to be the best but for rounding. *Gap*: by how much the sums of costs are above their \
-        lower bounds, of all fleets and at most. *In*: the whole command without reading the file, from the regions to the certificate, the median and the longest. Random fleets are {SEEDS} of each size, as \
-        dense as the paper\'s; missions are those of the warehouse above, seed 1, before any delay.\n\n\
+        "## Plans and their bounds\n\nStart delays with the least sum of costs (`pcr plan --leave-out`). *Left out*: the fewest agents without which the \
+        others have a plan. *Proved*: number of fleets whose delays are proved to be the best, except for rounding. *Gap*: by \
+        how much the sums of costs are above their lower bounds, for all fleets together, and the largest of a fleet. *In*: \
+        time of the whole command without reading the file, from the regions to the certificate, the median and the longest. \
+        There are {SEEDS} random fleets of each size, as dense as the paper\'s; missions are those of the warehouse above, seed \
+        1, before any delay.\n\n\
         | fleets | number | planned | left out | sum of costs | proved | gap | largest gap | in | at most |\n\
         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );

@@ -37,9 +37,10 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
         Extent::Quick => &[100, 200],
     };
     let mut text = format!(
-        "## Roadmaps\n\nNodes at random, one on {} m² on average, each joined with its {NEIGHBOURS} nearest ones in both directions; discs of {RADIUS} m at 1 m/s. \
-        Locks: which pairs of edges can touch, and on which lengths (`pcr locks`). Unsafe delays: the interval of start delays at which two vehicles on them touch \
-        (`pcr locks --delays --speed 1`), each edge with itself included. All cores; nothing is printed.\n",
+        "## Roadmaps\n\nRandom nodes, one per {} m² on average, each joined with its {NEIGHBOURS} nearest ones in both directions; discs of {RADIUS} \
+        m at 1 m/s. Locks: the pairs of edges on which two vehicles can touch, and the lengths on which they can (`pcr locks`). Unsafe delays: the \
+        interval of start delays at which two vehicles on them touch (`pcr locks --delays --speed 1`), including each edge with itself. All cores \
+        are used; nothing is printed.\n",
         digits(SPACING * SPACING)
     );
     for (is_curved, title) in [(false, "All edges straight"), (true, "One way in four an arc that turns by 1 rad")] {

@@ -23,12 +23,12 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let kinds = [floor, warehouse];
     let ([width, depth], [nodes, edges]) = copies.size();
     let words = [
-        "Random agents on a floor as dense as the paper's, 12 agents on 7 m by 7 m, with paths of three to six segments that stay \
-        on it."
+        "Random agents on a floor, as dense as in the paper (12 agents on 7 m by 7 m), with paths of three to six segments that \
+        stay on the floor."
             .to_owned(),
         format!(
-            "The warehouse graph of nav2 ({nodes} nodes, {edges} edges, {} m by {} m) in copies side by side, with {} agents a copy of {} m \
-            radius, each on the shortest way from a random node to another one, corners rounded.",
+            "The warehouse graph of nav2 ({nodes} nodes, {edges} edges, {} m by {} m) in copies side by side, with {} agents of {} m radius in each \
+            copy. Each agent takes the shortest way from a random node to another one, with rounded corners.",
             digits(width),
             digits(depth),
             copies::AGENTS,
@@ -36,10 +36,10 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         ),
     ];
     let mut text = String::from(
-        "## Scale\n\n`rows` finds the agents that come near by a grid, and works through the fleet an agent at a time along a curve that \
-        fills the plane, without keeping anything, as a server would that streams; `table` is the table of the library, which compares the \
-        boxes of all pairs. Small fleets are many different ones, so that none is known to the processor from before. Regions in \
-        both directions.\n",
+        "## Scale\n\n`rows` finds the agents that come near with a grid. It processes the fleet agent by agent along a space-filling curve \
+        and keeps no results, as a streaming server would. `table` is the table of the library, which compares the boxes of all \
+        pairs. For small sizes many different fleets are used, so that the processor has none of them in its caches. Regions \
+        count in both directions.\n",
     );
     for (kind, words) in kinds.iter().zip(words) {
         let _ = write!(text, "\n{words}\n\n{}", kind.table());
@@ -108,7 +108,7 @@ impl Kind {
         if let (Some(memory), Some(largest)) = (self.memory, self.courses.last()) {
             let _ = writeln!(
                 text,
-                "\nMaking and streaming the fleet of {} takes the process to {} MB at most.",
+                "\nMaking and streaming the fleet of {} takes at most {} MB of memory.",
                 largest.agents,
                 digits(memory)
             );
@@ -166,8 +166,8 @@ fn exchange(agents: usize) -> Result<String, Problem> {
     }
     let longest = times.iter().copied().fold(0.0, f64::max);
     Ok(format!(
-        "One of {agents} agents on the floor gets another path, and its regions with all others are computed anew in the table of {} \
-        regions: {} (median of {}), at most {}.\n",
+        "One of {agents} agents on the floor gets another path, and its regions with all others are computed again in the table \
+        of {} regions: {} (median of {}), at most {}.\n",
         2 * table.len(),
         time(median(times.clone())),
         times.len(),

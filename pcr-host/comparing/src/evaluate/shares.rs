@@ -30,8 +30,9 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         points.push(Point { agents: motions.len(), regions, finding, all });
     }
     let mut text = String::from(
-        "## Fig. 12: finding pairs, making regions\n\nThe table compares the boxes of all pairs of agents before anything else, which is what \
-        grows with the square of the agents; the rest grows with the regions. Both directions of a pair count as regions.\n\n\
+        "## Fig. 12: finding pairs, making regions\n\nTo compute the table of regions, the library first compares the boxes of all pairs of agents; \
+        this time grows with the square of the number of agents. The rest grows with the number of regions. Both directions of a pair count as \
+        regions.\n\n\
         | agents | regions | finding pairs | regions | share of finding |\n|---:|---:|---:|---:|---:|\n",
     );
     for point in &points {

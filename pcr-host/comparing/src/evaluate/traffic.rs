@@ -33,10 +33,10 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let [nodes, edges] = [disc.layout.nodes.len(), disc.layout.edges.len()];
     let [length, width] = SIZE;
     let mut text = format!(
-        "## Traffic in a warehouse\n\nThe route graph of nav2's warehouse, {nodes} nodes and {edges} edges, and random missions on it (`pcr traffic`, seed 1): \
-        shortest ways between nodes, corners rounded with 1 m. Missions that no order of starts lets through together with those before them are \
-        rejected. *Regions*: the table of all pairs, both directions; *plan*: the delays that every pair forbids, and 2000 orders \
-        of priority; *check*: all conflicts of the plan.\n\n\
+        "## Traffic in a warehouse\n\nThe route graph of nav2's warehouse, {nodes} nodes and {edges} edges, and random missions on it \
+        (`pcr traffic`, seed 1): shortest ways between nodes, corners rounded with 1 m. A mission is rejected if no order of starts makes it \
+        possible together with the missions before it. *Regions*: the table of all pairs, both directions; *plan*: the delays that every pair \
+        forbids, and 2000 orders of priority; *check*: all conflicts of the plan.\n\n\
         | vehicle | agents | rejected | regions | in | plan in | check in | conflicts if all set off at once | planned | conflicts then | \
         makespan | missions an hour |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
