@@ -57,6 +57,7 @@ mod orders_adversary;
 mod orders_check;
 mod orders_fleet;
 mod orders_hold;
+mod orders_places;
 mod orders_run;
 mod outward;
 mod paper_equations;
