@@ -84,7 +84,7 @@ benches() {
   cargo bench "${everything_in[@]}" --profile checked --bench '*' -- --test
 }
 
-# Files that are written for openTCS, against its schema.
+# Files that are written for openTCS, against its schema; those of all formats, by readers that share nothing with the tool.
 schemas() {
   step "plant models, by the schema of openTCS"
   if ! command -v xmllint >/dev/null; then
@@ -92,6 +92,8 @@ schemas() {
     apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends libxml2-utils >/dev/null
   fi
   cargo test "${checked[@]}" --test tool -- --ignored plant_models
+  step "written files, by readers of their own"
+  tests/readers/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
 }
 
 # Vehicles, their manager and the supervisor at a real broker. Faults one after the other, some minutes each round: PCR_FAULTS=1

@@ -385,7 +385,7 @@ fn blocks_of_a_model_have_names_of_their_own() {
         .replace("\"Fire door 01\"", "\"pcr-block-0002\"")
         .replace('\n', "\r\n");
     let (text, report) = written(Format::OpenTcs, &text, 0.9, Target::OpenTcs, None);
-    assert!(text.contains(mine) && report.groups > 3);
+    assert!(text.contains(mine) && report.groups > 1);
     assert_eq!(text.matches("<block name=\"\"pcr-block-0002\"").count(), 0);
     assert_eq!(text.matches("<block name=\"pcr-block-0").count(), report.groups);
     assert_eq!(text.matches('\n').count(), text.matches("\r\n").count());
