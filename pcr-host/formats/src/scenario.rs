@@ -44,11 +44,11 @@ mod load;
 mod outline;
 mod parts;
 mod placed;
+mod settled;
 mod turns;
 
 use crate::footprint::Footprint;
 pub use decode::LENGTH_TOLERANCE;
-pub use decode::speed_after;
 pub use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
 pub use labels::label;
@@ -56,6 +56,7 @@ pub use labels::{LONGEST_LABEL, Labels};
 pub use load::Load;
 pub use parts::Part;
 pub use placed::{KINK, Placed, TURN};
+pub use settled::speed_after;
 use std::f64::consts::TAU;
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
 use super::labels::{self, called};
 use super::outline::{loads, outline};
+use super::settled::Settled;
 use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use crate::json::{self, Data, Json};
@@ -15,10 +16,6 @@ const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 
 /// Relative difference between the travelled length and the length of the path that is still scaled away: what the library takes, 2⁻²⁰.
 pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE_LOG2) as f64;
-
-/// Speed below zero that a profile may reach by the rounding of its numbers, relative to its largest speed (or to
-/// 1 m/s if that is more): nine digits, which is what files carry.
-const SPEED_TOLERANCE: f64 = 1e-9;
 
 /// Segments of a path that the core can number. An arc counts once for each turn begun.
 const MOST: usize = u16::MAX as usize;
@@ -352,49 +349,4 @@ impl MotionSpec {
         }
         Ok(Self::Profile { v0: profile.v0, pieces: profile.pieces })
     }
-}
-
-/// A profile whose stops are stops, as they are after it has been written and read.
-struct Settled {
-    v0: f64,
-    pieces: Vec<(f64, f64)>,
-    fastest: f64,
-    travelled: f64,
-    /// By how much that can differ from the length for which the numbers were written.
-    rounding: f64,
-}
-
-impl Settled {
-    /// From durations and accelerations. Refuses the first that brings the speed below zero: its index, that speed, its acceleration.
-    fn new(v0: f64, mut pieces: Vec<(f64, f64)>) -> Result<Self, (usize, f64, f64)> {
-        let (mut speed, mut fastest, mut travelled) = (v0, v0, 0.0);
-        // Each number is off by a rounding when it is written, and each sum and product by one more; at a stop no speed is off.
-        let (mut off, mut rounding) = (0.0, 0.0);
-        for (index, (duration, accel)) in pieces.iter_mut().enumerate() {
-            let reached = speed + *accel * *duration;
-            if reached < -SPEED_TOLERANCE * f64::max(1.0, fastest) {
-                return Err((index, reached, *accel));
-            }
-            let after = speed_after(reached, fastest);
-            let part = 0.5 * (speed + after) * *duration;
-            travelled += part;
-            let then = if after == 0.0 { 0.0 } else { off + 4.0 * f64::EPSILON * fastest.max(after) };
-            rounding += (off + then) * *duration + 4.0 * f64::EPSILON * (part + travelled);
-            off = then;
-            if *duration == 0.0 {
-                *accel = 0.0;
-            } else if after != reached {
-                *accel = (after - speed) / *duration;
-            }
-            (speed, fastest) = (after, fastest.max(after));
-        }
-        Ok(Self { v0, pieces, fastest, travelled, rounding })
-    }
-}
-
-/// The speed after a piece of a profile: what rounding leaves of a stop is no speed.
-pub fn speed_after(speed: f64, fastest: f64) -> f64 {
-    /// Some hundred roundings of the largest speed, far below any speed that matters.
-    const STOP: f64 = 1e-12;
-    if speed < STOP * fastest { 0.0 } else { speed }
 }
