@@ -1,9 +1,9 @@
 //! The bridge at its broker; only one bridge is active at a time.
 //!
 //! The active bridge says so in a retained message, which its last will takes back. A second bridge sees the message
-//! and stays passive. If two begin at the same time, the one whose message the broker receives first continues. A
-//! bridge that does not see the message of the active one may still claim its place. Therefore the active bridge then
-//! repeats its message, and a claim counts only if no other bridge has objected for a while.
+//! and stays passive. If two begin at the same time, the one whose message the broker receives first continues. The
+//! retained message may be missing, or be that of another bridge, although a bridge is active. Therefore the active
+//! bridge then repeats its message, and a claim counts only if no other bridge has objected for a while.
 
 use super::bridge::{Bridge, Publish};
 use super::header::Header;
@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 /// How long it is waited for the last will of one that may be gone: a little more than the broker does.
 const PATIENCE: Duration = Duration::from_secs(9);
 
-/// How long it is waited for somebody who objects.
+/// How long it is waited for somebody who insists.
 const OBJECTIONS: Duration = Duration::from_secs(1);
 
 /// So many messages are answered together at most.
@@ -43,7 +43,7 @@ enum Claim {
     Theirs(Instant, String),
     /// Ours was sent.
     Sent,
-    /// Ours has come back from the broker; since when nobody has objected.
+    /// Ours has come back from the broker; since when nobody has insisted.
     Seen(Instant),
     /// Ours.
     Ours,
@@ -65,8 +65,6 @@ pub struct Station {
     session: String,
     topic: String,
     claim: Claim,
-    /// Who has claimed what is ours, and when we have objected.
-    rival: Option<(Instant, String)>,
     begin: Instant,
     key: Key,
     /// The vehicles are to be asked how things are.
@@ -88,7 +86,7 @@ impl Station {
         let topic = vehicles.topic(Version::V2_1, &key, Kind::Connection);
         let mut filters = bridge.filters();
         filters.push(topic.clone());
-        let will = claim(&key, &topic, session, Version::V2_1.broken());
+        let will = claim(&key, &topic, session, Version::V2_1.broken(), false);
         let (sender, news) = channel();
         let link = Link::open(broker, &format!("pcr-supervisor-{session}"), Some(will), filters, move |it| {
             // A station that is gone needs no news.
@@ -96,7 +94,7 @@ impl Station {
         })?;
         let now = Instant::now();
         let (session, claim) = (session.into(), Claim::Asking(now));
-        Ok(Self { link, news, session, topic, claim, rival: None, begin: now, key, greets: false, log: Vec::new() })
+        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false, log: Vec::new() })
     }
 
     /// Seconds since it was opened.
@@ -185,6 +183,7 @@ impl Station {
         let said: Value = serde_json::from_slice(payload).unwrap_or_default();
         let text = |field: &str| said.get(field).and_then(Value::as_str).unwrap_or_default();
         let is_online = text("connectionState") == "ONLINE";
+        let insists = said.get("insists") == Some(&Value::Bool(true));
         match (&self.claim, text("session") == self.session) {
             (Claim::Sent, true) if is_online => self.claim = Claim::Seen(Instant::now()),
             // It may be gone: the broker will say so.
@@ -192,27 +191,22 @@ impl Station {
                 self.claim = Claim::Theirs(Instant::now(), text("session").into())
             }
             (Claim::Theirs(..), _) if !is_online => self.claim = Claim::Asking(Instant::now()),
-            (Claim::Sent | Claim::Seen(_), false) if is_online => {
+            // Before ours; one that comes after ours sees that.
+            (Claim::Sent, false) if is_online => {
                 return Err(Stopped(format!("another supervisor, {}, was first", text("session"))));
             }
-            (Claim::Ours, false) if is_online => self.object(text("session"))?,
+            (Claim::Seen(_), false) if is_online && insists => {
+                return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
+            }
+            // Two that were both sure that it is theirs: one of them ends.
+            (Claim::Ours, false) if is_online && insists && text("session") < self.session.as_str() => {
+                return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
+            }
+            (Claim::Ours, false) => {
+                self.log.push(format!("another supervisor, {}, comes or goes", text("session")));
+                let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE", true));
+            }
             _ => {}
-        }
-        Ok(())
-    }
-
-    /// Says again what is ours. Whoever has claimed it ends then; of two who were both sure that it is theirs, one of them does.
-    fn object(&mut self, rival: &str) -> Result<(), Stopped> {
-        /// Whoever claims it once more after so long has come anew.
-        const WHILE: Duration = Duration::from_secs(5);
-        self.log.push(format!("another supervisor, {rival}, has come"));
-        let insists = self.rival.as_ref().is_some_and(|(at, name)| name == rival && at.elapsed() < WHILE);
-        if insists && rival < self.session.as_str() {
-            return Err(Stopped(format!("another supervisor, {rival}, is at work")));
-        }
-        if !insists {
-            self.rival = Some((Instant::now(), rival.into()));
-            let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE"));
         }
         Ok(())
     }
@@ -235,7 +229,7 @@ impl Station {
         if let Claim::Asking(since) = self.claim
             && self.link.is_up()
             && since.elapsed() >= RETAINED
-            && self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE"))
+            && self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE", false))
         {
             self.claim = Claim::Sent;
         }
@@ -245,15 +239,16 @@ impl Station {
     /// Ends in order: another one may supervise at once.
     pub fn close(self) {
         if self.is_ours() {
-            let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "OFFLINE"));
+            let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "OFFLINE", false));
         }
         self.link.close();
     }
 }
 
-fn claim(key: &Key, topic: &str, session: &str, state: &str) -> Publish {
+fn claim(key: &Key, topic: &str, session: &str, state: &str, insists: bool) -> Publish {
     let header = Header::new(key, Version::V2_1, 1, stamp::now());
-    let rest = Map::from_iter([("session".to_owned(), Value::from(session))]);
+    let rest = [("session".to_owned(), Value::from(session)), ("insists".to_owned(), insists.into())];
+    let rest = Map::from_iter(rest);
     let message = Connection { header, connection_state: state.into(), rest };
     let payload = serde_json::to_vec(&message).unwrap_or_default();
     Publish { topic: topic.into(), payload, assured: true, retain: true }

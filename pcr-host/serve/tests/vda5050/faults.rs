@@ -224,6 +224,12 @@ fn of_supervisors_that_begin_at_once_one_goes_on() {
         while !on.tell().contains("ours: true") {
             std::thread::sleep(Duration::from_millis(20));
         }
+        // The message of those who have ended is that they have; whoever comes now is told all the same.
+        let late = Desk::open(&broker, Vec::new(), "late", Box::new(Nowhere));
+        while !late.is_over() {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert!(late.close().unwrap_err().0.contains("another supervisor") && !on.is_over());
         on.close().unwrap();
     }
 }
