@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     /// The same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Seconds from one plan to the next under pcr, 0.05 to 3600 (2 if left out)
+    /// Seconds from plan to plan under pcr, 0.05 to 3600 [default: 2]
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
     replan: Option<f64>,
     /// Largest error of observed positions in m, 0 to 10

@@ -111,7 +111,7 @@ fn comb(segments: usize) -> String {
     json!({ "agents": [agent(1, -2.0, 0.0, 0.0, path.into()), agent(2, 0.0, -10.0, north, line)] }).to_string()
 }
 
-/// Each crossing is looked for among the pieces of its own two segments: among all of them this takes minutes.
+/// Each crossing is looked for among the pieces of its own two segments.
 #[test]
 fn a_path_that_crosses_another_ten_thousand_times_has_each_crossing_in_its_region() {
     let name = file("large", "comb.json", comb(20_001));
