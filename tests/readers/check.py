@@ -55,7 +55,8 @@ def main():
             wanted = [(kind, []), (kind, ["--split", most])]
             if kind == "opentcs":
                 wanted += [(kind, ["--envelopes", "key"]), (kind, ["--envelopes", "key", "--split", most])]
-            if form == "" and ("sample" in name or "office" in name or kind == "opentcs"):
+            # Zones and stretches are sampled, which takes a while.
+            if form == "" and ("sample" in name or "office" in name):
                 wanted += [("vda5050", []), ("vda5050", ["--split", most]), ("pcr", [])]
             for target, more in wanted:
                 what = f"{layout.name} {target} {' '.join(more)}".strip()

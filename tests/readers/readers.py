@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ET
 # Contacts that are less deep prove nothing: distances are computed in plain floating point.
 DEEP = 1e-7
 # Of curves, which are polylines of so many points here, and of corners at whole millimetres.
-CURVE, DEEP_CURVE = 200, 1e-3
+CURVE, DEEP_CURVE = 50, 2e-3
 
 
 def to_segment(p, a, b):
@@ -58,6 +58,12 @@ def plain(text):
     return text.lstrip("\ufeff")
 
 
+def of_yaml(text):
+    import yaml
+
+    return yaml.load(plain(text), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
 # ---- nav2: closed_edges in the metadata, as nav2_route's loader finds features ----
 
 
@@ -100,9 +106,7 @@ def check_nav2(written, radius):
 
 def rmf(text):
     """Of each level: its name, places of vertices, their groups, and lanes of one way: from, to, group, place in the file."""
-    import yaml
-
-    root = yaml.safe_load(plain(text))
+    root = of_yaml(text)
     for name, level in root["levels"].items():
         vertices, lanes = level.get("vertices") or [], level.get("lanes") or []
         if not lanes:
@@ -338,9 +342,7 @@ def without_exclusions(kind, text):
                 own.pop("metadata", None)
         return root
     if kind == "rmf":
-        import yaml
-
-        root = yaml.safe_load(plain(text))
+        root = of_yaml(text)
         for level in root["levels"].values():
             for element in (level.get("lanes") or []) + (level.get("vertices") or []):
                 for more in (part for part in element if isinstance(part, dict)):

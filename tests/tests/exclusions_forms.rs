@@ -18,12 +18,10 @@ fn written(format: Format, text: &str, radius: f64, target: Target, split: Optio
     let settings = Settings { target, split, envelopes: None };
     let (written, report, audit) = write(format, text, &options(radius), "site", &settings).unwrap();
     assert!(audit.suffices());
-    // Read once more as anybody would.
     if target.layout().is_some() {
         let again = imported(format, &written, radius);
         let rules = read(target, &written, &again).unwrap();
         assert!(Audit::of(&again, &Locks::of(&again, true).unwrap(), &rules, target).suffices());
-        // Written again nothing changes.
         assert_eq!(
             write(format, &written, &options(radius), "site", &Settings { split: None, ..settings }).unwrap().0,
             written
@@ -118,7 +116,7 @@ name: site
     ]
 }
 
-/// What a building says, but its vertices without name.
+/// The lanes that a building has.
 fn lanes(text: &str) -> Value {
     let root: Value = serde_saphyr::from_str(text).unwrap();
     root["levels"]["L1"]["lanes"].clone()
@@ -176,7 +174,6 @@ fn what_is_shared_in_a_building_is_refused() {
     assert!(written(Format::Rmf, &text, 0.4, Target::Rmf, None).0.starts_with("more: &x {}\nagain: *x\n"));
 }
 
-/// As the building tools write it.
 const GRAPH: &str = "building_name: site
 doors: {}
 levels:
@@ -333,10 +330,8 @@ fn zone_sets(text: &str) -> Vec<String> {
     messages
         .iter()
         .map(|message| {
-            for name in ["timestamp", "version", "manufacturer", "serialNumber"] {
-                assert!(message[name].is_string(), "{name}: {message}");
-            }
-            assert!(message["headerId"].is_u64() && message["version"] == "3.0.0");
+            let texts = ["timestamp", "version", "manufacturer", "serialNumber"];
+            assert!(texts.iter().all(|name| message[name].is_string()) && message["headerId"].is_u64(), "{message}");
             let set = &message["zoneSet"];
             let zones = set["zones"].as_array().unwrap();
             let names: BTreeSet<&str> = zones.iter().map(|zone| zone["zoneId"].as_str().unwrap()).collect();
@@ -371,8 +366,6 @@ fn zones_and_zone_sets_have_names_of_their_own() {
     };
     let (text, report) = written(Format::OpenTcs, &plant("p (2)"), 0.4, Target::Vda5050, Some(2.0));
     assert_eq!((zone_sets(&text).len(), report.groups), (1, 3));
-    let (text, _) = written(Format::OpenTcs, &plant("p (2)"), 0.4, Target::Vda5050, None);
-    assert_eq!(zone_sets(&text).len(), 1);
 }
 
 const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");

@@ -53,7 +53,7 @@ const overlay = make(world, "g", { "pointer-events": "none" });
 const targets = make(world, "g", {});
 const targets_of = new Map(), nodes = new Map();
 let pinned = null, shown = null;
-const ROWS = 40;
+const ROWS = 24;
 
 /** A button that shows another edge. */
 function link(parent, other) {
