@@ -51,9 +51,9 @@ fn row<const WHOLE: usize, const REAL: usize>(
     real: [f64; REAL],
     truths: &[bool],
 ) {
-    whole.iter().for_each(|number| into.extend(number.to_le_bytes()));
-    real.iter().for_each(|number| into.extend(number.to_le_bytes()));
-    into.extend(truths.iter().map(|&truth| u8::from(truth)));
+    whole.iter().for_each(|number| into.extend_from_slice(&number.to_le_bytes()));
+    real.iter().for_each(|number| into.extend_from_slice(&number.to_le_bytes()));
+    truths.iter().for_each(|&truth| into.push(u8::from(truth)));
     into.resize(into.len().next_multiple_of(8), 0);
 }
 

@@ -31,6 +31,8 @@ impl Settled {
             let then = if after == 0.0 { 0.0 } else { off + 4.0 * f64::EPSILON * fastest.max(after) };
             rounding += (off + then) * *duration + 4.0 * f64::EPSILON * (part + travelled);
             off = then;
+            // Neither sign of zero is of use.
+            *accel += 0.0;
             if *duration == 0.0 {
                 *accel = 0.0;
             } else if after != reached {
