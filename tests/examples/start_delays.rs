@@ -1,4 +1,4 @@
-//! What random fleets forbid, and the start delays that are found for them, a line of JSON a fleet, for `start_delays.py`:
+//! What random fleets forbid, and the start delays that are found for them, a line of JSON a fleet, for `start_delays.py` beside this file:
 //! `start_delays SECONDS FIRST_SEED COUNT LEAST LARGEST`, or `start_delays SECONDS FILE...`. SECONDS is the time limit, 0 for none.
 //!
 //! Fleets have LEAST to LARGEST agents, one size after the other; agents that cannot go together with the others are left out.
