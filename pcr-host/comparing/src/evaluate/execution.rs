@@ -20,10 +20,10 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         "## Plans on grids, carried out\n\nPlans that others publish for discs of up to half a cell (PBS, `tests/data/real/stpg`), carried out by robots of one cell a \
         second that change their speed at once, as in these plans, and are stopped: as published with the plan, one situation of few late robots, or each with a probability of {} % a second, for 10 to 20 s. *Orders*: who \
         passes each collision region first is as planned, holds are those of discs of that radius, in cells. *Cells*: an action dependency graph (Hönig et al. 2019), in which a cell is entered when who was \
-        there before has come to its next one. *Alone*: what the stops cost if nobody waited for anybody, below which no execution is. *Switching*: orders are turned round where somebody is late who has not used its right, if all can still finish and arrive sooner by that; looked at once a second, for how long who is stopped now will be is taken as known, as it is published with these situations. Means of the times until robots arrive, the same stops for all; \
+        there before has come to its next one. *Alone*: what the stops cost if nobody waited for anybody, below which no execution is: where *alone / cells* is above 0.9, nothing can be 0.9 of cells. *Switching*: orders are turned round where somebody is late who has not used its right, if all can still finish and arrive sooner by that; looked at once a second, a stop is expected to last 15 s, as stops do on average; how long each lasts nobody knows. Means of the times until robots arrive, the same stops for all; \
         *faster*: than real time, with the time to find the regions and orders, by switching; *contact*: what the independent checker says of the recorded motions, of orders, switching and cells. The other plans of that source: \
         `cargo run --release -p pcr-tests --example execution -- DIRECTORY`.\n\n\
-        | plan | robots | stops | radius | alone | cells | orders | switching | orders / cells | switching / cells | stuck | faster | contact |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|---:|---|\n",
+        | plan | robots | stops | radius | alone | cells | orders | switching | alone / cells | orders / cells | switching / cells | stuck | faster | contact |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---|---:|---|\n",
         100.0 * RATE
     );
     let files = plans(&fleets.data.join("real/stpg"))?;
@@ -52,11 +52,12 @@ fn row((name, robots, kind, radius): (&str, usize, &str, f64), [orders, switchin
     // Writing to memory does not fail.
     let _ = writeln!(
         row,
-        "| {name} | {robots} | {kind} | {radius} | {} s | {} s | {} s | {} s | {:.3} | {:.3} | {}, {}, {} | {} × | {}, {}, {} |",
+        "| {name} | {robots} | {kind} | {radius} | {} s | {} s | {} s | {} s | {:.3} | {:.3} | {:.3} | {}, {}, {} | {} × | {}, {}, {} |",
         digits(orders.alone),
         digits(cells.travel),
         digits(orders.travel),
         digits(switching.travel),
+        orders.alone / cells.travel,
         orders.travel / cells.travel,
         switching.travel / cells.travel,
         orders.stuck,
