@@ -10,6 +10,7 @@
 //! traffic     random missions in a real warehouse
 //! plans       costs of start delays, and what is proved of them
 //! lifelong    fleets that run there for an hour
+//! layouts     fleets that run on other layouts
 //! execution   plans on grids carried out while robots are late
 //! roadmaps    tables of locks and of unsafe delays
 //! scale       fleets of up to 100,000 agents
@@ -19,6 +20,7 @@ mod execution;
 mod figures;
 mod fleets;
 mod grazing;
+mod layouts;
 mod lifelong;
 mod machine;
 mod memory;
@@ -117,7 +119,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 11] = [
+    const PARTS: [Part; 12] = [
         fleets::section,
         shares::section,
         figures::section,
@@ -126,6 +128,7 @@ pub fn write(
         traffic::section,
         plans::section,
         lifelong::section,
+        layouts::section,
         execution::section,
         roadmaps::section,
         scale::section,

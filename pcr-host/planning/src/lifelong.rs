@@ -23,6 +23,7 @@
 //! scene      the fleet as it is now, and routes through it
 //! search     orders on a way
 //! dispatch   ways and orders for a mission
+//! switching  orders that are turned round on the way
 //! clearing   robots that stand in the way of a mission
 //! record     what was done, for the independent checker        Certificate
 //! outcome    what comes of a run                               Outcome
@@ -31,11 +32,13 @@
 //! state      the fleet, its missions, what has come of it
 //! turns      whose turn it is, and who makes way for it
 //! decide     who looks for a way when
+//! alone      what robots would do if nobody was in their way
 //! run        a run
 //! answer     what `pcr traffic --hours` prints                 Lifelong
 //! ```
 
 mod abilities;
+mod alone;
 mod answer;
 mod book;
 mod clearing;
@@ -57,6 +60,7 @@ mod search;
 mod site;
 mod state;
 mod streets;
+mod switching;
 mod tasks;
 mod timetable;
 mod turns;
