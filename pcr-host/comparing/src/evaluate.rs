@@ -11,6 +11,7 @@
 //! traffic     random missions in a real warehouse
 //! plans       costs of start delays, and proved bounds
 //! lifelong    fleets that run in the warehouse for an hour
+//! layouts     fleets that run on other layouts
 //! execution   execution of plans on grids while robots are late
 //! roadmaps    tables of locks and of unsafe delays
 //! scale       fleets of up to 100,000 agents
@@ -20,6 +21,7 @@ mod execution;
 mod figures;
 mod fleets;
 mod grazing;
+mod layouts;
 mod lifelong;
 mod machine;
 mod memory;
@@ -118,7 +120,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     /// One after the other: they take the time of one another otherwise.
     type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 11] = [
+    const PARTS: [Part; 12] = [
         fleets::section,
         shares::section,
         figures::section,
@@ -127,6 +129,7 @@ pub fn write(
         traffic::section,
         plans::section,
         lifelong::section,
+        layouts::section,
         execution::section,
         roadmaps::section,
         scale::section,

@@ -33,6 +33,10 @@ const STEP: f64 = 1.0 / 16.0;
 /// Controls between two looks at the whole fleet.
 const LOOK: u32 = 16;
 
+/// How long a stop lasts on average, which is known from stops before; of a stop that lasts longer, how much longer is expected \[s\].
+const STOP: f64 = 15.0;
+const LOOK_AGAIN: f64 = 1.0;
+
 /// Speed of all robots \[m/s\]: a cell a step.
 const SPEED: f64 = 1.0;
 
@@ -95,7 +99,7 @@ trait Holds {
     /// How far a robot may go when all are here \[m\]; more than `wanted` does not matter. It never decreases.
     fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64;
 
-    /// Once a second: where all are, and for how long they are stopped as far as is known \[s\].
+    /// Once a second: where all are, and for how much longer they are expected to be stopped \[s\].
     fn look(&mut self, _at: &[f64], _stopped: &[f64]) {}
 }
 
@@ -250,12 +254,12 @@ impl<'a> Run<'a> {
         self
     }
 
-    /// For how long a robot is stopped that is stopped now \[s\].
+    /// For how long a robot that is stopped now is expected to be: nobody knows that of a stop, but how long stops are on average \[s\].
     fn stopped_for(&mut self, robot: usize, time: f64) -> f64 {
         if !self.is_stopped(robot, time) {
             return 0.0;
         }
-        self.stops[robot].get(self.passed[robot]).map_or(0.0, |stop| stop[1] - time)
+        self.stops[robot].get(self.passed[robot]).map_or(0.0, |stop| (STOP - (time - stop[0])).max(LOOK_AGAIN))
     }
 
     fn is_stopped(&mut self, robot: usize, time: f64) -> bool {

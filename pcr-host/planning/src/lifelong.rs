@@ -24,6 +24,7 @@
 //! scene      the present fleet, and routes through it
 //! search     orders on a way
 //! dispatch   ways and orders for a mission
+//! switching  orders that are reversed while robots drive
 //! clearing   moves robots out of the way of a mission
 //! record     motions of the robots, for the independent checker   Certificate
 //! outcome    results of a run                                     Outcome
@@ -32,11 +33,13 @@
 //! state      the fleet, its missions, and results so far
 //! turns      the order in which missions are tried
 //! decide     which robot looks for a way at what time
+//! alone      what robots would do if no other robot was in their way
 //! run        a run
 //! answer     the answer of `pcr traffic --hours`                  Lifelong
 //! ```
 
 mod abilities;
+mod alone;
 mod answer;
 mod book;
 mod clearing;
@@ -58,6 +61,7 @@ mod search;
 mod site;
 mod state;
 mod streets;
+mod switching;
 mod tasks;
 mod timetable;
 mod turns;

@@ -30,16 +30,18 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         usual.stop,
         100.0 * usual.slip
     );
-    let mut safe = 0;
+    let (mut safe, mut alone) = (0, Vec::new());
     for &agents in sizes {
         let answer = driven(&imported, agents, hours, &Method::ALL)?;
         safe = answer.well_formedness.safe_ends.len();
+        alone.push(format!("{} with {agents}", digits(answer.alone)));
         answer.runs.iter().for_each(|run| text.push_str(&row(agents, run)));
     }
     let _ = writeln!(
         text,
         "\nThe graph has {safe} safe ends. With more robots, some robot is always in the way of another one, and missions may wait \
-        for ever."
+        for ever. If no robot was in another one's way, robots with these missions and delays would do this many missions an hour: {}.",
+        alone.join(", ")
     );
     text.push_str(&large(extent)?);
     Ok(Section { text, pictures: Vec::new() })

@@ -78,7 +78,7 @@ impl<'a> Switching<'a> {
         Self { kept, regions, second, rows, ends }
     }
 
-    /// When all are where if they go on as they can and stops last as long as is known; none if somebody waits for ever.
+    /// When all are where if they go on as they can and stops last as long as is expected; none if somebody waits for ever.
     fn forecast(&self, at: &[f64], stopped: &[f64]) -> Result<Forecast, Vec<usize>> {
         let count = at.len();
         let line = |robot: usize| Line { start: stopped[robot] - at[robot] / SPEED, delays: Vec::new(), next: 0 };

@@ -21,6 +21,8 @@ pub struct Lifelong {
     pub delays: Delays,
     /// Where robots may stand, and what is hard about the layout.
     pub well_formedness: WellFormedness,
+    /// Missions an hour, after the first tenth of the time, that the robots would do if nobody was in anybody's way.
+    pub alone: f64,
     /// A run for each method.
     pub runs: Vec<Driven>,
     /// What was read otherwise than it was written.
@@ -50,10 +52,11 @@ impl Lifelong {
     /// Those of [`run`].
     pub fn of(imported: &Imported, request: Request, methods: &[Method]) -> Result<Self, String> {
         let mut well_formedness = WellFormedness::default();
-        let mut runs = Vec::new();
+        let (mut runs, mut alone) = (Vec::new(), 0.0);
         for &method in methods {
             let report = run(imported, Request { method, ..request })?;
             runs.push(Driven::of(&report));
+            alone = report.alone;
             well_formedness = report.layout;
         }
         Ok(Self {
@@ -64,6 +67,7 @@ impl Lifelong {
             radius: imported.vehicle.radius,
             delays: request.delays,
             well_formedness,
+            alone,
             runs,
             warnings: imported.layout.warnings.clone(),
         })

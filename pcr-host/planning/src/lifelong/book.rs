@@ -33,6 +33,12 @@ impl Region {
         &self.gates[second]
     }
 
+    /// With the two in the other order.
+    fn swapped(&self) -> Self {
+        let Self { robots: [a, b], hull: [own, other], gates: [first, second], .. } = self;
+        Self { robots: [*b, *a], hull: [*other, *own], gates: [second.clone(), first.clone()], first: 1 - self.first }
+    }
+
     /// Who is second.
     pub(super) fn second(&self) -> usize {
         self.robots[1 - self.first]
@@ -90,6 +96,23 @@ impl Book {
     /// The regions of a robot.
     pub(super) fn row(&self, robot: usize) -> impl Iterator<Item = &Region> {
         self.rows[robot].iter().filter_map(|&place| self.regions[place].as_ref())
+    }
+
+    /// The regions of a robot with their places, the robot as the first of the two.
+    pub(super) fn seen_by(&self, robot: usize) -> impl Iterator<Item = (usize, Region)> {
+        self.rows[robot].iter().filter_map(move |&place| {
+            let region = self.regions[place].as_ref()?;
+            Some((place, if region.robots[0] == robot { region.clone() } else { region.swapped() }))
+        })
+    }
+
+    /// Who goes first at some regions, by their places.
+    pub(super) fn settle(&mut self, firsts: &[(usize, usize)]) {
+        for &(place, first) in firsts {
+            if let Some(region) = &mut self.regions[place] {
+                region.first = usize::from(region.robots[1] == first);
+            }
+        }
     }
 
     /// How far a robot may go.

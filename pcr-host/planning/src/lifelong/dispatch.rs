@@ -184,7 +184,7 @@ impl Scene<'_> {
 
 impl Scene<'_> {
     /// A robot of a large fleet, and those who wait for it by the timetable: they may be earlier when it has another way.
-    fn waiting_for(&self, robot: usize) -> Vec<usize> {
+    pub(super) fn waiting_for(&self, robot: usize) -> Vec<usize> {
         let mut found = vec![robot];
         let firsts = self.book.row(robot).filter(|region| region.second() != robot);
         for region in firsts.filter(|region| self.timetable.is_some_and(|timetable| timetable.waits_at(region))) {

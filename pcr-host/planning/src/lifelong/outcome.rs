@@ -77,6 +77,9 @@ pub struct Report {
     pub outcome: Outcome,
     /// Of the layout.
     pub layout: WellFormedness,
+    /// Missions an hour, after the first tenth of the time, if nobody was in anybody's way; 0 where robots
+    /// share their tasks.
+    pub alone: f64,
     /// Time of each decision.
     pub decisions: Vec<Duration>,
     /// Time of all but the certificate.

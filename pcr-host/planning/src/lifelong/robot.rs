@@ -136,9 +136,9 @@ impl Robot {
     pub(super) fn progress(&self, other: Option<(&Way, f64, f64)>, time: f64, abilities: &Abilities) -> f64 {
         let corner = self.turned.checked_sub(1).and_then(|last| self.way.corners.get(last));
         let (there, departs) = match other {
-            Some((way, at, departs)) => (way.time(at), departs),
-            None if corner.is_some_and(|corner| corner.at == self.at) => (self.way.left_for(self.at), self.departs),
-            None => (self.way.time(self.at), self.departs),
+            Some((way, at, departs)) if !std::ptr::eq(way, &raw const self.way) => (way.time(at), departs),
+            _ if corner.is_some_and(|corner| corner.at == self.at) => (self.way.left_for(self.at), self.departs),
+            _ => (self.way.time(self.at), self.departs),
         };
         let slow = 0.5 * abilities.stop() * (1.0 - self.speed / abilities.speed);
         there - (departs.max(self.stopped_until).max(self.turning) - time).max(0.0) - slow

@@ -37,6 +37,8 @@ pub fn run_tasks(imported: &Imported, request: Request, tasks: &Tasks) -> Result
 }
 
 fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report, String> {
+    let steady = if run.tasks.is_none() { run.alone(START * request.duration) } else { 0 };
+    let alone = steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
     let mut certificate = Certificate::new();
     let mut window = Window::new(&run.site, &run.robots);
     let (mut still, mut time) = (0.0, Duration::ZERO);
@@ -55,6 +57,8 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
             run.give(now);
             run.refresh(tick, now);
             run.decide(now);
+        } else {
+            run.finish(tick, now);
         }
         let before: f64 = run.robots.iter().map(|robot| robot.at).sum();
         run.step(tick, now, open);
@@ -67,6 +71,7 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
     Ok(Report {
         outcome: run.finished(),
         layout: run.layout,
+        alone,
         decisions: run.decisions,
         time,
         last_arrival: run.last_arrival,

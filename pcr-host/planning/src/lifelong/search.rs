@@ -48,7 +48,7 @@ impl Case<'_, '_> {
     }
 
     /// Which of the two can go first at a region: the robot, the other one.
-    fn sides(&self, region: &Region) -> [bool; 2] {
+    pub(super) fn sides(&self, region: &Region) -> [bool; 2] {
         let other = &self.scene.robots[region.robots[1]];
         let at = [self.at, other.at];
         let stop = [self.stop, other.stop(self.scene.abilities)];
@@ -116,7 +116,7 @@ impl Case<'_, '_> {
     }
 
     /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
-    fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
+    pub(super) fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
         let mut tried = vec![false; regions.len()];
         for _ in 0..REPAIRS {
             match (self.budget.get(), self.scene.timetable) {

@@ -62,6 +62,8 @@ pub(super) struct Run {
     /// Missions given to each robot.
     pub(super) given: Vec<u64>,
     pub(super) reviewed: Vec<f64>,
+    /// When it was tried last to turn orders round for a robot.
+    pub(super) switched: Vec<f64>,
     pub(super) outcome: Outcome,
     pub(super) decisions: Vec<Duration>,
     pub(super) travel: (f64, f64),
@@ -134,6 +136,7 @@ impl Run {
             missions: vec![None; count],
             given: vec![0; count],
             reviewed: vec![0.0; count],
+            switched: vec![0.0; count],
             outcome,
             decisions: Vec::new(),
             travel: (0.0, 0.0),

@@ -52,7 +52,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
 /// # Errors
 /// Those of the writer.
 pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
-    let Lifelong { layout, seed, asked, hours, delays, well_formedness, runs, .. } = lifelong;
+    let Lifelong { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {asked} robots for {hours} h, seed {seed}", heading(name))?;
     writeln!(
@@ -70,6 +70,7 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
     if let Some(run) = runs.iter().find(|run| run.outcome.robots < *asked) {
         writeln!(out, "{} without a place to start", asked - run.outcome.robots)?;
     }
+    writeln!(out, "{alone:.0} missions an hour if nobody was in anybody's way")?;
     let mut columns = Columns::new(&[
         "<method",
         "robots",

@@ -1,0 +1,128 @@
+//! Fleets that run for a quarter of an hour on all layouts of others in the repository: orders beside locks.
+
+use super::{Extent, Fleets, Problem, Section};
+use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_planning::lifelong::{Delays, Driven, Lifelong, Method, Request};
+use pcr_planning::report::figures::digits;
+use std::fmt::Write as _;
+use std::fs;
+
+/// Layouts below `tests/data/real`, and the radius of the discs there \[m\]. The largest level of a building is taken.
+const LAYOUTS: [(&str, f64); 22] = [
+    ("nav2/warehouse_graph.geojson", 0.4),
+    ("nav2/aws_graph.geojson", 0.3),
+    ("nav2/sample_graph.geojson", 0.3),
+    ("rmf/battle_royale.building.yaml", 0.3),
+    ("rmf/hotel.building.yaml", 0.3),
+    ("rmf/office.building.yaml", 0.3),
+    ("rmf/triple_H.building.yaml", 0.3),
+    ("opendrive/Town01.planview.xodr", 1.0),
+    ("opendrive/Town02.planview.xodr", 1.0),
+    ("opentcs/Demo-01.xml", 0.3),
+    ("ccbs/sparse_map.xml", 0.35),
+    ("lif/example_01.lif.json", 0.3),
+    ("lif/example_02.lif.json", 0.3),
+    ("lif/example_03.lif.json", 0.3),
+    ("lif/example_04.lif.json", 0.3),
+    ("lif/example_05.lif.json", 0.3),
+    ("lif/example_06.lif.json", 0.3),
+    ("lif/example_07.lif.json", 0.3),
+    ("lif/example_08.lif.json", 0.3),
+    ("lif/example_09.lif.json", 0.3),
+    ("lif/example_10.lif.json", 0.3),
+    ("lif/example_17.lif.json", 0.3),
+];
+
+/// Sizes of fleets, where there is room for them.
+const SIZES: [usize; 3] = [10, 20, 30];
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let (layouts, hours): (&[(&str, f64)], f64) = match extent {
+        Extent::Full => (&LAYOUTS, 0.25),
+        Extent::Quick => (&LAYOUTS[1..3], 0.01),
+    };
+    let mut text = format!(
+        "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {SIZES:?} robots where so many find a \
+        place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --compare`, seed 1). *Safe*: safe ends; up to as many robots no mission is refused for ever. *Alone*: missions an hour if nobody was \
+        in anybody's way. *Locks*: the better one of locks on whole routes and on edges, by missions in all. *Decision*: by orders, 99 of 100 within.\n\n\
+        | layout | radius | safe | robots | alone | orders | locks | start delays | orders / locks | orders / alone | stuck | decision | contact |\n\
+        |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
+    );
+    let mut small = Vec::new();
+    for &(name, radius) in layouts {
+        let read = read(fleets, name, radius);
+        let imported = match read {
+            Ok(imported) => imported,
+            Err(problem) => {
+                small.push(format!("{name}: {problem}"));
+                continue;
+            }
+        };
+        for agents in SIZES {
+            let request = Request {
+                agents,
+                duration: 3600.0 * hours,
+                delays: Delays::default(),
+                seed: 1,
+                method: Method::Orders,
+            };
+            // Whether there is room is found by what is quick.
+            let tried = Lifelong::of(&imported, Request { duration: 1.0, ..request }, &[Method::RouteLocks]);
+            let room = tried.map(|it| (it.runs.first().map_or(0, |run| run.outcome.robots), it.well_formedness));
+            match room {
+                Ok((robots, _)) if robots == agents => {}
+                Ok((robots, layout)) => {
+                    if agents == SIZES[0] {
+                        let (nodes, safe) = (layout.nodes, layout.safe_ends.len());
+                        small.push(format!("{name}: {nodes} nodes, room for {robots} robots, {safe} safe ends"));
+                    }
+                    break;
+                }
+                Err(problem) => {
+                    small.push(format!("{name}: {problem}"));
+                    break;
+                }
+            }
+            let refused = |problem| Problem::Method(format!("{name}, {agents} robots"), problem);
+            let answer = Lifelong::of(&imported, request, &Method::ALL).map_err(refused)?;
+            text.push_str(&row(name, radius, agents, &answer));
+        }
+    }
+    if !small.is_empty() {
+        let _ = writeln!(text, "\nLayouts that cannot take {} robots:\n", SIZES[0]);
+        small.iter().for_each(|it| text.push_str(&format!("- {it}\n")));
+    }
+    Ok(Section { text, pictures: Vec::new() })
+}
+
+fn read(fleets: &Fleets, name: &str, radius: f64) -> Result<Imported, String> {
+    let path = fleets.data.join("real").join(name);
+    let text = fs::read_to_string(&path).map_err(|error| format!("cannot be read: {error}"))?;
+    let format = Format::of(&path, &text).ok_or("no layout")?;
+    let options = Options { radius: Some(radius), ..Options::default() };
+    import::roads(format, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+}
+
+fn row(name: &str, radius: f64, agents: usize, answer: &Lifelong) -> String {
+    let of = |method: Method| answer.runs.iter().find(|run| run.outcome.method == method);
+    let missions = |run: Option<&Driven>| run.map_or(0, |run| run.outcome.missions);
+    let [orders, routes, edges, delays] = Method::ALL.map(of);
+    let locks = missions(routes).max(missions(edges));
+    let which = if missions(routes) >= missions(edges) { Method::RouteLocks } else { Method::EdgeLocks };
+    let an_hour = orders.map_or(0.0, |run| run.outcome.missions_per_hour);
+    let stuck: usize = answer.runs.iter().map(|run| run.outcome.stuck).sum();
+    let verdicts = answer.runs.iter().map(|run| run.outcome.certificate.verdict);
+    let contact = verdicts.fold("none, proved", |worst, verdict| if verdict == "proved" { worst } else { verdict });
+    let ratio = |a: f64, b: f64| if b > 0.0 { digits(a / b) } else { "–".to_owned() };
+    format!(
+        "| {name} | {radius} | {} | {agents} | {} | {} | {locks} ({}) | {} | {} | {} | {stuck} | {} ms | {contact} |\n",
+        answer.well_formedness.safe_ends.len(),
+        digits(answer.alone),
+        missions(orders),
+        which.name(),
+        missions(delays),
+        ratio(missions(orders) as f64, locks as f64),
+        ratio(an_hour, answer.alone),
+        digits(1e3 * orders.map_or(0.0, |run| run.decision_p99))
+    )
+}

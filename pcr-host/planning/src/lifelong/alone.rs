@@ -1,0 +1,55 @@
+//! What robots would do if nobody was in anybody's way: the same missions, the same delays.
+
+use super::draws::{self, STEP, disturb};
+use super::robot::Robot;
+use super::site::From;
+use super::state::Run;
+use super::way::Way;
+
+/// Goals that a way goes to: at a goal it is known already where to turn.
+const GOALS: u64 = 2;
+
+impl Run {
+    /// Missions that all robots would carry out, each as if it were alone, on its quickest ways, after `begin` \[s\], until the end.
+    pub(super) fn alone(&self, begin: f64) -> usize {
+        (0..self.robots.len()).map(|robot| self.alone_with(robot, begin)).sum()
+    }
+
+    /// Those of one robot.
+    fn alone_with(&self, number: usize, begin: f64) -> usize {
+        let Self { abilities, request, .. } = self;
+        let mut robot = Robot::new(self.robots[number].way.clone());
+        let (mut given, mut done) = (0, 0);
+        let steps = (request.duration / STEP) as usize;
+        for tick in 0..steps {
+            let now = tick as f64 * STEP;
+            if robot.way.goals.is_empty() {
+                let Some((way, before)) = self.onward(&robot, number, given) else { return done };
+                given += GOALS;
+                robot.take(way, before);
+            }
+            disturb(&mut robot, number, tick, now, true, request);
+            if robot.drive(f64::INFINITY, now, STEP, abilities) && now + STEP > begin {
+                done += 1;
+            }
+            robot.done.clear();
+        }
+        done
+    }
+
+    /// The quickest way of a robot to its next goals, and what is cut off from the way before \[m\].
+    fn onward(&self, robot: &Robot, number: usize, given: u64) -> Option<(Way, f64)> {
+        let Self { site, ends, abilities, network, request, .. } = self;
+        let kept = robot.way.kept(site, robot.at, robot.stop(abilities), robot.turned);
+        let (mut atoms, mut goals, mut from) = (kept.atoms.clone(), Vec::new(), kept.on);
+        for next in given..given + GOALS {
+            let goal = draws::goal(site, ends, request.seed, number, next, from.node);
+            let part = network.quickest(site, from, |_| 0.0, |node| node == goal, Some(goal), 1).pop()?;
+            let heading = part.iter().rev().find_map(|&last| site.atoms[last].headings).map(|headings| headings[1]);
+            from = From { node: goal, heading: heading.or(from.heading) };
+            atoms.extend(part);
+            goals.push(atoms.len());
+        }
+        Some((Way::new(site, kept.from, &atoms, &goals, abilities), kept.before))
+    }
+}

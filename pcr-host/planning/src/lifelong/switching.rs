@@ -1,0 +1,60 @@
+//! Orders that are turned round while robots are on their ways: somebody waits for another one that is late.
+
+use super::book::Region;
+use super::forecast::Forecast;
+use super::gates::hold;
+use super::scene::Scene;
+use super::search::Case;
+use super::timetable::Timeline;
+use super::waits::Waits;
+use std::cell::Cell;
+
+/// Forecasts for one switch.
+const FORECASTS: usize = 6;
+
+/// Orders of a robot that are turned round.
+#[derive(Debug)]
+pub(super) struct Switched {
+    /// Places of regions, and who goes first there now.
+    pub(super) firsts: Vec<(usize, usize)>,
+    /// Robots that go by another timetable then.
+    pub(super) lines: Vec<(usize, Timeline)>,
+}
+
+impl Scene<'_> {
+    /// Lets a robot of a large fleet go first where it waits, if it can and all are expected to arrive sooner by `gain` \[s\].
+    pub(super) fn switched(&self, robot: usize, gain: f64) -> Option<Switched> {
+        let timetable = self.timetable?;
+        let it = &self.robots[robot];
+        let (places, mut regions): (Vec<usize>, Vec<Region>) = self.book.seen_by(robot).unzip();
+        let held = |region: &Region| match region.first {
+            1 => hold(region.gates(), self.robots[region.robots[1]].at),
+            _ => f64::INFINITY,
+        };
+        let holds: Vec<f64> = regions.iter().map(held).collect();
+        let nearest = (0..regions.len()).min_by(|&a, &b| holds[a].total_cmp(&holds[b]))?;
+        if holds[nearest] > it.at + self.abilities.braking(self.abilities.speed) {
+            return None;
+        }
+        let waits = &Waits::of(self.robots, self.book, Some(robot));
+        let (base, taken) = (&timetable.lines[..], &self.waiting_for(robot)[..]);
+        let cost = base[robot].cost(&it.way, self.time);
+        let budget = &Cell::new(FORECASTS);
+        let [at, stop] = [it.at, it.stop(self.abilities)];
+        let case = Case { scene: self, base, waits, taken, robot, way: &it.way, at, stop, budget };
+        let mut open: Vec<bool> = regions.iter().map(|region| case.sides(region) == [true; 2]).collect();
+        if !open[nearest] {
+            return None;
+        }
+        open[nearest] = false;
+        let before: Vec<usize> = regions.iter().map(|region| region.first).collect();
+        regions[nearest].first = 0;
+        let Forecast { robots, lines, cost: found } = case.repaired(&mut regions, &open)?;
+        if found + gain > cost {
+            return None;
+        }
+        let changed = (0..regions.len()).filter(|&k| regions[k].first != before[k]);
+        let firsts = changed.map(|k| (places[k], regions[k].robots[regions[k].first])).collect();
+        Some(Switched { firsts, lines: robots.into_iter().zip(lines).collect() })
+    }
+}
