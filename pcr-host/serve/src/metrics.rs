@@ -43,7 +43,6 @@ pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
         ("missions_total", "counter", "Missions asked for.", counts.missions),
         ("missions_admitted_total", "counter", "Missions admitted.", counts.admitted),
         ("missions_refused_total", "counter", "Attempts to admit a mission that were refused.", counts.refused),
-        ("orders_switched_total", "counter", "Robots that were let go before one that comes later.", counts.switched),
         ("missions_dropped_total", "counter", "Missions given up.", counts.dropped),
         ("holds_total", "counter", "Holds told.", counts.holds),
         ("evaluations_total", "counter", "Holds computed.", counts.evaluations),

@@ -140,8 +140,6 @@ pub struct Robot {
     pub silent: bool,
     /// When it was seen to go on last, or got a path \[s\].
     pub moved: Option<f64>,
-    /// When it was tried last to let it go before others \[s\].
-    pub tried: f64,
     /// Whether it has been said since then that nothing goes on because of it.
     pub stands: bool,
     /// What others have to remember of it, by what it is about.
@@ -173,7 +171,6 @@ impl Robot {
             waiting: None,
             silent: false,
             moved: None,
-            tried: f64::NEG_INFINITY,
             stands: false,
             notes: BTreeMap::new(),
         }

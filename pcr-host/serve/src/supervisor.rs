@@ -9,7 +9,6 @@ mod places;
 mod release;
 mod restore;
 mod standstill;
-mod switching;
 
 pub use admission::{Proposal, Verdict};
 pub use places::Report;
@@ -67,8 +66,6 @@ pub struct Counts {
     pub admitted: u64,
     /// Attempts to admit one that were refused.
     pub refused: u64,
-    /// Robots that were let go before one that comes later.
-    pub switched: u64,
     /// Missions that were given up.
     pub dropped: u64,
     /// Holds that were told.
@@ -107,8 +104,6 @@ pub struct Supervisor {
     spent: u64,
     /// When it was looked last who gets nowhere \[s\].
     looked: f64,
-    /// When it was looked last who could go before others \[s\].
-    switched: f64,
     /// Whether somebody may be in the way of somebody who has been allowed to go there.
     hazards: bool,
     counts: Counts,
@@ -140,7 +135,6 @@ impl Supervisor {
             census: 0,
             spent: 0,
             looked: f64::NEG_INFINITY,
-            switched: f64::NEG_INFINITY,
             hazards: false,
             counts: Counts::default(),
             broken: None,
@@ -337,7 +331,6 @@ impl Supervisor {
             return;
         }
         self.retry(now);
-        self.switch(now);
         self.note_silence(now);
         let limits = self.limits(now);
         self.release(&limits);

@@ -72,7 +72,7 @@ impl Supervisor {
         (0..self.robots.len()).any(is_overtaken)
     }
 
-    pub(super) fn since(&self, place: usize, now: f64) -> f64 {
+    fn since(&self, place: usize, now: f64) -> f64 {
         self.robots[place].moved.map_or(0.0, |moved| now - moved)
     }
 
@@ -81,7 +81,7 @@ impl Supervisor {
     }
 
     /// For whom a robot waits, that has something to do and may not go on.
-    pub(super) fn kept_by(&self, place: usize) -> Option<usize> {
+    fn kept_by(&self, place: usize) -> Option<usize> {
         let robot = &self.robots[place];
         if !robot.has_arrived(self.settings.width) {
             let waits = robot.told <= robot.at + self.settings.width;

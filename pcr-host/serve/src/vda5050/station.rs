@@ -202,7 +202,7 @@ impl Station {
             (Claim::Ours, false) if is_online && insists && text("session") < self.session.as_str() => {
                 return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
             }
-            (Claim::Ours, false) => {
+            (Claim::Seen(_) | Claim::Ours, false) => {
                 self.log.push(format!("another supervisor, {}, comes or goes", text("session")));
                 let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE", true));
             }

@@ -191,9 +191,9 @@ fn faults_one_after_the_other() {
         site.lasts(Duration::from_secs_f64(LATE));
         tally.over(&mut site, "messages came 30 s late, twice, in any order, or not at all");
         eprintln!("round {round}: {} missions done", site.office.manager.done());
-    }
-    for (what, count, longest) in &tally.0 {
-        eprintln!("{count} times {what}: on after {longest:.2} s at most");
+        for (what, count, longest) in &tally.0 {
+            eprintln!("{count} times {what}: on after {longest:.2} s at most");
+        }
     }
     let anew = site.office.manager.planned_anew();
     assert!(anew > 0);
