@@ -3,11 +3,13 @@
 use super::super::held::Held;
 use super::super::order::{Edge, Node, NodePosition};
 use super::super::way::Way;
-use super::orders::BEGINS;
 use crate::course::Start;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+
+/// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
+pub(super) const BEGINS: f64 = 1.0;
 
 /// Where the base of the vehicle's order may end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

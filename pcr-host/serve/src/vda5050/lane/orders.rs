@@ -7,11 +7,8 @@ use super::super::state::StateError;
 use super::super::version::{Error, Version};
 use super::super::way::{TOLERANCE, Way};
 use super::Lane;
-use super::job::{Job, mission};
+use super::job::{BEGINS, Job, mission};
 use crate::supervisor::{Proposal, Supervisor, Verdict};
-
-/// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
-pub(super) const BEGINS: f64 = 1.0;
 
 impl Lane {
     /// Takes an order or an update of the manager, or tells it why not.
