@@ -6,7 +6,7 @@ use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::Format;
 use pcr_tests::adversary::{Tally, Way, run};
 
-const SEEDS: u64 = if cfg!(optimized) { 500 } else { 40 };
+const SEEDS: u64 = if cfg!(optimized) { 200 } else { 40 };
 
 fn audited<S: Format>() {
     let mut all = Tally::default();
@@ -22,7 +22,9 @@ fn audited<S: Format>() {
         all.fleets > seeds / 2 && all.admitted > seeds && all.amid > seeds / 8 && all.refused > seeds / 4,
         "{all:?}"
     );
-    assert!(all.to_the_hold > seeds && all.close > seeds / 10, "{all:?}");
+    assert!(all.to_the_hold > seeds, "{all:?}");
+    // What is rounded to quarters of a millimetre keeps more than a thousandth of a metre from everybody.
+    assert!(S::STEP > 1e-4 || all.close > seeds / 10, "{all:?}");
 }
 
 #[test]
