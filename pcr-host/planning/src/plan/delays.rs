@@ -79,8 +79,8 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
     let begin = Instant::now();
     let after = |time: Duration| effort.time.is_some() && begin.elapsed() >= time;
     let time = effort.time.unwrap_or_default();
-    let of_all = known.iter().filter_map(|delays| delays.iter().copied().collect::<Option<Vec<i64>>>());
-    let left = match of_all.filter(|delays| problem.allows(delays)).next() {
+    let mut of_all = known.iter().filter_map(|delays| delays.iter().copied().collect::<Option<Vec<i64>>>());
+    let left = match of_all.find(|delays| problem.allows(delays)) {
         Some(delays) => Left::nobody(delays),
         None => {
             let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
