@@ -51,6 +51,8 @@ pub(super) struct Site {
     pub(super) back: Vec<Option<usize>>,
     /// For each atom those that may touch it.
     near: Vec<Vec<usize>>,
+    /// What curves may be off, and their ends from nodes \[m\].
+    pub(super) off: f64,
     /// With margins, and what the curves may be off \[m\].
     radius: f64,
     /// How they touch, in the same places, once that was asked for.
@@ -114,7 +116,7 @@ impl Site {
         let back = atoms.iter().enumerate().map(back).collect();
         let contacts = near.iter().map(|near| vec![OnceCell::new(); near.len()]).collect();
         let covers = RefCell::default();
-        let site = Self { points, atoms, leaving, coming, nodes, back, near, radius, contacts, covers };
+        let site = Self { points, atoms, leaving, coming, nodes, back, near, off, radius, contacts, covers };
         site.atoms.iter().try_for_each(|atom| atom.motion(radius).map(drop)).map_err(|invalid| invalid.to_string())?;
         Ok(site)
     }
