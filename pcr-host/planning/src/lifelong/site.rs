@@ -13,6 +13,9 @@ use std::rc::Rc;
 /// More room than the discs need, for rounding \[m\].
 const ROOM: f64 = 1e-4;
 
+/// As many gaps between edges, as large as the largest one, are in what a certificate looks at at once, about.
+const GAPS: f64 = 4.0;
+
 /// Holds follow the first robot in steps of so many radii.
 const PITCH: f64 = 2.0;
 
@@ -100,7 +103,8 @@ impl Site {
         for (node, &at) in points.iter().enumerate() {
             atoms.push(Atom::node(node, at).map_err(|invalid| format!("a node: {invalid}"))?);
         }
-        let radius = vehicle.radius + vehicle.margin + off + 0.5 * ROOM;
+        let gaps = atoms.iter().map(|atom| atom.gap(&points)).fold(0.0, f64::max);
+        let radius = vehicle.radius + vehicle.margin + off + GAPS * gaps + 0.5 * ROOM;
         let near = neighbours(&atoms, 2.0 * radius);
         let back = |(place, atom): (usize, &Atom)| {
             let [a, b] = atom.ends;
