@@ -37,12 +37,12 @@ const LAYOUTS: [(&str, f64); 22] = [
 const SIZES: [usize; 3] = [10, 20, 30];
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
-    let (layouts, hours): (&[(&str, f64)], f64) = match extent {
-        Extent::Full => (&LAYOUTS, 0.25),
-        Extent::Quick => (&LAYOUTS[1..3], 0.01),
+    let (layouts, sizes, hours): (&[(&str, f64)], &[usize], f64) = match extent {
+        Extent::Full => (&LAYOUTS, &SIZES, 0.25),
+        Extent::Quick => (&LAYOUTS[1..3], &SIZES[..1], 0.002),
     };
     let mut text = format!(
-        "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {SIZES:?} robots where so many find a \
+        "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {sizes:?} robots where so many find a \
         place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --compare`, seed 1). *Safe*: safe ends; up to as many robots no mission is refused for ever. *Alone*: missions an hour if nobody was \
         in anybody's way. *Locks*: the better one of locks on whole routes and on edges, by missions in all. *Decision*: by orders, 99 of 100 within.\n\n\
         | layout | radius | safe | robots | alone | orders | locks | start delays | orders / locks | orders / alone | stuck | decision | contact |\n\
@@ -58,7 +58,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
                 continue;
             }
         };
-        for agents in SIZES {
+        for &agents in sizes {
             let request = Request {
                 agents,
                 duration: 3600.0 * hours,

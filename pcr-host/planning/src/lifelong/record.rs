@@ -26,6 +26,9 @@ pub struct Certificate {
     pub error: Option<String>,
 }
 
+/// Places as near are the same \[m\].
+const ROUNDING: f64 = 1e-6;
+
 impl Certificate {
     /// Nothing is checked yet.
     pub(super) fn new() -> Self {
@@ -42,13 +45,16 @@ impl Certificate {
             .enumerate()
             .map(|(id, (robot, place))| {
                 let (phases, trail, since) = robot.report(place.since);
-                let (agent, ends, gaps) =
+                let (mut agent, ends, gaps) =
                     agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
                 *place = Place::of(site, robot);
-                // What is certified is what has been done, or nothing is certified.
-                if (ends[0] - place.at[0]).hypot(ends[1] - place.at[1]) > 1e-6 + gaps {
+                // What is certified is what has been done, or nothing is certified. At a node one edge ends a little beside the next one.
+                let apart = (ends[0] - place.at[0]).hypot(ends[1] - place.at[1]);
+                if apart > ROUNDING + gaps + 2.0 * site.off {
                     return Err(format!("robot {id}: its record ends at {ends:?}, it is at {:?}", place.at));
                 }
+                let gaps = if apart > ROUNDING { gaps + apart } else { gaps };
+                agent.radius += gaps;
                 widened |= gaps > 0.0;
                 Mover::new(&agent, [begin, end])
             })
@@ -104,7 +110,7 @@ impl Window {
 }
 
 /// A robot that did this in a window, on these atoms from a length of the first one on; where that ends; and the sum of the gaps where
-/// shapes of the layout do not meet: its path here has none, so that it is up to so far off, for which its disc is larger \[m\].
+/// shapes of the layout do not meet: its path here has none, so that it is up to so far off \[m\].
 fn agent(
     site: &Site,
     id: u64,
@@ -137,7 +143,6 @@ fn agent(
         (end[0] - at[0]).hypot(end[1] - at[1])
     };
     let gaps: f64 = shapes.windows(2).map(gap).filter(|gap| *gap > NO_GAP).sum();
-    let radius = radius + gaps;
     let parts = cut(&shapes, since, length);
     let ends = parts.last().map_or(at, Placed::end);
     Ok((Agent { id, radius, path: path(&parts, at, length), travel: Some(travel) }, ends, gaps))

@@ -13,6 +13,9 @@ use std::rc::Rc;
 /// More room than the discs need, for rounding \[m\].
 const ROOM: f64 = 1e-4;
 
+/// As many gaps between edges, as large as the largest one, are in what a certificate looks at at once, about.
+const GAPS: f64 = 4.0;
+
 /// Holds follow the first robot in steps of so many radii.
 const PITCH: f64 = 2.0;
 
@@ -51,6 +54,8 @@ pub(super) struct Site {
     pub(super) back: Vec<Option<usize>>,
     /// For each atom those that may touch it.
     near: Vec<Vec<usize>>,
+    /// What curves may be off, and their ends from nodes \[m\].
+    pub(super) off: f64,
     /// With margins, and what the curves may be off \[m\].
     radius: f64,
     /// How they touch, in the same places, once that was asked for.
@@ -98,7 +103,8 @@ impl Site {
         for (node, &at) in points.iter().enumerate() {
             atoms.push(Atom::node(node, at).map_err(|invalid| format!("a node: {invalid}"))?);
         }
-        let radius = vehicle.radius + vehicle.margin + off + 0.5 * ROOM;
+        let gaps = atoms.iter().map(|atom| atom.gap(&points)).fold(0.0, f64::max);
+        let radius = vehicle.radius + vehicle.margin + off + GAPS * gaps + 0.5 * ROOM;
         let near = neighbours(&atoms, 2.0 * radius);
         let back = |(place, atom): (usize, &Atom)| {
             let [a, b] = atom.ends;
@@ -114,7 +120,7 @@ impl Site {
         let back = atoms.iter().enumerate().map(back).collect();
         let contacts = near.iter().map(|near| vec![OnceCell::new(); near.len()]).collect();
         let covers = RefCell::default();
-        let site = Self { points, atoms, leaving, coming, nodes, back, near, radius, contacts, covers };
+        let site = Self { points, atoms, leaving, coming, nodes, back, near, off, radius, contacts, covers };
         site.atoms.iter().try_for_each(|atom| atom.motion(radius).map(drop)).map_err(|invalid| invalid.to_string())?;
         Ok(site)
     }
