@@ -153,7 +153,10 @@ impl<W: Write> Yard<W> {
         let said = self.said();
         let settled = match self.settings.method {
             Method::Supervisor => self.supervised(said),
-            _ => Ok(said.into_iter().for_each(|message| self.desks[1].send(message, now))),
+            _ => {
+                said.into_iter().for_each(|message| self.desks[1].send(message, now));
+                Ok(())
+            }
         };
         self.managed();
         for member in &mut self.members {
