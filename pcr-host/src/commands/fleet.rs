@@ -26,7 +26,9 @@ Examples:
   pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager --record run.txt --time 600 --pace 10
   pcr fleet --certify run.txt                                                   prove that nobody touched anybody
   pcr fleet warehouse_graph.geojson --alone supervisor --time 3600 --finish      without a broker, as fast as that can be computed
-  pcr fleet warehouse_graph.geojson --alone edge-locks --time 3600 --finish      the same vehicles and missions, kept apart by locks";
+  pcr fleet warehouse_graph.geojson --alone edge-locks --time 3600 --finish      the same vehicles and missions, kept apart by locks
+
+User and password of the broker are read from PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 
 /// Simulate VDA 5050 vehicles at a broker, and their fleet manager
 #[derive(Args)]
@@ -36,49 +38,49 @@ pub(super) struct Arguments {
     /// Layout; vehicles stand at its safe ends and go from one to another
     #[arg(required_unless_present_any = ["certify", "streets"])]
     layout: Option<PathBuf>,
-    /// A generated site of so many one-way streets each way, with bays to stand in, instead of a layout
+    /// A generated site with N streets each way, instead of a layout
     #[arg(long, value_name = "N", conflicts_with = "layout")]
     streets: Option<usize>,
-    /// HOST:PORT; user and password from PCR_BROKER_USER and PCR_BROKER_PASSWORD
+    /// Address of the broker
     #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
     broker: String,
-    /// How many
+    /// Number of vehicles
     #[arg(long, value_name = "N", default_value_t = 8)]
     vehicles: usize,
-    /// A fleet manager, too
+    /// Simulate their fleet manager, too
     #[arg(long)]
     manager: bool,
-    /// First levels of the topics of the fleet manager and of the vehicles
+    /// First levels of their topics
     #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
     topics: Vec<String>,
-    /// Their seconds in one of ours, 0.1 to 100
+    /// Simulated seconds per second, 0.1 to 100
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     pace: f64,
-    /// End after so many of their seconds
+    /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// No more missions then, and end when all that are under way are done, or after an hour of theirs
+    /// Then let all missions under way finish, within an hour
     #[arg(long, requires = "time")]
     finish: bool,
-    /// Without a broker, in steps of time: vehicles, their manager, and what keeps them apart (supervisor, route-locks or edge-locks)
+    /// Without a broker: supervisor, route-locks or edge-locks
     #[arg(long, value_name = "METHOD", requires = "time")]
     alone: Option<String>,
-    /// Connections lost by each vehicle, an hour of ours; of theirs with --alone
+    /// Connections that each vehicle loses per hour
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     drops: f64,
-    /// Part of the messages that is lost, comes twice, and comes up to 3 s late, each
+    /// Part of messages lost, repeated and late, each
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     weather: f64,
     /// The same seed makes the same vehicles
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Where the vehicles really are
+    /// Write the true positions of the vehicles
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Prove that the vehicles of a record never touched
     #[arg(long, value_name = "FILE", conflicts_with = "layout")]
     certify: Option<PathBuf>,
-    /// What the supervisor has to know of the vehicles, for `pcr serve --fleet`
+    /// Write the vehicles for `pcr serve --fleet`
     #[arg(long, value_name = "FILE")]
     profiles: Option<PathBuf>,
 }
