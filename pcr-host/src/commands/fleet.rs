@@ -26,7 +26,7 @@ Examples:
   pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager --record run.txt --time 600 --pace 10
   pcr fleet --certify run.txt                                                   prove that nobody touched anybody
   pcr fleet warehouse_graph.geojson --alone supervisor --time 3600 --finish     without a broker, as fast as possible
-  pcr fleet warehouse_graph.geojson --alone edge-locks --time 3600 --finish     the same vehicles and missions with locks
+  pcr fleet warehouse_graph.geojson --alone edge-locks --time 3600 --finish     the same with locks on edges
 
 User and password of the broker are read from PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 
