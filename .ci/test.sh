@@ -87,10 +87,7 @@ benches() {
 # Files that are written for openTCS, against its schema; those of all formats, by readers that share nothing with the tool.
 schemas() {
   step "plant models, by the schema of openTCS"
-  if ! command -v xmllint >/dev/null; then
-    echo "installing libxml2-utils"
-    apt-get -qq update && apt-get -o DPkg::Lock::Timeout=1200 -qq install -y --no-install-recommends libxml2-utils >/dev/null
-  fi
+  command -v xmllint >/dev/null || .ci/install.sh libxml2-utils
   cargo test "${checked[@]}" --test tool -- --ignored plant_models
   step "written files, by readers of their own"
   tests/readers/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
