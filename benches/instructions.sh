@@ -32,6 +32,7 @@ figure() {
     figure conflicts $fleet "when agents are in contact"
     figure pairs $fleet "when agents are in contact, pair by pair"
   done
+  figure table serpentine "all regions, both directions" # linear in the pieces, although all are of one pair
   figure exchange table6-100 "exchange of one agent"
   figure certify paper12 "proof of the table"
   figure motions paper12 "proof of the motions, or a contact of each pair"

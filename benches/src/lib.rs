@@ -62,6 +62,24 @@ pub fn scattered<S: Format>(columns: u32) -> Fleet<S> {
     from_json(&format!(r#"{{"agents":[{}]}}"#, agents.collect::<Vec<_>>().join(",")))
 }
 
+/// A path of 4000 lines and half circles, to and fro, and one straight path that crosses each line.
+///
+/// # Panics
+/// Never: the scenario is valid.
+pub fn serpentine() -> Fleet<f64> {
+    let bends = (0..2000).map(|k| {
+        let sweep = if k % 2 == 0 { -std::f64::consts::PI } else { std::f64::consts::PI };
+        format!(r#"{{"kind":"line","length":10}},{{"kind":"arc","radius":0.5,"sweep":{sweep}}}"#)
+    });
+    let up = std::f64::consts::FRAC_PI_2;
+    from_json(&format!(
+        r#"{{"agents":[
+            {{"id":1,"radius":0.1,"v_max":1,"a_max":1,"start":{{"x":0,"y":-5,"heading":{up}}},"path":[{}]}},
+            {{"id":2,"radius":0.1,"v_max":1,"a_max":1,"start":{{"x":-1,"y":0,"heading":0}},"path":[{{"kind":"line","length":2002}}]}}]}}"#,
+        bends.collect::<Vec<_>>().join(",")
+    ))
+}
+
 /// Room for a broad phase of 16 parts.
 pub fn boxes<S: Scalar>(fleet: &[Motion<'_, S>]) -> Vec<Bounds<S>> {
     vec![Bounds::default(); fleet.len() * (1 + 16)]

@@ -77,17 +77,35 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 
     /// Joins pieces across the joints of either path (paper, Fig. 14c).
+    ///
+    /// Pieces are sorted by the second segment, then by the first. So the neighbours across a joint of the first path
+    /// follow at once, and those across a joint of the second path are found by a second index, which never goes back.
     fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
+        let place = |piece: &Piece<S>| (u32::from(piece.second_segment) << 16) | u32::from(piece.first_segment);
         let mut a = pieces.first_pending();
+        let mut next_row = a;
         while let Some(&before) = pieces.slots().get(a as usize) {
-            // Pieces are sorted by the second segment, then by the first: neighbours across a joint follow at most one
-            // row later.
+            // A path has at most 2^16 - 1 segments, so the first index does not reach the second.
+            let (beside, above) = (place(&before).saturating_add(1), place(&before).saturating_add(1 << 16));
             let mut b = before.next;
-            while let Some(&after) = pieces.slots().get(b as usize) {
-                if after.second_segment.saturating_sub(before.second_segment) > 1 {
-                    break;
+            while let Some(&after) = pieces.slots().get(b as usize)
+                && place(&after) <= beside
+            {
+                if place(&after) == beside && self.meet_at_joint_of_first(&before, &after) {
+                    pieces.join(a, b);
                 }
-                if self.meet_at_joint_of_second(&before, &after) || self.meet_at_joint_of_first(&before, &after) {
+                b = after.next;
+            }
+            while let Some(piece) = pieces.slots().get(next_row as usize)
+                && place(piece) < above
+            {
+                next_row = piece.next;
+            }
+            let mut b = next_row;
+            while let Some(&after) = pieces.slots().get(b as usize)
+                && place(&after) == above
+            {
+                if self.meet_at_joint_of_second(&before, &after) {
                     pieces.join(a, b);
                 }
                 b = after.next;
@@ -96,14 +114,12 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
+    /// Pieces of neighbouring segments of the second path, and of one segment of the first.
+    ///
     /// At a joint of the second path both pieces end in slices of the first path around the same point. They meet if
     /// they share a slice.
     fn meet_at_joint_of_second(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
-        let neighbours = after.first_segment == before.first_segment
-            && after.second_segment.checked_sub(1) == Some(before.second_segment)
-            && after.second.lo == S::ZERO
-            && before.first.meets(after.first);
-        if !neighbours {
+        if after.second.lo != S::ZERO || !before.first.meets(after.first) {
             return false;
         }
         let (Some(own), Some(other)) = self.segments(before) else {
@@ -121,14 +137,12 @@ impl<'a, S: Scalar> Pair<'a, S> {
         before.into_iter().flatten().any(|slice| after.contains(&Some(slice)))
     }
 
+    /// Pieces of neighbouring segments of the first path, and of one segment of the second.
+    ///
     /// At a joint of the first path the pieces share intervals of the second segment: those within reach of the joint.
     /// The pieces meet if the middle of one of these intervals belongs to both.
     fn meet_at_joint_of_first(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
-        let neighbours = after.second_segment == before.second_segment
-            && after.first_segment.checked_sub(1) == Some(before.first_segment)
-            && after.first.lo == S::ZERO
-            && before.second.meets(after.second);
-        if !neighbours {
+        if after.first.lo != S::ZERO || !before.second.meets(after.second) {
             return false;
         }
         let (Some(own), Some(next), Some(other)) = (

@@ -215,11 +215,19 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
     }
 
     /// Moves the first pending piece, and those that were joined with it, from the pending list to a list of their own.
-    /// O(pending pieces).
+    /// O(1) if there are none, otherwise O(pending pieces).
     pub(crate) fn take_region(&mut self) -> Option<u32> {
         let slots = self.slots.as_mut();
         let head = self.pending.first;
-        let group = slots.get(head as usize)?.group;
+        let first = slots.get_mut(head as usize)?;
+        let group = first.group;
+        if group & JOINED == 0 {
+            self.pending.first = core::mem::replace(&mut first.next, NONE);
+            if self.pending.first == NONE {
+                self.pending = Pending::NOTHING;
+            }
+            return Some(head);
+        }
         let (mut taken, mut rest) = (NONE, NONE);
         let (mut index, mut rest_head) = (head, NONE);
         while let Some(piece) = slots.get_mut(index as usize) {

@@ -3,9 +3,9 @@
 //! The jobs are `table` (all regions of the fleet), `exchange` (those of its first agent), `conflicts` (when agents are in
 //! contact), `pairs` (the same without a broad phase, pair by pair), `certify` (the proof of the table) and `motions` (the proof that
 //! nobody meets, or where). Fleets are `scattered`, 100 agents that cannot meet,
-//! and the files of `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
+//! `serpentine`, two agents whose paths cross 2000 times, and the files of `tests/data`. Prints the pairs of agents and the pieces of both directions of the fleet.
 
-use pcr_benches::{Storage, boxes, fleet, scattered};
+use pcr_benches::{Storage, boxes, fleet, scattered, serpentine};
 use pcr_certify::motion::{Mover, meetings};
 use pcr_certify::table::{Checker, Margin};
 use pcr_core::{BroadPhase, Encounter, Interval, Motion};
@@ -25,7 +25,11 @@ fn main() -> ExitCode {
         eprintln!("work {} FLEET TIMES", JOBS.join("|"));
         return ExitCode::from(2);
     };
-    let fleet = if name == "scattered" { scattered::<f64>(10) } else { fleet::<f64>(name) };
+    let fleet = match name {
+        "scattered" => scattered::<f64>(10),
+        "serpentine" => serpentine(),
+        _ => fleet::<f64>(name),
+    };
     let mut motions = fleet.motions();
     let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
     let mut storage = Storage::of(&motions);
