@@ -34,7 +34,7 @@ struct Measured {
 pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let sizes: &[usize] = match extent {
         Extent::Full => &[300, 1_000, 3_000, 10_000, 30_000, 150_000],
-        Extent::Quick => &[100, 200],
+        Extent::Quick => &[20, 40],
     };
     let mut text = format!(
         "## Roadmaps\n\nRandom nodes, one per {} m² on average, each joined with its {NEIGHBOURS} nearest ones in both directions; discs of {RADIUS} \

@@ -144,7 +144,7 @@ fn a_supervisor_that_is_killed_at_every_other_write() {
     let disc = Mortal::default();
     let mut yard = open(Scene { climate: Climate::default(), ..MIXED }, 4, Method::Supervisor, Box::new(disc.clone()));
     let mut kills = 0;
-    until(&mut yard, 16, |yard| {
+    until(&mut yard, 6, |yard| {
         let entries = disc.entries.lock().unwrap().clone();
         yard.revive(Supervisor::restored(at_broker(), entries, Box::new(disc.clone())).unwrap());
         kills += 1;
