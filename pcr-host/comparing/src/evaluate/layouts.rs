@@ -34,7 +34,7 @@ const LAYOUTS: [(&str, f64); 22] = [
 ];
 
 /// Sizes of fleets, where there is room for them.
-const SIZES: [usize; 3] = [10, 20, 30];
+const SIZES: [usize; 2] = [10, 20];
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
     let (layouts, sizes, hours): (&[(&str, f64)], &[usize], f64) = match extent {
