@@ -79,7 +79,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     /// Joins pieces across the joints of either path (paper, Fig. 14c).
     ///
     /// Pieces are sorted by the second segment, then by the first. So the neighbours across a joint of the first path
-    /// follow at once, and those across a joint of the second path are found by a second index, which never goes back.
+    /// follow at once, and those across a joint of the second path begin at an index that never goes back.
     fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
         let place = |piece: &Piece<S>| (u32::from(piece.second_segment) << 16) | u32::from(piece.first_segment);
         let mut a = pieces.first_pending();
@@ -87,28 +87,22 @@ impl<'a, S: Scalar> Pair<'a, S> {
         while let Some(&before) = pieces.slots().get(a as usize) {
             // A path has at most 2^16 - 1 segments, so the first index does not reach the second.
             let (beside, above) = (place(&before).saturating_add(1), place(&before).saturating_add(1 << 16));
-            let mut b = before.next;
-            while let Some(&after) = pieces.slots().get(b as usize)
-                && place(&after) <= beside
-            {
-                if place(&after) == beside && self.meet_at_joint_of_first(&before, &after) {
-                    pieces.join(a, b);
-                }
-                b = after.next;
-            }
             while let Some(piece) = pieces.slots().get(next_row as usize)
                 && place(piece) < above
             {
                 next_row = piece.next;
             }
-            let mut b = next_row;
+            let mut b = before.next;
             while let Some(&after) = pieces.slots().get(b as usize)
-                && place(&after) == above
+                && place(&after) <= above
             {
-                if self.meet_at_joint_of_second(&before, &after) {
+                let at = place(&after);
+                if (at == beside && self.meet_at_joint_of_first(&before, &after))
+                    || (at == above && self.meet_at_joint_of_second(&before, &after))
+                {
                     pieces.join(a, b);
                 }
-                b = after.next;
+                b = if beside < at && at < above { next_row } else { after.next };
             }
             a = before.next;
         }

@@ -219,15 +219,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
     pub(crate) fn take_region(&mut self) -> Option<u32> {
         let slots = self.slots.as_mut();
         let head = self.pending.first;
-        let first = slots.get_mut(head as usize)?;
-        let group = first.group;
-        if group & JOINED == 0 {
-            self.pending.first = core::mem::replace(&mut first.next, NONE);
-            if self.pending.first == NONE {
-                self.pending = Pending::NOTHING;
-            }
-            return Some(head);
-        }
+        let group = slots.get(head as usize)?.group;
         let (mut taken, mut rest) = (NONE, NONE);
         let (mut index, mut rest_head) = (head, NONE);
         while let Some(piece) = slots.get_mut(index as usize) {
@@ -241,6 +233,11 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
                 None => {}
             }
             index = next;
+            // One that was not joined is alone, and what follows it stays as it is.
+            if group & JOINED == 0 {
+                (rest_head, rest) = (next, self.pending.last);
+                break;
+            }
         }
         self.pending = Pending { first: rest_head, last: rest, ..self.pending };
         if rest_head == NONE {
