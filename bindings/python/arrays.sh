@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Counts the instructions that the regions of 100 agents take as a NumPy array, and fails where they are more than 1.3 times those that
-# benches/instructions.txt has of the same in Rust. Not part of everything: two runs of Python in valgrind take a quarter of a minute.
+# benches/instructions.txt has of the table in Rust. Two runs of Python in valgrind take a quarter of a minute of processor time.
 #   arrays.sh PYTHON     PYTHON has the package and NumPy: target/python/bin/python after check.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -9,7 +9,8 @@ command -v valgrind >/dev/null || .ci/install.sh valgrind
 rust=$(sed -n 's/^ *\([0-9]*\)  table6-100: all regions, both directions$/\1/p' benches/instructions.txt)
 # counted TIMES: all instructions of a program that asks so often.
 counted() {
-  valgrind --tool=callgrind --callgrind-out-file=/dev/null "$python" -I -c '
+  # Threads that wait would be counted, too.
+  OPENBLAS_NUM_THREADS=1 valgrind --tool=callgrind --callgrind-out-file=/dev/null "$python" -I -c '
 import sys, pcr
 fleet = pcr.Fleet.read("tests/data/table6-100.json")
 for _ in range(int(sys.argv[1])):

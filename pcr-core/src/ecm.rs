@@ -133,6 +133,19 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         Ok((0..fleet.len()).flat_map(move |ego| self.of(fleet, ego)))
     }
 
+    /// Every region of the table once, seen by the agent with the lower index: sorted by this agent, then by the other
+    /// one, which sees it as [`RegionRef::swapped`]. O(agents + regions), less than [`Ecm::regions`].
+    ///
+    /// # Errors
+    /// [`Mismatch::OtherFleet`], [`Mismatch::OnlyRow`].
+    pub fn regions_once<'a>(
+        &'a self,
+        fleet: &'a [Motion<'a, S>],
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+        self.holds_all(fleet)?;
+        Ok(self.entries().iter().filter_map(move |region| self.view(fleet, region, region.agents()[0])))
+    }
+
     /// The regions of one agent, which it has to keep out of, sorted by the other agent. O(agents + regions).
     ///
     /// # Errors

@@ -52,6 +52,14 @@ fn rows_are_in_the_order_of_the_agents_and_complete() {
     let all = entries(&ecm, &motions);
     assert_eq!(all.len(), 2 * ecm.len());
     assert!(all.iter().map(|entry| entry.0).is_sorted(), "by ego, then by the other");
+    // Each of them once, and once seen by the other agent.
+    let once = || ecm.regions_once(&motions).expect("the table of the fleet");
+    let lower: Vec<_> = all.iter().filter(|entry| entry.0[0] < entry.0[1]).copied().collect();
+    assert_eq!(once().map(|region| entry(&region)).collect::<Vec<_>>(), lower);
+    let mut swapped: Vec<_> = once().map(|region| entry(&region.swapped())).collect();
+    swapped.sort_by_key(|entry| entry.0);
+    let upper: Vec<_> = all.iter().filter(|entry| entry.0[0] > entry.0[1]).copied().collect();
+    assert_eq!(swapped, upper);
     for ego in 0..motions.len() {
         let row: Vec<_> =
             ecm.row(&motions, ego).expect("the table of the fleet").map(|region| entry(&region)).collect();
@@ -124,6 +132,7 @@ fn the_table_of_another_fleet_is_refused() {
         assert_eq!(ecm.row(fleet, 0).err(), Some(Mismatch::OtherFleet), "{why}");
         assert_eq!(ecm.pair(fleet, 0, 1).err(), Some(Mismatch::OtherFleet), "{why}");
         assert_eq!(ecm.regions(fleet).err(), Some(Mismatch::OtherFleet), "{why}");
+        assert_eq!(ecm.regions_once(fleet).err(), Some(Mismatch::OtherFleet), "{why}");
         let (mut plan, mut order) = (fleet.to_vec(), (0..fleet.len()).collect::<Vec<_>>());
         let refused = Err(Unsolved::Table(Mismatch::OtherFleet));
         assert_eq!(plan_delays(&ecm, fleet, &mut plan, &mut order), refused, "{why}");
@@ -196,6 +205,7 @@ fn the_row_of_one_agent_answers_for_that_one_only() {
             assert_eq!(row.pair(&motions, other, third).err(), Some(Mismatch::OnlyRow(agent)));
         }
         assert_eq!(row.regions(&motions).err(), Some(Mismatch::OnlyRow(agent)));
+        assert_eq!(row.regions_once(&motions).err(), Some(Mismatch::OnlyRow(agent)));
         assert!(row.insert(&motions, agent).is_err() && row.remove(&motions, agent).is_err());
     }
     row.fill(&motions).expect("enough room");

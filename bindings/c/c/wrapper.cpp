@@ -35,6 +35,10 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
   EXPECT(fleet.slices(0, 1, real(2.5)).size() == 1);
   EXPECT(fleet.safe_intervals(0, {real(2.0), real(2.0)}, {real(0.0), real(9.0)}).size() == 2);
   try {
+    fleet.safe_intervals(0, {real(5.0), real(6.0)}, {real(0.0), real(9.0)});
+    EXPECT(!"it is not on the path");
+  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_OUT_OF_RANGE); }
+  try {
     fleet.orders_as_planned();
     EXPECT(!"two that meet are no plan");
   } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_REFUSAL_MEETING && refused.why.agents[1] == 1); }

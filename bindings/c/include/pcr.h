@@ -492,7 +492,8 @@ PcrStatus pcr_fleet_earliest_start(const struct PcrFleet *place,
 
 /*
  The times in an interval (s) at which no other agent blocks any of these lengths of the ego's path (m), and the
- number of intervals. It uses the motions and not the table.
+ number of intervals. It uses the motions and not the table. PCR_STATUS_OUT_OF_RANGE where none of the lengths is on
+ the path; of an interval that goes beyond an end of the path, the part on it is asked for.
  */
 PcrStatus pcr_fleet_safe_intervals(const struct PcrFleet *place,
                                    size_t ego,

@@ -69,7 +69,7 @@ typedef enum PcrStatus {
   PCR_STATUS_NON_POSITIVE,
   /*
    A number is beyond the range of the format, or a path or a motion leaves it; or the lower end of an interval is
-   above the upper one.
+   above the upper one; or none of the lengths is on the path.
    */
   PCR_STATUS_OUT_OF_RANGE,
   /*

@@ -17,7 +17,7 @@ pub enum PcrStatus {
     /// A number is not above 0 but must be.
     NonPositive,
     /// A number is beyond the range of the format, or a path or a motion leaves it; or the lower end of an interval is
-    /// above the upper one.
+    /// above the upper one; or none of the lengths is on the path.
     OutOfRange,
     /// An arc sweeps more than one turn. Split it.
     SweepOverOneTurn,

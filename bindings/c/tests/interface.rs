@@ -318,6 +318,13 @@ fn the_times_that_are_safe_leave_out_those_of_the_other() {
     assert_eq!(ask(2, middle, all, 4), PcrStatus::NoSuchAgent);
     assert_eq!(ask(0, middle, PcrInterval { lo: 1.0, hi: 0.0 }, 4), PcrStatus::OutOfRange);
     assert_eq!(ask(0, PcrInterval { lo: f32::NAN, hi: 0.0 }, all, 4), PcrStatus::NonFinite);
+    // Nobody passes there, for it is not on the path; the ends, and what goes beyond them, are.
+    for (lo, hi) in [(-2.0, -1.0), (-0.01, -0.01), (4.01, 4.01), (9.0, 12.0)] {
+        assert_eq!(ask(0, PcrInterval { lo, hi }, all, 4), PcrStatus::OutOfRange, "{lo} to {hi}");
+    }
+    for (lo, hi) in [(-1.0, 0.0), (0.0, 0.0), (4.0, 4.0), (4.0_f32.next_up(), 4.0_f32.next_up()), (4.0, 9.0)] {
+        assert_eq!(ask(0, PcrInterval { lo, hi }, all, 4), PcrStatus::Ok, "{lo} to {hi}");
+    }
     assert_eq!(ask(0, middle, all, 4), PcrStatus::Ok);
     assert!(count == 2 && near(safe[0], 0.0, 2.0) && near(safe[1], 3.0, 9.0), "{safe:?}");
 }

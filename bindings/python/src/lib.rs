@@ -45,16 +45,16 @@ fn json(answer: &impl Document) -> PyResult<String> {
 }
 
 /// A row of numbers, then of truths, in bytes: each truth takes one, and what is left of eight is 0.
-fn row<const WHOLE: usize, const REAL: usize>(
+fn row<const WHOLE: usize, const REAL: usize, const TRUTHS: usize>(
     into: &mut Vec<u8>,
     whole: [u64; WHOLE],
     real: [f64; REAL],
-    truths: &[bool],
+    truths: [bool; TRUTHS],
 ) {
-    whole.iter().for_each(|number| into.extend_from_slice(&number.to_le_bytes()));
-    real.iter().for_each(|number| into.extend_from_slice(&number.to_le_bytes()));
-    truths.iter().for_each(|&truth| into.push(u8::from(truth)));
-    into.resize(into.len().next_multiple_of(8), 0);
+    into.extend_from_slice(whole.map(u64::to_le_bytes).as_flattened());
+    into.extend_from_slice(real.map(f64::to_le_bytes).as_flattened());
+    let rest = [0; 7].iter().take(TRUTHS.next_multiple_of(8) - TRUTHS);
+    into.extend(truths.map(u8::from).iter().chain(rest));
 }
 
 type HostOrders = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
@@ -102,19 +102,27 @@ impl Fleet {
             motions = motions.into_iter().map(|motion| motion.inflated()).collect();
         }
         let ecm = table(&self.scenario, &motions).map_err(refused)?;
-        let mut found = Vec::with_capacity(2 * ecm.len());
-        for region in ecm.regions(&motions).map_err(refused)? {
-            let (t, l, s) = (region.time(), region.length(), region.other_length());
-            let agents = [self.id(region.ego())?, self.id(region.other())?];
-            found.push((
-                agents,
-                [t.lo, t.hi, l.lo, l.hi, s.lo, s.hi],
-                [region.is_open_at_start(), region.is_open_at_end()],
-            ));
+        let mut found: Vec<_> = self.scenario.agents.iter().map(|agent| (agent.id, Vec::new())).collect();
+        for region in ecm.regions_once(&motions).map_err(refused)? {
+            for region in [region.clone(), region.swapped()] {
+                let (t, l, s) = (region.time(), region.length(), region.other_length());
+                let open = [region.is_open_at_start(), region.is_open_at_end()];
+                let spans = [t.lo, t.hi, l.lo, l.hi, s.lo, s.hi];
+                let (ego, other) = (region.ego(), self.id(region.other())?);
+                let (_, own) = found.get_mut(ego).ok_or_else(|| refused(format!("no agent at place {ego}")))?;
+                own.push((other, spans, open));
+            }
         }
-        found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[2].total_cmp(&b.1[2])));
-        let mut rows = Vec::with_capacity(72 * found.len());
-        found.iter().for_each(|(agents, spans, open)| row(&mut rows, *agents, *spans, open));
+        // All come in the order of places: where that is the order of numbers, too, neither of these two moves anything.
+        found.sort_by_key(|&(ego, _)| ego);
+        let mut rows = Vec::with_capacity(2 * 72 * ecm.len());
+        for (ego, mut own) in found {
+            own.sort_by_key(|&(other, ..)| other);
+            for pair in own.chunk_by_mut(|a, b| a.0 == b.0) {
+                pair.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]).then(a.1[2].total_cmp(&b.1[2])));
+            }
+            own.into_iter().for_each(|(other, spans, open)| row(&mut rows, [ego, other], spans, open));
+        }
         Ok(rows)
     }
 
@@ -220,7 +228,7 @@ impl Fleet {
                 let other = self.id(region.other())?;
                 for place in 0..times {
                     for slice in region.slice_at(from + step * place as f64) {
-                        row(&mut rows, [place as u64, other], [slice.lo, slice.hi], &[]);
+                        row(&mut rows, [place as u64, other], [slice.lo, slice.hi], []);
                     }
                 }
             }
@@ -239,7 +247,7 @@ impl Fleet {
         for motion in &motions {
             let length = motion.length_at(time);
             let pose = motion.path().pose_at(length);
-            row(&mut rows, [], [pose.position.x, pose.position.y, pose.heading.0, length], &[]);
+            row(&mut rows, [], [pose.position.x, pose.position.y, pose.heading.0, length], []);
         }
         Ok(PyBytes::new(py, &rows))
     }
@@ -313,7 +321,7 @@ impl Fleet {
                     Pass::Undecided | Pass::Over => return Err(refused("a region without an order")),
                 };
                 let (l, s) = (region.length(), region.other_length());
-                row(&mut rows, [agent, self.id(region.other())?], [l.lo, l.hi, s.lo, s.hi], &[first]);
+                row(&mut rows, [agent, self.id(region.other())?], [l.lo, l.hi, s.lo, s.hi], [first]);
             }
             Ok(rows)
         })?;

@@ -100,8 +100,8 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
 }
 
 /// The safe intervals of a part of an agent's path: the times in an interval \[s\] at which no other agent of the fleet
-/// blocks any of these lengths \[m\], in increasing order. The other agents move as their motions say, and stand before
-/// and after them.
+/// blocks any of these lengths \[m\], in increasing order. The lengths are clamped to the path. The other agents move as
+/// their motions say, and stand before and after them.
 ///
 /// Cost for each interval: that of [`Encounter::blocked`] for every other agent.
 ///

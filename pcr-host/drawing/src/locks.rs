@@ -89,7 +89,11 @@ mod tests {
     use super::*;
     use pcr_formats::import::{Format, Options, Warnings, layout};
 
-    const CURVES: &str = include_str!("../../../tests/data/real/lif/example_17.lif.json");
+    /// A layout that others made. It is in the repository, and not in the package of this crate.
+    fn real(name: &str) -> String {
+        let file = format!("{}/../../tests/data/real/{name}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(&file).expect(&file)
+    }
 
     fn imported(format: Format, text: &str) -> Imported {
         let options = Options { radius: Some(0.4), ..Options::default() };
@@ -98,7 +102,7 @@ mod tests {
 
     #[test]
     fn the_page_holds_every_edge_and_lock_and_asks_for_nothing() {
-        let text = include_str!("../../../tests/data/real/nav2/warehouse_graph.geojson");
+        let text = real("nav2/warehouse_graph.geojson");
         let imported = imported(Format::Nav2, &text.replace("warehouse_graph", "</script><script>alert(1)"));
         let locks = Locks::of(&imported, false).unwrap();
         let page = page(&imported, &locks);
@@ -115,7 +119,7 @@ mod tests {
 
     #[test]
     fn curves_are_drawn_with_true_arcs() {
-        let imported = imported(Format::Lif, CURVES);
+        let imported = imported(Format::Lif, &real("lif/example_17.lif.json"));
         let svg = Ground { imported: &imported, level: 0 }.picture();
         let document = roxmltree::Document::parse(&svg).unwrap();
         let arcs = document.descendants().filter_map(|node| node.attribute("d")).map(|data| data.matches('A').count());
@@ -128,8 +132,7 @@ mod tests {
     #[cfg(feature = "png")]
     #[test]
     fn files_are_written_for_every_level() {
-        let text = include_str!("../../../tests/data/real/lif/example_05.lif.json");
-        let imported = imported(Format::Lif, text);
+        let imported = imported(Format::Lif, &real("lif/example_05.lif.json"));
         let locks = Locks::of(&imported, false).unwrap();
         let directory = std::env::temp_dir().join(format!("pcr-locks-{}", std::process::id()));
         let files = write_locks(&imported, &locks, &directory).unwrap();

@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn the_page_asks_for_nothing() {
-        let page = page_of(include_str!("../../../tests/data/paper12.json"));
+        let page = page_of(pcr_formats::paper::SCENARIO);
         let namespace = "http://www.w3.org/2000/svg";
         assert_eq!(page.matches("http").count(), page.matches(namespace).count() + page.matches("http-equiv").count());
         for request in ["src=", "href=", "@import", "url(", "fetch(", "import("] {
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn the_page_holds_all_regions_with_descriptors() {
-        let data = data_of(&page_of(include_str!("../../../tests/data/paper12.json")));
+        let data = data_of(&page_of(pcr_formats::paper::SCENARIO));
         let maps = data["maps"].as_array().unwrap();
         let regions = |map: &Value| map["regions"].as_array().unwrap().len();
         assert_eq!(maps.iter().map(regions).sum::<usize>(), 136);

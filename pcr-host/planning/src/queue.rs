@@ -96,8 +96,7 @@ mod tests {
 
     #[test]
     fn it_is_that_of_the_fleet_as_it_is_now() {
-        let text = include_str!("../../../tests/data/paper12.json");
-        let scenario = Scenario::from_json(text).expect("a scenario");
+        let scenario = Scenario::from_json(pcr_formats::paper::SCENARIO).expect("a scenario");
         let fleet = Fleet::<f64>::new(&scenario).expect("a fleet");
         let mut motions = fleet.motions();
         let mut queue = Queue::of(&motions);

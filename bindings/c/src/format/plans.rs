@@ -5,7 +5,7 @@ use super::points::{Room, ask, change, given, interval, number, range};
 use super::types::{PcrConflict, PcrFleet, PcrInterval, PcrMet, PcrMotion};
 use crate::memory::{Stack, places};
 use crate::status::{PcrStatus, PcrUnsolved};
-use pcr_core::{Conflict, Encounter, earliest_start, first_conflict, first_overlap, safe_intervals};
+use pcr_core::{Conflict, Encounter, earliest_start, excess, first_conflict, first_overlap, safe_intervals};
 
 fn record(conflict: &Conflict<S>) -> PcrConflict {
     PcrConflict {
@@ -77,7 +77,8 @@ pub extern "C" fn pcr_fleet_earliest_start(
 }
 
 /// The times in an interval (s) at which no other agent blocks any of these lengths of the ego's path (m), and the
-/// number of intervals. It uses the motions and not the table.
+/// number of intervals. It uses the motions and not the table. PCR_STATUS_OUT_OF_RANGE where none of the lengths is on
+/// the path; of an interval that goes beyond an end of the path, the part on it is asked for.
 #[unsafe(export_name = name!("fleet_safe_intervals"))]
 pub extern "C" fn pcr_fleet_safe_intervals(
     place: Option<&PcrFleet>,
@@ -91,6 +92,12 @@ pub extern "C" fn pcr_fleet_safe_intervals(
     ask(place, |fleet| {
         let room = Room::new(out, capacity, count)?;
         let (length, during) = (range(length)?, range(during)?);
+        let own = fleet.motion(ego)?;
+        // The library would answer for the end of the path. A length that is off by a rounding means that end.
+        let rounding = excess(own, own);
+        if length.hi < -rounding || length.lo > own.path().length() + rounding {
+            return Err(PcrStatus::OutOfRange);
+        }
         room.fill(safe_intervals(fleet.motions(), ego, length, during)?.map(interval))
     })
 }

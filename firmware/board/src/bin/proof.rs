@@ -264,6 +264,7 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
         plans(&ecm, fleet, agent);
         any((Ecm::len(&ecm), Ecm::is_empty(&ecm), Ecm::pieces(&ecm)));
         any(Ecm::regions(&ecm, fleet)).into_iter().flatten().for_each(|region| regions(&region));
+        any(Ecm::regions_once(&ecm, fleet)).into_iter().flatten().for_each(|region| regions(&region));
         any(Ecm::row(&ecm, fleet, agent)).into_iter().flatten().for_each(|region| regions(&region));
         any(Ecm::pair(&ecm, fleet, agent, any(agent))).into_iter().flatten().for_each(|region| regions(&region));
     }

@@ -42,8 +42,8 @@ fn area(contour: &[[f64; 2]]) -> f64 {
 }
 
 fn golden() -> Vec<Value> {
-    let text = include_str!("../../../../tests/data/golden-public.json");
-    let golden: Value = serde_json::from_str(text).unwrap();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/golden-public.json");
+    let golden: Value = serde_json::from_str(&std::fs::read_to_string(file).expect(file)).unwrap();
     golden["cases"].as_array().unwrap().iter().filter(|case| case["uncertain"] == json!(false)).cloned().collect()
 }
 
@@ -56,7 +56,7 @@ fn golden_scenario(case: &Value) -> Scenario {
 
 #[test]
 fn every_point_is_on_the_contour_or_at_an_end_of_the_path() {
-    let paper = Scenario::from_json(include_str!("../../../../tests/data/paper12.json")).unwrap();
+    let paper = Scenario::from_json(pcr_formats::paper::SCENARIO).unwrap();
     for scenario in golden().iter().map(golden_scenario).chain([paper]) {
         for_all(&scenario, |region, ego, outline| {
             let (other, whole) = (region.other_motion(), ego.path().length());
@@ -96,7 +96,7 @@ fn outlines_enclose_the_areas_of_the_reference_regions() {
 
 #[test]
 fn a_crossing_is_one_outline_around_a_region_without_holes() {
-    let paper = Scenario::from_json(include_str!("../../../../tests/data/paper12.json")).unwrap();
+    let paper = Scenario::from_json(pcr_formats::paper::SCENARIO).unwrap();
     for_all(&paper, |region, _, outline| {
         assert_eq!(outline.len(), 1, "{} {}", region.ego(), region.other());
         assert!(area(&outline[0]) > 0.0);

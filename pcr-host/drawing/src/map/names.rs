@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn labels_of_the_paper_do_not_overlap() {
-        let scenario = Scenario::from_json(include_str!("../../../../tests/data/paper12.json")).unwrap();
+        let scenario = Scenario::from_json(pcr_formats::paper::SCENARIO).unwrap();
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).unwrap();

@@ -285,11 +285,14 @@ mod tests {
     use std::collections::HashSet;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    const GRAPHS: [&str; 3] = [
-        include_str!("../../../../tests/data/real/nav2/warehouse_graph.geojson"),
-        include_str!("../../../../tests/data/real/nav2/aws_graph.geojson"),
-        include_str!("../../../../tests/data/real/nav2/sample_graph.geojson"),
-    ];
+    /// Graphs that others made: of a warehouse, of another one, and a small one. They are in the repository, and not in the package
+    /// of this crate.
+    fn graphs() -> [String; 3] {
+        ["warehouse", "aws", "sample"].map(|name| {
+            let file = format!("{}/../../tests/data/real/nav2/{name}_graph.geojson", env!("CARGO_MANIFEST_DIR"));
+            std::fs::read_to_string(&file).expect(&file)
+        })
+    }
 
     #[test]
     fn a_corner_is_rounded_as_nav2_does_it() {
@@ -373,7 +376,7 @@ mod tests {
         let told = |level: usize| {
             let routes = vec!["0:2".to_owned(), "3:4".to_owned()];
             let (options, mut warnings) = (Options { routes, ..Options::default() }, Warnings::default());
-            let vehicle = layout(Format::Nav2, GRAPHS[0], &Options::default(), &mut Warnings::default());
+            let vehicle = layout(Format::Nav2, &graphs()[0], &Options::default(), &mut Warnings::default());
             scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, &mut warnings).expect("two routes");
             warnings.lines().iter().any(|line| line.contains("they are on different levels"))
         };
@@ -403,9 +406,10 @@ mod tests {
 
     #[test]
     fn corners_of_the_published_graphs() {
-        assert_eq!(GRAPHS.map(|graph| corners(graph, 0.5)), [[112, 112], [118, 118], [32, 32]]);
-        assert_eq!(corners(GRAPHS[0], 1.0), [112, 100]);
+        let graphs = graphs();
+        assert_eq!(graphs.each_ref().map(|graph| corners(graph, 0.5)), [[112, 112], [118, 118], [32, 32]]);
+        assert_eq!(corners(&graphs[0], 1.0), [112, 100]);
         // One of them turns by 2° only.
-        assert_eq!(corners(GRAPHS[1], 1.0), [118, 112]);
+        assert_eq!(corners(&graphs[1], 1.0), [118, 112]);
     }
 }

@@ -5,7 +5,8 @@ use super::*;
 /// The delays that are found in no time when a clock stops every search at once: nobody is left out who fits in.
 #[test]
 fn most_of_a_hundred_have_a_plan_however_little_time_there_is() {
-    let scenario = Scenario::from_json(include_str!("../../../../tests/data/table6-100.json")).expect("a scenario");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/table6-100.json");
+    let scenario = Scenario::from_json(&std::fs::read_to_string(file).expect(file)).expect("a scenario");
     let effort = Effort { time: Some(std::time::Duration::ZERO), ..Effort::default() };
     let request = Request { leave_out: true, effort, ..Request::default() };
     let (plan, solved) = Plan::of(&scenario, &request).expect("an answer");
