@@ -1,7 +1,7 @@
 //! Fleets that run for a while on a real layout: no contact, nobody beyond its hold, everybody arrives in the end.
 
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
-use pcr_planning::lifelong::{Delays, Method, Outcome, Request, Shares, run, streets};
+use pcr_planning::lifelong::{Delays, Lifelong, Method, Outcome, Request, Shares, run, streets};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 
@@ -106,6 +106,21 @@ fn orders_do_more_missions_than_locks_and_start_delays() {
     let [orders, routes, edges, delays] = Method::ALL.map(|method| warehouse(8, minutes, 0.02, method).missions);
     assert!([routes, edges, delays].iter().all(|&missions| missions > 0 && missions < orders), "{orders}");
     assert!(2 * routes < orders, "{orders}, locks on routes {routes}, on edges {edges}");
+}
+
+/// All nine nodes are taken: no robot can go anywhere.
+#[test]
+fn a_fleet_in_which_nobody_can_do_anything_says_why() {
+    let imported = layout(Format::Nav2, include_str!("../data/real/nav2/sample_graph.geojson"), 0.3);
+    let request = Request { agents: 10, duration: 60.0, delays: Delays::default(), seed: 1, method: Method::Orders };
+    let why = |agents: usize| {
+        let answer = Lifelong::of(&imported, Request { agents, ..request }, &[Method::Orders]).expect("a run");
+        let outcome = &answer.runs[0].outcome;
+        (outcome.robots, outcome.idle_because.clone(), answer.is_sound())
+    };
+    let full = "the 9 robots take up all places where any of them could stand".to_owned();
+    assert_eq!(why(10), (9, Some(full), false));
+    assert_eq!(why(4), (4, None, true));
 }
 
 /// To and fro between two nodes 10 m apart: 10 m at 1 m/s, 2 s for the ramps at 0.5 m/s², and half a turn at 1 rad/s, ramps of 1 s.

@@ -218,6 +218,9 @@ fn who_cannot_get_past_stays_where_it_is() {
     let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
     assert_eq!((outcome.run.done, outcome.run.not_done, outcome.run.collisions.len()), (0, 2, 0));
     assert!(outcome.trace.positions.iter().all(|track| track.iter().all(|&at| at == track[0])));
+    // Nothing changes, so that no other try is made.
+    let planning = outcome.run.planning.expect("a supervisor plans");
+    assert_eq!((planning.count, planning.kept), (1, 1));
     let simulation = Simulation::of(&head_on(), settings(1, USUAL), &[outcome]);
     assert!(!simulation.is_as_promised());
 }

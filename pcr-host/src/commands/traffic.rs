@@ -23,7 +23,7 @@ Examples:
 const STATUSES: &str = "\
 Exit status:
   0  done
-  1  with --hours: a contact, or one that could not be ruled out, or a robot that waits for ever
+  1  with --hours: a contact, or one that could not be ruled out, or a robot that waits for ever, or nobody reached a goal
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 

@@ -73,11 +73,12 @@ impl Lifelong {
         })
     }
 
-    /// Whether every run is certified free of contact, everybody kept to what it was allowed, and nobody waits for ever.
+    /// Whether every run is certified free of contact, everybody kept to what it was allowed, nobody waits for ever, and somebody reached a
+    /// goal.
     pub fn is_sound(&self) -> bool {
         self.runs.iter().all(|run| {
-            let Outcome { certificate, breaches, stuck, .. } = &run.outcome;
-            certificate.verdict == "proved" && *breaches == 0 && *stuck == 0
+            let Outcome { certificate, breaches, stuck, idle_because, .. } = &run.outcome;
+            certificate.verdict == "proved" && *breaches == 0 && *stuck == 0 && idle_because.is_none()
         })
     }
 }

@@ -129,8 +129,37 @@ impl Run {
         outcome.starved = waits.iter().filter(|wait| **wait > 600.0).count();
         outcome.stuck = self.robots.iter().filter(|robot| !robot.has_arrived()).count();
         outcome.missions_per_hour = self.steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
+        outcome.idle_because = (outcome.missions == 0 && !waits.is_empty()).then(|| self.why_idle(outcome.stuck));
         outcome.travel_over_unimpeded = (self.travel.1 > 0.0).then(|| self.travel.0 / self.travel.1);
         outcome
+    }
+
+    /// Why nobody reached a goal.
+    fn why_idle(&self, stuck: usize) -> String {
+        if stuck > 0 {
+            return format!("{stuck} robots on their ways wait for one another for ever");
+        }
+        let (scene, robots) = (self.scene(self.request.duration), 0..self.robots.len());
+        let can_move = |robot: usize| {
+            let here = self.robots[robot].way.end();
+            (0..self.site.points.len()).any(|node| node != here && scene.is_free(robot, node))
+        };
+        if !robots.clone().any(can_move) {
+            return format!("the {} robots take up all places where any of them could stand", robots.len());
+        }
+        let waiting = robots.filter_map(|robot| Some((robot, self.missions[robot]?)));
+        let Some((robot, mission)) = waiting.min_by(|a, b| a.1.since.total_cmp(&b.1.since)) else {
+            return "nobody had a mission".to_owned();
+        };
+        let refused = self.outcome.refused;
+        match scene.wanted(robot, mission.goal).map(|route| scene.standing_on(robot, &route).len()) {
+            None => format!("all {refused} tries were refused; no route leads to the goal of the oldest mission"),
+            Some(0) => format!("all {refused} tries were refused; the route to the goal of the oldest mission is free"),
+            Some(others) => format!(
+                "all {refused} tries were refused; on the route to the goal of the oldest mission stand {others} other robots, \
+                 which were sent nowhere else"
+            ),
+        }
     }
 }
 

@@ -116,6 +116,7 @@ impl Run {
             longest_wait: 0.0,
             waiting: 0.0,
             starved: 0,
+            idle_because: None,
             time: Shares::default(),
         };
         Ok(Self {

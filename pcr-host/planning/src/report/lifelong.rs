@@ -8,9 +8,9 @@ use std::io::{self, Write};
 
 /// The header line of [`lifelong_csv`].
 pub const LIFELONG_CSV_HEADER: &str = "method,robots,missions,missions_per_hour,travel_over_unimpeded,certificate,breaches,\
-stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99\n";
+stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99,idle_because\n";
 
-/// A line a method; no ratio where nobody has arrived.
+/// A line a method; where nobody has reached a goal there is no ratio, but a reason.
 ///
 /// # Errors
 /// Those of the writer.
@@ -19,9 +19,10 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
     for run in &lifelong.runs {
         let Driven { outcome: it, decisions, decision_median, decision_p99, .. } = run;
         let ratio = it.travel_over_unimpeded.map_or_else(String::new, |ratio| ratio.to_string());
+        let because = it.idle_because.as_ref().map_or_else(String::new, |why| format!("\"{why}\""));
         writeln!(
             out,
-            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99}",
+            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99},{because}",
             it.method.name(),
             it.robots,
             it.missions,
@@ -108,6 +109,11 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
         ]);
     }
     columns.write(out)?;
+    for run in runs {
+        if let Some(why) = &run.outcome.idle_because {
+            writeln!(out, "{}: nobody reached a goal, as {why}", run.outcome.method.name())?;
+        }
+    }
     for run in runs {
         let Shares { driving, turning, stopped, held, aside, idle } = run.outcome.time;
         let [driving, turning, stopped, held, aside, idle] =

@@ -149,12 +149,12 @@ impl Problem<'_> {
         self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect()
     }
 
-    /// Who stands in the way of a robot, a robot or else an obstacle, whatever anybody does: all others stay where they are.
-    pub(super) fn in_the_way(&self, robot: usize) -> Option<InTheWay> {
+    /// Who stands in the way of a robot, one of those robots that `stay` where they are, or else an obstacle, whatever anybody does.
+    pub(super) fn in_the_way(&self, robot: usize, stay: impl Fn(usize) -> bool) -> Option<InTheWay> {
         let through = self.through(self.robots.get(robot)?)?;
         let motion = through.motion(self.robots.get(robot)?.radius)?;
         let meets = |other: &Motion<'_, f64>| !is_clear(&motion, std::slice::from_ref(other));
-        let others = (0..self.robots.len()).filter(|&other| other != robot);
+        let others = (0..self.robots.len()).filter(|&other| other != robot && stay(other));
         let stands = |other: &usize| {
             let stays = self.robots.get(*other).and_then(|it| Some((self.staying(it)?, it.radius)));
             stays.is_some_and(|(drive, radius)| drive.motion(radius).is_some_and(|motion| meets(&motion)))

@@ -31,6 +31,9 @@ pub(super) struct Errors {
 /// Nobody stands for so long without a reason that stays, beside two periods of planning \[s\].
 const RESTING: f64 = 1.0;
 
+/// A try that failed is repeated after one period of planning, after twice as long if that fails as well, and so on up to so many periods.
+const REST: f64 = 8.0;
+
 /// How fast a robot that is ahead of its plan falls back to it \[1/s\].
 const FALLING_BACK: f64 = 2.0;
 
@@ -84,6 +87,11 @@ impl Agent {
         }
     }
 
+    /// Whether it stands at the end of its path.
+    fn stands(&self) -> bool {
+        self.speed <= 0.0 && self.at.lo >= self.course.length()
+    }
+
     /// The path that a plan is for, which takes up a new mission or does not, and where the robot is on it.
     fn to_plan(&self, takes_up: bool) -> (&Course, Interval<f64>, f64) {
         match &self.next {
@@ -101,6 +109,8 @@ pub(super) struct Supervisor {
     errors: Errors,
     guard: Guard,
     plan: Option<Current>,
+    /// The last try, if it failed.
+    failed: Option<Failed>,
     period: f64,
     next_plan: f64,
     /// For how long nobody has moved \[s\].
@@ -114,6 +124,17 @@ pub(super) struct Supervisor {
 struct Current {
     plan: Plan,
     offsets: Vec<f64>,
+}
+
+/// A try to plan that failed. Robots that drive on as they are planned make another one fail as well, as a rule; what lets it succeed is a new
+/// mission, or that somebody comes to its end and is out of the way, or all stand.
+#[derive(Debug)]
+struct Failed {
+    /// Of each robot: whether it has a mission that no plan takes up, and whether it stands at the end of its path.
+    robots: Vec<[bool; 2]>,
+    /// For how long it is not repeated where that is the same, and until when \[s\].
+    pause: f64,
+    until: f64,
 }
 
 /// A plan that can be taken up, who then has a new mission, and the radii that it is for \[m\].
@@ -174,6 +195,7 @@ impl Supervisor {
             errors,
             guard,
             plan: None,
+            failed: None,
             period,
             next_plan: 0.0,
             still: 0.0,
@@ -211,19 +233,35 @@ impl Supervisor {
         if again && self.agents.len() > SEARCHED {
             return;
         }
+        let robots: Vec<[bool; 2]> = self.agents.iter().map(|it| [it.next.is_some(), it.stands()]).collect();
+        let before = self.failed.take_if(|failed| failed.robots != robots || now >= failed.until);
+        if self.failed.is_some() {
+            return;
+        }
         let begin = Instant::now();
         let found =
             self.for_all(now, &pending, again).or_else(|| if again { None } else { self.for_some(now, &pending) });
         self.statistics.times.push(begin.elapsed().as_secs_f64());
         match found {
             Some(found) => self.take_up(now, found),
-            None => self.statistics.kept += 1,
+            None => {
+                self.statistics.kept += 1;
+                let same = before.filter(|failed| failed.robots == robots);
+                let pause = same.map_or(self.period, |failed| (2.0 * failed.pause).min(REST * self.period));
+                // Where all stand nothing changes but the time.
+                let until = if robots.iter().all(|robot| robot[1]) { f64::INFINITY } else { now + pause };
+                self.failed = Some(Failed { robots, pause, until });
+            }
         }
     }
 
     /// A plan for all robots, of which these take up their new missions: with the margins of a plan, or if robots are too near each other
     /// for that, with those of passing orders.
     fn for_all(&self, now: f64, taken: &[bool], again: bool) -> Option<Found> {
+        // Whoever stands at its end and has no new mission goes nowhere.
+        if self.barred(taken, |other| !taken[other]).contains(&true) {
+            return None;
+        }
         let last: Vec<usize> = match &self.plan {
             Some(current) => current.plan.order.clone(),
             None => (0..self.agents.len()).collect(),
@@ -238,7 +276,7 @@ impl Supervisor {
     /// A plan in which as many as possible take up their new missions, while the others stay where they are; if everybody stands. On the
     /// way, those that can beside the plan that all others have.
     fn for_some(&self, now: f64, pending: &[bool]) -> Option<Found> {
-        let stands = self.agents.iter().all(|agent| agent.speed <= 0.0 && agent.at.lo >= agent.course.length());
+        let stands = self.agents.iter().all(Agent::stands);
         let together = |margin: usize| {
             let robots = self.states(margin, pending)?;
             let taken = Problem { now, robots: &robots, obstacles: &self.obstacles }.most(pending)?;
@@ -256,7 +294,8 @@ impl Supervisor {
     /// The plan that all have, and a motion of one robot more beside it.
     fn one_beside(&self, now: f64, pending: &[bool], margin: usize) -> Option<Found> {
         let current = self.plan.as_ref()?;
-        (0..pending.len()).filter(|&robot| pending[robot]).find_map(|robot| {
+        let barred = self.barred(pending, |_| true);
+        (0..pending.len()).filter(|&robot| pending[robot] && !barred[robot]).find_map(|robot| {
             let taken: Vec<bool> = (0..pending.len()).map(|other| other == robot).collect();
             let robots = self.states(margin, &taken)?;
             let problem = Problem { now, robots: &robots, obstacles: &self.obstacles };
@@ -266,6 +305,15 @@ impl Supervisor {
             *offsets.get_mut(robot)? = 0.0;
             self.found(plan, offsets, &taken, margin)
         })
+    }
+
+    /// Of robots with a new mission, who cannot carry it out with any margin, because a robot that stands and `stays` or an obstacle is in
+    /// its way.
+    fn barred(&self, pending: &[bool], stays: impl Fn(usize) -> bool) -> Vec<bool> {
+        let Some(robots) = self.states(0, pending) else { return vec![false; pending.len()] };
+        let problem = Problem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
+        let stays = |other: usize| stays(other) && self.agents.get(other).is_some_and(Agent::stands);
+        (0..pending.len()).map(|robot| pending[robot] && problem.in_the_way(robot, stays).is_some()).collect()
     }
 
     fn states(&self, margin: usize, taken: &[bool]) -> Option<Vec<State>> {
@@ -390,7 +438,7 @@ impl Control for Supervisor {
         let robots = self.states(0, &pending).unwrap_or_default();
         let problem = Problem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
         let waits = (0..pending.len()).filter(|&robot| pending[robot]);
-        waits.map(|robot| (robot, problem.in_the_way(robot))).collect()
+        waits.map(|robot| (robot, problem.in_the_way(robot, |_| true))).collect()
     }
 
     fn take_snapshots(&mut self) -> Vec<Snapshot> {
