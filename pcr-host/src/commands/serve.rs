@@ -49,10 +49,10 @@ pub(super) struct Arguments {
     /// Go on when standard input has ended
     #[arg(long)]
     stay: bool,
-    /// How far behind its stop a robot may stand, in m [default: 0.1; VDA 5050: 0.3, the least]
+    /// Robots may stand so far behind a stop, in m [0.1; VDA: 0.3]
     #[arg(long, value_name = "M")]
     width: Option<f64>,
-    /// Robots are told how far they may go so long before they would have to brake, in s [default: 2; VDA 5050: 8, the least]
+    /// Robots are told how far they may go so long before they would have to brake, in s [2; VDA 5050: 8, the least]
     #[arg(long, value_name = "S")]
     lookahead: Option<f64>,
     /// A robot is silent when it was not heard for so long, in s

@@ -62,16 +62,19 @@ fn vehicles_are_written_as_they_are_read() {
     run(&[&fleet[..], &[&name]].concat()).ok();
     let text = std::fs::read_to_string(&name).unwrap();
     assert!(text.starts_with(r#"{"format":"pcr-vehicles","version":1,"vehicles":["#), "{text}");
+    let refused = |text: &str| {
+        let name = file("profiles", "changed.json", text);
+        run(&["serve", "--log", "error", "--broker", "localhost:1", "--fleet", &name]).failed(2)
+    };
+    assert!(refused(r#"{"version":1}"#).ends_with("vehicles: a list is expected\n"));
     for (from, to, reason) in [
         ("pcr-vehicles", "pcr-plan", "format: \"pcr-plan\" where pcr-vehicles is expected"),
         ("\"version\":1", "\"version\":2", "version: 2 where 1 is expected"),
         ("\"version\"", "\"versions\"", "versions: unknown; format, version and vehicles are read"),
-        ("\"vehicles\"", "\"version\"", "vehicles: a list is expected"),
     ] {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text);
-        let name = file("profiles", "changed.json", changed);
-        let failed = run(&["serve", "--log", "error", "--broker", "localhost:1", "--fleet", &name]).failed(2);
+        let failed = refused(&changed);
         assert!(failed.ends_with(&format!("{reason}\n")), "{failed}");
     }
 }
