@@ -102,7 +102,8 @@ serve() {
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
   cargo test "${checked[@]}" --test vda5050 -- --ignored runs::
   if [ -n "${PCR_FAULTS:-}" ]; then
-    cargo test "${checked[@]}" --test vda5050 -- --ignored --exact faults::faults_one_after_the_other
+    cargo test "${checked[@]}" --test vda5050 -- --ignored --exact --nocapture faults::faults_one_after_the_other \
+      faults::of_supervisors_that_begin_at_once_one_goes_on
   fi
 }
 

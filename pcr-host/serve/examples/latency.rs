@@ -6,13 +6,13 @@
 
 use pcr_serve::journal::Journal;
 use pcr_serve::log::{Level, Log};
-use pcr_serve::server::{BACKLOG, Handle, Input, queue, serve};
+use pcr_serve::outbox::{Lines, outbox};
+use pcr_serve::server::{Handle, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::writer::Writer;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::{Duration, Instant};
 
 const LANES: usize = 25;
@@ -34,7 +34,7 @@ struct Robot {
 
 struct Driver {
     handle: Handle,
-    lines: Receiver<String>,
+    lines: Lines,
     robots: Vec<Robot>,
     /// When each message was sent, by its number; of missions nothing.
     sent: Vec<Option<Instant>>,
@@ -135,7 +135,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let result = serve(&mut supervisor, &inputs, &kept, Log::new(Level::Error));
         (result, supervisor.counts())
     });
-    let (out, lines) = sync_channel(BACKLOG);
+    let (out, lines) = outbox();
     handle.send(Input::Opened(1, out));
     let robots = vec![Robot { path: 1, ..Robot::default() }; count];
     // Room that is there from the start: what grows is the supervisor's.

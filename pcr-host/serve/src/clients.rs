@@ -1,16 +1,20 @@
 //! Clients of the line protocol: standard input and output, and TCP.
 
 use crate::lines::LONGEST;
-use crate::server::{BACKLOG, Handle, Input};
-use std::io::{self, BufRead, BufReader, Read, Write};
+use crate::outbox::{Lines, outbox};
+use crate::server::{Handle, Input};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{Shutdown, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
+use std::time::Duration;
 
 /// Numbers of clients.
 static NEXT: AtomicU64 = AtomicU64::new(1);
+
+/// A client over TCP that is let go has so long to take some of what was for it, and its connection ends.
+const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Clients over TCP at a time.
 const MOST: usize = 256;
@@ -18,25 +22,40 @@ const MOST: usize = 256;
 /// Reads lines from here and writes answers there, until one of them ends. Returns when all that came in is answered.
 pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'static) {
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
-    let (sender, receiver) = sync_channel(BACKLOG);
+    let (sender, lines) = outbox();
     if !handle.send(Input::Opened(number, sender)) {
         return;
     }
-    let writer = thread::spawn(move || write(&receiver, output));
+    let writer = thread::spawn(move || write(&lines, output));
     // What cannot be read has ended.
     let _ = read(handle, number, BufReader::new(input));
     handle.send(Input::Closed(number));
     let _ = writer.join();
 }
 
-fn write(lines: &Receiver<String>, mut output: impl Write) {
-    while let Ok(line) = lines.recv() {
-        let mut text = line;
-        text.extend(lines.try_iter().take(1000));
-        if output.write_all(text.as_bytes()).and_then(|()| output.flush()).is_err() {
+fn write(lines: &Lines, mut output: impl Write) {
+    while let Some(text) = lines.batch() {
+        if put(lines, &mut output, text.as_bytes()).and_then(|()| output.flush()).is_err() {
             return;
         }
     }
+}
+
+/// Writes all of it. A client that takes nothing for [`PATIENCE`] is waited for, unless it is to get no more.
+fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
+    while !bytes.is_empty() {
+        match output.write(bytes) {
+            Ok(0) => return Err(ErrorKind::WriteZero.into()),
+            Ok(written) => bytes = bytes.get(written..).unwrap_or_default(),
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) && !lines.is_closed() => {
+                // An output that does not wait itself.
+                thread::sleep(Duration::from_millis(1));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 fn read(handle: &Handle, number: u64, mut input: impl BufRead) -> io::Result<()> {
@@ -84,7 +103,7 @@ pub fn listen(handle: &Handle, listener: &TcpListener) {
         open.fetch_add(1, Ordering::Relaxed);
         thread::spawn(move || {
             // Answers are short, and wanted at once.
-            if stream.set_nodelay(true).is_ok()
+            if stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).is_ok()
                 && let (Ok(input), Ok(output)) = (stream.try_clone(), stream.try_clone())
             {
                 serve(&handle, input, Closing(output));

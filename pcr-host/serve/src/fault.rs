@@ -38,6 +38,12 @@ pub enum Fault {
         /// What is wrong.
         why: String,
     },
+    /// The client does not read what is sent to it.
+    Slow {
+        /// Bytes that wait for it.
+        #[serde(skip)]
+        bytes: usize,
+    },
     /// The journal cannot be written: no right is given any more.
     Broken {
         /// Why.
@@ -63,6 +69,9 @@ impl fmt::Display for Fault {
                 write!(f, "the path begins {distance} m and {angle} rad off the end of the one before it")
             }
             Self::Invalid { why } | Self::Malformed { why } => f.write_str(why),
+            Self::Slow { bytes } => {
+                write!(f, "{bytes} bytes wait for this client, which does not read them: this is the last line")
+            }
             Self::Broken { why } => write!(f, "the journal cannot be written, so no right is given any more: {why}"),
         }
     }

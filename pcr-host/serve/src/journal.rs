@@ -60,25 +60,25 @@ impl Journal {
     /// [`ErrorKind::WouldBlock`] where another process has it open, [`ErrorKind::InvalidData`] where it is damaged or that of another
     /// version, and what else is wrong with files.
     pub fn open(folder: &Path) -> io::Result<(Self, Found)> {
-        fs::create_dir_all(folder)?;
-        let lock = OpenOptions::new().write(true).create(true).truncate(false).open(folder.join("lock"))?;
+        fs::create_dir_all(folder).map_err(of(folder))?;
+        let lock = folder.join("lock");
+        let lock = OpenOptions::new().write(true).create(true).truncate(false).open(&lock).map_err(of(&lock))?;
         lock.try_lock().map_err(|error| match error {
             TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another supervisor has it open"),
             TryLockError::Error(error) => error,
         })?;
         let path = folder.join("journal");
-        if !path.try_exists()? {
+        if !path.try_exists().map_err(of(&path))? {
             written(folder, &[])?;
         }
-        let mut file = OpenOptions::new().read(true).write(true).open(&path)?;
+        let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(of(&path))?;
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
+        file.read_to_end(&mut bytes).map_err(of(&path))?;
         let (entries, len) = read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
         let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
         let len = len as u64;
         // Nothing of an incomplete frame is left where others will be.
-        file.set_len(len)?;
-        file.sync_all()?;
+        file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
         let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, end: len, failed: false };
         Ok((own, Found { entries, torn }))
@@ -109,7 +109,7 @@ impl Keep for Journal {
         }
         let frame = frame(entries)?;
         self.failed = true;
-        self.add(&frame)?;
+        self.add(&frame).map_err(of(&self.folder.join("journal")))?;
         self.failed = false;
         Ok(())
     }
@@ -132,6 +132,11 @@ impl Keep for Journal {
     }
 }
 
+/// An error with the name of the file.
+fn of(path: &Path) -> impl Fn(io::Error) -> io::Error {
+    move |error| io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+}
+
 /// Puts a journal with these entries in the place of the one that is there, all or nothing; returns how long it is.
 fn written(folder: &Path, entries: &[Entry]) -> io::Result<u64> {
     let (new, path) = (folder.join("journal.new"), folder.join("journal"));
@@ -139,12 +144,15 @@ fn written(folder: &Path, entries: &[Entry]) -> io::Result<u64> {
     if !entries.is_empty() {
         bytes.extend(frame(entries)?);
     }
-    let mut file = File::create(&new)?;
-    file.write_all(&bytes)?;
-    file.sync_all()?;
-    fs::rename(&new, &path)?;
+    let create = || {
+        let mut file = File::create(&new)?;
+        file.write_all(&bytes)?;
+        file.sync_all()
+    };
+    create().map_err(of(&new))?;
+    fs::rename(&new, &path).map_err(of(&path))?;
     // The name is on the disc when the folder is.
-    File::open(folder)?.sync_all()?;
+    File::open(folder).and_then(|folder| folder.sync_all()).map_err(of(folder))?;
     Ok(bytes.len() as u64)
 }
 

@@ -16,6 +16,7 @@
 //! metrics      metrics for Prometheus
 //! log          log on standard error                                  Log
 //! board        data that the supervisor's thread publishes            Board
+//! outbox       lines that wait for a client                           Outbox
 //! server       the thread that owns the supervisor                    serve, Handle
 //! clients      standard input and output, and TCP
 //! http         the live page
@@ -40,6 +41,7 @@ pub mod json;
 pub mod lines;
 pub mod log;
 pub mod metrics;
+pub mod outbox;
 pub mod query;
 pub mod robot;
 pub mod server;

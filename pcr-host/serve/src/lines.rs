@@ -115,7 +115,12 @@ pub fn handle(supervisor: &mut Supervisor, line: &[u8], now: f64) -> Reply {
 
 /// The answer to a line that is longer than [`LONGEST`].
 pub fn too_long() -> Value {
-    answer(Value::Null, Err(Fault::Malformed { why: format!("a line is {LONGEST} bytes long at most") }))
+    refusal(&Fault::Malformed { why: format!("a line is {LONGEST} bytes long at most") })
+}
+
+/// A line to a client that asks for nothing in particular.
+pub fn refusal(fault: &Fault) -> Value {
+    answer(Value::Null, Err(fault.clone()))
 }
 
 /// An answer that the journal could not keep: nothing of it is so.

@@ -6,6 +6,7 @@ use crate::event::Event;
 use crate::fault::Fault;
 use crate::lines;
 use crate::log::{Level, Log};
+use crate::outbox::{Lost, Outbox};
 use crate::supervisor::Supervisor;
 use crate::writer::Kept;
 use serde_json::Value;
@@ -15,9 +16,6 @@ use std::time::{Duration, Instant};
 
 /// Requests that may wait.
 const QUEUE: usize = 4096;
-
-/// Lines that may wait for a client.
-pub const BACKLOG: usize = 65_536;
 
 /// Requests that are decided together.
 const BATCH: usize = 256;
@@ -34,7 +32,7 @@ pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) -> Option<Then> + S
 /// Something for the thread that owns the supervisor.
 pub enum Input {
     /// A client is there, and gets its lines here.
-    Opened(u64, SyncSender<String>),
+    Opened(u64, Outbox),
     /// A line of a client.
     Line(u64, Vec<u8>),
     /// A line of a client was too long.
@@ -99,7 +97,7 @@ pub fn queue() -> (Handle, Receiver<(Instant, Input)>) {
 }
 
 struct Client {
-    out: SyncSender<String>,
+    out: Outbox,
     watches: bool,
 }
 
@@ -240,10 +238,10 @@ impl Desk {
 
 fn send(clients: &mut HashMap<u64, Client>, number: u64, line: &Value, log: Log) {
     let Some(client) = clients.get(&number) else { return };
-    match client.out.try_send(format!("{line}\n")) {
+    match client.out.send(format!("{line}\n")) {
         Ok(()) => {}
-        Err(TrySendError::Disconnected(_)) => drop(clients.remove(&number)),
-        Err(TrySendError::Full(_)) => {
+        Err(Lost::Gone) => drop(clients.remove(&number)),
+        Err(Lost::Slow) => {
             // It would miss something without knowing.
             log.write(Level::Warn, "a client reads too slowly and is let go", &[("client", &number)]);
             clients.remove(&number);

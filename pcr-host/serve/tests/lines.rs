@@ -4,6 +4,7 @@ use crate::world::Dice;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::lines::{LONGEST, handle, news};
 use pcr_serve::log::{Level, Log};
+use pcr_serve::outbox::{BACKLOG, Lost, outbox};
 use pcr_serve::server::{Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::writer::Kept;
@@ -216,6 +217,66 @@ fn clients_over_tcp_and_the_page() {
     // A page of somebody else whose name leads here.
     assert!(get("GET /state HTTP/1.1\r\nHost: example.org\r\n\r\n").starts_with("HTTP/1.1 403"));
     assert!(get("GET /state HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 403"));
+    handle.send(Input::Stop);
+    server.join().unwrap().unwrap();
+}
+
+#[test]
+fn no_more_bytes_wait_for_a_client_than_said() {
+    let (out, lines) = outbox();
+    // One that is too long is sent if nothing else waits, and one more is not.
+    assert_eq!(out.send("x".repeat(BACKLOG + 1)), Ok(()));
+    assert_eq!(lines.recv().unwrap().len(), BACKLOG + 1);
+    let half = "x".repeat(BACKLOG / 2);
+    assert_eq!(
+        [out.send(half.clone()), out.send(half.clone()), out.send("x".into())],
+        [Ok(()), Ok(()), Err(Lost::Slow)]
+    );
+    assert!(!lines.is_closed());
+    drop(out);
+    assert!(lines.is_closed());
+    assert_eq!([lines.recv().unwrap(), lines.recv().unwrap()], [half.clone(), half]);
+    let last: Value = serde_json::from_str(&lines.recv().unwrap()).unwrap();
+    fits(&serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap(), &last);
+    assert_eq!(last["error"]["code"], "slow", "{last}");
+    assert!(lines.recv().is_err());
+    let (out, lines) = outbox();
+    drop(lines);
+    assert_eq!(out.send("x".into()), Err(Lost::Gone));
+}
+
+/// It is told why in the last line, and whoever reads is served as before.
+#[test]
+fn a_client_that_never_reads_is_let_go_and_told_why() {
+    const REQUESTS: u64 = 60;
+    let mut supervisor = supervisor();
+    let (handle, inputs) = queue();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let at = listener.local_addr().unwrap();
+    let own = handle.clone();
+    thread::spawn(move || clients::listen(&own, &listener));
+    let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
+    let (mut slow, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
+    slow.write_all(format!("{}\n", requests()[0]).as_bytes()).unwrap();
+    // Answers are as long as the requests, as the id comes back.
+    let id = "x".repeat(900_000);
+    let request = format!(r#"{{"id": "{id}", "verb": "position", "robot": "a", "path": 1, "at": [0, 0]}}"#);
+    for _ in 0..REQUESTS {
+        slow.write_all(format!("{request}\n").as_bytes()).unwrap();
+    }
+    while handle.ask(|supervisor, _, _| supervisor.counts().positions).unwrap() < REQUESTS {
+        thread::yield_now();
+    }
+    // More than connections hold has waited: it is let go, and gets what had waited, and why there is no more.
+    let answers: Vec<String> = BufReader::new(slow).lines().map(Result::unwrap).collect();
+    let (last, before) = answers.split_last().unwrap();
+    let last: Value = serde_json::from_str(last).unwrap();
+    assert_eq!((&last["id"], &last["error"]["code"]), (&Value::Null, &json!("slow")), "{last}");
+    assert!((before.len() as u64) < REQUESTS, "{}", before.len());
+    other.write_all(b"{\"id\": 1, \"verb\": \"query\", \"what\": \"counts\"}\n").unwrap();
+    let mut line = String::new();
+    BufReader::new(other).read_line(&mut line).unwrap();
+    assert!(line.contains("\"ok\""), "{line}");
     handle.send(Input::Stop);
     server.join().unwrap().unwrap();
 }

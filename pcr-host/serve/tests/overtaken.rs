@@ -1,9 +1,9 @@
-//! Nobody waits for long while others come before it, again and again.
+//! Nobody waits for long while others come before it, again and again, and no mission because others wait.
 
 use pcr_serve::course::{Shape, Start};
 use pcr_serve::entry::Nowhere;
 use pcr_serve::robot::Abilities;
-use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor};
+use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const STEP: f64 = 0.5;
@@ -53,4 +53,44 @@ fn a_slow_robot_gets_its_turn() {
         }
     }
     panic!("it does not arrive");
+}
+
+/// Robots in a row, each of which is to go to the place of the next one. The last one to ask is the one in front, which can go as soon as
+/// somebody has left. Of the missions whose time had come the oldest one was always tried, one at a time: with so many that wait nobody
+/// ever looked at the last one.
+#[test]
+fn a_mission_is_tried_however_many_others_wait() {
+    const ROW: u32 = 60;
+    let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
+    let abilities = Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+    let ask = |own: &mut Supervisor, robot: &str| {
+        let path = vec![Shape::Line { length: 5.0 }];
+        let proposal = Proposal { robot: robot.into(), mission: "1".into(), after: None, start: None, path };
+        own.mission(&proposal, 0.0).unwrap()
+    };
+    for k in 0..ROW {
+        own.add(&k.to_string(), abilities, Start { x: 5.0 * f64::from(k), y: 0.0, heading: 0.0 }).unwrap();
+    }
+    own.add("in the way", abilities, Start { x: 5.0 * f64::from(ROW), y: 0.0, heading: 0.0 }).unwrap();
+    for k in 0..ROW {
+        let verdict = ask(&mut own, &k.to_string());
+        assert!(matches!(verdict, Verdict::Waiting { .. }), "{k}: {verdict:?}");
+    }
+    let waiting = |own: &Supervisor| own.robots().iter().filter(|robot| robot.waiting.is_some()).count();
+    // All of them have waited for long.
+    let mut now = 0.0;
+    let mut goes_on = |own: &mut Supervisor, time: f64| {
+        for _ in 0..(time / 0.05) as u32 {
+            now += 0.05;
+            own.settle(now).unwrap();
+        }
+    };
+    goes_on(&mut own, 30.0);
+    assert_eq!(waiting(&own), ROW as usize);
+    own.remove("in the way").unwrap();
+    // Each is tried once in 3 s, and each that is admitted makes way for the next one.
+    goes_on(&mut own, 4.0);
+    assert!(own.robot(&(ROW - 1).to_string()).unwrap().waiting.is_none());
+    goes_on(&mut own, 4.0 * f64::from(ROW));
+    assert_eq!(waiting(&own), 0);
 }

@@ -3,12 +3,12 @@
 use crate::world::Disc;
 use pcr_serve::entry::{Entry, Keep};
 use pcr_serve::log::{Level, Log};
+use pcr_serve::outbox::{Lines, outbox};
 use pcr_serve::server::{Handle, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::writer::Writer;
 use serde_json::{Value, json};
 use std::io;
-use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::{self, JoinHandle};
 
@@ -46,7 +46,7 @@ impl Keep for Slow {
 struct Office {
     slow: Slow,
     handle: Handle,
-    lines: Receiver<String>,
+    lines: Lines,
     server: JoinHandle<Result<(), String>>,
 }
 
@@ -61,7 +61,7 @@ impl Office {
         let mut supervisor = Supervisor::new(Settings::default(), Box::new(writer));
         let mut serves = move || serve(&mut supervisor, &inputs, &kept, Log::new(Level::Error));
         let server = thread::spawn(move || serves().map_err(|fault| fault.to_string()));
-        let (out, lines) = sync_channel(1_000);
+        let (out, lines) = outbox();
         handle.send(Input::Opened(1, out));
         let own = Self { slow, handle, lines, server };
         own.ask(&json!({ "verb": "watch" }));

@@ -30,6 +30,12 @@ Examples:
 
 User and password of the broker are read from PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 
+/// What is of no use to a record that is there already.
+const SIMULATED: [&str; 14] = [
+    "layout", "streets", "broker", "vehicles", "manager", "topics", "pace", "time", "finish", "alone", "drops",
+    "weather", "seed", "record",
+];
+
 /// Simulate VDA 5050 vehicles at a broker, and their fleet manager
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
@@ -42,19 +48,20 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", conflicts_with = "layout")]
     streets: Option<usize>,
     /// Address of the broker
-    #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
+    #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883", conflicts_with = "alone")]
     broker: String,
     /// Number of vehicles
     #[arg(long, value_name = "N", default_value_t = 8)]
     vehicles: usize,
     /// Simulate their fleet manager, too
-    #[arg(long)]
+    #[arg(long, conflicts_with = "alone")]
     manager: bool,
     /// First levels of their topics
     #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
+    #[arg(conflicts_with = "alone")]
     topics: Vec<String>,
     /// Simulated seconds per second, 0.1 to 100
-    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    #[arg(long, value_name = "N", default_value_t = 1.0, conflicts_with = "alone")]
     pace: f64,
     /// End after this simulated time
     #[arg(long, value_name = "S")]
@@ -78,10 +85,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Prove that the vehicles of a record never touched
-    #[arg(long, value_name = "FILE", conflicts_with = "layout")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = SIMULATED)]
     certify: Option<PathBuf>,
     /// Write the vehicles for `pcr serve --fleet`
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "certify")]
     profiles: Option<PathBuf>,
 }
 

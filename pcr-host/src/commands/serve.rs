@@ -8,12 +8,12 @@ mod demo;
 mod run;
 
 #[cfg(feature = "serve")]
-pub(super) use bridge::{broker, interfaces};
+pub(super) use bridge::{VEHICLES, broker, interfaces};
 #[cfg(feature = "serve")]
 pub(super) use run::AT_BROKERS;
 
 use super::Stop;
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -21,7 +21,7 @@ const STATUSES: &str = "\
 Exit status:
   0  standard input has ended, and nobody else can ask
   2  wrong arguments, or a journal that is damaged or open elsewhere
-  3  the journal could not be written: no right was given after that";
+  3  the journal could not be opened or written: no right was given, or none after that";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -34,6 +34,7 @@ Examples:
 /// Supervise a fleet: decide how far each robot may go, by exact passing orders
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(group = ArgGroup::new("vda5050").args(["broker", "demo"]))]
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
     /// Directory of the journal; it outlives the program
@@ -48,12 +49,12 @@ pub(super) struct Arguments {
     /// Go on when standard input has ended
     #[arg(long)]
     stay: bool,
-    /// How far behind its stop a robot may stand, in m
-    #[arg(long, value_name = "M", default_value_t = 0.1)]
-    width: f64,
-    /// Robots are told how far they may go so long before they would have to brake, in s
-    #[arg(long, value_name = "S", default_value_t = 2.0)]
-    lookahead: f64,
+    /// Robots may stand so far behind a stop, in m [0.1; VDA: 0.3]
+    #[arg(long, value_name = "M")]
+    width: Option<f64>,
+    /// Robots are told how far they may go so long before they would have to brake, in s [2; VDA 5050: 8, the least]
+    #[arg(long, value_name = "S")]
+    lookahead: Option<f64>,
     /// A robot is silent when it was not heard for so long, in s
     #[arg(long, value_name = "S", default_value_t = 5.0)]
     silence: f64,
@@ -68,6 +69,7 @@ pub(super) struct Arguments {
     fleet: Option<PathBuf>,
     /// First levels of the topics of the fleet manager and of the vehicles
     #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
+    #[arg(requires = "vda5050")]
     topics: Vec<String>,
     /// Start a broker, vehicles on this layout and their manager, too
     #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]

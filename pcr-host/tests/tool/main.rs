@@ -20,6 +20,8 @@ mod output;
 mod plan;
 mod refusals;
 mod schema;
+#[cfg(feature = "serve")]
+mod serve;
 mod simulate;
 mod sources;
 mod streams;

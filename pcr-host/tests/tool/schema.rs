@@ -103,6 +103,8 @@ fn every_output_fits_its_schema() {
     formats.push(fits(run(&delays).out.lines().next().unwrap()));
     let lines = run(&["locks", &layout, "--radius", "0.3", "--lines", "-q"]).out;
     formats.push(fits(lines.lines().next().unwrap()));
+    #[cfg(feature = "serve")]
+    formats.extend(simulated());
     // There is no schema of which nothing was seen.
     let mut there: Vec<String> = fs::read_dir(format!("{ROOT}/docs/schema"))
         .unwrap()
@@ -110,10 +112,23 @@ fn every_output_fits_its_schema() {
         .collect();
     // Lines of `pcr serve`: pcr-host/serve/tests/lines.rs.
     there.retain(|name| name != "pcr-serve.schema.json");
+    if cfg!(not(feature = "serve")) {
+        there.retain(|name| !["pcr-contacts.schema.json", "pcr-vehicles.schema.json"].contains(&name.as_str()));
+    }
     there.sort();
     formats.sort();
     formats.dedup();
     assert_eq!(there, formats.iter().map(|format| format!("{format}.schema.json")).collect::<Vec<_>>());
+}
+
+/// What `pcr fleet` writes.
+#[cfg(feature = "serve")]
+fn simulated() -> Vec<String> {
+    let layout = real("nav2/aws_graph.geojson");
+    let (vehicles, record) = (file("schema", "vehicles.json", ""), file("schema", "record.txt", ""));
+    let fleet = ["fleet", &layout, "--vehicles", "3", "--alone", "supervisor", "--time", "20"];
+    run(&[&fleet[..], &["--profiles", &vehicles, "--record", &record]].concat()).ok();
+    vec![fits(&fs::read_to_string(vehicles).unwrap()), fits(&run(&["fleet", "--certify", &record]).ok())]
 }
 
 fn json_files(folder: &Path, files: &mut Vec<PathBuf>) {

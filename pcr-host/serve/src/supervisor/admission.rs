@@ -295,15 +295,17 @@ impl Supervisor {
         }
     }
 
-    /// Tries the oldest mission whose time has come.
+    /// Tries the mission whose time came first, of those the oldest. (The oldest of all whose time has come would be tried again before a
+    /// later one where many wait, and the only one that can be admitted perhaps never.)
     pub(super) fn retry(&mut self, now: f64) {
-        let due =
-            |robot: &Robot| robot.waiting.is_some() && self.tries.get(&robot.name).is_none_or(|last| last.next <= now);
-        let waiting = self.robots.iter().enumerate().filter(|(_, robot)| due(robot));
-        let oldest = waiting.min_by_key(|(_, robot)| robot.waiting.as_ref().map(|waiting| waiting.turn));
-        let Some((place, waiting)) = oldest.and_then(|(place, robot)| Some((place, robot.waiting.clone()?))) else {
-            return;
-        };
+        let time = |robot: &Robot| self.tries.get(&robot.name).map_or(f64::NEG_INFINITY, |last| last.next);
+        let waiting = self.robots.iter().enumerate().filter_map(|(place, robot)| {
+            let turn = robot.waiting.as_ref()?.turn;
+            Some((time(robot), turn, place)).filter(|(time, ..)| *time <= now)
+        });
+        let first = waiting.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(.., place)| place);
+        let waiting = first.and_then(|place| Some((place, self.robots[place].waiting.clone()?)));
+        let Some((place, waiting)) = waiting else { return };
         let robot = &self.robots[place];
         let name = robot.name.clone();
         let possible = match waiting.path == robot.path {

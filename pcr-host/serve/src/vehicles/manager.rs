@@ -144,6 +144,11 @@ impl Manager {
         self.layout.edges.iter().filter_map(lane).collect()
     }
 
+    /// Ends at which no vehicle stands, and to which none is on its way.
+    pub fn free(&self) -> usize {
+        self.goals.len().saturating_sub(self.clients.len())
+    }
+
     /// Missions done by all vehicles.
     pub fn done(&self) -> u64 {
         self.clients.values().map(|client| client.done).sum()

@@ -88,6 +88,10 @@ impl<W: Write> Record<W> {
 /// What the checker found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Certificate {
+    /// `pcr-contacts`
+    pub format: &'static str,
+    /// 1
+    pub version: u32,
     /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell, or not checked.
     pub verdict: &'static str,
     /// Vehicles.
@@ -156,7 +160,9 @@ fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>]) -> Certificate {
     let (begin, end) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), time| (lo.min(time), hi.max(time)));
     let legs = tracks.iter().flat_map(|track| track.windows(2));
     let travelled = legs.map(|leg| (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2])).sum();
-    let mut found = Certificate { vehicles: vehicles.len(), time: end - begin, travelled, ..Certificate::default() };
+    let (format, version) = ("pcr-contacts", 1);
+    let (count, time) = (vehicles.len(), end - begin);
+    let mut found = Certificate { format, version, vehicles: count, time, travelled, ..Certificate::default() };
     let windows = ((end - begin) / WINDOW).ceil().max(1.0) as usize;
     for window in 0..windows {
         let from = begin + window as f64 * WINDOW;

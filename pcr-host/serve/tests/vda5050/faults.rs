@@ -195,6 +195,10 @@ fn faults_one_after_the_other() {
             eprintln!("{count} times {what}: on after {longest:.2} s at most");
         }
     }
+    let worst = tally.0.iter().max_by(|a, b| a.2.total_cmp(&b.2));
+    let (what, _, longest) = worst.expect("some faults");
+    let count: u64 = tally.0.iter().map(|(_, count, _)| count).sum();
+    eprintln!("worst of {count} faults in {rounds} rounds: on after {longest:.2} s ({what})");
     let anew = site.office.manager.planned_anew();
     assert!(anew > 0);
     eprintln!("{anew} orders were planned anew");

@@ -1,6 +1,7 @@
 //! Vehicles and their manager at a broker.
 
-use super::super::serve::{AT_BROKERS, broker, interfaces};
+use super::super::printed::notes;
+use super::super::serve::{AT_BROKERS, VEHICLES, broker, interfaces};
 use super::super::{CONFLICTS, Stop};
 use super::Arguments;
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
@@ -8,6 +9,7 @@ use pcr_planning::lifelong::{streets, well_formedness};
 use pcr_serve::entry::Nowhere;
 use pcr_serve::fault::Fault;
 use pcr_serve::supervisor::Supervisor;
+use pcr_serve::vda5050::lane::Profile;
 use pcr_serve::vda5050::mqtt::Broker;
 use pcr_serve::vda5050::topics::Interface;
 use pcr_serve::vda5050::version::Version;
@@ -146,6 +148,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
             return Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}")));
         }
     }
+    if arguments.finish && !arguments.manager && arguments.alone.is_none() {
+        return Err(Stop::arguments("--finish: missions are those of --manager, or of --alone"));
+    }
     let Arguments { vehicles, manager, pace, drops, weather, seed, .. } = arguments;
     let crew = Crew { vehicles, manager, pace, drops, weather, seed };
     let world = match (&arguments.layout, arguments.streets) {
@@ -153,6 +158,16 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         (None, Some(count @ 2..=100)) => generated(count, &crew)?,
         _ => return Err(Stop::arguments("a layout, or --streets 2 to 100 is needed")),
     };
+    let free = world.manager.free();
+    if free < vehicles {
+        let ends = free + vehicles;
+        writeln!(
+            notes(),
+            "pcr: {ends} safe ends have room for {} vehicles; with {vehicles} of them most missions end where another \
+             vehicle stands, and wait until it leaves",
+            ends.saturating_sub(1)
+        )?;
+    }
     if let Some(file) = &arguments.profiles {
         let text = profiles(&world);
         super::super::write_to(file, &text)?;
@@ -252,16 +267,15 @@ fn told(
 }
 
 fn profiles(world: &World) -> String {
-    let list: Vec<_> = world
-        .profiles
-        .iter()
-        .map(|profile| {
-            let (key, can) = (&profile.key, &profile.abilities);
-            serde_json::json!({ "manufacturer": key.manufacturer, "serialNumber": key.serial_number, "radius": can.radius,
-                "margin": can.margin, "speed": can.speed, "acceleration": can.acceleration, "split": profile.split })
-        })
-        .collect();
-    format!("{:#}\n", serde_json::json!({ "vehicles": list }))
+    let vehicle = |profile: &Profile| {
+        let (key, can) = (&profile.key, &profile.abilities);
+        serde_json::json!({ "manufacturer": key.manufacturer, "serialNumber": key.serial_number, "radius": can.radius,
+            "margin": can.margin, "speed": can.speed, "acceleration": can.acceleration, "split": profile.split })
+        .to_string()
+    };
+    let list: Vec<String> = world.profiles.iter().map(vehicle).collect();
+    let (format, version) = VEHICLES;
+    format!("{{\"format\":\"{format}\",\"version\":{version},\"vehicles\":[\n{}\n]}}\n", list.join(",\n"))
 }
 
 fn certified(file: &Path) -> Result<ExitCode, Stop> {

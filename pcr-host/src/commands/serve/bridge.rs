@@ -61,12 +61,32 @@ pub(in super::super) fn broker(place: &str) -> Result<Broker, Stop> {
     Ok(Broker { login, ..Broker::new(host, port) })
 }
 
+/// What a file of vehicles says that it is, and its version.
+pub(in super::super) const VEHICLES: (&str, u64) = ("pcr-vehicles", 1);
+
+/// The list in a file of vehicles, which may leave out what it is.
+fn listed(value: &Value) -> Result<&Vec<Value>, String> {
+    let Value::Object(members) = value else { return Err("an object is expected".into()) };
+    for (name, value) in members {
+        match name.as_str() {
+            "format" if *value != VEHICLES.0 => {
+                return Err(format!("format: {value} where {} is expected", VEHICLES.0));
+            }
+            "version" if *value != VEHICLES.1 => {
+                return Err(format!("version: {value} where {} is expected", VEHICLES.1));
+            }
+            "format" | "version" | "vehicles" => {}
+            unknown => return Err(format!("{unknown}: unknown; format, version and vehicles are read")),
+        }
+    }
+    members.get("vehicles").and_then(Value::as_array).ok_or_else(|| "vehicles: a list is expected".into())
+}
+
 /// The vehicles in a file.
 fn profiles(file: &Path) -> Result<Vec<Profile>, Stop> {
     let text = std::fs::read_to_string(file).map_err(|error| Stop::wrong(file, error))?;
     let value: Value = serde_json::from_str(&text).map_err(|error| Stop::wrong(file, error))?;
-    let list = value.get("vehicles").and_then(Value::as_array);
-    let list = list.ok_or_else(|| Stop::wrong(file, "vehicles: a list is expected"))?;
+    let list = listed(&value).map_err(|why| Stop::wrong(file, why))?;
     let profile =
         |(k, value): (usize, &Value)| profile(value).map_err(|why| Stop::wrong(file, format!("vehicles[{k}]: {why}")));
     let profiles: Vec<Profile> = list.iter().enumerate().map(profile).collect::<Result<_, _>>()?;

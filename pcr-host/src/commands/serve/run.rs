@@ -15,29 +15,15 @@ use pcr_serve::server::{Handle, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::writer::{Kept, Writer};
 use pcr_serve::{clients, http};
+use std::io::ErrorKind;
 use std::net::TcpListener;
 use std::process::ExitCode;
 use std::thread;
 
 pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
-    let within = |name: &str, value: f64, lo: f64, hi: f64| match (lo..=hi).contains(&value) {
-        true => Ok(value),
-        false => Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}"))),
-    };
-    let demo =
-        arguments.demo.as_deref().map(|layout| Demo::start(layout, &arguments, log_of(&arguments)?)).transpose()?;
-    let at_broker = arguments.broker.is_some() || demo.is_some();
-    let settings = Settings {
-        width: within("--width", arguments.width, 0.001, 10.0)?.max(if at_broker { AT_BROKERS.0 } else { 0.0 }),
-        lookahead: within("--lookahead", arguments.lookahead, 0.1, 600.0)?.max(if at_broker {
-            AT_BROKERS.1
-        } else {
-            0.0
-        }),
-        silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
-        ..Settings::default()
-    };
+    let settings = settings(&arguments)?;
     let log = log_of(&arguments)?;
+    let demo = arguments.demo.as_deref().map(|layout| Demo::start(layout, &arguments, log)).transpose()?;
     let (handle, inputs) = queue();
     let (mut supervisor, kept) = open(&arguments, settings, &handle, log)?;
     if let Some(demo) = &demo {
@@ -81,6 +67,27 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
 /// they say so less often \[s\].
 pub(in super::super) const AT_BROKERS: (f64, f64) = (0.3, 8.0);
 
+/// What the command line says, and what is usual where it says nothing.
+fn settings(arguments: &Arguments) -> Result<Settings, Stop> {
+    let usual = Settings::default();
+    let at_broker = arguments.broker.is_some() || arguments.demo.is_some();
+    let (width, lookahead) = if at_broker { AT_BROKERS } else { (usual.width, usual.lookahead) };
+    let within = |name: &str, value: f64, lo: f64, hi: f64| match (lo..=hi).contains(&value) {
+        true => Ok(value),
+        false => {
+            let whose = if at_broker { " for vehicles of VDA 5050" } else { "" };
+            Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}{whose}")))
+        }
+    };
+    let least = |usual: f64, other: f64| if at_broker { usual } else { other };
+    Ok(Settings {
+        width: within("--width", arguments.width.unwrap_or(width), least(width, 0.001), 10.0)?,
+        lookahead: within("--lookahead", arguments.lookahead.unwrap_or(lookahead), least(lookahead, 0.1), 600.0)?,
+        silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
+        ..usual
+    })
+}
+
 fn log_of(arguments: &Arguments) -> Result<Log, Stop> {
     let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;
     Ok(Log::new(if quiet() { Level::Error } else { level }))
@@ -122,7 +129,11 @@ fn open(arguments: &Arguments, settings: Settings, handle: &Handle, log: Log) ->
         let keeper: Box<dyn Keep> = Box::new(Nowhere);
         return Ok((Supervisor::new(settings, keeper), Kept::default()));
     };
-    let (journal, found) = Journal::open(folder).map_err(|error| Stop::wrong(folder, error))?;
+    let (journal, found) = Journal::open(folder).map_err(|error| match error.kind() {
+        // Whoever has it open, or has damaged it, is not the disc.
+        ErrorKind::WouldBlock | ErrorKind::InvalidData => Stop::wrong(folder, error),
+        _ => Stop::Error(format!("the journal cannot be opened, so no right is given: {error}"), NOT_WRITTEN),
+    })?;
     if found.torn > 0 {
         log.write(
             Level::Warn,

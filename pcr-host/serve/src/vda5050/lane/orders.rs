@@ -126,11 +126,15 @@ impl Lane {
         }
         let mut job = Job::new(held, way, version.text().into());
         self.ask(supervisor, &mut job, None, now)?;
+        self.has(supervisor, job);
+        Ok(true)
+    }
+
+    /// The vehicle has this order from now on.
+    fn has(&mut self, supervisor: &mut Supervisor, job: Job) {
         self.note(supervisor, "order", job.given());
         self.note(supervisor, "base", job.base());
-        self.job = Some(job);
-        self.astray = None;
-        Ok(true)
+        (self.job, self.astray) = (Some(job), None);
     }
 
     /// An order for a vehicle that has lost the one that it had: it keeps what it may do where it goes on as before.
@@ -163,9 +167,7 @@ impl Lane {
         if job.held.base > joins {
             self.ask(supervisor, &mut job, Some(joins), now)?;
         }
-        self.note(supervisor, "order", job.given());
-        self.note(supervisor, "base", job.base());
-        (self.job, self.astray) = (Some(job), None);
+        self.has(supervisor, job);
         Ok(true)
     }
 

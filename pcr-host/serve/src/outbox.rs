@@ -1,0 +1,127 @@
+//! Lines on their way to a client. So many bytes of them wait at most; a client that reads none is disconnected and told
+//! why in the last line.
+
+use crate::fault::Fault;
+use crate::lines;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvError, RecvTimeoutError, Sender, TryRecvError, channel};
+use std::time::Duration;
+
+/// Bytes that may wait for a client: what a fleet of 1,000 robots is told in some seconds.
+pub const BACKLOG: usize = 8 << 20;
+
+/// Lines are written together up to this length \[bytes\].
+const BATCH: usize = 1 << 16;
+
+/// The end into which lines go.
+#[derive(Debug)]
+pub struct Outbox {
+    sender: Sender<String>,
+    shared: Arc<Shared>,
+}
+
+/// The end from which they come.
+#[derive(Debug)]
+pub struct Lines {
+    receiver: Receiver<String>,
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    /// Bytes that wait.
+    bytes: AtomicUsize,
+    /// No more lines will come.
+    is_closed: AtomicBool,
+}
+
+/// Why a client gets no more lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lost {
+    /// It is not there any more.
+    Gone,
+    /// It does not read what is sent to it.
+    Slow,
+}
+
+/// Both ends.
+pub fn outbox() -> (Outbox, Lines) {
+    let (sender, receiver) = channel();
+    let shared = Arc::<Shared>::default();
+    (Outbox { sender, shared: shared.clone() }, Lines { receiver, shared })
+}
+
+impl Outbox {
+    /// Sends a line. One that is longer than what may wait is sent if nothing else waits.
+    ///
+    /// # Errors
+    /// [`Lost`]: nothing more may be sent to this client.
+    pub fn send(&self, line: String) -> Result<(), Lost> {
+        let waiting = self.shared.bytes.load(Ordering::Relaxed);
+        if waiting > 0 && waiting.saturating_add(line.len()) > BACKLOG {
+            // It may be gone as well.
+            let _ = self.put(format!("{}\n", lines::refusal(&Fault::Slow { bytes: waiting })));
+            return Err(Lost::Slow);
+        }
+        self.put(line).map_err(|()| Lost::Gone)
+    }
+
+    fn put(&self, line: String) -> Result<(), ()> {
+        let length = line.len();
+        self.shared.bytes.fetch_add(length, Ordering::Relaxed);
+        self.sender.send(line).map_err(drop)
+    }
+}
+
+impl Drop for Outbox {
+    fn drop(&mut self) {
+        self.shared.is_closed.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Lines {
+    /// The next line; waits for it.
+    ///
+    /// # Errors
+    /// No more will come.
+    pub fn recv(&self) -> Result<String, RecvError> {
+        self.receiver.recv().inspect(|line| self.taken(line))
+    }
+
+    /// The next line, if it comes within a time.
+    ///
+    /// # Errors
+    /// None has come.
+    pub fn recv_timeout(&self, time: Duration) -> Result<String, RecvTimeoutError> {
+        self.receiver.recv_timeout(time).inspect(|line| self.taken(line))
+    }
+
+    /// The next line, if it is there.
+    ///
+    /// # Errors
+    /// None is there.
+    pub fn try_recv(&self) -> Result<String, TryRecvError> {
+        self.receiver.try_recv().inspect(|line| self.taken(line))
+    }
+
+    /// The next lines, to be written together; waits for the first. None: no more will come.
+    pub fn batch(&self) -> Option<String> {
+        let mut text = self.recv().ok()?;
+        while text.len() < BATCH
+            && let Ok(line) = self.try_recv()
+        {
+            text.push_str(&line);
+        }
+        Some(text)
+    }
+
+    /// Whether no more will come than what waits.
+    pub fn is_closed(&self) -> bool {
+        self.shared.is_closed.load(Ordering::Relaxed)
+    }
+
+    fn taken(&self, line: &str) {
+        self.shared.bytes.fetch_sub(line.len(), Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,124 @@
+//! `pcr serve` and `pcr fleet`: options, files and discs.
+
+use crate::fixture::{directory, file, pcr, run, run_with};
+use serde_json::{Value, json};
+use std::process::Stdio;
+
+const LAYOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/aws_graph.geojson");
+
+const ADD: &str = r#"{"id":1,"verb":"add","robot":"a","start":{"x":0,"y":0,"heading":0},"abilities":{"radius":0.3,"speed":1,"acceleration":1}}
+{"id":2,"verb":"mission","robot":"a","mission":"1","path":[{"kind":"line","length":6}]}
+"#;
+
+#[test]
+fn options_without_effect_are_refused() {
+    for (arguments, reason) in [
+        (&["fleet", "--certify", "run.txt", "--vehicles", "9"][..], "cannot be used with"),
+        (&["fleet", "--certify", "run.txt", "--streets", "6"], "cannot be used with"),
+        (&["fleet", "--certify", "run.txt", "--seed", "1"], "cannot be used with"),
+        (&["fleet", "--certify", "run.txt", "--profiles", "vehicles.json"], "cannot be used with"),
+        (&["fleet", LAYOUT, "--certify", "run.txt"], "cannot be used with"),
+        (&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--pace", "2"], "cannot be used with"),
+        (&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--broker", "localhost"], "cannot be used with"),
+        (&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--topics", "a", "b"], "cannot be used with"),
+        (&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--manager"], "cannot be used with"),
+        (&["fleet", LAYOUT, "--time", "1", "--finish"], "--finish: missions are those of --manager, or of --alone"),
+        (&["serve", "--topics", "a", "b"], "were not provided"),
+        (&["serve", "--demo", LAYOUT, "--lookahead", "2"], "--lookahead: allowed is 8 to 600 for vehicles of VDA 5050"),
+        (&["serve", "--demo", LAYOUT, "--width", "0.1"], "--width: allowed is 0.3 to 10 for vehicles of VDA 5050"),
+        (&["serve", "--lookahead", "0.05"], "--lookahead: allowed is 0.1 to 600\n"),
+    ] {
+        let run = run(arguments);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.err.contains(reason), "{arguments:?}: {}", run.err);
+    }
+}
+
+/// Ten safe ends: with nine vehicles each mission ends where another one stands.
+#[test]
+fn a_layout_that_is_nearly_full_is_said_to_be() {
+    let fleet =
+        |vehicles: &str| run(&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--vehicles", vehicles]);
+    let said = fleet("9").err;
+    assert!(said.starts_with("pcr: 10 safe ends have room for 9 vehicles; with 9 of them most missions "), "{said}");
+    assert_eq!(fleet("5").err, "");
+    assert!(fleet("10").failed(2).ends_with("10 vehicles need 11 places to stand at; there are 10\n"));
+}
+
+#[test]
+fn what_a_broker_needs_is_the_least_lookahead() {
+    let vehicles = file("lookahead", "vehicles.json", r#"{"vehicles":[]}"#);
+    let refused = |lookahead: &str| {
+        run(&["serve", "--broker", "localhost:1", "--fleet", &vehicles, "--lookahead", lookahead]).failed(2)
+    };
+    assert_eq!(refused("7.9"), "pcr: --lookahead: allowed is 8 to 600 for vehicles of VDA 5050\n");
+}
+
+#[test]
+fn vehicles_are_written_as_they_are_read() {
+    let folder = directory("profiles");
+    let name = folder.join("vehicles.json").to_string_lossy().into_owned();
+    let fleet = ["fleet", LAYOUT, "--vehicles", "3", "--alone", "supervisor", "--time", "0.2", "--profiles"];
+    run(&[&fleet[..], &[&name]].concat()).ok();
+    let text = std::fs::read_to_string(&name).unwrap();
+    assert!(text.starts_with(r#"{"format":"pcr-vehicles","version":1,"vehicles":["#), "{text}");
+    let refused = |text: &str| {
+        let name = file("profiles", "changed.json", text);
+        run(&["serve", "--log", "error", "--broker", "localhost:1", "--fleet", &name]).failed(2)
+    };
+    assert!(refused(r#"{"version":1}"#).ends_with("vehicles: a list is expected\n"));
+    for (from, to, reason) in [
+        ("pcr-vehicles", "pcr-plan", "format: \"pcr-plan\" where pcr-vehicles is expected"),
+        ("\"version\":1", "\"version\":2", "version: 2 where 1 is expected"),
+        ("\"version\"", "\"versions\"", "versions: unknown; format, version and vehicles are read"),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text);
+        let failed = refused(&changed);
+        assert!(failed.ends_with(&format!("{reason}\n")), "{failed}");
+    }
+}
+
+/// A disc on which a journal finds no room: the process may not write files that long.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disc_gives_no_right() {
+    let folder = directory("full").join("state");
+    let _ = std::fs::remove_dir_all(&folder);
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", "ulimit -f 512; exec \"$0\" serve --log error --journal \"$1\""]);
+    command.arg(pcr().get_program()).arg(&folder);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    // The tool may have ended before it has read all.
+    let _ = std::io::Write::write_all(&mut stdin, ADD.as_bytes());
+    let output = child.wait_with_output().unwrap();
+    drop(stdin);
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    let journal = folder.join("journal").to_string_lossy().into_owned();
+    assert_eq!(output.status.code(), Some(3), "{out}{err}");
+    assert!(err.contains("pcr: the journal cannot be written, so no right is given any more: "), "{err}");
+    assert!(err.contains(&format!("{journal}: File too large")), "{err}");
+    // Whatever was answered, nothing was admitted.
+    for line in out.lines() {
+        let line: Value = serde_json::from_str(line).unwrap();
+        assert_eq!(line["error"]["code"], "broken", "{line}");
+        assert!(line["error"]["message"].as_str().unwrap().contains(&journal), "{line}");
+    }
+    // What is there is a journal, and with room it goes on.
+    let name = folder.to_string_lossy().into_owned();
+    let again = run_with(&["serve", "--log", "error", "--journal", &name], ADD.as_bytes()).ok();
+    let first: Value = serde_json::from_str(again.lines().next().unwrap()).unwrap();
+    assert_eq!(first, json!({ "pcr": 1, "id": 1, "ok": { "path": 1 } }));
+}
+
+/// Folders in which nobody can write, not even root.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    for folder in ["/sys/pcr-journal".into(), format!("{}/state", file("unwritable", "a-file", ""))] {
+        let failed = run_with(&["serve", "--log", "error", "--journal", &folder], ADD.as_bytes()).failed(3);
+        let begins = format!("pcr: the journal cannot be opened, so no right is given: {folder}: ");
+        assert!(failed.starts_with(&begins), "{failed}");
+    }
+}
