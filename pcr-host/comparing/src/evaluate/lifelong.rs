@@ -21,8 +21,9 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; a robot that has finished a mission gets a new \
         random one, for {hours} h (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up \
         to {} % slower than commanded. Missions are drawn once and never exchanged; all methods have the same missions and the same delays. Only \
-        with orders, a robot looks for the way to its next goal up to 10 s before it reaches a goal. Locks on edges are granted one by one, if all \
-        could still finish afterwards (the banker's algorithm). *An hour*: missions per hour, without the first tenth of the time; *travel*: mean \
+        with orders, a robot looks for the way to its next goal up to 25 s before it reaches a goal, 10 s with more robots than safe \
+        ends or more than 64 robots. Locks on edges are granted one by one, if all could still finish \
+        afterwards (the banker's algorithm). *An hour*: missions per hour, without the first tenth of the time; *travel*: mean \
         time of a mission divided by that of a robot alone; *starved*: missions that have waited for more than ten minutes at the end; *decision*: \
         time to decide on a way and orders, 99th percentile; *contact*: verdict of the independent checker on the recorded motions.\n\n\
         | robots | method | missions | an hour | travel | starved | stuck | decision | contact |\n|---:|---|---:|---:|---:|---:|---:|---:|---|\n",

@@ -14,9 +14,6 @@ pub(super) const AGAIN: f64 = 1.0;
 /// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\], and whoever does not wait so often.
 const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
 
-/// The way for the next mission is looked for so long before the goal \[s\].
-const AHEAD: f64 = 10.0;
-
 /// Decisions between two controls.
 pub(super) const TRIES: usize = 4;
 
@@ -80,6 +77,7 @@ impl Run {
 
     /// Looks for ways on to the next goals of those who soon are at their goals.
     fn look_ahead(&mut self, now: f64, tries: &mut usize) {
+        let ahead = self.scene(now).ahead();
         for robot in 0..self.robots.len() {
             let Some(mission) = self.missions[robot].filter(|mission| mission.admitted && mission.next_try <= now)
             else {
@@ -87,7 +85,7 @@ impl Run {
             };
             let it = &self.robots[robot];
             let [goal] = it.way.goals[..] else { continue };
-            if *tries >= TRIES || it.way.time(goal) - it.progress(None, now, &self.abilities) > AHEAD {
+            if *tries >= TRIES || it.way.time(goal) - it.progress(None, now, &self.abilities) > ahead {
                 continue;
             }
             *tries += 1;
@@ -142,6 +140,7 @@ impl Run {
         if !self.is_large() {
             return;
         }
+        let earlier = self.scene(now).earlier();
         let Self { robots, abilities, book, timetable, .. } = self;
         let waits = &Waits::of(robots, book, None);
         for robot in (tick % ROUND..robots.len()).step_by(ROUND) {
@@ -149,7 +148,7 @@ impl Run {
                 continue;
             }
             let kept = Some((&*timetable, &[robot][..]));
-            let trial = Trial { robots, waits, abilities, time: now, changed: None, kept };
+            let trial = Trial { robots, waits, abilities, time: now, changed: None, earlier, kept };
             if let Ok(forecast) = trial.forecast() {
                 let lines = forecast.robots.into_iter().zip(forecast.lines).collect();
                 timetable.change(lines);

@@ -59,7 +59,7 @@ impl Scene<'_> {
     pub(super) fn better(&self, robot: usize, goals: &[usize], gain: f64) -> Option<Admitted> {
         let it = &self.robots[robot];
         let cost = match self.timetable {
-            Some(timetable) => timetable.lines[robot].cost(&it.way, self.time),
+            Some(timetable) => timetable.lines[robot].cost(&it.way, self.time, self.earlier()),
             None => self.base().ok()?.cost,
         };
         self.dispatch(robot, goals).filter(|found| found.cost + gain < cost)
@@ -118,7 +118,8 @@ impl Scene<'_> {
         let Scene { robots, abilities, time, .. } = *self;
         let alone = || {
             let changed = Some((robot, &it.way, it.at, time, &[][..]));
-            Trial { robots, waits, abilities, time, changed, kept: None }.forecast().map(|found| found.lines)
+            let earlier = self.earlier();
+            Trial { robots, waits, abilities, time, changed, earlier, kept: None }.forecast().map(|found| found.lines)
         };
         let [least, most] = FORECASTS;
         let (alone, taken, budget) = match self.timetable {

@@ -22,6 +22,8 @@ pub(super) struct Trial<'t, 'w> {
     pub(super) time: f64,
     /// The robot, its way, where it is on it, when it sets off, and its regions.
     pub(super) changed: Option<(usize, &'t Way, f64, f64, &'t [Region])>,
+    /// What goals before the last one of a way count.
+    pub(super) earlier: f64,
     /// What the others keep to, and who is taken in any case; none: all are taken.
     pub(super) kept: Option<(&'t Timetable, &'t [usize])>,
 }
@@ -173,10 +175,12 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
         let cost = robots.iter().zip(&lines).map(|(&robot, line)| {
             let way = self.way(robot).0;
             let planned = match self.kept {
-                Some((timetable, _)) if !self.is_changed(robot) => timetable.lines[robot].cost(way, self.time),
+                Some((timetable, _)) if !self.is_changed(robot) => {
+                    timetable.lines[robot].cost(way, self.time, self.earlier)
+                }
                 _ => 0.0,
             };
-            line.cost(way, self.time) - planned
+            line.cost(way, self.time, self.earlier) - planned
         });
         let cost = cost.sum();
         Ok(Forecast { robots, lines, cost })

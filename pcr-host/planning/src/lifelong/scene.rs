@@ -51,7 +51,28 @@ impl Scene<'_> {
     pub(super) fn base(&self) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self;
         let waits = &Waits::of(robots, self.book, None);
-        Trial { robots, waits, abilities, time, changed: None, kept: None }.forecast()
+        let earlier = self.earlier();
+        Trial { robots, waits, abilities, time, changed: None, earlier, kept: None }.forecast()
+    }
+
+    /// What goals before the last one of a way count: a robot that knows two goals is not twice as important as one that knows one, as
+    /// each gets mission after mission. Where robots have no room to stand, those that are near a goal go first all the same.
+    pub(super) fn earlier(&self) -> f64 {
+        /// On the warehouse graph with 10 robots more missions are done than with 0 or 1.
+        const SOME: f64 = 0.3;
+        if self.has_room() { SOME } else { 1.0 }
+    }
+
+    /// Whether everybody has a safe end, and decisions look at all robots.
+    fn has_room(&self) -> bool {
+        !self.crowded && self.timetable.is_none()
+    }
+
+    /// The way for the next mission is looked for so long before the goal \[s\].
+    pub(super) fn ahead(&self) -> f64 {
+        /// With room, and without: who reserves more in a crowd is in the way of others.
+        const AHEAD: [f64; 2] = [25.0, 10.0];
+        AHEAD[usize::from(!self.has_room())]
     }
 
     pub(super) fn kept(&self, robot: usize) -> Kept {

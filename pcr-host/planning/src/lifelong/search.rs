@@ -44,7 +44,8 @@ impl Case<'_, '_> {
         let Scene { robots, abilities, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
         let kept = self.scene.timetable.map(|timetable| (timetable, self.taken));
-        Trial { robots, waits: self.waits, abilities, time, changed, kept }.forecast()
+        let earlier = self.scene.earlier();
+        Trial { robots, waits: self.waits, abilities, time, changed, earlier, kept }.forecast()
     }
 
     /// Which of the two can go first at a region: the robot, the other one.

@@ -38,7 +38,7 @@ impl Scene<'_> {
         }
         let waits = &Waits::of(self.robots, self.book, Some(robot));
         let (base, taken) = (&timetable.lines[..], &self.waiting_for(robot)[..]);
-        let cost = base[robot].cost(&it.way, self.time);
+        let cost = base[robot].cost(&it.way, self.time, self.earlier());
         let budget = &Cell::new(FORECASTS);
         let [at, stop] = [it.at, it.stop(self.abilities)];
         let case = Case { scene: self, base, waits, taken, robot, way: &it.way, at, stop, budget };

@@ -55,10 +55,14 @@ impl Timeline {
         }
     }
 
-    /// Sum of the times from now until goals are reached, and a little of that until it stands \[s\].
-    pub(super) fn cost(&self, way: &Way, now: f64) -> f64 {
+    /// Sum of the times from now until goals are reached, of which those before the last one count so much, and a little of that until it
+    /// stands \[s\].
+    pub(super) fn cost(&self, way: &Way, now: f64, earlier: f64) -> f64 {
         let time = |length: f64| self.from(way.time(length), length, now);
-        way.goals.iter().map(|&goal| time(goal)).sum::<f64>() + TAIL * time(way.length())
+        let goals = way.goals.split_last();
+        let goals = goals
+            .map_or(0.0, |(&last, before)| earlier * before.iter().map(|&goal| time(goal)).sum::<f64>() + time(last));
+        goals + TAIL * time(way.length())
     }
 
     /// By how much it is later at a length \[s\].
