@@ -295,8 +295,8 @@ impl Supervisor {
         }
     }
 
-    /// Tries the mission whose time came first, of those the oldest. (The oldest of all whose time has come would be tried again before a
-    /// later one where many wait, and the only one that can be admitted perhaps never.)
+    /// Tries the mission that has been due for longest; of several, the oldest. (If the oldest of all that are due was tried, a young one
+    /// would never be tried while many wait, even if it was the only one that could be admitted.)
     pub(super) fn retry(&mut self, now: f64) {
         let time = |robot: &Robot| self.tries.get(&robot.name).map_or(f64::NEG_INFINITY, |last| last.next);
         let waiting = self.robots.iter().enumerate().filter_map(|(place, robot)| {
