@@ -26,8 +26,8 @@ use std::path::{Path, PathBuf};
 /// Layouts that there are in the test data, at least.
 const LAYOUTS: usize = 15;
 
-/// Pairs of a format that are certified: 100,000 in an optimized run.
-const PAIRS: u64 = if cfg!(optimized) { 100_000 } else { 1_000 };
+/// Pairs of a format that are certified: 20,000 in an optimized run.
+const PAIRS: u64 = if cfg!(optimized) { 20_000 } else { 1_000 };
 
 fn holds<S: Format>(held: f64) {
     let proofs = run_on_all_processors(run::<S>, 0, PAIRS, |_, _| ());

@@ -11,7 +11,7 @@ use pcr_tests::disc::{Disc, Drive};
 use pcr_tests::oracle::contact::Meeting;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-const FLEETS: u64 = if cfg!(optimized) { 30 } else { 3 };
+const FLEETS: u64 = if cfg!(optimized) { 15 } else { 3 };
 
 const EFFORT: Effort = Effort { rounds: 2, budget: 0.01, slices: 5_000 };
 

@@ -113,7 +113,7 @@ fn steps_bound(truth: &Meeting, during: [f64; 2], tolerance: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(settings(2_000, 20, 41))]
+    #![proptest_config(settings(1_000, 10, 41))]
     #[test]
     fn conflicts_are_those_of_the_definition_f64((pair, drives) in driven_pairs()) {
         let [(a, s), (b, t)] = drives;

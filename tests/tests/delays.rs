@@ -139,7 +139,7 @@ fn slip<S: Format>(
 }
 
 proptest! {
-    #![proptest_config(settings(500, 25, 43))]
+    #![proptest_config(settings(250, 12, 43))]
     #[test]
     fn regions_forbid_what_the_definition_forbids_f64((pair, drives) in driven_pairs()) {
         audited::<f64>([&pair.0, &pair.1], &drives)?;
@@ -152,7 +152,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(settings(500, 25, 43))]
+    #![proptest_config(settings(250, 12, 43))]
     #[test]
     fn regions_forbid_what_the_definition_forbids_q16((pair, drives) in driven_pairs()) {
         audited::<Q16>([&pair.0, &pair.1], &drives)?;
@@ -202,7 +202,7 @@ fn contacts_have_a_region<S: Format>(cases: u64) {
 
 #[test]
 fn a_contact_of_no_region_is_a_touch() {
-    let cases = if cfg!(optimized) { 3_000 } else { 100 };
+    let cases = if cfg!(optimized) { 1_500 } else { 100 };
     contacts_have_a_region::<f64>(cases);
     contacts_have_a_region::<f32>(cases);
     contacts_have_a_region::<Q12>(cases);

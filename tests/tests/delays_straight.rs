@@ -94,7 +94,7 @@ fn drawn(dice: &mut Dice) -> [f64; 2] {
 
 #[test]
 fn drawn_edges_have_the_intervals_of_the_definition() {
-    let cases = if cfg!(optimized) { 1_000_000 } else { 30_000 };
+    let cases = if cfg!(optimized) { 500_000 } else { 30_000 };
     let (mut met, mut free) = (0, 0);
     for case in 0..cases {
         let dice = &mut Dice::seeded(case as u64);
@@ -124,7 +124,7 @@ fn drawn_edges_have_the_intervals_of_the_definition() {
 /// One edge goes on where another one ends, and hardly turns: where they graze depends on a small difference of directions.
 #[test]
 fn edges_that_hardly_turn_have_the_intervals_of_the_definition() {
-    let cases = if cfg!(optimized) { 300_000 } else { 20_000 };
+    let cases = if cfg!(optimized) { 150_000 } else { 20_000 };
     let mut met = 0;
     // Of the published roadmaps: found 5e-13 m too short, or 3e-12 m too long, with the product of two directions.
     let published = [

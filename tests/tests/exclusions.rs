@@ -15,6 +15,9 @@ const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
 const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
 const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
 
+/// What is driven by each file.
+const MISSIONS: usize = 500;
+
 fn options(radius: f64) -> Options {
     Options { radius: Some(radius), ..Options::default() }
 }
@@ -33,10 +36,10 @@ fn written(format: Format, text: &str, radius: f64, settings: &Settings) -> Stri
 
 fn suffice(is_asked: impl Fn(&Written) -> bool) {
     for file in written::ALL.into_iter().filter(is_asked) {
-        let (_, run) = file.obeyed(1000, 7).unwrap();
+        let (_, run) = file.obeyed(MISSIONS, 7).unwrap();
         assert!(run.contacts.is_empty(), "{file}: {:?}", run.contacts);
-        assert_eq!(run.missions, 1000, "{file}: {run:?}");
-        assert!(run.pairs > 200 && run.refused > 100, "{file}: hardly anybody met: {run:?}");
+        assert_eq!(run.missions, MISSIONS, "{file}: {run:?}");
+        assert!(5 * run.pairs > MISSIONS && 10 * run.refused > MISSIONS, "{file}: hardly anybody met: {run:?}");
     }
 }
 

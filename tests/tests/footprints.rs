@@ -193,7 +193,7 @@ fn vehicles_in_fixed_point() {
 
 #[test]
 fn random_vehicles() {
-    const PAIRS: u64 = if cfg!(optimized) { 60 } else { 5 };
+    const PAIRS: u64 = if cfg!(optimized) { 30 } else { 5 };
     let mut met = 0;
     for seed in 0..PAIRS {
         let mut dice = Dice::seeded(seed);

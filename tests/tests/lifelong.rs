@@ -60,7 +60,7 @@ fn locks_on_edges_let_everybody_arrive() {
 /// Others of the repository, certified; nobody gets stuck with any method.
 #[test]
 fn orders_do_more_missions_than_locks_on_other_layouts() {
-    let (agents, minutes) = if cfg!(optimized) { (10, 6.0) } else { (4, 3.0) };
+    let (agents, minutes) = if cfg!(optimized) { (10, 4.0) } else { (4, 3.0) };
     let layouts = [
         (Format::Nav2, include_str!("../data/real/nav2/aws_graph.geojson")),
         (Format::Rmf, include_str!("../data/real/rmf/office.building.yaml")),
@@ -94,7 +94,7 @@ fn more_robots_than_safe_ends_go_on_all_the_same() {
 /// More robots than are taken whole: decisions keep a timetable of all others.
 #[test]
 fn large_fleets_never_touch_and_all_arrive() {
-    let (agents, minutes) = if cfg!(optimized) { (100, 4.0) } else { (70, 1.0) };
+    let (agents, minutes) = if cfg!(optimized) { (100, 2.0) } else { (70, 1.0) };
     let outcome = driven(&streets(10), agents, minutes, 0.05, Method::Orders);
     assert!(outcome.robots == agents && outcome.missions > agents / 4, "{outcome:?}");
 }

@@ -47,7 +47,7 @@ fn monotone_way(pair: &Pair, ends: [f64; 2], clearance: f64) -> bool {
 #[test]
 fn orders_can_be_kept_if_and_only_if_there_is_a_way() {
     let (mut possible, mut impossible, mut chosen) = (0, 0, 0);
-    for seed in 0..if cfg!(optimized) { 4000 } else { 300 } {
+    for seed in 0..if cfg!(optimized) { 2000 } else { 300 } {
         let (a, b) = pair(&mut Dice::seeded(seed));
         let courses = [&a, &b].map(Course::<f64>::new);
         let [Ok(first), Ok(second)] = &courses else { continue };
@@ -85,7 +85,7 @@ fn orders_can_be_kept_if_and_only_if_there_is_a_way() {
 #[test]
 fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
     let (mut finished, mut stuck) = (0, 0);
-    for seed in 0..if cfg!(optimized) { 3000 } else { 300 } {
+    for seed in 0..if cfg!(optimized) { 1500 } else { 300 } {
         let mut dice = Dice::seeded(seed);
         let discs = fleet(&mut dice);
         let courses: Vec<_> = discs.iter().filter_map(|(disc, ..)| Course::<f64>::new(disc).ok()).collect();
@@ -143,7 +143,7 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
 #[test]
 fn the_orders_of_a_plan_are_kept_by_the_plan() {
     let mut planned = 0;
-    for seed in 0..if cfg!(optimized) { 2000 } else { 200 } {
+    for seed in 0..if cfg!(optimized) { 1000 } else { 200 } {
         let discs = fleet(&mut Dice::seeded(seed));
         // Planned with discs that are a little larger than those that the orders are about.
         let course = |growth: f64| {
@@ -187,7 +187,7 @@ fn the_orders_of_a_plan_are_kept_by_the_plan() {
 #[test]
 fn motions_that_collide_have_no_orders() {
     let (mut collide, mut apart) = (0, 0);
-    for seed in 0..if cfg!(optimized) { 2000 } else { 200 } {
+    for seed in 0..if cfg!(optimized) { 1000 } else { 200 } {
         let driven = fleet(&mut Dice::seeded(seed));
         let courses: Vec<_> =
             driven.iter().filter_map(|(disc, drive, start)| Course::driven(disc, drive, *start).ok()).collect();

@@ -87,7 +87,7 @@ fn hold_is_that_of_the_definition<S: Format>(
 
 macro_rules! formats {
     ($($name:ident: $format:ty),*) => { proptest! {
-        #![proptest_config(settings(1000, 10, 71))]
+        #![proptest_config(settings(500, 5, 71))]
         $(#[test]
         fn $name((a, b) in pairs(), at in 0.0..1.0_f64, other_at in 0.0..1.0_f64) {
             audited::<$format>([a, b], [at, other_at])?;

@@ -13,7 +13,7 @@ use pcr_tests::exact::{Route, Twofold};
 use pcr_tests::generators::{Dice, RELATIONS, drive, related};
 use pcr_tests::outward::{Checked, Seen, run, run_on_all_processors};
 
-/// Cases of a format that are checked: 165,000 in all in a release run, less in a debug run. They are the same in every run; new ones
+/// Cases of a format that are checked: 82,500 in all in a release run, less in a debug run. They are the same in every run; new ones
 /// are for the long command.
 const fn cases(release: u64) -> u64 {
     if cfg!(optimized) { release } else { 1_000 }
@@ -35,33 +35,33 @@ fn holds<S: Format>(first: u64, cases: u64, held: f64) {
 
 #[test]
 fn regions_are_outward_in_f64() {
-    holds::<f64>(100_000_000, cases(30_000), 0.98);
+    holds::<f64>(100_000_000, cases(15_000), 0.98);
 }
 
 #[test]
 fn regions_are_outward_in_f32() {
-    holds::<f32>(1, cases(30_000), 0.95);
+    holds::<f32>(1, cases(15_000), 0.95);
 }
 
 #[test]
 fn regions_are_outward_in_micro() {
-    holds::<Micro>(1, cases(15_000), 0.95);
+    holds::<Micro>(1, cases(7_500), 0.95);
 }
 
 // A half of the cases is beyond the limits of a fixed-point format; those that it holds are counted.
 #[test]
 fn regions_are_outward_in_q20() {
-    holds::<Q20>(1, cases(30_000), 0.48);
+    holds::<Q20>(1, cases(15_000), 0.48);
 }
 
 #[test]
 fn regions_are_outward_in_q16() {
-    holds::<Q16>(1, cases(30_000), 0.58);
+    holds::<Q16>(1, cases(15_000), 0.58);
 }
 
 #[test]
 fn regions_are_outward_in_q12() {
-    holds::<Q12>(1, cases(30_000), 0.64);
+    holds::<Q12>(1, cases(15_000), 0.64);
 }
 
 /// The pairs that found faults, by the seeds they had in an earlier order of the cases.

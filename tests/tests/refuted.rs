@@ -160,7 +160,7 @@ fn changed_tables_are_refuted_unless_they_are_right() {
 
 fn exchanged_shares_are_not_proved<S: Format>() {
     let (mut exchanged, mut refuted, mut proved) = (0, 0, 0);
-    for seed in 0..count(3_000, 400) {
+    for seed in 0..count(1_500, 400) {
         let (pair, drives) = certifiable::<S>(seed);
         let Some(mut table) = table::<S>(&pair, &drives) else { continue };
         // One interval each at every length: else each may hold all there is of the other.
@@ -469,7 +469,7 @@ fn attacked<S: Format>(pairs: u64) -> [Tried; 2] {
 
 #[test]
 fn verdicts_are_those_of_points() {
-    let pairs = count(300, 60);
+    let pairs = count(150, 60);
     attacked::<f64>(pairs);
     attacked::<f32>(pairs);
     attacked::<Micro>(pairs / 2);

@@ -22,7 +22,7 @@ const fn count(release: u64, debug: u64) -> u64 {
 fn tangents_hold<S: Format>(size: f64) {
     let slack = S::slack(S::from_f64(10.0 * size)).to_f64();
     let (mut seen, mut least, mut most) = (0, f64::INFINITY, f64::NEG_INFINITY);
-    let pairs = count(20_000, 500);
+    let pairs = count(10_000, 500);
     for seed in 0..pairs {
         let pair = inner_tangent(size, slack, &mut Dice::seeded(seed));
         if let Some([low, high]) = of_ends::<S>(&pair) {

@@ -233,7 +233,7 @@ fn measure<X: Shadowed<S = X> + Format>(pair: &Pair, dice: &mut Dice, errors: &m
 
 fn held<X: Shadowed<S = X> + Format>(size: f64) {
     let mut errors = Errors::default();
-    let pairs = if cfg!(optimized) { 100_000 } else { 1_000 };
+    let pairs = if cfg!(optimized) { 50_000 } else { 1_000 };
     let mut seen = 0;
     for seed in 0..pairs {
         let mut dice = Dice::seeded(seed);

@@ -11,7 +11,7 @@ use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::velocity::Grid;
 use std::f64::consts::PI;
 
-const CASES: u64 = if cfg!(optimized) { 800 } else { 40 };
+const CASES: u64 = if cfg!(optimized) { 400 } else { 40 };
 const GRID: Grid = Grid { step: 0.05, acceleration: 1.0, speeds: 20, lengths: 3200 };
 
 /// The plan of the first of the courses against the others.

@@ -13,7 +13,7 @@ use pcr_tests::oracle::line::{Intervals, below};
 use pcr_tests::oracle::{Pair, Travel};
 use std::f64::consts::PI;
 
-const CASES: u64 = if cfg!(optimized) { 800 } else { 40 };
+const CASES: u64 = if cfg!(optimized) { 400 } else { 40 };
 /// Phases of a profile, at most.
 const PHASES: usize = 16;
 
