@@ -12,10 +12,10 @@ work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_d
 
 counted() { valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work" "$@" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'; }
 
-# figure JOB FLEET WHAT: two runs, whose difference is five times the job.
+# figure JOB FLEET WHAT [TIMES]: two runs, whose difference is so many times the job; five times, where none is said.
 figure() {
-  local job=$1 fleet=$2 what=$3 once pairs pieces
-  once=$((($(counted "$job" "$fleet" 6) - $(counted "$job" "$fleet" 1)) / 5))
+  local job=$1 fleet=$2 what=$3 times=${4:-5} once pairs pieces
+  once=$((($(counted "$job" "$fleet" $((times + 1))) - $(counted "$job" "$fleet" 1)) / times))
   read -r pairs pieces < <("$work" "$job" "$fleet" 0)
   printf '%9d  %s: %s\n' "$once" "$fleet" "$what"
   case $job:$pieces in
@@ -36,7 +36,7 @@ figure() {
   figure exchange table6-100 "exchange of one agent"
   figure certify paper12 "proof of the table"
   figure motions paper12 "proof of the motions, or a contact of each pair"
-  figure certify table6-100 "proof of the table"
+  figure certify table6-100 "proof of the table" 1
 } | tee -a /dev/stderr >instructions.new
 
 if [ "${UPDATE:-}" = 1 ]; then
