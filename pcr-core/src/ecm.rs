@@ -52,6 +52,9 @@ impl Default for Region {
 ///
 /// Every method takes the fleet as an argument and refuses a fleet other than that of the table. It compares a checksum
 /// of the number of agents, their paths and their radii; start times, profiles, margins and lateness may change.
+/// A motion whose [`Motion::lag`] has grown since (by a longer wait in floating point, or a profile that misses the end
+/// of its path by more) has to be given to [`Ecm::replace`]: the regions are those of the lag with which they were
+/// computed, and too small by what was added to it.
 /// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
 /// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:
 /// see `Ecm::grown`.

@@ -145,6 +145,11 @@ impl Traffic {
         };
         Ok((traffic, [missions, plan]))
     }
+
+    /// Whether anybody has a plan, and the plan is proved to be free of contact.
+    pub fn is_sound(&self) -> bool {
+        self.planned > 0 && self.conflicts_after == 0 && self.certificate.verdict == "proved"
+    }
 }
 
 /// Start delays for as many agents of a scenario as can have one, of 2000 orders that are tried.

@@ -19,7 +19,7 @@ pub enum Question {
         #[serde(default)]
         robot: Option<String>,
     },
-    /// How far everybody may go.
+    /// How far everybody may go, and who must not go on for the time being.
     Holds,
     /// The regions of a robot with others, and who goes first.
     Regions {
@@ -114,7 +114,13 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
         Question::Holds => {
             let hold = |robot: &Robot| {
                 let waits_for = supervisor.waits_for(robot);
-                json!({ "robot": robot.name, "path": robot.path, "hold": robot.granted, "waits_for": waits_for })
+                let mut told =
+                    json!({ "robot": robot.name, "path": robot.path, "hold": robot.granted, "waits_for": waits_for });
+                // Whoever asks for this alone would otherwise go on to its hold.
+                if let Some(by) = &robot.stopped {
+                    told["stopped_for"] = json!(by);
+                }
+                told
             };
             Ok(json!({ "holds": robots.iter().map(hold).collect::<Vec<_>>() }))
         }

@@ -67,6 +67,39 @@ fn the_example_of_the_document() {
     assert!(said.is_empty() && requests == 11, "{requests} {said:?}");
 }
 
+/// Whoever asks how far it may go and does not watch would never hear of a `stop`.
+#[test]
+fn who_asks_for_holds_hears_that_a_robot_is_stopped() {
+    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let mut supervisor = supervisor();
+    let add = |name: &str, x: f64| {
+        json!({ "verb": "add", "robot": name, "start": { "x": x, "y": 0, "heading": 0 },
+                "abilities": { "radius": 0.25, "speed": 1, "acceleration": 0.5 } })
+    };
+    let mission = json!({ "verb": "mission", "robot": "a", "mission": "1", "path": [{ "kind": "line", "length": 3 }] });
+    let holds = json!({ "verb": "query", "what": "holds" });
+    let mut stopped = Vec::new();
+    for request in [
+        &add("a", 0.0),
+        &mission,
+        &holds,
+        &add("new", 1.5),
+        &holds,
+        &json!({ "verb": "remove", "robot": "new" }),
+        &holds,
+    ] {
+        let reply = handle(&mut supervisor, request.to_string().as_bytes(), 0.0);
+        supervisor.settle(0.0).unwrap();
+        fits(&schema, &reply.answer);
+        if request == &holds {
+            let of_a = reply.answer["ok"]["holds"][0].clone();
+            assert_eq!((&of_a["robot"], &of_a["path"]), (&json!("a"), &json!(2)));
+            stopped.push(of_a["stopped_for"].clone());
+        }
+    }
+    assert_eq!(stopped, [Value::Null, json!("new"), Value::Null]);
+}
+
 const ABILITIES: &str = r#"{"radius": 0.25, "speed": 1, "acceleration": 0.5}"#;
 
 /// What clients can say that is right, or nearly.

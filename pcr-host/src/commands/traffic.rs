@@ -22,8 +22,8 @@ Examples:
 
 const STATUSES: &str = "\
 Exit status:
-  0  done
-  1  with --hours: a contact, or one that could not be ruled out, or a robot that waits for ever, or nobody reached a goal
+  0  done; no contact, proved
+  1  a contact, or one that could not be ruled out, or nobody has a plan; with --hours: a robot that waits for ever, or nobody reached a goal
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 
@@ -97,8 +97,12 @@ impl Arguments {
             write_to(&directory.join("missions.json"), &missions.to_json())?;
             write_to(&directory.join("plan.json"), &plan.to_json())?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(status(traffic.is_sound()))
     }
+}
+
+fn status(sound: bool) -> ExitCode {
+    if sound { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) }
 }
 
 fn print(printed: &Printed, answer: &Lifelong) -> Result<ExitCode, Stop> {
@@ -109,7 +113,7 @@ fn print(printed: &Printed, answer: &Lifelong) -> Result<ExitCode, Stop> {
         Form::Csv => report::lifelong_csv(answer, &mut out)?,
     }
     out.flush()?;
-    Ok(if answer.is_sound() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
+    Ok(status(answer.is_sound()))
 }
 
 /// Above 0, up to a week.

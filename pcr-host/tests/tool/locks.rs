@@ -303,3 +303,31 @@ fn delays_need_a_speed_and_locks_none() {
     let width = |table: &Value| table["delays"][0]["delay"][1].as_f64().unwrap();
     assert!(width(&slow) > width(&run(&arguments).json()), "{slow}");
 }
+
+/// A line that is left out of a path because it is so short that its direction may be rounding takes time from rest to rest.
+#[test]
+fn delays_of_the_shortest_edges_are_as_long_as_they_take() {
+    for (length, acceleration) in [("1e-7", "1e-4"), ("1e-9", "1e-6"), ("0.9e-6", "1"), ("1.1e-6", "1")] {
+        let road = format!(
+            r#"<road id="3" length="{length}"><planView><geometry x="0" y="0" hdg="0" length="{length}"><line/></geometry></planView></road>"#
+        );
+        let name = file("locks", "shortest.xodr", format!("<OpenDRIVE><header/>{road}</OpenDRIVE>"));
+        let arguments = ["locks", &name, "--radius", "0.25", "--delays", "--speed", "1", "--nodes", "--json", "-q"];
+        let table = run(&[&arguments[..], &["--acceleration", acceleration]].concat()).json();
+        let numbers = [length, acceleration].map(|text| text.parse::<f64>().unwrap());
+        let takes = 2.0 * (numbers[0] / numbers[1]).sqrt();
+        let delays = table["delays"].as_array().unwrap();
+        assert_eq!(delays.len(), 3, "{table}");
+        let ends = |entry: &Value, list: &str| [0, 1].map(|end| entry[list][end].as_f64().unwrap());
+        for delay in delays {
+            let [lo, hi] = ends(delay, "delay");
+            assert!(lo <= -takes && takes <= hi && hi - lo < 2.0 * takes + 1e-6, "{length}: {delay}");
+        }
+        let nodes = table["nodes"].as_array().unwrap();
+        assert_eq!(nodes.len(), 4, "{table}");
+        for time in nodes {
+            let [lo, hi] = ends(time, "time");
+            assert!(lo <= 0.0 && takes <= hi && hi < takes + 1e-6, "{length}: {time}");
+        }
+    }
+}

@@ -190,3 +190,24 @@ fn the_maps_before_and_after_are_drawn_beside_the_report() {
     assert_ne!(read("before/ecm-1.svg"), read("after/ecm-1.svg"));
     assert!(read("before/index.html").len() > 1000 && read("after/index.html").len() > 1000);
 }
+
+#[test]
+fn traffic_in_which_nobody_has_a_plan_is_no_success() {
+    let point = |id: u32| {
+        json!({ "type": "Feature", "properties": { "id": id, "frame": "map" },
+                "geometry": { "type": "Point", "coordinates": [5 * id, 0] } })
+    };
+    let line = |id: u32, from: u32, to: u32| {
+        json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
+                "geometry": { "type": "MultiLineString", "coordinates": [[[5 * from, 0], [5 * to, 0]]] } })
+    };
+    let graph = |features: &[Value]| json!({ "type": "FeatureCollection", "features": features }).to_string();
+    let apart = file("plan", "apart.geojson", graph(&[point(0), point(1)]));
+    let joined = file("plan", "joined.geojson", graph(&[point(0), point(1), line(2, 0, 1)]));
+    for (layout, planned, status) in [(apart, 0, 1), (joined, 1, 0)] {
+        let limits = ["--radius", "0.4", "--speed", "1", "--acceleration", "1", "--rotation", "1"];
+        let limits = [&limits[..], &["--rotation-acceleration", "1", "--agents", "1"]].concat();
+        let answer = run(&[&["traffic", &layout, "--json"], &limits[..]].concat()).json_of(status);
+        assert_eq!(answer["planned"], json!(planned));
+    }
+}

@@ -18,7 +18,7 @@ use crate::scenario::Scenario;
 const MOST: usize = 2_000_000;
 
 /// Largest number of a cell.
-const FARTHEST: i32 = 1_000_000;
+const FARTHEST: u32 = 1_000_000;
 
 /// A plan on a grid: the cells of each agent, one a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,15 +87,13 @@ impl GridPlan {
 /// The cells of an agent: `(3,1)->(3,2)->`.
 fn steps(path: &str) -> Result<Vec<[i32; 2]>, String> {
     let mut cells: Vec<[i32; 2]> = Vec::new();
-    for (number, field) in path.split("->").map(str::trim).enumerate() {
-        // The arrow after the last cell.
-        if field.is_empty() && !cells.is_empty() {
-            break;
-        }
+    let path = path.trim();
+    // There may be an arrow after the last cell, but only one: what follows another one would be left out.
+    for (number, field) in path.strip_suffix("->").unwrap_or(path).split("->").map(str::trim).enumerate() {
         let inner = field.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
         let cell = inner.and_then(|inner| {
             let (x, y) = inner.split_once(',')?;
-            let number = |text: &str| text.trim().parse::<i32>().ok().filter(|it| it.abs() <= FARTHEST);
+            let number = |text: &str| text.trim().parse::<i32>().ok().filter(|it| it.unsigned_abs() <= FARTHEST);
             Some([number(x)?, number(y)?])
         });
         let cell = cell.ok_or_else(|| format!("cell {number}: two whole numbers up to {FARTHEST} are expected"))?;
@@ -138,6 +136,18 @@ mod tests {
         assert_eq!(message("1\nAgent 1: (0,0)->"), "line 2: `Agent 0:` and its cells are expected");
         assert_eq!(message("Agent 0: (0,0)->(1,1)"), "line 1: cell 1: it shares no side with the one before");
         assert_eq!(message("Agent 0:"), "line 1: cell 0: two whole numbers up to 1000000 are expected");
+        for (cell, path) in [
+            (1, "(0,0)->->(1,0)->"),
+            (1, "(0,0)-> ->(1,0)"),
+            (1, "(0,0)->->"),
+            (0, "->(0,0)"),
+            (0, "->"),
+            (0, "(-2147483648,0)"),
+            (0, "(0,2147483648)"),
+        ] {
+            let expected = format!("line 1: cell {cell}: two whole numbers up to 1000000 are expected");
+            assert_eq!(message(&format!("Agent 0: {path}")), expected);
+        }
         assert_eq!(
             message("Agent 0: (0,0)->(0,9999999)"),
             "line 1: cell 1: two whole numbers up to 1000000 are expected"

@@ -48,6 +48,11 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
             }
             continue;
         }
+        if mixes_separators(content) {
+            let problem =
+                "commas beside other separators: decimal commas, or several points; one point x y is expected";
+            return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
+        }
         let fields = content.split([' ', '\t', ',', ';']).filter(|field| !field.is_empty());
         let mut numbers = fields.map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
         let (Some(Some(x)), Some(Some(y))) = (numbers.next(), numbers.next()) else {
@@ -60,6 +65,13 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
         points.push([x, y]);
     }
     Ok(paths)
+}
+
+/// Whether commas separate something within what blanks or semicolons separate, as in `1,5 2,5` and `0,0 4,0 4,4`: the
+/// first two numbers are then not the point that is meant. Blanks beside a comma do not count.
+fn mixes_separators(content: &str) -> bool {
+    let columns = content.split(',').map(str::trim).collect::<Vec<_>>();
+    columns.len() > 1 && columns.iter().any(|column| column.contains([' ', '\t', ';']))
 }
 
 /// The lines and arcs for a polyline.
@@ -235,6 +247,14 @@ mod tests {
         assert_eq!(paths(text).unwrap(), [vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], vec![[5.0, 5.0]]]);
         assert_eq!(paths("0 0\n1 x").unwrap_err().to_string(), "line 2: two numbers x y up to 1e10 are expected");
         assert!(paths("1e11 0").is_err() && paths("nan 0").is_err());
+        for mixed in ["1,5 2,5", "1,5;2,5", "0,0\t4,0 4,4", "1, 5 2, 5", "1 2,5"] {
+            let expected =
+                "line 2: commas beside other separators: decimal commas, or several points; one point x y is expected";
+            assert_eq!(paths(&format!("0 0\n{mixed}\n")).unwrap_err().to_string(), expected, "{mixed}");
+        }
+        for one in ["1,2, 3", "1 , 2", " 1\t2 3", "1; 2", "1,2 # a, b c"] {
+            assert_eq!(paths(one).unwrap(), [[[1.0, 2.0]]], "{one}");
+        }
         assert!(fit(&[[1.0, 1.0]], 1e-3).unwrap().pieces.is_empty());
     }
 }

@@ -255,11 +255,16 @@ impl Delays {
 
 /// The agent of a way as it is driven.
 fn driven(agent: Agent, edge: &Edge, driving: Driving, speed: f64) -> Agent {
-    let length = agent.length();
-    let motion = if driving.acceleration.is_none() && length > 0.0 {
-        MotionSpec::Profile { v0: speed, pieces: vec![(length / speed, 0.0)] }
-    } else {
-        agent.motion
+    let (length, whole) = (agent.length(), edge.length());
+    let motion = match driving.acceleration {
+        None if length > 0.0 => MotionSpec::Profile { v0: speed, pieces: vec![(length / speed, 0.0)] },
+        // A line that is too short to have a direction is no path, but a radius that is larger by it. It takes time all the same.
+        acceleration if length == 0.0 && whole > 0.0 => {
+            let ramps =
+                acceleration.map_or(0.0, |acceleration| (speed / acceleration).min((whole / acceleration).sqrt()));
+            MotionSpec::Profile { v0: 0.0, pieces: vec![((whole / speed).max(ramps) + ramps, 0.0)] }
+        }
+        _ => agent.motion,
     };
     Agent { label: label(&edge.id.to_string()), motion, ..agent }
 }

@@ -135,6 +135,13 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     if (head.format.as_str(), head.version) != ("pcr-record", 1) {
         return Err(wrong(1, "a record of version 1 is expected".into()));
     }
+    if head.vehicles.is_empty() {
+        return Err(wrong(1, "no vehicles".into()));
+    }
+    // Discs of radius 0 would never overlap, wherever they are.
+    if let Some(none) = head.vehicles.iter().find(|vehicle| vehicle.radius <= 0.0) {
+        return Err(wrong(1, format!("a radius above 0 is expected, not {} of {}", none.radius, none.name)));
+    }
     let mut tracks: Vec<Vec<[f64; 3]>> = vec![Vec::new(); head.vehicles.len()];
     for (line, text) in lines {
         let mut point = |text: &str| {
@@ -279,6 +286,13 @@ mod tests {
         for (from, to) in [("pcr-record", "pcr-plan"), ("[1,", "[2,"), ("[0,0.1,", "[0,99.0,")] {
             assert!(certify(text.replacen(from, to, 1).as_bytes()).is_err(), "{to}");
         }
+        for radius in ["0.0", "-0.0", "-0.5"] {
+            let error =
+                certify(text.replacen("\"radius\":0.5", &format!("\"radius\":{radius}"), 1).as_bytes()).unwrap_err();
+            assert!(error.to_string().starts_with("line 1: a radius above 0 is expected"), "{error}");
+        }
+        let nobody = certify(&br#"{"format":"pcr-record","version":1,"vehicles":[]}"#[..]).unwrap_err();
+        assert_eq!(nobody.to_string(), "line 1: no vehicles");
         assert!(certify(&b""[..]).is_err());
         let head = text.lines().next().unwrap();
         assert!(certify(head.as_bytes()).is_err(), "nobody was anywhere");
