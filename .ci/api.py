@@ -29,7 +29,7 @@ def declarations(page, declaration):
     """A line for each thing that a program can rely on."""
     whole = text(declaration)
     found = []
-    if m := re.match(r"(?:#\[\w+\] )*pub (?:unsafe )?(?:struct|enum|trait) [^{]*", whole):
+    if m := re.match(r"(?:#\[[^\]]+\] ?)*pub (?:unsafe )?(?:struct|enum|trait) [^{]*", whole):
         # What is in the braces has its own lines.
         private = " { private fields }" if re.search(r"\{.*/\* private fields \*/", whole) else ""
         found.append(m[0].strip() + private)
