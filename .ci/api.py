@@ -90,9 +90,8 @@ def row(path, item, why):
 
 
 def reviewed(found, write):
-    text = REVIEW.read_text()
     lines, seen, wrong = [], set(), []
-    for line in text.splitlines():
+    for line in REVIEW.read_text().splitlines():
         if m := re.match(r"\| `([\w:]+)` \|[^|]*\|([^|]*)\|[^|]*\|$", line):
             path, why = m[1], m[2].strip()
             seen.add(path)
@@ -146,7 +145,8 @@ def version(manifest):
 
 def since(revision):
     def git(*arguments):
-        return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=True).stdout
+        done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True)
+        return done.stdout if done.returncode == 0 else sys.exit(f"git {' '.join(arguments)}: {done.stderr.strip()}")
 
     if revision is None:
         tags = git("tag", "--list", "v*", "--merged", "HEAD", "--sort=-v:refname").split()
