@@ -348,6 +348,39 @@ fn zone_sets(text: &str) -> Vec<String> {
 }
 
 #[test]
+fn of_zones_the_report_tells_what_they_are_for_and_their_level() {
+    let settings = Settings { target: Target::Vda5050, split: None, envelopes: None };
+    let (text, disc, _) = write(Format::Rmf, GRAPH, &options(0.4), "site", &settings).unwrap();
+    let around = |report: &Written| report.warnings.iter().any(|said| said.contains("the disc around the outline"));
+    assert!(!around(&disc), "{:?}", disc.warnings);
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    let options = Options { fleet: Some(fleet.into()), ..Options::default() };
+    let outline = write(Format::Rmf, GRAPH, &options, "site", &settings).unwrap().1;
+    assert!(around(&outline), "{:?}", outline.warnings);
+    // On which level a zone is drawn; a zone that slows vehicles down does not keep them apart.
+    let imported = imported(Format::Rmf, GRAPH, 0.4);
+    let levels = |text: &str| -> Vec<usize> {
+        read(Target::Vda5050, text, &imported).unwrap().groups.iter().map(|group| group.level).collect()
+    };
+    assert_eq!(levels(&text).iter().copied().collect::<BTreeSet<_>>().len(), 2, "{:?}", levels(&text));
+    let slow = text.replacen("\"RELEASE\"", "\"SPEED_LIMIT\"", 1);
+    assert_eq!(levels(&slow)[..], levels(&text)[1..]);
+    let warnings = read(Target::Vda5050, &slow, &imported).unwrap().warnings;
+    assert!(warnings.iter().any(|said| said.contains("SPEED_LIMIT keeps no vehicles apart")), "{warnings:?}");
+}
+
+#[test]
+fn that_lanes_of_other_graphs_stay_is_said() {
+    let said = |graph| {
+        let options = Options { graph, ..options(0.4) };
+        let settings = Settings { target: Target::Rmf, split: None, envelopes: None };
+        let report = write(Format::Rmf, BUILDING, &options, "site", &settings).unwrap().1;
+        report.warnings.iter().any(|said| said.contains("lanes of other graphs than 0"))
+    };
+    assert_eq!([said(None), said(Some(0))], [false, true]);
+}
+
+#[test]
 fn zones_and_zone_sets_have_names_of_their_own() {
     let of = |radius, split| zone_sets(&written(Format::Rmf, GRAPH, radius, Target::Vda5050, split).0);
     let sets = [of(0.4, None), of(0.4, Some(1.0)), of(0.5, None)].concat();
