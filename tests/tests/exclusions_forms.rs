@@ -294,6 +294,11 @@ fn operations_of_route_graphs_stay_with_a_whole_edge_in_both_forms() {
             written(Format::Nav2, &graph(&format!(",\"operations\":{operations}")), 0.4, Target::Nav2, Some(2.0));
         assert_eq!(report.edges, if is_whole { 6 } else { 7 }, "{operations}");
         assert_eq!(text.matches("open_door").count(), usize::from(is_whole), "{text}");
+        // The first part keeps the number.
+        let root: Value = serde_json::from_str(&text).unwrap();
+        let edge =
+            root["features"].as_array().unwrap().iter().find(|feature| feature["properties"]["id"] == 10).unwrap();
+        assert_eq!((edge["properties"]["startid"] == 0, edge["properties"]["endid"] == 1), (true, is_whole), "{text}");
         assert_eq!(text.matches('\n').count(), text.matches("\r\n").count());
     }
 }
@@ -367,6 +372,26 @@ fn of_zones_the_report_tells_what_they_are_for_and_their_level() {
     assert_eq!(levels(&slow)[..], levels(&text)[1..]);
     let warnings = read(Target::Vda5050, &slow, &imported).unwrap().warnings;
     assert!(warnings.iter().any(|said| said.contains("SPEED_LIMIT keeps no vehicles apart")), "{warnings:?}");
+}
+
+/// Two lanes that meet at none of their vertices.
+#[test]
+fn lanes_that_cross_between_vertices_have_a_group() {
+    let building = "coordinate_system: cartesian_meters
+levels:
+  L1:
+    lanes:
+      - [0, 1, {bidirectional: [4, true]}]
+      - [2, 3, {bidirectional: [4, true]}]
+    vertices:
+      - [0, 0, 0, \"\"]
+      - [8, 0, 0, \"\"]
+      - [4, -4, 0, \"\"]
+      - [4, 4, 0, \"\"]
+name: site
+";
+    let (text, report) = written(Format::Rmf, building, 0.4, Target::Rmf, None);
+    assert_eq!(report.groups, 1, "{text}");
 }
 
 #[test]
