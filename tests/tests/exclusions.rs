@@ -266,11 +266,11 @@ fn a_byte_order_mark_before_a_plant_moves_nothing() {
         Settings { envelopes: envelopes.clone(), ..settings(Target::OpenTcs) },
         Settings { envelopes, split: Some(2.0), ..settings(Target::OpenTcs) },
     ] {
-        let plain = written(Format::OpenTcs, &plant(""), 0.5, &settings);
+        let plain = written(Format::OpenTcs, &plant(""), 2.5, &settings);
         assert_ne!(plain, plant(""));
-        assert_eq!(written(Format::OpenTcs, &marked(&plant("")), 0.5, &settings), marked(&plain), "{settings:?}");
+        assert_eq!(written(Format::OpenTcs, &marked(&plant("")), 2.5, &settings), marked(&plain), "{settings:?}");
         // There are blocks or envelopes that are replaced.
-        assert_eq!(written(Format::OpenTcs, &marked(&plain), 0.5, &settings), marked(&plain), "{settings:?}");
+        assert_eq!(written(Format::OpenTcs, &marked(&plain), 2.5, &settings), marked(&plain), "{settings:?}");
     }
     // Envelopes that are written anew do not belong to the whole path.
     let envelope = r#"<vehicleEnvelope key="k"><vertex x="0" y="0"/></vehicleEnvelope>"#;
