@@ -255,8 +255,12 @@ fn paths_of_a_plant_are_cut_where_nothing_belongs_to_all_of_them() {
 
 #[test]
 fn a_byte_order_mark_before_a_plant_moves_nothing() {
+    const LAYOUT: &str = r#"<pathLayout connectionType="DIRECT" layerId="0"/>"#;
     let plant = |content: &str| {
-        PLANT.replace("CONTENT", content).replace("MORE", r#"<vehicle name="v" envelopeKey="k"></vehicle>"#)
+        PLANT
+            .replace("false\"/>", &format!("false\">{LAYOUT}</path>"))
+            .replace("CONTENT", content)
+            .replace("MORE", r#"<vehicle name="v" envelopeKey="k"></vehicle>"#)
     };
     let marked = |text: &str| format!("\u{feff}{text}");
     let envelopes = Some("k".to_owned());
@@ -266,9 +270,9 @@ fn a_byte_order_mark_before_a_plant_moves_nothing() {
         Settings { envelopes: envelopes.clone(), ..settings(Target::OpenTcs) },
         Settings { envelopes, split: Some(2.0), ..settings(Target::OpenTcs) },
     ] {
-        let plain = written(Format::OpenTcs, &plant(""), 2.5, &settings);
-        assert_ne!(plain, plant(""));
-        assert_eq!(written(Format::OpenTcs, &marked(&plant("")), 2.5, &settings), marked(&plain), "{settings:?}");
+        let plain = written(Format::OpenTcs, &plant(LAYOUT), 2.5, &settings);
+        assert_ne!(plain, plant(LAYOUT));
+        assert_eq!(written(Format::OpenTcs, &marked(&plant(LAYOUT)), 2.5, &settings), marked(&plain), "{settings:?}");
         // There are blocks or envelopes that are replaced.
         assert_eq!(written(Format::OpenTcs, &marked(&plain), 2.5, &settings), marked(&plain), "{settings:?}");
     }

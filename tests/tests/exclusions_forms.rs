@@ -391,8 +391,8 @@ levels:
 name: site
 ";
     let (text, report) = written(Format::Rmf, building, 0.4, Target::Rmf, None);
-    // A lane has the group of the vertex to which it leads; one group for both ways over the crossing is enough.
-    assert_eq!((report.groups, text.matches("\"pcr/L1/1\"").count()), (3, 2), "{text}");
+    // Lanes have the groups of vertices, and two vertices one in common: two lanes and two vertices name it.
+    assert_eq!((report.groups, text.matches("\"pcr/L1/1\"").count()), (3, 4), "{text}");
 }
 
 #[test]
