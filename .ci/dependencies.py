@@ -54,11 +54,12 @@ def sbom(name):
     packages = {package["id"]: package for package in found["packages"]}
     edges = {node["id"]: [d["pkg"] for d in node["deps"] if any(kind["kind"] is None for kind in d["dep_kinds"])] for node in found["resolve"]["nodes"]}
     tool = next(package for package in packages.values() if package["name"] == name)
-    reached, ahead = set(), [tool["id"]]
-    while ahead:
-        if (here := ahead.pop()) not in reached:
-            reached.add(here)
-            ahead += edges[here]
+    # `cargo metadata` turns on what any crate of the workspace asks for; `cargo tree` only what the crate itself does.
+    command = ["cargo", "tree", "--locked", "-p", name, "-e", "normal", "--target", "all", "--prefix", "none", "--format", "{p}"]
+    tree = subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout
+    linked = {tuple(line.split()[:2]) for line in tree.splitlines() if line}
+    reached = {identity for identity, package in packages.items() if (package["name"], f"v{package['version']}") in linked}
+    edges = {identity: [other for other in edges[identity] if other in reached] for identity in reached}
     sums = {}
     for block in (ROOT / "Cargo.lock").read_text().split("[[package]]"):
         fields = dict(re.findall(r'^(name|version|checksum) = "(.*)"$', block, re.M))

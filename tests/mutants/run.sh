@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Mutants of pcr-core, of pcr-fixed and of the importers, run against the tests that reach them.
+# Mutants of pcr-core, of pcr-fixed, of the importers and of the writers of exclusions, run against the tests that reach them.
 #   tests/mutants/run.sh FOLDER [SECONDS [JOBS]]     a copy of what is committed is made in FOLDER/copy and built there; a mutant has
 #                                                    SECONDS of tests (4). Again: goes on where it stopped. FOLDER/results
 #                                                    has a line a mutant, `mutants table FOLDER` counts them.
 #   ONLY='scalar|pcr-fixed' tests/mutants/run.sh FOLDER    those whose line in FOLDER/all matches; one ONLY a folder
+#   ONLY=exclusions/ SAMPLE=40 tests/mutants/run.sh FOLDER  of these only so many, at random, always the same
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=$(realpath -m "$1") seconds=${2:-4} jobs=${3:-2}
@@ -16,6 +17,10 @@ kernels() { find pcr-core/src -name '*.rs' | grep -vE 'src/(lib|scalar|recorded|
 floats() { find pcr-core/src/scalar.rs pcr-core/src/scalar -name '*.rs' | grep -vE 'vsqrt|tests' | sorted; }
 fixed() { find pcr-fixed/src -name '*.rs' | grep -v 'src/lib\.rs' | sorted; }
 importers() { find pcr-host/formats/src/import pcr-host/formats/src/import.rs -name '*.rs' | sorted; }
+# The audit and what it reports is not here.
+writers() { find pcr-host/exclusions/src -name '*.rs' | grep -vE 'src/(lib|audit|meetings|nearest|report|settings)\.rs' | sorted; }
+# Those that are run, of FOLDER/all.
+chosen() { grep -E "${ONLY:-.}" "$folder/all" | if [ -n "${SAMPLE:-}" ]; then shuf -n "$SAMPLE" --random-source=<(yes); else cat; fi; }
 
 # Numbers of their own for each crate, as all are in one build. Those in SKIP get no switch.
 # shellcheck disable=SC2046
@@ -26,6 +31,7 @@ put() {
   "$tool" put 0 pcr-core/src/lib.rs $(kernels) $(floats)
   "$tool" put 10000 pcr-host/formats/src/lib.rs $(importers)
   "$tool" put 20000 pcr-fixed/src/lib.rs $(fixed)
+  "$tool" put 30000 pcr-host/exclusions/src/lib.rs $(writers)
 }
 
 if [ ! -e "$copy" ]; then
@@ -37,11 +43,11 @@ if [ ! -e "$folder/binaries" ]; then
   # As many cases as in a debug run, though optimized.
   sed -i '/cfg=optimized/d' tests/build.rs
   SKIP="" put >"$folder/all"
-  SKIP=$(grep -vE "${ONLY:-.}" "$folder/all" | cut -f1 | tr '\n' ' ') || true
+  SKIP=$(chosen | cut -f1 | grep -vxFf - <(cut -f1 "$folder/all") | tr '\n' ' ') || true
   export SKIP
   for ((;;)); do
     put >"$folder/list"
-    if cargo check -q --profile checked --locked -p pcr-formats -p pcr-fixed -p pcr-core -F pcr-core/micromath \
+    if cargo check -q --profile checked --locked -p pcr-exclusions -p pcr-formats -p pcr-fixed -p pcr-core -F pcr-core/micromath \
       --message-format=short 2>"$folder/messages"; then break; fi
     more=$("$tool" broken <"$folder/messages" | tr '\n' ' ')
     [ -n "$more" ] || { cat "$folder/messages" >&2; exit 1; }
@@ -49,7 +55,7 @@ if [ ! -e "$folder/binaries" ]; then
     SKIP+=" $more"
   done
   # Not the tests of the tool `pcr`: the files that they write have one name, and jobs run side by side.
-  cargo test --profile checked --locked -p pcr-core -p pcr-fixed -p pcr-formats -p pcr-tests --lib --test all --no-run \
+  cargo test --profile checked --locked -p pcr-core -p pcr-fixed -p pcr-formats -p pcr-exclusions -p pcr-tests --lib --test all --no-run \
     --message-format=json |
     python3 -c 'import json, os, sys
 for line in sys.stdin:

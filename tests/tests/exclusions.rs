@@ -257,6 +257,35 @@ fn paths_of_a_plant_are_cut_where_nothing_belongs_to_all_of_them() {
 }
 
 #[test]
+fn a_byte_order_mark_before_a_plant_moves_nothing() {
+    const LAYOUT: &str = r#"<pathLayout connectionType="DIRECT" layerId="0"/>"#;
+    let plant = |content: &str| {
+        PLANT
+            .replace("false\"/>", &format!("false\">{LAYOUT}</path>"))
+            .replace("CONTENT", content)
+            .replace("MORE", r#"<vehicle name="v" envelopeKey="k"></vehicle>"#)
+    };
+    let marked = |text: &str| format!("\u{feff}{text}");
+    let envelopes = Some("k".to_owned());
+    for settings in [
+        settings(Target::OpenTcs),
+        Settings { split: Some(2.0), ..settings(Target::OpenTcs) },
+        Settings { envelopes: envelopes.clone(), ..settings(Target::OpenTcs) },
+        Settings { envelopes, split: Some(2.0), ..settings(Target::OpenTcs) },
+    ] {
+        let plain = written(Format::OpenTcs, &plant(LAYOUT), 2.5, &settings);
+        assert_ne!(plain, plant(LAYOUT));
+        assert_eq!(written(Format::OpenTcs, &marked(&plant(LAYOUT)), 2.5, &settings), marked(&plain), "{settings:?}");
+        // There are blocks or envelopes that are replaced.
+        assert_eq!(written(Format::OpenTcs, &marked(&plain), 2.5, &settings), marked(&plain), "{settings:?}");
+    }
+    // Envelopes that are written anew do not belong to the whole path.
+    let envelope = r#"<vehicleEnvelope key="k"><vertex x="0" y="0"/></vehicleEnvelope>"#;
+    let settings = Settings { envelopes: Some("k".into()), split: Some(2.0), ..settings(Target::OpenTcs) };
+    assert!(written(Format::OpenTcs, &plant(envelope), 0.5, &settings).contains("c-d part 3"));
+}
+
+#[test]
 fn audits_name_what_is_left_out_and_what_is_in_vain() {
     let (radius, target) = (0.3, Target::Nav2);
     let file = written(Format::Nav2, SAMPLE, radius, &settings(target));

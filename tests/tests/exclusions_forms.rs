@@ -294,6 +294,11 @@ fn operations_of_route_graphs_stay_with_a_whole_edge_in_both_forms() {
             written(Format::Nav2, &graph(&format!(",\"operations\":{operations}")), 0.4, Target::Nav2, Some(2.0));
         assert_eq!(report.edges, if is_whole { 6 } else { 7 }, "{operations}");
         assert_eq!(text.matches("open_door").count(), usize::from(is_whole), "{text}");
+        // The first part keeps the number.
+        let root: Value = serde_json::from_str(&text).unwrap();
+        let edge =
+            root["features"].as_array().unwrap().iter().find(|feature| feature["properties"]["id"] == 10).unwrap();
+        assert_eq!((edge["properties"]["startid"] == 0, edge["properties"]["endid"] == 1), (true, is_whole), "{text}");
         assert_eq!(text.matches('\n').count(), text.matches("\r\n").count());
     }
 }
@@ -345,6 +350,60 @@ fn zone_sets(text: &str) -> Vec<String> {
             set["zoneSetId"].as_str().unwrap().to_owned()
         })
         .collect()
+}
+
+#[test]
+fn of_zones_the_report_tells_what_they_are_for_and_their_level() {
+    let settings = Settings { target: Target::Vda5050, split: None, envelopes: None };
+    let (text, disc, _) = write(Format::Rmf, GRAPH, &options(0.4), "site", &settings).unwrap();
+    let around = |report: &Written| report.warnings.iter().any(|said| said.contains("the disc around the outline"));
+    assert!(!around(&disc), "{:?}", disc.warnings);
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    let options = Options { fleet: Some(fleet.into()), ..Options::default() };
+    let outline = write(Format::Rmf, GRAPH, &options, "site", &settings).unwrap().1;
+    assert!(around(&outline), "{:?}", outline.warnings);
+    // On which level a zone is drawn; a zone that slows vehicles down does not keep them apart.
+    let imported = imported(Format::Rmf, GRAPH, 0.4);
+    let levels = |text: &str| -> Vec<usize> {
+        read(Target::Vda5050, text, &imported).unwrap().groups.iter().map(|group| group.level).collect()
+    };
+    assert_eq!(levels(&text).iter().copied().collect::<BTreeSet<_>>().len(), 2, "{:?}", levels(&text));
+    let slow = text.replacen("\"RELEASE\"", "\"SPEED_LIMIT\"", 1);
+    assert_eq!(levels(&slow)[..], levels(&text)[1..]);
+    let warnings = read(Target::Vda5050, &slow, &imported).unwrap().warnings;
+    assert!(warnings.iter().any(|said| said.contains("SPEED_LIMIT keeps no vehicles apart")), "{warnings:?}");
+}
+
+/// Two lanes that meet at none of their vertices.
+#[test]
+fn lanes_that_cross_between_vertices_have_a_group() {
+    let building = "coordinate_system: cartesian_meters
+levels:
+  L1:
+    lanes:
+      - [0, 1, {bidirectional: [4, true]}]
+      - [2, 3, {bidirectional: [4, true]}]
+    vertices:
+      - [0, 0, 0, \"\"]
+      - [8, 0, 0, \"\"]
+      - [4, -4, 0, \"\"]
+      - [4, 4, 0, \"\"]
+name: site
+";
+    let (text, report) = written(Format::Rmf, building, 0.4, Target::Rmf, None);
+    // Lanes have the groups of vertices, and two vertices one in common: two lanes and two vertices name it.
+    assert_eq!((report.groups, text.matches("\"pcr/L1/1\"").count()), (3, 4), "{text}");
+}
+
+#[test]
+fn that_lanes_of_other_graphs_stay_is_said() {
+    let said = |graph| {
+        let options = Options { graph, ..options(0.4) };
+        let settings = Settings { target: Target::Rmf, split: None, envelopes: None };
+        let report = write(Format::Rmf, BUILDING, &options, "site", &settings).unwrap().1;
+        report.warnings.iter().any(|said| said.contains("lanes of other graphs than 0"))
+    };
+    assert_eq!([said(None), said(Some(0))], [false, true]);
 }
 
 #[test]

@@ -141,5 +141,8 @@ mod tests {
         assert!(!intersect(&square(0.0), &square(1.01)));
         assert!(intersect(&square(0.0), &[[-1.0, 0.4], [3.0, 0.4], [3.0, 0.6]]));
         assert!(intersect(&square(0.0), &[[-1.0, -1.0], [3.0, -1.0], [3.0, 3.0], [-1.0, 3.0]]));
+        // Nothing in common but a corner, which is not the first one.
+        let corner = [[2.0, 0.0], [2.0, 1.0], [1.0, 0.5]];
+        assert!(intersect(&square(0.0), &corner) && intersect(&corner, &square(0.0)));
     }
 }

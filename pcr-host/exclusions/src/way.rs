@@ -128,6 +128,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn an_edge_without_length_is_one_section() {
+        let marks = vec![Mark { token: 3, bars: true, range: [0.0, 0.0] }];
+        let [ahead, _] = Way::both(0.0, marks, Vec::new());
+        let claim = Claim { takes: Vec::new(), bars: vec![3], closed: false };
+        assert_eq!(ahead.sections(), [Section { length: [0.0, 0.0], claim }]);
+    }
+
+    #[test]
     fn sections_between_two_ways_exclude_as_all_of_them_do() {
         let mut state = 9_u64;
         let mut below = |most: u64| {

@@ -232,7 +232,11 @@ pub fn put(after: u32, root: &str, files: &[String]) {
         expand(&mut parsed);
         // Two crates have files of one name.
         let (package, name) = file.rsplit_once("/src/").unwrap_or_default();
-        let package = if package == "pcr-fixed" { "pcr-fixed/" } else { "" };
+        let package = match package {
+            "pcr-fixed" => "pcr-fixed/",
+            "pcr-host/exclusions" => "exclusions/",
+            _ => "",
+        };
         mutator.file = format!("{package}{name}");
         mutator.visit_file_mut(&mut parsed);
         fs::write(file, prettyplease::unparse(&parsed)).expect("written");
