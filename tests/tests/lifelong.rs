@@ -123,6 +123,23 @@ fn a_fleet_in_which_nobody_can_do_anything_says_why() {
     assert_eq!(why(4), (4, None, true));
 }
 
+/// Its only two nodes are nearer to one another than two robots can stand, because the edges begin and end far from them. A goal where a
+/// robot would not touch one at the other node was looked for without end.
+#[test]
+fn a_robot_between_two_nodes_that_are_near_has_missions() {
+    let text = include_str!("../data/real/lif/example_17.lif.json");
+    let imported = import::roads(
+        Format::Lif,
+        text,
+        &Options { radius: Some(0.3), ..Options::default() },
+        &mut Warnings::default(),
+    );
+    let request = Request { agents: 10, duration: 300.0, delays: Delays::default(), seed: 1, method: Method::Orders };
+    let report = run(&imported.expect("a layout"), request).expect("a run");
+    let outcome = &report.outcome;
+    assert_eq!((outcome.robots, outcome.stuck, outcome.certificate.verdict), (1, 0, "proved"), "{outcome:?}");
+}
+
 /// To and fro between two nodes 10 m apart: 10 m at 1 m/s, 2 s for the ramps at 0.5 m/s², and half a turn at 1 rad/s, ramps of 1 s.
 #[test]
 fn robots_turn_before_they_go_back() {

@@ -25,13 +25,17 @@ pub(super) fn disturb(robot: &mut Robot, number: usize, tick: usize, now: f64, o
     }
 }
 
-/// The goal of the mission of this number of a robot: another node than where it is, whatever anybody does.
+/// The goal of the mission of this number of a robot: another node than where it is, whatever anybody does, where it would not touch a
+/// robot that stands here, if there is such a node.
 pub(super) fn goal(site: &Site, ends: &Ends, seed: u64, robot: usize, number: u64, place: usize) -> usize {
     let mut random = Random(seed.wrapping_mul(0x2545_f491).wrapping_add((robot as u64) << 32).wrapping_add(number));
     random.bits();
+    let is_apart = |&goal: &usize| !site.collide(goal, place);
+    let is_any = ends.nodes.iter().any(is_apart);
     loop {
         let goal = ends.nodes[random.below(ends.nodes.len())];
-        if !site.collide(goal, place) {
+        // Robots only start where there are two nodes.
+        if if is_any { is_apart(&goal) } else { goal != place } {
             return goal;
         }
     }
