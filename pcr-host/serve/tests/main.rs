@@ -2,6 +2,7 @@
 
 mod alarms;
 mod kills;
+mod late;
 mod lines;
 mod overtaken;
 mod runs;
