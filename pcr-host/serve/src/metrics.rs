@@ -44,7 +44,6 @@ pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
         ("missions_admitted_total", "counter", "Missions admitted.", counts.admitted),
         ("missions_refused_total", "counter", "Attempts to admit a mission that were refused.", counts.refused),
         ("missions_dropped_total", "counter", "Missions given up.", counts.dropped),
-        ("orders_turned_total", "counter", "Robots that were let go first, as somebody was late.", counts.turned),
         ("holds_total", "counter", "Holds told.", counts.holds),
         ("evaluations_total", "counter", "Holds computed.", counts.evaluations),
         ("alarms_total", "counter", "Robots that were not where they may be.", counts.alarms),

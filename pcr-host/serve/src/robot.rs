@@ -142,8 +142,6 @@ pub struct Robot {
     pub moved: Option<f64>,
     /// Whether it has been said since then that nothing goes on because of it.
     pub stands: bool,
-    /// When it was looked last whether it can go before somebody who is late \[s\].
-    pub looked: f64,
     /// What others have to remember of it, by what it is about.
     pub notes: BTreeMap<String, Value>,
 }
@@ -174,7 +172,6 @@ impl Robot {
             silent: false,
             moved: None,
             stands: false,
-            looked: f64::NEG_INFINITY,
             notes: BTreeMap::new(),
         }
     }

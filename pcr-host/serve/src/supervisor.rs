@@ -5,7 +5,6 @@
 
 mod admission;
 mod alarms;
-mod late;
 mod places;
 mod release;
 mod restore;
@@ -69,8 +68,6 @@ pub struct Counts {
     pub refused: u64,
     /// Missions that were given up.
     pub dropped: u64,
-    /// Robots that were let go first, as somebody was late.
-    pub turned: u64,
     /// Holds that were told.
     pub holds: u64,
     /// Holds that were computed.
@@ -107,8 +104,6 @@ pub struct Supervisor {
     spent: u64,
     /// When it was looked last who gets nowhere \[s\].
     looked: f64,
-    /// When it was looked last who waits for somebody who is late \[s\].
-    passed: f64,
     /// Whether somebody may be in the way of somebody who has been allowed to go there.
     hazards: bool,
     counts: Counts,
@@ -140,7 +135,6 @@ impl Supervisor {
             census: 0,
             spent: 0,
             looked: f64::NEG_INFINITY,
-            passed: f64::NEG_INFINITY,
             hazards: false,
             counts: Counts::default(),
             broken: None,
@@ -337,7 +331,6 @@ impl Supervisor {
             return;
         }
         self.retry(now);
-        self.pass_the_late(now);
         self.note_silence(now);
         let limits = self.limits(now);
         self.release(&limits);

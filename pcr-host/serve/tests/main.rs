@@ -2,7 +2,6 @@
 
 mod alarms;
 mod kills;
-mod late;
 mod lines;
 mod overtaken;
 mod runs;

@@ -253,7 +253,7 @@ impl Supervisor {
     }
 
     /// The holds of a robot, and of those that have a region with it or waited for it, are not known any more.
-    pub(super) fn forget_holds_with(&mut self, place: usize) {
+    fn forget_holds_with(&mut self, place: usize) {
         let pairs = self.orders.decisions().map(|decision| decision.agents).filter(|agents| agents.contains(&place));
         for agents in pairs {
             agents.into_iter().for_each(|agent| self.robots[agent].hold = None);

@@ -72,7 +72,7 @@ impl Supervisor {
         (0..self.robots.len()).any(is_overtaken)
     }
 
-    pub(super) fn since(&self, place: usize, now: f64) -> f64 {
+    fn since(&self, place: usize, now: f64) -> f64 {
         self.robots[place].moved.map_or(0.0, |moved| now - moved)
     }
 
