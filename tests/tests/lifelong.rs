@@ -123,10 +123,10 @@ fn a_fleet_in_which_nobody_can_do_anything_says_why() {
     assert_eq!(why(4), (4, None, true));
 }
 
-/// Its only two nodes are nearer to one another than two robots can stand, because the edges begin and end far from them. A goal where a
-/// robot would not touch one at the other node was looked for without end.
+/// The edges begin and end far from the two nodes, so that robots count as larger than the nodes are apart. A goal where a robot would not
+/// touch one at the other node was drawn again and again, without end. No mission is admitted, which is said.
 #[test]
-fn a_robot_between_two_nodes_that_are_near_has_missions() {
+fn nodes_that_are_all_near_one_another_end_the_run_with_a_reason() {
     let text = include_str!("../data/real/lif/example_17.lif.json");
     let imported = import::roads(
         Format::Lif,
@@ -138,6 +138,7 @@ fn a_robot_between_two_nodes_that_are_near_has_missions() {
     let report = run(&imported.expect("a layout"), request).expect("a run");
     let outcome = &report.outcome;
     assert_eq!((outcome.robots, outcome.stuck, outcome.certificate.verdict), (1, 0, "proved"), "{outcome:?}");
+    assert!(outcome.missions == 0 && outcome.idle_because.is_some(), "{outcome:?}");
 }
 
 /// To and fro between two nodes 10 m apart: 10 m at 1 m/s, 2 s for the ramps at 0.5 m/s², and half a turn at 1 rad/s, ramps of 1 s.
