@@ -1,9 +1,10 @@
 //! A file with the true positions of vehicles, and the proof that they never touched.
 //!
-//! The first line names the vehicles: `{"format":"pcr-record","version":1,"vehicles":[{"name":"sim/1","radius":0.4}]}`.
-//! Each other line is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\] of a vehicle increase.
-//! Between two of its lines a vehicle moves straight at a constant speed; before the first and after the last line it
-//! stands.
+//! The first line names the vehicles: `{"format":"pcr-record","version":2,"vehicles":[{"name":"sim/1","radius":0.4}]}`.
+//! The last line is `{"lines":N}`, with the number of those between; a record without it, or with another number, was
+//! cut, and proves nothing. Each other line is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\]
+//! of a vehicle increase. Between two of its lines a vehicle moves straight at a constant speed; before the first and
+//! after the last line it stands.
 
 use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
@@ -28,6 +29,12 @@ struct Head {
     vehicles: Vec<Recorded>,
 }
 
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct End {
+    lines: u64,
+}
+
 /// A record in the making.
 #[derive(Debug)]
 pub struct Record<W: Write> {
@@ -35,6 +42,7 @@ pub struct Record<W: Write> {
     last: Vec<Option<[f64; 3]>>,
     /// Whether the last one written is that before, and not what it stood at since.
     waits: Vec<bool>,
+    lines: u64,
 }
 
 impl<W: Write> Record<W> {
@@ -43,10 +51,10 @@ impl<W: Write> Record<W> {
     /// # Errors
     /// As the writer.
     pub fn new(mut out: W, vehicles: &[Recorded]) -> io::Result<Self> {
-        let head = Head { format: "pcr-record".into(), version: 1, vehicles: vehicles.to_vec() };
+        let head = Head { format: "pcr-record".into(), version: VERSION, vehicles: vehicles.to_vec() };
         serde_json::to_writer(&mut out, &head)?;
         out.write_all(b"\n")?;
-        Ok(Self { out, last: vec![None; vehicles.len()], waits: vec![false; vehicles.len()] })
+        Ok(Self { out, last: vec![None; vehicles.len()], waits: vec![false; vehicles.len()], lines: 0 })
     }
 
     /// A vehicle is there at a time \[s, m\].
@@ -63,10 +71,13 @@ impl<W: Write> Record<W> {
             (*last, *waits) = (Some([time, x, y]), true);
             return Ok(());
         }
-        if let Some([time, x, y]) = last.filter(|_| std::mem::take(waits)) {
-            writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")?;
-        }
+        let waited = last.filter(|_| std::mem::take(waits));
         *last = Some([time, x, y]);
+        waited.into_iter().chain([[time, x, y]]).try_for_each(|point| self.write(vehicle, point))
+    }
+
+    fn write(&mut self, vehicle: usize, [time, x, y]: [f64; 3]) -> io::Result<()> {
+        self.lines += 1;
         writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")
     }
 
@@ -75,11 +86,14 @@ impl<W: Write> Record<W> {
     /// # Errors
     /// As the writer.
     pub fn finish(mut self) -> io::Result<W> {
-        for (vehicle, (last, waits)) in self.last.iter().zip(&self.waits).enumerate() {
-            if let Some([time, x, y]) = last.filter(|_| *waits) {
-                writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")?;
-            }
+        let standing = std::mem::take(&mut self.last).into_iter().zip(std::mem::take(&mut self.waits));
+        for (vehicle, point) in
+            standing.enumerate().filter_map(|(vehicle, (last, waits))| Some((vehicle, last.filter(|_| waits)?)))
+        {
+            self.write(vehicle, point)?;
         }
+        serde_json::to_writer(&mut self.out, &End { lines: self.lines })?;
+        self.out.write_all(b"\n")?;
         self.out.flush()?;
         Ok(self.out)
     }
@@ -120,6 +134,9 @@ pub struct Contact {
     pub clearance: f64,
 }
 
+/// Of the format of records. Those of version 1 had no last line.
+const VERSION: u32 = 2;
+
 /// Windows in which motions are checked \[s\].
 const WINDOW: f64 = 20.0;
 
@@ -132,8 +149,8 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     let mut lines = text.lines().enumerate();
     let (_, head) = lines.next().ok_or_else(|| wrong(1, "missing".into()))?;
     let head: Head = serde_json::from_str(&head?).map_err(|error| wrong(1, error.to_string()))?;
-    if (head.format.as_str(), head.version) != ("pcr-record", 1) {
-        return Err(wrong(1, "a record of version 1 is expected".into()));
+    if (head.format.as_str(), head.version) != ("pcr-record", VERSION) {
+        return Err(wrong(1, format!("a record of version {VERSION} is expected")));
     }
     if head.vehicles.is_empty() {
         return Err(wrong(1, "no vehicles".into()));
@@ -143,7 +160,17 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
         return Err(wrong(1, format!("a radius above 0 is expected, not {} of {}", none.radius, none.name)));
     }
     let mut tracks: Vec<Vec<[f64; 3]>> = vec![Vec::new(); head.vehicles.len()];
+    let (mut end, mut count): (Option<End>, u64) = (None, 0);
     for (line, text) in lines {
+        let text = text?;
+        if end.is_some() {
+            return Err(wrong(line + 1, "it comes after the last line of a record".into()));
+        }
+        if text.starts_with('{') {
+            end = Some(serde_json::from_str(&text).map_err(|error| wrong(line + 1, error.to_string()))?);
+            continue;
+        }
+        count += 1;
         let mut point = |text: &str| {
             let (vehicle, time, x, y): (usize, f64, f64, f64) =
                 serde_json::from_str(text).map_err(|it| it.to_string())?;
@@ -154,22 +181,27 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
             track.push([time, x, y]);
             Ok(())
         };
-        point(&text?).map_err(|why| wrong(line + 1, why))?;
+        point(&text).map_err(|why| wrong(line + 1, why))?;
     }
     if let Some(none) = tracks.iter().position(Vec::is_empty) {
         return Err(wrong(1, format!("nothing about {}", head.vehicles[none].name)));
     }
-    Ok(checked(&head.vehicles, &tracks))
+    let cut = match end {
+        None => Some("the record is cut: its last line is missing".to_owned()),
+        Some(end) if end.lines != count => Some(format!("the record is cut: it has {count} lines of {}", end.lines)),
+        Some(_) => None,
+    };
+    Ok(checked(&head.vehicles, &tracks, cut))
 }
 
-fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>]) -> Certificate {
+fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>], error: Option<String>) -> Certificate {
     let times = tracks.iter().flatten().map(|point| point[0]);
     let (begin, end) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), time| (lo.min(time), hi.max(time)));
     let legs = tracks.iter().flat_map(|track| track.windows(2));
     let travelled = legs.map(|leg| (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2])).sum();
     let (format, version) = ("pcr-contacts", 1);
     let (count, time) = (vehicles.len(), end - begin);
-    let mut found = Certificate { format, version, vehicles: count, time, travelled, ..Certificate::default() };
+    let mut found = Certificate { format, version, vehicles: count, time, travelled, error, ..Certificate::default() };
     let windows = ((end - begin) / WINDOW).ceil().max(1.0) as usize;
     for window in 0..windows {
         let from = begin + window as f64 * WINDOW;
@@ -281,6 +313,28 @@ mod tests {
     }
 
     #[test]
+    fn a_record_that_was_cut_proves_nothing() {
+        let whole = record(1.001);
+        let lines: Vec<&str> = whole.lines().collect();
+        for kept in (3..lines.len()).step_by(97).chain([lines.len() - 1]) {
+            let cut = certify(lines[..kept].join("\n").as_bytes()).unwrap();
+            assert_eq!((cut.verdict, cut.contacts.len()), ("undecided", 0), "{kept} lines");
+            assert_eq!(cut.error.unwrap(), "the record is cut: its last line is missing");
+        }
+        let mut gap = lines.clone();
+        gap.drain(100..300);
+        let gap = certify(gap.join("\n").as_bytes()).unwrap();
+        assert_eq!(gap.verdict, "undecided");
+        assert!(gap.error.unwrap().starts_with("the record is cut: it has "));
+        let twice = certify(format!("{whole}{whole}").as_bytes()).unwrap_err();
+        assert_eq!(twice.to_string(), format!("line {}: it comes after the last line of a record", lines.len() + 1));
+        // A contact is one, whatever comes after it.
+        let touched = record(0.999);
+        let most = touched.rsplit_once("\n{").unwrap().0;
+        assert_eq!(certify(most.as_bytes()).unwrap().verdict, "contact");
+    }
+
+    #[test]
     fn what_is_no_record_is_refused() {
         let text = record(2.0);
         for (from, to) in [("pcr-record", "pcr-plan"), ("[1,", "[2,"), ("[0,0.1,", "[0,99.0,")] {
@@ -291,7 +345,7 @@ mod tests {
                 certify(text.replacen("\"radius\":0.5", &format!("\"radius\":{radius}"), 1).as_bytes()).unwrap_err();
             assert!(error.to_string().starts_with("line 1: a radius above 0 is expected"), "{error}");
         }
-        let nobody = certify(&br#"{"format":"pcr-record","version":1,"vehicles":[]}"#[..]).unwrap_err();
+        let nobody = certify(&br#"{"format":"pcr-record","version":2,"vehicles":[]}"#[..]).unwrap_err();
         assert_eq!(nobody.to_string(), "line 1: no vehicles");
         assert!(certify(&b""[..]).is_err());
         let head = text.lines().next().unwrap();
