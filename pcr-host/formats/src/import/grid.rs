@@ -43,6 +43,7 @@ impl GridPlan {
     pub fn read(text: &str) -> Result<Self, ImportError> {
         let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).enumerate();
         let (mut cells, mut told, mut count) = (Vec::new(), None, 0);
+        let mut arrow = None;
         for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
             let wrong = |problem: String| ImportError::new(format!("line {}: {problem}", number + 1));
             if cells.is_empty() && told.is_none() && !line.starts_with("Agent") {
@@ -52,6 +53,12 @@ impl GridPlan {
             let place = cells.len();
             let path = line.strip_prefix(&format!("Agent {place}:"));
             let path = path.ok_or_else(|| wrong(format!("`Agent {place}:` and its cells are expected")))?;
+            // Planners write an arrow after each cell, or between two cells: a line that differs was cut after a cell.
+            if *arrow.get_or_insert(path.ends_with("->")) != path.ends_with("->") {
+                return Err(wrong(
+                    "it ends with an arrow and the lines before do not, or the other way round: it was cut".into(),
+                ));
+            }
             let path = steps(path).map_err(wrong)?;
             count += path.len();
             if count > MOST {
@@ -152,6 +159,11 @@ mod tests {
             message("Agent 0: (0,0)->(0,9999999)"),
             "line 1: cell 1: two whole numbers up to 1000000 are expected"
         );
+        for [first, last] in [["(0,0)->(1,0)->", "(0,2)->(1,2)"], ["(0,0)->(1,0)", "(0,2)->(1,2)->"]] {
+            let expected =
+                "line 3: it ends with an arrow and the lines before do not, or the other way round: it was cut";
+            assert_eq!(message(&format!("2\nAgent 0: {first}\nAgent 1: {last}\n")), expected);
+        }
         assert_eq!(message("0"), "there is no agent in it");
         assert_eq!(message("2\n3\nAgent 0: (0,0)->"), "line 2: `Agent 0:` and its cells are expected");
         assert!(!is_plan("Agent Smith: here") && !is_plan("Agent (1,2)"));
