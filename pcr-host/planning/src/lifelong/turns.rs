@@ -32,7 +32,8 @@ impl Run {
             self.is_urgent = passed >= ROUNDS * self.robots.len();
             if self.is_urgent {
                 waiting.truncate(1);
-            } else if active >= self.ends.safe.len() {
+            } else if active >= self.ends.safe.len().max(1) {
+                // Where there are no safe ends, one after the other.
                 waiting.clear();
             }
             self.tidy(now);
