@@ -15,6 +15,8 @@ timed() {
 
 # Everything is built alike, so that it is built once: with methods of other libraries in comparisons, and the supervisor in the tool.
 everything_in=(--workspace --features pcr-tests/peers,pcr-host/serve --locked)
+# Lints and documentation are of the same profile as the tests: macros and programs that run in builds are built once then.
+profile=checked
 # These two have no tests of their own here, but much that they depend on.
 checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile checked)
 
@@ -38,7 +40,7 @@ style() {
   step "format and lints"
   cargo fmt --all --check
   peer_libraries
-  cargo clippy "${everything_in[@]}" --all-targets -- -D warnings
+  cargo clippy "${everything_in[@]}" --profile "$profile" --all-targets -- -D warnings
   if git grep -lE 'allow\(.*unsafe_code' -- '*.rs' | grep -vx pcr-core/src/scalar/vsqrt.rs; then
     echo "unsafe code outside pcr-core/src/scalar/vsqrt.rs" >&2
     return 1
@@ -51,6 +53,7 @@ style() {
 }
 
 quick() {
+  profile=dev
   style
   step "unit tests"
   cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-exclusions -p pcr-drawing -p pcr-comparing -p pcr-serve --lib --features pcr-drawing/png --locked
@@ -59,10 +62,10 @@ quick() {
 docs() {
   step "documentation"
   peer_libraries
-  RUSTDOCFLAGS="-D warnings" cargo doc "${everything_in[@]}" --no-deps
+  RUSTDOCFLAGS="-D warnings" cargo doc "${everything_in[@]}" --profile "$profile" --no-deps
   step "the public interface of pcr-core, as it was reviewed, and what of it breaks programs since the last release"
   # With all features, which nothing in the workspace uses at once.
-  RUSTDOCFLAGS="-D warnings" cargo doc -q -p pcr-core --no-deps --features std,micromath,serde,defmt --locked
+  RUSTDOCFLAGS="-D warnings" cargo doc -q -p pcr-core --profile "$profile" --no-deps --features std,micromath,serde,defmt --locked
   .ci/api.py "${CARGO_TARGET_DIR:-target}/doc"
   .ci/api.py --since
 }
@@ -195,9 +198,9 @@ packages() {
   (
     cd "$target/unpacked"
     export CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0
-    cargo check -q --workspace --all-targets --features pcr-core/std,pcr-host/serve
+    cargo check -q --workspace --profile "$profile" --all-targets --features pcr-core/std,pcr-host/serve
     # What is recorded for the proofs is compared in the repository, where the proofs are.
-    cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --lib --examples --features pcr-core/std -- --skip recorded::
+    cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --profile "$profile" --lib --examples --features pcr-core/std -- --skip recorded::
   )
 }
 
@@ -228,14 +231,14 @@ features() {
     step "$crate with each set of features, and without any"
     for set in $(sets_of $crate | sed 's/^$/-/'); do
       echo "features: $set"
-      cargo check -q -p $crate --locked --no-default-features --features "${set#-}"
+      cargo check -q -p $crate --profile "$profile" --locked --no-default-features --features "${set#-}"
     done
-    cargo clippy -q -p $crate --locked --all-features --all-targets -- -D warnings
+    cargo clippy -q -p $crate --profile "$profile" --locked --all-features --all-targets -- -D warnings
   done
   step "each part of the host alone, with the features that it names itself"
   for crate in pcr-formats pcr-planning pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
     echo "$crate"
-    cargo clippy -q -p $crate --locked --no-default-features -- -D warnings
+    cargo clippy -q -p $crate --profile "$profile" --locked --no-default-features -- -D warnings
   done
   step "defmt::Format on all public types"
   local source name missing=""
