@@ -121,6 +121,10 @@ fn envelopes_and_zones_are_missed() {
     let none = file.text.replacen("envelopeKey=\"pcr\"", "envelopeKey=\"other\"", 1);
     assert!(less.len() > 60);
     assert!(file.missed(&[less, vec![none]].concat(), 1) > 3);
+    // Neither has anybody one where no envelope and no vehicle names a key.
+    let nameless =
+        file.text.replace(" envelopeKey=\"pcr\"", "").replace("<vehicleEnvelope key=\"pcr\">", "<vehicleEnvelope>");
+    assert_eq!(file.missed(&[nameless], 1), 1);
 
     let file = File::of(Format::Nav2, SAMPLE, 0.3, Target::Vda5050, None);
     let root: Value = serde_json::from_str(&file.text).unwrap();

@@ -126,6 +126,64 @@ fn maps_are_levels() {
     assert_eq!(layout.nodes.iter().map(|node| node.level).collect::<Vec<_>>(), [0, 0, 1, 1]);
 }
 
+/// Two ways that cross, in one layout or in one each, with what nodes and layouts say of maps and levels.
+fn crossing(maps: [Option<&str>; 4], levels: Option<[Option<&str>; 2]>) -> Value {
+    let node = |k: usize| {
+        let (x, y) = [(0.0, 0.0), (10.0, 0.0), (5.0, -5.0), (5.0, 5.0)][k];
+        let mut node = json!({ "nodeId": k.to_string(), "nodePosition": { "x": x, "y": y } });
+        if let Some(map) = maps[k] {
+            node["mapId"] = json!(map);
+        }
+        node
+    };
+    let edge = |k: usize| {
+        json!({ "edgeId": k.to_string(), "startNodeId": (2 * k).to_string(), "endNodeId": (2 * k + 1).to_string(),
+            "vehicleTypeEdgeProperties": [{ "vehicleTypeId": "A" }] })
+    };
+    let part = |edges: &[usize]| {
+        let nodes: Vec<Value> = edges.iter().flat_map(|k| [node(2 * k), node(2 * k + 1)]).collect();
+        let edges: Vec<Value> = edges.iter().map(|k| edge(*k)).collect();
+        json!({ "layoutId": format!("L{}", edges.len()), "nodes": nodes, "edges": edges })
+    };
+    let layouts = match levels {
+        None => vec![part(&[0, 1])],
+        Some(levels) => (0..2)
+            .map(|k| {
+                let mut layout = part(&[k]);
+                layout["layoutId"] = json!(format!("L{k}"));
+                if let Some(level) = levels[k] {
+                    layout["layoutLevelId"] = json!(level);
+                }
+                layout
+            })
+            .collect(),
+    };
+    json!({ "metaInformation": { "projectIdentification": "p" }, "layouts": layouts })
+}
+
+/// Two levels instead of one would leave out what can touch.
+#[test]
+fn nodes_without_a_map_are_on_one_level_unless_the_file_tells_them_apart() {
+    const NONE: [Option<&str>; 4] = [None; 4];
+    let half = [Some("M"), Some("M"), None, None];
+    for (maps, levels, expected, warned) in [
+        (NONE, None, &["L2"][..], false),
+        (half, None, &["M"], true),
+        (half, Some([None, None]), &["M"], true),
+        (NONE, Some([None, None]), &["L0"], true),
+        (NONE, Some([Some("floor"), Some("floor")]), &["floor"], false),
+        (NONE, Some([Some("floor"), Some("roof")]), &["floor", "roof"], false),
+        ([Some("M"), None, Some("N"), Some("N")], Some([None, None]), &["M", "N"], true),
+    ] {
+        let (layout, warnings) = read(&crossing(maps, levels).to_string(), &options());
+        assert_eq!(layout.levels, expected, "{maps:?} {levels:?}");
+        let lines = warnings.iter().filter(|line| line.contains("nodes without mapId, which are taken to be on level"));
+        assert_eq!(lines.count() == 1, warned, "{warnings:?}");
+    }
+    let unclear = crossing([Some("M"), Some("N"), None, None], None).to_string();
+    assert!(layout_error(&unclear).contains("node 2, mapId: missing"), "{}", layout_error(&unclear));
+}
+
 /// What the reader refuses, and what it reads and warns about if that is left out.
 fn partly(value: &Value) -> (String, Layout, Vec<String>) {
     let text = value.to_string();

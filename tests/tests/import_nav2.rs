@@ -35,6 +35,15 @@ fn route(text: &str, routes: &[&str], corner_radius: f64) -> Scenario {
     scenario(Format::Nav2, text, &options(routes, corner_radius), &mut Warnings::default()).unwrap()
 }
 
+/// "Nothing excludes anything" would be said of it, although robots at its nodes touch.
+#[test]
+fn a_layout_without_an_edge_is_refused() {
+    let node = |id: u32, x: f64| json!({ "type": "Feature", "properties": { "id": id }, "geometry": { "type": "Point", "coordinates": [x, 0.0] } });
+    let text = json!({ "type": "FeatureCollection", "features": [node(0, 0.0), node(1, 0.3)] }).to_string();
+    let error = layout(Format::Nav2, &text, &options(&[], 1.0), &mut Warnings::default()).unwrap_err();
+    assert_eq!(error.to_string(), "there is no edge in it, on which anything could drive");
+}
+
 #[test]
 fn the_published_graphs_are_read_whole() {
     let (warehouse, warnings) = read(WAREHOUSE);

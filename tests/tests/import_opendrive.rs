@@ -196,6 +196,30 @@ fn different_roads_of_one_name_are_both_there() {
     assert!(warnings.contains(&expected.to_owned()), "{warnings:?}");
 }
 
+/// A road of 60 m that has less geometry, a hole in it, or two shapes in a record.
+#[test]
+fn roads_whose_geometry_has_holes_are_refused() {
+    let road = |length: f64, records: &str| {
+        format!("<OpenDRIVE><road id=\"1\" length=\"{length}\"><planView>{records}</planView></road></OpenDRIVE>")
+    };
+    let line = |s: f64, x: f64, shape: &str| {
+        format!("<geometry s=\"{s}\" x=\"{x}\" y=\"0\" hdg=\"0\" length=\"30\">{shape}</geometry>")
+    };
+    let [first, second] = [line(0.0, 0.0, "<line/>"), line(30.0, 30.0, "<userData/><line/>")];
+    assert_eq!(read(&road(60.0, &format!("{first}{second}"))).0.edges.len(), 1);
+    for (text, expected) in [
+        (road(60.0, &first), "road 1: its length is 60, and its records have 30.000 m"),
+        (
+            road(90.0, &format!("{first}{}", line(60.0, 30.0, "<line/>"))),
+            "road 1, geometry 2: its s is 60, after 30.000 m of records",
+        ),
+        (road(30.0, &line(0.0, 0.0, "<line/><arc curvature=\"0.1\"/>")), "road 1, geometry 1: a second shape, arc"),
+    ] {
+        let error = layout_error(&text);
+        assert!(error.contains(expected), "{expected} in {error}");
+    }
+}
+
 fn layout_error(text: &str) -> String {
     layout(Format::OpenDrive, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
 }

@@ -60,6 +60,15 @@ fn a_curve_is_the_cubic_of_its_control_points() {
     assert!(pieces > 2);
 }
 
+/// Straight, or round the point: it cannot be told.
+#[test]
+fn straight_paths_with_control_points_are_refused() {
+    let from = DEMO.find("connectionType=\"BEZIER\"").unwrap();
+    let text = format!("{}{}", &DEMO[..from], DEMO[from..].replacen("\"BEZIER\"", "\"DIRECT\"", 1));
+    let error = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    assert!(error.contains(": DIRECT with 2 control points is not read"), "{error}");
+}
+
 #[test]
 fn vehicles_keep_the_velocity_of_a_path() {
     let mut warnings = Warnings::default();
@@ -92,16 +101,17 @@ fn a_plant_is_read_whole_or_refused() {
     let far = "<point name=\"far\" positionX=\"-1e300\" positionY=\"0\"/>";
     let expected = "point far, positionX: \"-1e300\" where a number up to 1e10 is expected; --partial leaves that out";
     assert_eq!(read(far, false).unwrap_err(), expected);
-    let named = read("<vehicle name=\"\"/><vehicle name=\"v\"/>", false).unwrap().layout.vehicles;
+    let way = path("w", "a", "b", "");
+    let named = read(&format!("{way}<vehicle name=\"\"/><vehicle name=\"v\"/>"), false).unwrap().layout.vehicles;
     assert_eq!(named.iter().map(ToString::to_string).collect::<Vec<_>>(), ["v"]);
     let moved = [point("a", 5, 5), path("p", "a", "b", "")].concat();
     assert!(read(&moved, false).unwrap_err().starts_with("path p, sourcePoint: there are several different nodes a"));
-    let scaled = |scale: &str| read(&format!("<visualLayout scaleX=\"{scale}\"/>"), false);
+    let scaled = |scale: &str| read(&format!("{way}<visualLayout scaleX=\"{scale}\"/>"), false);
     assert!(scaled("0").unwrap_err().starts_with("visualLayout, scaleX: 0 where a number above 0 is expected"));
     assert!(scaled("x").is_err() && scaled("20").is_ok());
     // What vehicles reach out to at a point is there to be seen, and not used.
     let outline = "<point name=\"e\" positionX=\"9\" positionY=\"9\"><vehicleEnvelope key=\"k\"><vertex x=\"1\" y=\"1\"/></vehicleEnvelope></point>";
-    let warnings = read(outline, false).unwrap().layout.warnings;
+    let warnings = read(&format!("{way}{outline}"), false).unwrap().layout.warnings;
     assert!(warnings.iter().any(|line| line.starts_with("point e: its vehicleEnvelope is not read")), "{warnings:?}");
     let reversed = read(&path("p", "a", "b", "maxReverseVelocity=\"500\" maxVelocity=\"1500\""), false).unwrap().layout;
     assert_eq!((reversed.edges[0].two_way, reversed.edges[0].speed), (true, Some(1.5)));
@@ -151,7 +161,10 @@ fn xml_is_known_by_its_first_element_and_not_nested_without_end() {
     }
     assert_eq!((format("<models>"), format("<graphml>"), format("model")), (None, Some(Format::Ccbs), None));
     let read = |inner: &str| {
-        let text = format!("<model><point name=\"a\" positionX=\"0\" positionY=\"0\"/>{inner}</model>");
+        let points =
+            ["a", "b"].map(|name| format!("<point name=\"{name}\" positionX=\"0\" positionY=\"0\"/>")).concat();
+        let way = "<path name=\"w\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"1\"/>";
+        let text = format!("<model>{points}{way}{inner}</model>");
         layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).map_err(|error| error.to_string())
     };
     let nested = |depth: usize| format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth));

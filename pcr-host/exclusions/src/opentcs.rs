@@ -125,11 +125,13 @@ fn envelopes(
 ) -> Result<(), ImportError> {
     let keys: BTreeSet<Option<&str>> =
         elements(root, "vehicle").map(|vehicle| vehicle.attribute("envelopeKey")).collect();
+    // Without a key a vehicle has no envelope.
+    let key = keys.first().copied().flatten().filter(|_| keys.len() == 1);
     let mut outlines: Vec<(usize, Vec<[f64; 2]>)> = Vec::new();
     let mut other = false;
     for element in root.children().filter(|child| child.has_tag_name("point") || child.has_tag_name("path")) {
         for envelope in elements(element, "vehicleEnvelope") {
-            if keys.len() != 1 || !keys.contains(&envelope.attribute("key")) {
+            if key.is_none() || envelope.attribute("key") != key {
                 other = true;
                 continue;
             }

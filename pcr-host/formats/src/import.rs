@@ -252,6 +252,10 @@ fn imported(
         Format::Path => Err(ImportError::new("paths of agents are not a layout")),
         Format::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
     })?;
+    // Of what was left out on request it is said.
+    if layout.edges.is_empty() && !options.partial {
+        return Err(ImportError::new("there is no edge in it, on which anything could drive"));
+    }
     let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
     report(&off, warnings);
     layout.warnings = warnings.all();

@@ -37,11 +37,13 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         warnings,
     };
     let mut edges = Vec::new();
-    for (k, value) in root.list("layouts")?.iter().enumerate() {
+    let layouts = root.list("layouts")?;
+    let maps = maps(layouts.iter().filter_map(|layout| layout.get("nodes")));
+    for (k, value) in layouts.iter().enumerate() {
         let layout = Object::new(format!("layout {}", k + 1), value)?;
-        let id = layout.text("layoutId")?.unwrap_or("").to_owned();
+        let unnamed = reader.unnamed(&layout, layouts, &maps)?;
         for (k, value) in layout.list("nodes")?.iter().enumerate() {
-            reader.node(k, value, &id);
+            reader.node(k, value, unnamed.as_deref());
         }
         edges.extend(layout.list("edges")?);
     }
@@ -88,8 +90,40 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn node(&mut self, k: usize, value: &Value, layout: &str) {
-        match read_node(k, value, layout) {
+    /// The level of the nodes of a layout that name no map, if it can be told; `maps` are those that nodes of the file name. Two levels
+    /// instead of one would leave out what can touch, so that it is one where nothing tells them apart.
+    fn unnamed(
+        &mut self,
+        layout: &Object<'_>,
+        layouts: &[Value],
+        maps: &BTreeSet<&str>,
+    ) -> Result<Option<String>, ImportError> {
+        let nodes = layout.list("nodes")?;
+        if nodes.iter().all(|node| node.get("mapId").is_some()) {
+            return Ok(None);
+        }
+        let own = self::maps(layout.get("nodes").into_iter());
+        let only = [&own, maps].into_iter().find(|maps| maps.len() == 1).and_then(|maps| maps.first());
+        let level = match (only, maps.is_empty()) {
+            (Some(map), _) => (*map).to_owned(),
+            (None, false) => return Ok(None),
+            (None, true) => match layout.text("layoutLevelId")? {
+                Some(level) => return Ok(Some(level.to_owned())),
+                None => {
+                    let first = layouts.first().and_then(|first| first.get("layoutId")?.as_str());
+                    first.unwrap_or_default().to_owned()
+                }
+            },
+        };
+        if !maps.is_empty() || layouts.len() > 1 {
+            let what = format!("nodes without mapId, which are taken to be on level {level}");
+            self.warnings.add(&layout.name, what);
+        }
+        Ok(Some(level))
+    }
+
+    fn node(&mut self, k: usize, value: &Value, unnamed: Option<&str>) {
+        match read_node(k, value, unnamed) {
             Err(error) => self.warnings.lose(error),
             Ok((id, name, level, at)) => {
                 let known = self.levels.iter().position(|other| *other == level);
@@ -178,13 +212,22 @@ impl Reader<'_> {
     }
 }
 
-/// Number, name, level and position of a node.
-fn read_node(k: usize, value: &Value, layout: &str) -> Result<(String, Option<String>, String, [f64; 2]), ImportError> {
+/// Maps that nodes name.
+fn maps<'v>(nodes: impl Iterator<Item = &'v Value>) -> BTreeSet<&'v str> {
+    nodes.filter_map(Value::as_array).flatten().filter_map(|node| node.get("mapId")?.as_str()).collect()
+}
+
+/// Number, name, level and position of a node; `unnamed` is the level if it names no map.
+fn read_node(
+    k: usize,
+    value: &Value,
+    unnamed: Option<&str>,
+) -> Result<(String, Option<String>, String, [f64; 2]), ImportError> {
     let object = Object::new(format!("node at place {}", k + 1), value)?;
     let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
     let object = Object::new(format!("node {id}"), value)?;
     let position = object.object("nodePosition")?.ok_or_else(|| object.missing("nodePosition"))?;
-    let level = object.text("mapId")?.unwrap_or(layout).to_owned();
+    let level = object.text("mapId")?.or(unnamed).ok_or_else(|| object.missing("mapId"))?.to_owned();
     let name = object.text("nodeName").ok().flatten().map(str::to_owned);
     Ok((id, name, level, position.point()?))
 }

@@ -8,7 +8,7 @@
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
-use super::xml::{child, children, number, only, parse};
+use super::xml::{child, children, number, only, optional, parse};
 use super::{ImportError, Options, Warnings};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
@@ -19,6 +19,12 @@ const CLOSED: f64 = 1e-9;
 
 /// Largest gap that is closed \[m\].
 const GAP: f64 = 0.05;
+
+/// Largest part of its length by which the geometry of a road may miss it, if that is more than [`GAP`]: lengths are rounded in maps.
+const ROUNDED: f64 = 1e-4;
+
+/// Elements that may be in any other one, and say nothing of its shape.
+const ADDED: [&str; 3] = ["userData", "include", "dataQuality"];
 
 /// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
 const STRAIGHT: f64 = 1e9;
@@ -120,12 +126,25 @@ fn named(id: &str) -> Id {
 fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError> {
     let mut curve: Vec<Placed> = Vec::new();
     let (mut joint, mut deviation) = ([0.0_f64; 2], 0.0_f64);
+    let mut along = 0.0_f64;
     let view = only(road, "planView")?.ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
     for (k, record) in children(view, "geometry").enumerate() {
         let name = format!("{name}, geometry {}", k + 1);
         let field = |attribute: &str| number(record, &name, attribute);
         let (at, heading, length) = ([field("x")?, field("y")?], field("hdg")?, field("length")?);
-        let element = record.children().find(roxmltree::Node::is_element);
+        // Of what is missing between two records, or at the end, nothing would be known.
+        if let Some(s) = optional(record, &name, "s")?
+            && !((s - along).abs() <= GAP.max(ROUNDED * along))
+        {
+            return Err(ImportError::new(format!("{name}: its s is {s}, after {along:.3} m of records")));
+        }
+        along += length;
+        let mut elements =
+            record.children().filter(|child| child.is_element() && !ADDED.contains(&child.tag_name().name()));
+        let element = elements.next();
+        if let Some(second) = elements.next() {
+            return Err(ImportError::new(format!("{name}: a second shape, {}", second.tag_name().name())));
+        }
         let shape = match element.map(|element| (element.tag_name().name(), element)) {
             Some(("line", _)) => PathSegment::Line { length },
             Some(("arc", arc)) => {
@@ -165,6 +184,11 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
             joint = [joint[0].max(gap), joint[1].max(turn.min(std::f64::consts::TAU - turn))];
         }
         curve.push(placed);
+    }
+    if let Some(length) = optional(road, name, "length")?
+        && !((length - along).abs() <= GAP.max(ROUNDED * length))
+    {
+        return Err(ImportError::new(format!("{name}: its length is {length}, and its records have {along:.3} m")));
     }
     Ok(Curve { pieces: curve, deviation, joint })
 }

@@ -136,7 +136,8 @@ fn curve(
             let curves: Vec<Bezier> = (0..points.len() / 3).map(|k| Bezier::new(&points[3 * k..3 * k + 4])).collect();
             fit(&curves, tolerance).map_err(named)
         }
-        "DIRECT" | "POLYPATH" => {
+        // A straight path with control points could be either.
+        kind @ ("DIRECT" | "POLYPATH") if kind == "POLYPATH" || points.len() == 2 => {
             let lines = points.windows(2).map(|pair| Placed::line(pair[0], pair[1]));
             let pieces = lines.filter(|line| line.shape.length() > 0.0).collect();
             Ok(Fit { pieces, deviation: 0.0 })
