@@ -67,6 +67,9 @@ pub struct Dump {
     pub name: String,
     /// That of contact, and that in which margins overlap, if there are any.
     pub certificate: Vec<Table>,
+    /// Why there are no regions.
+    #[serde(default)]
+    error: Option<String>,
 }
 
 impl Dump {
@@ -77,10 +80,14 @@ impl Dump {
     pub fn read(file: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
         if text.trim_start().starts_with('{') {
-            return serde_json::from_str(&text).map_err(|error| error.to_string());
+            let dump: Self = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+            return match dump.error {
+                None => Ok(dump),
+                Some(error) => Err(format!("its regions were not computed: {error}")),
+            };
         }
         let name = file.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        Ok(Self { name, certificate: vec![dump::decode(&text)?] })
+        Ok(Self { name, certificate: vec![dump::decode(&text)?], error: None })
     }
 }
 

@@ -49,7 +49,7 @@ broker() {
   "$pcr" serve --journal "$out/journal" --stay --broker localhost:$port --fleet "$out/vehicles.json" --log error </dev/null 2>"$out/$name.log" & own+=($!)
   children+=("${own[@]}")
   "$pcr" fleet "$layout" --vehicles "$vehicles" --manager --pace $pace --drops $((24 * pace / 10)) --broker localhost:$port "${trouble[@]}" \
-    --record "$out/record" >"$out/text"
+    --record "$out/record" >"$out/text" || [ $? = 1 ]
   kill "${own[@]}"
   wait "${own[@]}" 2>/dev/null || true
   found "$out/text" "$out/record"
@@ -63,7 +63,7 @@ for layout in "${layouts[@]}"; do
   name=$(basename -- "$layout" | sed 's/[._].*//; s/--//; s/=/-/')
   row="| $name | $places | $vehicles | $([ -n "${NO_BROKER:-}" ] && echo - || broker "$layout" "$vehicles" "$name") |"
   for method in ${METHODS-supervisor route-locks edge-locks}; do
-    "$pcr" fleet "$layout" --vehicles "$vehicles" --alone $method --drops 2.4 "${trouble[@]}" --record "$out/record" >"$out/text"
+    "$pcr" fleet "$layout" --vehicles "$vehicles" --alone $method --drops 2.4 "${trouble[@]}" --record "$out/record" >"$out/text" || [ $? = 1 ]
     row+=" $(found "$out/text" "$out/record") |"
   done
   echo "$row"

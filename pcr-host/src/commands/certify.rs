@@ -65,9 +65,15 @@ impl Arguments {
             return Err(Stop::arguments("--limit is for --format json and table"));
         }
         let certified = self.certified()?;
+        // Nothing would be proved.
         if certified.is_empty() {
-            // Nothing was proved.
             return Err(Stop::Error("there is no table to be certified".into(), WRONG_INPUT));
+        }
+        if certified.iter().all(|one| one.discs < 2 && one.error.is_none()) {
+            return Err(Stop::Error(
+                "there are no two discs, of which contacts could be certified".into(),
+                WRONG_INPUT,
+            ));
         }
         let mut out = self.printed.out(false);
         if self.printed.form() == Form::Csv {

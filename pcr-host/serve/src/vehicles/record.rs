@@ -1,11 +1,12 @@
 //! A file with the true positions of vehicles, and the proof that they never touched.
 //!
 //! The first line names the vehicles: `{"format":"pcr-record","version":2,"vehicles":[{"name":"sim/1","radius":0.4}]}`.
-//! The last line is `{"lines":N}`, with the number of those between; a record without it, or with another number, was
-//! cut, and proves nothing. Each other line is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\]
+//! The last line is `{"lines":N,"crc32":C}`, with the number of those between and the checksum (as in PNG) of all that is
+//! before it; a record without it, or with other numbers, is not as it was written, and proves nothing. Each other line is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\]
 //! of a vehicle increase. Between two of its lines a vehicle moves straight at a constant speed; before the first and
 //! after the last line it stands.
 
+use crc32fast::Hasher;
 use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,9 @@ struct Head {
 #[serde(deny_unknown_fields)]
 struct End {
     lines: u64,
+    /// Those who write records of other vehicles may leave it out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    crc32: Option<u32>,
 }
 
 /// A record in the making.
@@ -43,6 +47,7 @@ pub struct Record<W: Write> {
     /// Whether the last one written is that before, and not what it stood at since.
     waits: Vec<bool>,
     lines: u64,
+    sum: Hasher,
 }
 
 impl<W: Write> Record<W> {
@@ -50,11 +55,12 @@ impl<W: Write> Record<W> {
     ///
     /// # Errors
     /// As the writer.
-    pub fn new(mut out: W, vehicles: &[Recorded]) -> io::Result<Self> {
+    pub fn new(out: W, vehicles: &[Recorded]) -> io::Result<Self> {
         let head = Head { format: "pcr-record".into(), version: VERSION, vehicles: vehicles.to_vec() };
-        serde_json::to_writer(&mut out, &head)?;
-        out.write_all(b"\n")?;
-        Ok(Self { out, last: vec![None; vehicles.len()], waits: vec![false; vehicles.len()], lines: 0 })
+        let (last, waits) = (vec![None; vehicles.len()], vec![false; vehicles.len()]);
+        let mut own = Self { out, last, waits, lines: 0, sum: Hasher::new() };
+        own.line(serde_json::to_string(&head)?)?;
+        Ok(own)
     }
 
     /// A vehicle is there at a time \[s, m\].
@@ -78,7 +84,13 @@ impl<W: Write> Record<W> {
 
     fn write(&mut self, vehicle: usize, [time, x, y]: [f64; 3]) -> io::Result<()> {
         self.lines += 1;
-        writeln!(self.out, "[{vehicle},{time:?},{x:?},{y:?}]")
+        self.line(format!("[{vehicle},{time:?},{x:?},{y:?}]"))
+    }
+
+    fn line(&mut self, mut text: String) -> io::Result<()> {
+        text.push('\n');
+        self.sum.update(text.as_bytes());
+        self.out.write_all(text.as_bytes())
     }
 
     /// The record is whole.
@@ -92,8 +104,8 @@ impl<W: Write> Record<W> {
         {
             self.write(vehicle, point)?;
         }
-        serde_json::to_writer(&mut self.out, &End { lines: self.lines })?;
-        self.out.write_all(b"\n")?;
+        let end = End { lines: self.lines, crc32: Some(self.sum.clone().finalize()) };
+        self.line(serde_json::to_string(&end)?)?;
         self.out.flush()?;
         Ok(self.out)
     }
@@ -137,6 +149,10 @@ pub struct Contact {
 /// Of the format of records. Those of version 1 had no last line.
 const VERSION: u32 = 2;
 
+/// Largest coordinate \[m\] and speed \[m/s\]: beyond them rounding hides contacts.
+const FARTHEST: f64 = 1e7;
+const FASTEST: f64 = 1e3;
+
 /// Windows in which motions are checked \[s\].
 const WINDOW: f64 = 20.0;
 
@@ -147,8 +163,9 @@ const WINDOW: f64 = 20.0;
 pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     let wrong = |line: usize, why: String| io::Error::new(io::ErrorKind::InvalidData, format!("line {line}: {why}"));
     let mut lines = text.lines().enumerate();
-    let (_, head) = lines.next().ok_or_else(|| wrong(1, "missing".into()))?;
-    let head: Head = serde_json::from_str(&head?).map_err(|error| wrong(1, error.to_string()))?;
+    let (_, first) = lines.next().ok_or_else(|| wrong(1, "missing".into()))?;
+    let first = first?;
+    let head: Head = serde_json::from_str(&first).map_err(|error| wrong(1, error.to_string()))?;
     if (head.format.as_str(), head.version) != ("pcr-record", VERSION) {
         return Err(wrong(1, format!("a record of version {VERSION} is expected")));
     }
@@ -161,6 +178,9 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     }
     let mut tracks: Vec<Vec<[f64; 3]>> = vec![Vec::new(); head.vehicles.len()];
     let (mut end, mut count): (Option<End>, u64) = (None, 0);
+    let mut sum = Hasher::new();
+    sum.update(first.as_bytes());
+    sum.update(b"\n");
     for (line, text) in lines {
         let text = text?;
         if end.is_some() {
@@ -171,12 +191,23 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
             continue;
         }
         count += 1;
+        sum.update(text.as_bytes());
+        sum.update(b"\n");
         let mut point = |text: &str| {
             let (vehicle, time, x, y): (usize, f64, f64, f64) =
                 serde_json::from_str(text).map_err(|it| it.to_string())?;
             let track = tracks.get_mut(vehicle).ok_or("no such vehicle")?;
-            if track.last().is_some_and(|last| last[0] > time || (last[0] == time && last[1..] != [x, y])) {
-                return Err("earlier than the line before".to_owned());
+            if let Some(far) = [x, y].into_iter().find(|it| it.abs() > FARTHEST) {
+                return Err(format!("coordinates up to {FARTHEST:e} m are expected, not {far:e}"));
+            }
+            if let Some([before, x0, y0]) = track.last() {
+                if *before >= time {
+                    return Err("not later than the line before of this vehicle".to_owned());
+                }
+                let speed = (x - x0).hypot(y - y0) / (time - before);
+                if speed > FASTEST {
+                    return Err(format!("speeds up to {FASTEST:e} m/s are expected, not {speed:e}"));
+                }
             }
             track.push([time, x, y]);
             Ok(())
@@ -189,6 +220,9 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     let cut = match end {
         None => Some("the record is cut: its last line is missing".to_owned()),
         Some(end) if end.lines != count => Some(format!("the record is cut: it has {count} lines of {}", end.lines)),
+        Some(End { crc32: Some(told), .. }) if told != sum.finalize() => {
+            Some("the record is not as it was written: its checksum is another one".to_owned())
+        }
         Some(_) => None,
     };
     Ok(checked(&head.vehicles, &tracks, cut))
@@ -278,10 +312,13 @@ fn agent(id: u64, radius: f64, points: &[[f64; 3]]) -> Agent {
         segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
         phases.clear();
     }
-    // Rounding of directions and sums of some hundred short legs.
-    let rounding = f64::EPSILON * length.max(1.0) * 64.0;
+    // Each direction and each sum is rounded, along all of the way; and so are the coordinates.
+    let far = points.iter().flat_map(|point| [point[1].abs(), point[2].abs()]).fold(1.0, f64::max);
+    let rounding = f64::EPSILON * (length + far) * (64.0 + 4.0 * segments.len() as f64);
     let start = [first[1], first[2]];
     let path = Path { start, heading: Angle::Radians(initial.unwrap_or(0.0)), segments, rounding, step: 0.0 };
+    // Discs that are nearer than that are taken for discs that touch.
+    let radius = radius + rounding;
     Agent { id, radius, path, travel: Some(Travel { start: first[0], phases, lag: 0.0, time_excess: 0.0 }) }
 }
 
@@ -326,12 +363,46 @@ mod tests {
         let gap = certify(gap.join("\n").as_bytes()).unwrap();
         assert_eq!(gap.verdict, "undecided");
         assert!(gap.error.unwrap().starts_with("the record is cut: it has "));
+        let other = certify(whole.replacen("\"radius\":0.5", "\"radius\":0.4", 1).as_bytes()).unwrap();
+        assert_eq!(other.error.unwrap(), "the record is not as it was written: its checksum is another one");
+        assert_eq!(other.verdict, "undecided");
+        // Whoever writes one by hand need not have a checksum.
+        let end = whole.rfind(",\"crc32\"").unwrap();
+        assert_eq!(certify(format!("{}}}", &whole[..end]).as_bytes()).unwrap().verdict, "proved");
         let twice = certify(format!("{whole}{whole}").as_bytes()).unwrap_err();
         assert_eq!(twice.to_string(), format!("line {}: it comes after the last line of a record", lines.len() + 1));
         // A contact is one, whatever comes after it.
         let touched = record(0.999);
         let most = touched.rsplit_once("\n{").unwrap().0;
         assert_eq!(certify(most.as_bytes()).unwrap().verdict, "contact");
+    }
+
+    /// Of ways of 10 million kilometres rounding would hide contacts of a millionth of a metre.
+    #[test]
+    fn what_rounding_would_hide_is_refused() {
+        let record = |points: &str| {
+            let head = r#"{"format":"pcr-record","version":2,"vehicles":[{"name":"a","radius":0.5},{"name":"b","radius":0.5}]}"#;
+            let text = format!("{head}\n{points}\n{{\"lines\":{}}}", points.lines().count());
+            certify(text.as_bytes())
+        };
+        let far = record("[0,0.0,0.0,0.0]\n[0,1.0,1e8,0.0]\n[1,0.0,0.0,5.0]").unwrap_err().to_string();
+        assert_eq!(far, "line 3: coordinates up to 1e7 m are expected, not 1e8");
+        let fast = record("[0,0.0,0.0,0.0]\n[0,1.0,5000.0,0.0]\n[1,0.0,0.0,5.0]").unwrap_err().to_string();
+        assert_eq!(fast, "line 3: speeds up to 1e3 m/s are expected, not 5e3");
+        let again = record("[0,0.0,0.0,0.0]\n[0,0.0,0.0,0.0]\n[1,0.0,0.0,5.0]").unwrap_err().to_string();
+        assert_eq!(again, "line 3: not later than the line before of this vehicle");
+        // As far as is allowed, on ways with many turns, discs that overlap by less than a micrometre.
+        for k in 0..50 {
+            let (mut points, base) = (String::new(), 9.9e6);
+            for step in 0..=200 {
+                let (time, side) = (f64::from(step) * 0.1, f64::from((step * 7 + k) % 11) * 5.0);
+                let last = step == 200;
+                let [x, y] = if last { [base, -base] } else { [base - 60.0 + side, -base + 40.0 - side] };
+                points += &format!("[0,{time:?},{x:?},{y:?}]\n");
+            }
+            points += &format!("[1,0.0,{:?},{:?}]", base + 1.0 - 1e-6, -base);
+            assert_eq!(record(&points).unwrap().verdict, "contact", "{k}");
+        }
     }
 
     #[test]
