@@ -134,7 +134,7 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
         let (at, heading, length) = ([field("x")?, field("y")?], field("hdg")?, field("length")?);
         // Of what is missing between two records, or at the end, nothing would be known.
         if let Some(s) = optional(record, &name, "s")?
-            && !((s - along).abs() <= GAP.max(ROUNDED * along))
+            && (s - along).abs() > GAP.max(ROUNDED * along)
         {
             return Err(ImportError::new(format!("{name}: its s is {s}, after {along:.3} m of records")));
         }
@@ -186,7 +186,7 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
         curve.push(placed);
     }
     if let Some(length) = optional(road, name, "length")?
-        && !((length - along).abs() <= GAP.max(ROUNDED * length))
+        && (length - along).abs() > GAP.max(ROUNDED * length)
     {
         return Err(ImportError::new(format!("{name}: its length is {length}, and its records have {along:.3} m")));
     }
