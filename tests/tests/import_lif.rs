@@ -299,3 +299,27 @@ fn edges_have_the_limits_and_the_gaps_of_the_file() {
     assert!((layout.edges[0].length() - 5.0).abs() < 1e-12 && layout.edges[4].curve.is_empty());
     assert_eq!(warnings, ["edge off: its trajectory ends 0.500 m from its node", "edge none: its length is 0"]);
 }
+
+/// A vehicle that drives sideways was read as if its outline faced along the edge.
+#[test]
+fn outlines_face_along_edges_or_are_refused() {
+    let node = |id: &str, y: f64| json!({ "nodeId": id, "nodePosition": { "x": 0.0, "y": y } });
+    let lif = |orientation: f64, kind: Value| {
+        let property = json!([{ "vehicleTypeId": "t", "vehicleOrientation": orientation, "orientationType": kind }]);
+        let edge =
+            json!({ "edgeId": "e", "startNodeId": "a", "endNodeId": "b", "vehicleTypeEdgeProperties": property });
+        json!({ "layouts": [{ "layoutId": "l", "nodes": [node("a", 0.0), node("b", 5.0)], "edges": [edge] }] })
+            .to_string()
+    };
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    let outlined = Options { fleet: Some(fleet.into()), radius: None, ..options() };
+    for (orientation, kind) in [(0.0, Value::Null), (360.0, json!("TANGENTIAL")), (90.0, json!("GLOBAL"))] {
+        assert_eq!(read(&lif(orientation, kind), &outlined).0.edges.len(), 1);
+    }
+    for (orientation, kind) in [(90.0, Value::Null), (180.0, json!("TANGENTIAL")), (0.0, json!("GLOBAL"))] {
+        let text = lif(orientation, kind);
+        let error = layout(Format::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("edge e: its vehicleOrientation {orientation}, as outlines")), "{error}");
+        assert_eq!(read(&text, &options()).0.edges.len(), 1);
+    }
+}

@@ -143,7 +143,8 @@ fn states_tell_paths_with_or_without_times() {
         state.to_string()
     };
     let (scenario, _) =
-        read(&state(json!({ "plannedPath": { "trajectory": quarter(), "traversedNodes": [] } })), &options()).unwrap();
+        read(&state(json!({ "plannedPath": { "trajectory": quarter(), "traversedNodes": ["n1"] } })), &options())
+            .unwrap();
     assert_eq!(scenario.agents[0].structure(), "AA");
     // Where it goes is told by nodes only: it does not stand.
     let lost = "state of r7: its way is told by nodeStates only, give its order instead";
@@ -157,8 +158,7 @@ fn states_tell_paths_with_or_without_times() {
     assert_eq!((scenario.agents[0].path.len(), warnings.len()), (0, 0));
     let both = state(json!({ "plannedPath": {}, "intermediatePath": {} }));
     assert!(read(&both, &options()).unwrap_err().contains("its plannedPath, which goes on"));
-    let elsewhere =
-        json!({ "plannedPath": { "trajectory": quarter() }, "mobileRobotPosition": { "x": 3.0, "y": 0.0 } });
+    let elsewhere = json!({ "nodeStates": [], "plannedPath": { "trajectory": quarter() }, "mobileRobotPosition": { "x": 3.0, "y": 0.0 } });
     let (_, warnings) = read(&state(elsewhere), &options()).unwrap();
     assert!(warnings[0].ends_with("it begins 1.000 m from where the vehicle is; it is taken as there"), "{warnings:?}");
     let point = |x: f64, y: f64, eta: &str| json!({ "x": x, "y": y, "eta": eta });
@@ -167,7 +167,7 @@ fn states_tell_paths_with_or_without_times() {
         point(6.0, 0.0, "2026-11-21T08:00:03.5Z"),
         point(6.0, 3.0, "2026-11-21T08:00:05.500Z"),
     ];
-    let text = state(json!({ "intermediatePath": { "polyline": polyline } }));
+    let text = state(json!({ "nodeStates": [], "intermediatePath": { "polyline": polyline } }));
     // A second state that was sent a second later.
     let later = text.replace("08:00:00.000Z", "08:00:01Z");
     let (scenario, _) = read(&format!("{text}\n{later}"), &options()).unwrap();
@@ -184,6 +184,132 @@ fn states_tell_paths_with_or_without_times() {
     assert!(read(&backward, &options()).unwrap_err().contains("intermediatePath: point 3 is reached at -3596.5 s"));
     let no_stamp = text.replace("2026-11-21T08:00:02Z", "soon");
     assert!(read(&no_stamp, &options()).unwrap_err().ends_with("eta: \"soon\" is not a time stamp"));
+}
+
+/// A state of a vehicle at (4, 0).
+fn state(more: Value) -> String {
+    let mut state = json!({ "timestamp": "2026-11-21T08:00:00Z", "serialNumber": "r7", "orderId": "o", "nodeStates": [],
+        "edgeStates": [], "mobileRobotPosition": { "x": 4.0, "y": 0.0, "theta": 0.0, "mapId": "m" } });
+    state.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+    state.to_string()
+}
+
+/// It was taken to stand for ever where the path of its state ends, or where it is.
+#[test]
+fn a_state_that_goes_on_is_refused() {
+    let timed = json!({ "polyline": [{ "x": 6.0, "y": 2.0, "eta": "2026-11-21T08:00:04Z" }] });
+    for (path, value) in [("plannedPath", json!({ "trajectory": quarter() })), ("intermediatePath", timed)] {
+        let on = |node: Value, released: bool| {
+            let node = json!({ "nodeId": "n1", "sequenceId": 2, "released": released, "nodePosition": node });
+            let further = json!({ "nodeId": "n2", "sequenceId": 4, "released": false });
+            read(&state(json!({ path: value, "nodeStates": [further, node] })), &options())
+        };
+        let lost = "state of r7, node n1: its way on to there, as its path ends before or elsewhere; give its order \
+            instead; --partial leaves that out";
+        assert!(on(json!({ "x": 6.0, "y": 2.0 }), true).is_ok() && on(json!({ "x": 6.0, "y": 9.0 }), false).is_ok());
+        assert_eq!(on(json!({ "x": 6.0, "y": 9.0 }), true).unwrap_err(), lost);
+        assert_eq!(on(Value::Null, true).unwrap_err(), lost);
+        let edge = json!([{ "edgeId": "e1", "sequenceId": 1, "released": true }]);
+        let error = read(&state(json!({ path: value, "edgeStates": edge })), &options()).unwrap_err();
+        assert!(error.starts_with("state of r7, edge e1: where it leads"), "{error}");
+    }
+    let lost = "state of r7: its way, as it moves and does not say where to";
+    for moves in [
+        json!({ "driving": true }),
+        json!({ "velocity": { "vx": 0.0, "vy": -0.5 } }),
+        json!({ "velocity": { "omega": 0.1 } }),
+        json!({ "edgeStates": [{ "edgeId": "e1" }] }),
+    ] {
+        assert_eq!(read(&state(moves), &options()).unwrap_err(), format!("{lost}; --partial leaves that out"));
+    }
+    assert!(read(&state(json!({ "driving": false, "velocity": { "vx": 0.0 } })), &options()).is_ok());
+    let drives = json!({ "driving": true, "plannedPath": { "trajectory": quarter() } });
+    let (_, warnings) = read(&state(drives), &options()).unwrap();
+    assert_eq!(warnings, ["state of r7: it moves already; its plannedPath is travelled from rest"]);
+}
+
+/// It was read as standing where it says, although it says that it does not know.
+#[test]
+fn a_vehicle_that_does_not_know_where_it_is_is_refused() {
+    for (pose, field, value) in [
+        ("mobileRobotPosition", "localized", json!(false)),
+        ("agvPosition", "positionInitialized", json!(false)),
+        ("agvPosition", "localizationScore", json!(0.0)),
+    ] {
+        let mut at = json!({ "x": 4.0, "y": 0.0, "theta": 0.0, "mapId": "m" });
+        at[field] = value;
+        let error = read(&state(json!({ "mobileRobotPosition": null, pose: at })), &options()).unwrap_err();
+        assert_eq!(error, format!("state of r7, {pose}, {field}: it does not know where it is"));
+    }
+}
+
+/// A planned path began at the time 0, whatever the time stamp of its state was.
+#[test]
+fn planned_paths_begin_at_the_time_stamps_of_their_states() {
+    let planned = state(json!({ "plannedPath": { "trajectory": quarter() } }));
+    let points = json!({ "polyline": [{ "x": 6.0, "y": 2.0, "eta": "2026-11-21T08:00:14Z" }] });
+    let timed = state(json!({ "timestamp": "2026-11-21T08:00:10Z", "intermediatePath": points }));
+    let starts = |text: &str| {
+        let (scenario, _) = read(text, &options()).unwrap();
+        scenario.agents.iter().map(|agent| agent.t_start).collect::<Vec<_>>()
+    };
+    assert_eq!(starts(&format!("{planned} {timed}")), [0.0, 10.0]);
+    assert_eq!(starts(&format!("{timed} {planned}")), [0.0, -10.0]);
+    // What stands does so at all times; what moves has to say from when on.
+    let stands = state(json!({ "timestamp": "2026-11-21T07:00:00Z" }));
+    assert_eq!(starts(&format!("{stands} {timed} {planned}")), [0.0, 0.0, -10.0]);
+    let unsaid = state(json!({ "timestamp": null, "plannedPath": { "trajectory": quarter() } }));
+    assert_eq!(starts(&unsaid), [0.0]);
+    let why = "it does not say when it begins, and cannot be read together with what does: state of r7";
+    assert_eq!(read(&format!("{timed} {unsaid}"), &options()).unwrap_err(), format!("state of r7: {why}"));
+    assert_eq!(read(&format!("{} {planned}", square()), &options()).unwrap_err(), format!("order square: {why}"));
+    assert_eq!(starts(&format!("{} {stands}", square())), [0.0, 0.0]);
+}
+
+/// A vehicle that drives backward was read as if its outline faced along its path.
+#[test]
+fn outlines_face_along_their_paths_or_are_refused() {
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    let outlined = Options {
+        fleet: Some(fleet.into()),
+        rotation: Some(1.0),
+        rotation_acceleration: Some(1.0),
+        ..Options::default()
+    };
+    let order = |edge: Value, theta: [Value; 2]| {
+        let node = |k: usize, y: f64| {
+            json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "actions": [],
+                "nodePosition": { "x": 0.0, "y": y, "theta": theta[k], "mapId": "m" } })
+        };
+        let mut way = json!({ "edgeId": "e", "sequenceId": 1, "actions": [] });
+        way.as_object_mut().unwrap().extend(edge.as_object().unwrap().clone());
+        json!({ "orderId": "o", "nodes": [node(0, 0.0), node(1, 5.0)], "edges": [way] }).to_string()
+    };
+    let none = [Value::Null, Value::Null];
+    let ahead = std::f64::consts::FRAC_PI_2;
+    for edge in [
+        json!({}),
+        json!({ "orientation": 0.0 }),
+        json!({ "orientation": std::f64::consts::TAU, "orientationType": "TANGENTIAL" }),
+        json!({ "orientation": ahead, "orientationType": "GLOBAL" }),
+    ] {
+        assert!(read(&order(edge.clone(), none.clone()), &outlined).is_ok(), "{edge}");
+        assert!(read(&order(edge.clone(), [json!(1.571), json!(ahead)]), &outlined).is_ok(), "{edge}");
+    }
+    let backward = std::f64::consts::PI;
+    for edge in [json!({ "orientation": backward }), json!({ "orientation": 0.0, "orientationType": "GLOBAL" })] {
+        let error = read(&order(edge.clone(), none.clone()), &outlined).unwrap_err();
+        assert!(error.starts_with("order o, edge e: its orientation "), "{error}");
+        // It does not matter how a disc faces.
+        assert!(read(&order(edge, none.clone()), &options()).is_ok());
+    }
+    for theta in [[json!(-ahead), Value::Null], [Value::Null, json!(backward)]] {
+        let error = read(&order(json!({}), theta), &outlined).unwrap_err();
+        assert!(error.contains(": its theta ") && error.contains("outlines face along their paths"), "{error}");
+    }
+    // Who stands faces as it says.
+    let standing = json!({ "orderId": "o", "nodes": [{ "nodeId": "a", "nodePosition": { "x": 1.0, "y": 2.0, "theta": 0.5 } }], "edges": [] });
+    assert_eq!(read(&standing.to_string(), &outlined).unwrap().0.agents[0].start, [1.0, 2.0, 0.5]);
 }
 
 #[test]

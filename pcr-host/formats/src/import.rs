@@ -5,6 +5,7 @@
 //! lif         layouts of the VDMA (JSON)
 //! vda5050     orders and states (JSON)
 //! loads       the load that a vehicle of VDA 5050 carries
+//! facing      which way vehicles face on their paths
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
 //! opendrive   reference lines of roads (XML)
@@ -32,6 +33,7 @@
 
 mod biarc;
 mod ccbs;
+mod facing;
 mod factsheet;
 mod grid;
 mod layout;
@@ -243,7 +245,7 @@ fn imported(
     let vehicle = options.vehicle(&given, moves, warnings);
     let mut layout = whole(options, warnings, |warnings| match format {
         Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings),
-        Format::Lif => lif::read(text, options, warnings),
+        Format::Lif => lif::read(text, options, vehicle.footprint.is_some(), warnings),
         Format::Rmf => rmf::read(text, options, warnings),
         Format::OpenDrive => opendrive::read(text, options, warnings),
         Format::OpenTcs => opentcs::read(text, options, warnings),

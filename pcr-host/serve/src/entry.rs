@@ -1,7 +1,7 @@
 //! The entries of the journal: everything that must be the same after a restart.
 
 use crate::course::Course;
-use crate::robot::{Abilities, Alarm, Waiting};
+use crate::robot::{Abilities, Alarm, Asked, Waiting};
 use pcr_core::Pass;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -81,6 +81,9 @@ pub struct Known {
     pub origin: f64,
     /// The mission that it has got last.
     pub mission: Option<String>,
+    /// How it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asked: Option<Asked>,
     /// Missions before.
     pub past: Vec<String>,
     /// Where it was at least \[m\].

@@ -11,6 +11,8 @@ pub enum Fault {
     NoSuchRobot,
     /// There is one of this name already, another one.
     RobotExists,
+    /// The robot has a mission of this name with another path.
+    MissionExists,
     /// The robot has no path of this number.
     NoSuchPath {
         /// The path that it has.
@@ -63,6 +65,7 @@ impl fmt::Display for Fault {
         match self {
             Self::NoSuchRobot => f.write_str("there is no robot of this name"),
             Self::RobotExists => f.write_str("there is another robot of this name"),
+            Self::MissionExists => f.write_str("there is another mission of this name, with another path"),
             Self::NoSuchPath { path } => write!(f, "the path of the robot has the number {path}"),
             Self::Released { hold } => write!(f, "the robot has been allowed to go up to {hold} m already"),
             Self::Apart { distance, angle } => {

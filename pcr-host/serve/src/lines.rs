@@ -62,6 +62,9 @@ struct Off {
     robot: String,
     x: f64,
     y: f64,
+    /// How long ago \[s\].
+    #[serde(default)]
+    age: f64,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -103,7 +106,7 @@ pub fn handle(supervisor: &mut Supervisor, line: &[u8], now: f64) -> Reply {
         }
         Verb::Remove(Named { robot }) => supervisor.remove(&robot).map(|there| json!({ "removed": there })),
         Verb::Position(report) => supervisor.position(&report, now).map(|()| json!({})),
-        Verb::Off(Off { robot, x, y }) => supervisor.off(&robot, [x, y], now).map(|()| json!({})),
+        Verb::Off(Off { robot, x, y, age }) => supervisor.off(&robot, [x, y], age, now).map(|()| json!({})),
         Verb::Query(question) => query::answer(supervisor, &question, now),
         Verb::Watch(Watch { events }) => {
             watches = Some(events);

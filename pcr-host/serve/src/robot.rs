@@ -1,6 +1,6 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
-use crate::course::Course;
+use crate::course::{Course, Shape};
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 
 /// Discs are larger by this than they are \[m\]: what rounding does to paths that are cut and joined, and to lengths in messages.
 pub const ROOM: f64 = 1e-6;
+
+/// A robot that is further back than it has been by so much more than it may be off, there and here, is not where it was \[m\].
+pub const BACK: f64 = 0.05;
 
 /// What a robot can do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,6 +64,13 @@ pub enum Alarm {
         /// Where it says it may be \[m\].
         at: f64,
     },
+    /// It is further back than it has been: others may have the right to go there.
+    Back {
+        /// How far it had come \[m\].
+        passed: f64,
+        /// Between which lengths of its path it is \[m\].
+        between: [f64; 2],
+    },
     /// It is not on its path.
     Off {
         /// Where it is \[m\].
@@ -80,9 +90,18 @@ pub struct Waiting {
     /// Number of that path.
     pub path: u64,
     /// The shapes from there on.
-    pub shapes: Vec<crate::course::Shape>,
+    pub shapes: Vec<Shape>,
     /// Its turn: lower ones are tried first.
     pub turn: u64,
+}
+
+/// How a mission was asked for: who asks again under its name has to ask for the same.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// At which length of the path before it begins \[m\].
+    pub after: f64,
+    /// How many shapes at the end of the path are its own.
+    pub shapes: usize,
 }
 
 /// How far the orders of a robot allow it to go, as the others were when this was computed.
@@ -109,6 +128,8 @@ pub struct Robot {
     pub origin: f64,
     /// The mission that it has got last.
     pub mission: Option<String>,
+    /// How that was asked for; none: not known.
+    pub asked: Option<Asked>,
     /// Missions that it had or waited for before, oldest first: who asks late for one of them again gets nothing twice.
     pub past: Vec<String>,
     /// It is here or further on \[m\]; never less than before on the same path.
@@ -156,6 +177,7 @@ impl Robot {
             path: 1,
             origin: 0.0,
             mission: None,
+            asked: None,
             past: Vec::new(),
             at: 0.0,
             up_to: 0.0,
@@ -174,6 +196,13 @@ impl Robot {
             stands: false,
             notes: BTreeMap::new(),
         }
+    }
+
+    /// How its mission was asked for: from which length of the path before on, and along which shapes; none: not known.
+    pub fn asked(&self) -> Option<(f64, &[Shape])> {
+        let Asked { after, shapes } = self.asked?;
+        let all = self.course.shapes();
+        Some((after, all.get(all.len().checked_sub(shapes)?..)?))
     }
 
     /// Remembers a mission that is over.

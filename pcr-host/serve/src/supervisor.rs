@@ -102,6 +102,8 @@ pub struct Supervisor {
     /// The highest number of a path of a robot that was removed: one that comes has a higher one, or late messages of an earlier one of its
     /// name would be taken for its own.
     spent: u64,
+    /// The first time that it was told \[s\].
+    begun: Option<f64>,
     /// When it was looked last who gets nowhere \[s\].
     looked: f64,
     /// Whether somebody may be in the way of somebody who has been allowed to go there.
@@ -134,6 +136,7 @@ impl Supervisor {
             tries: HashMap::new(),
             census: 0,
             spent: 0,
+            begun: None,
             looked: f64::NEG_INFINITY,
             hazards: false,
             counts: Counts::default(),
@@ -330,6 +333,7 @@ impl Supervisor {
         if self.broken.is_some() {
             return;
         }
+        self.begun(now);
         self.retry(now);
         self.note_silence(now);
         let limits = self.limits(now);

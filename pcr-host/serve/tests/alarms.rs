@@ -3,6 +3,7 @@
 use crate::world::Disc;
 use pcr_serve::course::{Shape, Start};
 use pcr_serve::event::Event;
+use pcr_serve::fault::Fault;
 use pcr_serve::robot::{Abilities, Alarm};
 use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
 use std::f64::consts::FRAC_PI_2;
@@ -75,7 +76,7 @@ fn off_its_path() {
     let disc = Disc::new();
     let mut own = crossing(&disc);
     // Far from where anybody has been allowed to go: nobody stops yet, but nobody may come near.
-    own.off("north", [3.5, -1.0], 1.0).unwrap();
+    own.off("north", [3.5, -1.0], 0.0, 1.0).unwrap();
     let events = own.settle(1.0).unwrap();
     assert_eq!(names(&events), ["alarm north"]);
     own.position(&report("east", 2, 2.5, 2.6), 1.1).unwrap();
@@ -92,7 +93,7 @@ fn off_its_path() {
         }
     }
     assert!(stopped.is_some_and(|now| now < 2.5), "{stopped:?}");
-    own.off("north", [9.0, -9.0], 5.0).unwrap();
+    own.off("north", [9.0, -9.0], 0.0, 5.0).unwrap();
     assert_eq!(names(&own.settle(5.0).unwrap())[0], "go east");
 }
 
@@ -136,7 +137,7 @@ fn silent_robots_keep_their_right() {
     let extent = east.extent(20.0);
     assert_eq!([extent.lo, extent.hi], [1.0, east.told]);
     // Old messages, and those of older paths, change nothing.
-    own.position(&report("east", 2, 0.1, 0.2), 20.0).unwrap();
+    own.position(&Report { age: 19.5, ..report("east", 2, 0.1, 0.2) }, 20.0).unwrap();
     own.position(&report("east", 1, 5.0, 5.9), 20.0).unwrap();
     assert_eq!(names(&own.settle(20.0).unwrap()), ["heard east"]);
     assert_eq!(own.robot("east").unwrap().at, 1.0);
@@ -181,6 +182,158 @@ fn late_messages_end_no_alarm() {
     assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
 }
 
+/// A late message that a robot was beyond made the alarm as old as itself, and the next late one ended it.
+#[test]
+fn late_messages_make_no_alarm_older() {
+    for is_off in [true, false] {
+        let mut own = crossing(&Disc::new());
+        match is_off {
+            true => own.off("north", [0.0, -0.1], 0.0, 3.0).unwrap(),
+            false => own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap(),
+        }
+        assert_eq!(names(&own.settle(3.0).unwrap()), ["alarm north", "stop east"]);
+        let alarm = own.robot("north").unwrap().alarm.clone();
+        own.position(&Report { age: 1.5, ..report("north", 2, 5.0, 5.5) }, 3.1).unwrap();
+        own.position(&Report { age: 1.2, ..report("north", 2, 0.0, 0.1) }, 3.2).unwrap();
+        assert_eq!(own.settle(3.2).unwrap(), []);
+        let robot = own.robot("north").unwrap();
+        assert_eq!((&robot.alarm, robot.heard), (&alarm, Some(3.0)));
+        own.position(&report("north", 2, 0.2, 0.3), 3.3).unwrap();
+        let events = names(&own.settle(3.3).unwrap());
+        assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
+    }
+    // One from before a newer one, which says that it is where it may be, is none at all.
+    let mut own = crossing(&Disc::new());
+    own.position(&report("north", 2, 2.0, 2.1), 3.0).unwrap();
+    own.position(&Report { age: 0.5, ..report("north", 2, 5.0, 5.5) }, 3.1).unwrap();
+    assert!(!names(&own.settle(3.1).unwrap()).contains(&"alarm north".into()));
+}
+
+/// What was said before the start, and came after it, ended an alarm: others were let go on.
+#[test]
+fn after_a_restart_only_what_was_said_since_then_ends_an_alarm() {
+    for is_off in [true, false] {
+        let disc = Disc::new();
+        let mut own = crossing(&disc);
+        match is_off {
+            true => own.off("north", [0.0, -0.1], 0.0, 3.0).unwrap(),
+            false => own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap(),
+        }
+        own.settle(3.0).unwrap();
+        let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+        assert!(names(&own.settle(10.0).unwrap()).contains(&"stop east".into()));
+        // They bound no place either: what was known of it may be newer.
+        own.off("north", [50.0, 50.0], 4.0, 10.1).unwrap();
+        own.position(&Report { age: 3.0, ..report("north", 2, 3.9, 4.0) }, 10.15).unwrap();
+        own.position(&Report { age: 0.5, ..report("north", 2, 2.0, 2.1) }, 10.2).unwrap();
+        own.position(&Report { age: 0.4, ..report("north", 2, 2.0, 2.1) }, 10.3).unwrap();
+        assert_eq!(own.settle(10.3).unwrap(), []);
+        let robot = own.robot("north").unwrap();
+        assert!(robot.alarm.is_some() && robot.heard.is_none() && robot.at == 0.0, "{robot:?}");
+        own.position(&Report { age: 0.3, ..report("north", 2, 2.0, 2.1) }, 10.4).unwrap();
+        let events = names(&own.settle(10.4).unwrap());
+        assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
+    }
+}
+
+/// The first message that it is off its path came once more: the other one was let go to where it was by then.
+#[test]
+fn a_place_off_the_path_is_as_old_as_it_says() {
+    let mut own = crossing(&Disc::new());
+    own.off("north", [-40.0, 0.0], 0.0, 1.0).unwrap();
+    assert_eq!(names(&own.settle(1.0).unwrap()), ["alarm north"]);
+    own.off("north", [-1.0, 0.0], 0.1, 1.2).unwrap();
+    assert_eq!(names(&own.settle(1.2).unwrap()), ["stop east"]);
+    own.off("north", [-40.0, 0.0], 0.3, 1.3).unwrap();
+    assert_eq!(own.settle(1.3).unwrap(), []);
+    // Nor is it one that is older than a place on the path.
+    own.position(&report("north", 2, 0.0, 0.1), 1.4).unwrap();
+    assert_eq!(names(&own.settle(1.4).unwrap())[0], "clear north");
+    own.off("north", [-1.0, 0.0], 0.2, 1.5).unwrap();
+    assert!(own.robot("north").unwrap().alarm.is_none());
+    // It can have come nearer since it was there.
+    own.off("north", [-3.0, -2.5], 2.0, 4.0).unwrap();
+    assert_eq!(names(&own.settle(4.0).unwrap()), ["alarm north", "stop east"]);
+    for age in [-1.0, f64::NAN, 1e7] {
+        assert!(own.off("north", [0.0, 0.0], age, 4.0).is_err());
+    }
+}
+
+/// It was taken for a late message: the other one drove through where it was.
+#[test]
+fn a_robot_that_goes_back() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    own.position(&report("east", 2, 2.0, 2.1), 1.0).unwrap();
+    own.position(&report("north", 2, 1.9, 2.0), 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    own.position(&report("east", 2, 3.6, 3.7), 2.0).unwrap();
+    let events = names(&own.settle(2.0).unwrap());
+    assert!(events.contains(&"hold north".into()), "{events:?}");
+    let hold = own.robot("north").unwrap().granted;
+    // Within what it may be off, and before it was further on, that is no news.
+    own.position(&report("east", 2, 3.5, 3.56), 2.1).unwrap();
+    own.position(&Report { age: 0.5, ..report("east", 2, 2.9, 3.0) }, 2.2).unwrap();
+    assert_eq!(own.settle(2.2).unwrap(), []);
+    own.position(&report("east", 2, 2.9, 3.0), 2.3).unwrap();
+    assert_eq!(names(&own.settle(2.3).unwrap()), ["alarm east", "stop north"]);
+    let back = Alarm::Back { passed: 3.6, between: [2.9, 3.0] };
+    assert_eq!(own.robot("east").unwrap().alarm, Some(back));
+    // It is so after a restart, until it has come as far again, and nobody goes on until then.
+    let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    own.settle(0.0).unwrap();
+    own.position(&report("north", 2, 2.0, 2.1), 0.1).unwrap();
+    own.position(&report("east", 2, 3.2, 3.3), 0.2).unwrap();
+    own.settle(0.2).unwrap();
+    assert!(own.robot("east").unwrap().alarm.is_some() && own.robot("north").unwrap().stopped.is_some());
+    assert!(own.robot("north").unwrap().granted <= hold);
+    own.position(&report("east", 2, 3.5, 3.6), 0.3).unwrap();
+    let events = names(&own.settle(0.3).unwrap());
+    assert!(events.contains(&"clear east".into()) && events.contains(&"go north".into()), "{events:?}");
+}
+
+/// One that comes late, from before a robot went back, counted: what it had gone back to was free for others.
+#[test]
+fn a_late_message_does_not_count_if_a_newer_one_says_that_it_is_not_so_far() {
+    let mut own = crossing(&Disc::new());
+    own.position(&report("east", 2, 2.0, 2.1), 2.0).unwrap();
+    own.position(&Report { age: 1.0, ..report("east", 2, 2.9, 3.0) }, 2.1).unwrap();
+    assert_eq!(own.robot("east").unwrap().at, 2.0);
+    own.position(&Report { age: 1.0, ..report("east", 2, 2.05, 3.0) }, 2.1).unwrap();
+    assert_eq!(own.robot("east").unwrap().at, 2.05);
+}
+
+/// It was answered as the first one: whoever sent it took the path that it had sent for the robot's.
+#[test]
+fn a_name_of_a_mission_stands_for_one_path() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    let line = |length: f64| vec![Shape::Line { length }];
+    let ends_alike = Proposal { path: [line(1.0), line(6.0)].concat(), ..mission("east", "1", 0.0) };
+    let replaced = Proposal { after: Some(5.0), ..mission("east", "2", 2.0) };
+    for _ in 0..2 {
+        for other in [mission("east", "1", 1.0), mission("east", "1", 0.0), ends_alike.clone()] {
+            assert_eq!(own.mission(&other, 1.0), Err(Fault::MissionExists), "{other:?}");
+        }
+        let none = Proposal { path: Vec::new(), ..mission("east", "1", 0.0) };
+        assert_eq!(own.mission(&none, 1.0), Err(Fault::MissionExists));
+        assert!(matches!(own.mission(&mission("east", "1", 6.0), 1.0).unwrap(), Verdict::Admitted { path: 2, .. }));
+        own.settle(1.0).unwrap();
+        own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    }
+    let mut own = crossing(&disc);
+    assert!(matches!(own.mission(&replaced, 1.0).unwrap(), Verdict::Admitted { path: 3, .. }));
+    assert!(matches!(own.mission(&replaced, 1.0).unwrap(), Verdict::Admitted { path: 3, .. }));
+    let elsewhere = Proposal { after: Some(5.5), ..replaced };
+    assert_eq!(own.mission(&elsewhere, 1.0), Err(Fault::MissionExists));
+    // One that waits.
+    own.add("stands", ABILITIES, place(6.0, 0.0, 0.0)).unwrap();
+    let waiting = own.mission(&mission("east", "3", 4.0), 1.0).unwrap();
+    assert!(matches!(waiting, Verdict::Waiting { .. }), "{waiting:?}");
+    assert_eq!(own.mission(&mission("east", "3", 3.0), 1.0), Err(Fault::MissionExists));
+    assert_eq!(own.mission(&mission("east", "3", 4.0), 1.0).unwrap(), waiting);
+}
+
 /// A robot that is added again counted its paths from 1 again: a late message of the time before was taken for a place on its new path, which it
 /// had not left, and the other one was let through.
 #[test]
@@ -216,7 +369,7 @@ fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
 fn far_off_and_many_laps() {
     let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
     own.add("east", ABILITIES, place(500_000.0, 5_600_000.0, 0.0)).unwrap();
-    own.off("east", [500_003.0, 5_600_000.0], 0.0).unwrap();
+    own.off("east", [500_003.0, 5_600_000.0], 0.0, 0.0).unwrap();
     assert_eq!(names(&own.settle(0.0).unwrap()), ["alarm east"]);
     own.position(&report("east", 1, 0.0, 0.0), 1.0).unwrap();
     assert!(own.add("far", ABILITIES, place(3e7, 0.0, 0.0)).is_err());

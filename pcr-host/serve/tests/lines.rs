@@ -193,6 +193,42 @@ fn every_answer_fits_the_schema_and_nothing_panics() {
     }
 }
 
+/// What a message says of its age, and what follows from it.
+#[test]
+fn robots_off_their_paths_and_back() {
+    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let mut supervisor = supervisor();
+    let add = json!({ "verb": "add", "robot": "a", "start": { "x": 0, "y": 0, "heading": 0 },
+        "abilities": { "radius": 0.25, "speed": 1, "acceleration": 0.5 } });
+    let mission = |length: f64| json!({ "verb": "mission", "robot": "a", "mission": "1", "path": [{ "kind": "line", "length": length }] });
+    let position =
+        |lo: f64, age: f64| json!({ "verb": "position", "robot": "a", "path": 2, "at": [lo, lo], "age": age });
+    let off = |age: f64| json!({ "verb": "off", "robot": "a", "x": 1, "y": 2, "age": age });
+    let mut told = Vec::new();
+    for (request, now) in [
+        (add, 0.0),
+        (mission(3.0), 0.0),
+        (mission(2.0), 0.0),
+        (position(1.0, 0.0), 1.0),
+        (position(0.5, 0.0), 2.0),
+        (off(1.5), 2.1),
+        (off(0.0), 2.2),
+        (position(1.0, 0.0), 2.3),
+    ] {
+        fits(&schema, &request);
+        let reply = handle(&mut supervisor, request.to_string().as_bytes(), now).answer;
+        fits(&schema, &reply);
+        told.extend(reply["error"]["code"].as_str().map(str::to_owned));
+        for event in supervisor.settle(now).unwrap().iter().map(news) {
+            fits(&schema, &event);
+            if event["event"] != "hold" {
+                told.push(format!("{} {}", event["event"], event["why"]).replace(['"'], ""));
+            }
+        }
+    }
+    assert_eq!(told, ["admitted null", "mission_exists", "alarm back", "alarm off", "clear null"]);
+}
+
 #[test]
 fn clients_over_tcp_and_the_page() {
     let mut supervisor = supervisor();

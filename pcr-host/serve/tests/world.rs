@@ -226,7 +226,8 @@ fn path(pieces: &[Course], length: f64) -> data::Path {
 }
 
 enum Mail {
-    Report(Report),
+    /// With the time at which it was so.
+    Report(Report, f64),
     Event(Event, Option<(f64, Course)>),
 }
 
@@ -393,9 +394,9 @@ impl World {
                 let report = self.vehicles[k].report();
                 if !self.dice.chance(self.trouble.lost) {
                     if self.dice.chance(0.1) {
-                        self.post(Mail::Report(report.clone()));
+                        self.post(Mail::Report(report.clone(), self.now));
                     }
-                    self.post(Mail::Report(report));
+                    self.post(Mail::Report(report, self.now));
                 }
             }
         }
@@ -408,7 +409,10 @@ impl World {
         let mut news = Vec::new();
         for (_, mail) in mail {
             match mail {
-                Mail::Report(report) => self.supervisor.position(&report, self.now).unwrap(),
+                Mail::Report(report, said) => {
+                    let report = Report { age: self.now - said, ..report };
+                    self.supervisor.position(&report, self.now).unwrap();
+                }
                 Mail::Event(event, course) => news.push((event, course)),
             }
         }

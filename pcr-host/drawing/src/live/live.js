@@ -116,7 +116,7 @@ function names(c, all, width) {
 
 function says(robot) {
   const all = [];
-  if (robot.alarm) all.push(robot.alarm.why === "off" ? "off its path" : "beyond its hold");
+  if (robot.alarm) all.push({ off: "off its path", back: "gone back" }[robot.alarm.why] ?? "beyond its hold");
   if (robot.stopped_for) all.push(`stopped for ${robot.stopped_for}`);
   if (robot.silent) all.push("silent");
   if (robot.waits_for) all.push(`waits for ${robot.waits_for}`);

@@ -6,7 +6,7 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::value::Object;
-use super::{ImportError, Options, Warnings, trajectory, value};
+use super::{ImportError, Options, Warnings, facing, trajectory, value};
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -19,8 +19,13 @@ pub(super) fn is_layout(root: &Value) -> bool {
     root.get("layouts").is_some()
 }
 
-/// Reads all layouts of a file as one with several levels.
-pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+/// Reads all layouts of a file as one with several levels, for a vehicle that is a disc or has an outline.
+pub(super) fn read(
+    text: &str,
+    options: &Options,
+    outlined: bool,
+    warnings: &mut Warnings,
+) -> Result<Layout, ImportError> {
     let value = value::parse(text)?;
     let root = Object::new("LIF", &value)?;
     if root.get("layouts").is_none() {
@@ -34,6 +39,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         edges: Names::new(),
         types: BTreeSet::new(),
         options,
+        outlined,
         warnings,
     };
     let mut edges = Vec::new();
@@ -86,6 +92,8 @@ struct Reader<'a> {
     edges: Names<Edge>,
     types: BTreeSet<String>,
     options: &'a Options,
+    /// Whether it matters which way the vehicle faces.
+    outlined: bool,
     warnings: &'a mut Warnings,
 }
 
@@ -186,6 +194,12 @@ impl Reader<'_> {
         if let Some(property) = property {
             edge.speed = property.positive("maxSpeed")?;
             edge.rotation = property.positive("maxRotationSpeed")?;
+            if self.outlined {
+                let ahead = straight.heading;
+                let ahead = Some(ahead).filter(|_| property.get("trajectory").is_none());
+                let edge = property.clone().called(format!("edge {id}"));
+                facing::along(&edge, "vehicleOrientation", 1_f64.to_radians(), ahead, self.warnings)?;
+            }
             if let Some(trajectory) = property.object("trajectory")? {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
                 let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;

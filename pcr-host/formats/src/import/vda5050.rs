@@ -4,15 +4,17 @@
 //! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed
 //!   limits; the base ends where the first node or edge is not released, and the horizon is travelled only if
 //!   requested.
-//! - A state with an `intermediatePath` is a plan with times, in seconds since the time stamp of the first state; one
-//!   with a `plannedPath` travels that from rest; one with neither stands where it is, and is refused if it has nodes
-//!   to go to. Loads in a state enlarge the vehicle.
+//! - A state with an `intermediatePath` is a plan with times, in seconds since the time stamp of the first state with a
+//!   path; one with a `plannedPath` travels that from rest, from its own time stamp on; one with neither stands where it
+//!   is. It is refused if it goes on from where its path ends, or from where it stands, and if the vehicle does not know
+//!   where it is. Loads in a state enlarge the vehicle.
+//! - Orders do not say when they begin: all do at the time 0, and they are not read together with states with paths.
 
 use super::timed::{self, seconds};
 use super::trace::Tracer;
 use super::value::Object;
 use super::warnings::TOGETHER;
-use super::{ImportError, Options, Vehicle, Warnings, loads, route, trajectory};
+use super::{ImportError, Options, Vehicle, Warnings, facing, loads, route, trajectory};
 use crate::scenario::Placed;
 use crate::scenario::{Agent, MotionSpec, Scenario, label};
 use serde_json::Value;
@@ -48,7 +50,7 @@ pub(super) fn read(
     if messages.is_empty() {
         return Err(ImportError::new("there is no order and no state in it"));
     }
-    let mut reader = Reader { options, vehicle, warnings, origin: None, maps: BTreeSet::new() };
+    let mut reader = Reader { options, vehicle, warnings, begins: Vec::new(), maps: BTreeSet::new() };
     let mut scenario = Scenario::new("", Vec::new());
     let mut radii = Vec::new();
     for (k, value) in messages.iter().enumerate() {
@@ -60,6 +62,7 @@ pub(super) fn read(
         let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];
         if message.get("nodes").is_some() {
             let order = message.called(format!("order {name}"));
+            reader.begins.push((order.name.clone(), Begin::Unsaid));
             scenario.agents.push(Agent { label: called, ..reader.order(id, &order)? });
             radii.push(vehicle.radius);
         } else if state.iter().any(|field| message.get(field).is_some()) {
@@ -67,7 +70,9 @@ pub(super) fn read(
             let state =
                 message.called(robot.map_or_else(|| format!("state {id}"), |robot| format!("state of {robot}")));
             let loaded = loads::loaded(&state, vehicle, reader.warnings)?;
-            scenario.agents.push(Agent { label: called, ..reader.state(id, &state, &loaded)? });
+            let (agent, begin) = reader.state(id, &state, &loaded)?;
+            reader.begins.push((state.name.clone(), begin));
+            scenario.agents.push(Agent { label: called, ..agent });
             radii.push(loaded.radius);
         } else {
             return Err(message.missing("nodes or nodeStates"));
@@ -77,6 +82,7 @@ pub(super) fn read(
             scenario.name = name.to_owned();
         }
     }
+    begin(&mut scenario.agents, &reader.begins)?;
     if reader.maps.len() > 1 {
         let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
         warnings
@@ -89,10 +95,39 @@ struct Reader<'a> {
     options: &'a Options,
     vehicle: &'a Vehicle,
     warnings: &'a mut Warnings,
-    /// Time stamp of the first state \[s\].
-    origin: Option<f64>,
+    /// Names of the agents, and when each begins.
+    begins: Vec<(String, Begin)>,
     /// Of all agents.
     maps: BTreeSet<String>,
+}
+
+/// When an agent begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Begin {
+    /// It stands, whenever.
+    Never,
+    /// It moves, and it is not said from when on.
+    Unsaid,
+    /// \[s\] since 1970.
+    At(f64),
+}
+
+/// Gives agents their times since that of the first one that has one.
+fn begin(agents: &mut [Agent], begins: &[(String, Begin)]) -> Result<(), ImportError> {
+    let mut all = begins.iter();
+    let origin = all.find_map(|(name, begin)| if let Begin::At(time) = begin { Some((name, *time)) } else { None });
+    let Some((stamped, origin)) = origin else { return Ok(()) };
+    for (agent, (name, begin)) in agents.iter_mut().zip(begins) {
+        match begin {
+            Begin::Never => {}
+            Begin::At(time) => agent.t_start = time - origin,
+            Begin::Unsaid => {
+                let problem = "it does not say when it begins, and cannot be read together with what does";
+                return Err(ImportError::new(format!("{name}: {problem}: {stamped}")));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A node or an edge in the order of travel.
@@ -146,6 +181,7 @@ impl Reader<'_> {
             }
         }
         let mut tracer = Tracer::default();
+        let mut ways: Vec<Option<[f64; 2]>> = Vec::new();
         let (mut position, mut deviation) = (position(nodes.first(), "nodePosition")?, 0.0_f64);
         if position.is_none() && edges.is_empty() {
             return Err(nodes
@@ -156,6 +192,7 @@ impl Reader<'_> {
             let (before, after) = (nodes.get(k), nodes.get(k + 1));
             let edge = &edge.object;
             joins(edge, before, after)?;
+            let outlined = self.vehicle.footprint.is_some();
             let speed = match edge.positive("maxSpeed")? {
                 None => edge.positive("maximumSpeed")?,
                 speed => speed,
@@ -166,20 +203,34 @@ impl Reader<'_> {
             };
             tracer.limit(speed, rotation);
             let target = self::position(after, "nodePosition")?;
-            let Some(trajectory) = edge.object("trajectory")? else {
+            let trajectory = edge.object("trajectory")?;
+            let is_straight = trajectory.is_none();
+            let line = position.zip(target).filter(|_| is_straight);
+            let ahead = line.map(|(from, to)| (to[1] - from[1]).atan2(to[0] - from[0]));
+            if outlined {
+                facing::along(edge, "orientation", 1.0, ahead, self.warnings)?;
+            }
+            let Some(trajectory) = trajectory else {
                 let missing = |node: Option<&Part<'_>>| {
                     node.map_or_else(|| edge.missing("node"), |node| node.object.missing("nodePosition"))
                 };
                 let from = position.ok_or_else(|| missing(before))?;
                 let to = target.ok_or_else(|| missing(after))?;
                 tracer.line(from, to);
+                ways.push(ahead.filter(|_| from != to).map(|heading| [heading; 2]));
                 position = Some(to);
                 continue;
             };
             let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
             let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
             deviation = deviation.max(fit.deviation);
+            let ends = fit.pieces.first().zip(fit.pieces.last());
+            ways.push(ends.map(|(first, last)| [first.heading, last.heading_at_end()]));
             position = Some(follow(&mut tracer, edge, &fit.pieces, position, target)?);
+        }
+        let stands = ways.iter().all(Option::is_none);
+        if self.vehicle.footprint.is_some() && !stands {
+            self.thetas(&nodes, &ways)?;
         }
         let stops = nodes.iter().any(|node| !node.object.list("actions").unwrap_or_default().is_empty());
         if stops {
@@ -187,7 +238,25 @@ impl Reader<'_> {
         }
         let mut trace = tracer.finish(position.unwrap_or_default());
         trace.deviation += deviation;
+        if stands && let Some(place) = nodes.first().map_or(Ok(None), |node| node.object.object("nodePosition"))? {
+            trace.start[2] = place.number("theta")?.unwrap_or(0.0);
+        }
         Ok(route::agent(id, &trace, self.vehicle, 0.0))
+    }
+
+    /// An outline at a node is as the path arrives there, or as it departs; `ways` are the headings of the edges at both ends.
+    fn thetas(&mut self, nodes: &[Part<'_>], ways: &[Option<[f64; 2]>]) -> Result<(), ImportError> {
+        for (k, node) in nodes.iter().enumerate() {
+            let Some(theta) = node.object.object("nodePosition")?.map_or(Ok(None), |it| it.number("theta"))? else {
+                continue;
+            };
+            let arrives = k.checked_sub(1).and_then(|before| ways.get(before).copied().flatten()).map(|way| way[1]);
+            let departs = ways.get(k).copied().flatten().map(|way| way[0]);
+            if !arrives.into_iter().chain(departs).any(|heading| facing::is_ahead(theta - heading)) {
+                facing::lose(&node.object.name, "theta", theta, self.warnings);
+            }
+        }
+        Ok(())
     }
 
     /// Keeps the map on which an agent is, which has to be one, as what is on different maps has no common coordinates.
@@ -209,18 +278,32 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn state(&mut self, id: u64, state: &Object<'_>, vehicle: &Vehicle) -> Result<Agent, ImportError> {
+    /// The agent of a state, and when it begins.
+    fn state(&mut self, id: u64, state: &Object<'_>, vehicle: &Vehicle) -> Result<(Agent, Begin), ImportError> {
         let pose =
             state.object("mobileRobotPosition")?.map_or_else(|| state.object("agvPosition"), |pose| Ok(Some(pose)))?;
         self.maps(state, std::iter::once(Ok(pose.clone())))?;
         let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?.unwrap_or(0.0);
+        if let Some(pose) = &pose {
+            for field in ["localized", "positionInitialized"] {
+                if pose.flag(field)? == Some(false) {
+                    return Err(ImportError::new(format!("{}, {field}: it does not know where it is", pose.name)));
+                }
+            }
+            if pose.number("localizationScore")?.is_some_and(|score| score <= 0.0) {
+                let name = &pose.name;
+                return Err(ImportError::new(format!("{name}, localizationScore: it does not know where it is")));
+            }
+        }
         let at = pose.map(|pose| pose.point()).transpose()?;
         if let Some(path) = state.object("intermediatePath")? {
             if state.get("plannedPath").is_some() {
                 let problem = "its plannedPath, which goes on where the times of its intermediatePath end";
                 self.warnings.lose(format_args!("{}: {problem}", state.name));
             }
-            return self.timed(id, state, &path, at, vehicle.radius);
+            let (agent, begin, end) = self.timed(id, state, &path, at, vehicle.radius)?;
+            self.goes_on(state, end, &[])?;
+            return Ok((agent, Begin::At(begin)));
         }
         if let Some(path) = state.object("plannedPath")? {
             let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
@@ -234,22 +317,57 @@ impl Reader<'_> {
             }
             let mut tracer = Tracer::default();
             fit.pieces.iter().for_each(|piece| tracer.follow(piece));
-            let mut trace = tracer.finish(at.or(fit.pieces.first().map(|piece| piece.at)).unwrap_or_default());
+            let begin = at.or(begin).unwrap_or_default();
+            self.goes_on(state, fit.pieces.last().map_or(begin, Placed::end), path.list("traversedNodes")?)?;
+            if moves(state)? {
+                self.warnings.add(&state.name, "it moves already; its plannedPath is travelled from rest");
+            }
+            let mut trace = tracer.finish(begin);
             trace.deviation += fit.deviation;
-            return Ok(route::agent(id, &trace, vehicle, 0.0));
+            let begin = match state.get("timestamp") {
+                None => Begin::Unsaid,
+                Some(_) => Begin::At(stamp(state, "timestamp")?),
+            };
+            return Ok((route::agent(id, &trace, vehicle, 0.0), begin));
         }
         let [x, y] = at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
         if !state.list("nodeStates")?.is_empty() {
             self.warnings
                 .lose(format_args!("{}: its way is told by nodeStates only, give its order instead", state.name));
+        } else if moves(state)? || !state.list("edgeStates")?.is_empty() {
+            self.warnings.lose(format_args!("{}: its way, as it moves and does not say where to", state.name));
         }
         let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
         let Vehicle { radius, margin, .. } = *vehicle;
         let stands = Agent::disc(id, radius, [x, y, heading], Vec::new(), motion);
-        Ok(Agent { footprint: vehicle.footprint.clone(), margin, ..stands })
+        Ok((Agent { footprint: vehicle.footprint.clone(), margin, ..stands }, Begin::Never))
     }
 
-    /// The agent on a polyline with times.
+    /// A path has to end at the last node that is released: the vehicle does not stand where it ends else.
+    fn goes_on(&mut self, state: &Object<'_>, end: [f64; 2], traversed: &[Value]) -> Result<(), ImportError> {
+        let nodes = parts(state, "nodeStates", "node", "nodeId")?;
+        let last = nodes.iter().take_while(|node| node.released).last();
+        let Some(last) = last else {
+            let edges = parts(state, "edgeStates", "edge", "edgeId")?;
+            if let Some(edge) = edges.iter().find(|edge| edge.released && nodes.is_empty()) {
+                self.warnings
+                    .lose(format_args!("{}: where it leads, as there is no node in nodeStates", edge.object.name));
+            }
+            return Ok(());
+        };
+        let name = last.object.text("nodeId")?;
+        let is_there = match position(Some(last), "nodePosition")? {
+            Some(node) => (node[0] - end[0]).hypot(node[1] - end[1]) <= GAP,
+            None => traversed.iter().any(|node| node.as_str() == name),
+        };
+        if !is_there {
+            let problem = "its way on to there, as its path ends before or elsewhere; give its order instead";
+            self.warnings.lose(format_args!("{}: {problem}", last.object.name));
+        }
+        Ok(())
+    }
+
+    /// The agent on a polyline with times, when it begins \[s\], and where it ends.
     fn timed(
         &mut self,
         id: u64,
@@ -257,12 +375,7 @@ impl Reader<'_> {
         path: &Object<'_>,
         at: Option<[f64; 2]>,
         radius: f64,
-    ) -> Result<Agent, ImportError> {
-        let stamp = |object: &Object<'_>, field: &str| match object.text(field)? {
-            None => Err(object.missing(field)),
-            Some(text) => seconds(text)
-                .ok_or_else(|| ImportError::new(format!("{}, {field}: {text:?} is not a time stamp", object.name))),
-        };
+    ) -> Result<(Agent, f64, [f64; 2]), ImportError> {
         let mut stops = Vec::new();
         if let Some(at) = at {
             stops.push((at, stamp(state, "timestamp")?));
@@ -271,11 +384,32 @@ impl Reader<'_> {
             let point = Object::new(format!("{}, point {}", path.name, k + 1), value)?;
             stops.push((point.point()?, stamp(&point, "eta")?));
         }
-        let origin = *self.origin.get_or_insert(stops.first().map_or(0.0, |(_, time)| *time));
-        stops.iter_mut().for_each(|(_, time)| *time -= origin);
+        let begin = stops.first().map_or(0.0, |(_, time)| *time);
+        stops.iter_mut().for_each(|(_, time)| *time -= begin);
         let named = |error| ImportError::new(format!("{}: {error}", path.name));
-        timed::agent(id, radius, &stops).map_err(named)
+        let agent = timed::agent(id, radius, &stops).map_err(named)?;
+        Ok((agent, begin, stops.last().map_or([0.0; 2], |(end, _)| *end)))
     }
+}
+
+/// A time stamp \[s\].
+fn stamp(object: &Object<'_>, field: &str) -> Result<f64, ImportError> {
+    match object.text(field)? {
+        None => Err(object.missing(field)),
+        Some(text) => seconds(text)
+            .ok_or_else(|| ImportError::new(format!("{}, {field}: {text:?} is not a time stamp", object.name))),
+    }
+}
+
+/// Whether a vehicle says that it moves.
+fn moves(state: &Object<'_>) -> Result<bool, ImportError> {
+    let mut moves = state.flag("driving")?.unwrap_or(false);
+    if let Some(velocity) = state.object("velocity")? {
+        for field in ["vx", "vy", "omega"] {
+            moves |= velocity.number(field)?.is_some_and(|speed| speed != 0.0);
+        }
+    }
+    Ok(moves)
 }
 
 /// Position of a node, where it has one.

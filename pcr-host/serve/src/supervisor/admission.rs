@@ -6,7 +6,7 @@ use crate::course::{Course, Shape, Start};
 use crate::entry::{Entry, Kept, Known};
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::robot::{Robot, Waiting};
+use crate::robot::{Asked, Robot, Waiting};
 use pcr_core::{Interval, Mission, Pass, Progress, Refused, RegionRef};
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Proposal {
     /// Whose.
     pub robot: String,
-    /// What it is called: who asks for it again is answered as before.
+    /// What it is called: who asks for it again is answered as before, and for another path under its name is refused.
     pub mission: String,
     /// It begins at this length of the path that the robot has \[m\], if it is to leave it; else at its end.
     #[serde(default)]
@@ -67,6 +67,13 @@ const PAUSE: [f64; 2] = [0.25, 2.0];
 /// A path begins where the one before it ends if it is not further off than \[m\] and \[rad\].
 const JOIN: f64 = 1e-3;
 
+impl Proposal {
+    /// Whether it is the one that begins at this length of the path before, along these shapes.
+    fn asks_for(&self, after: f64, shapes: &[Shape]) -> bool {
+        self.path == shapes && self.after.is_none_or(|own| own == after)
+    }
+}
+
 impl Supervisor {
     /// Gives a robot a path, now or as soon as that is possible. A robot has one mission that waits at most: a new one takes its place.
     ///
@@ -77,12 +84,19 @@ impl Supervisor {
         let place = self.place(&proposal.robot)?;
         let robot = &self.robots[place];
         let waiting = robot.waiting.as_ref().filter(|waiting| waiting.mission == proposal.mission);
-        if waiting.is_some() {
+        if let Some(waiting) = waiting {
+            if !proposal.asks_for(waiting.after, &waiting.shapes) {
+                return Err(Fault::MissionExists);
+            }
             let why = "it is tried again".into();
             let last = self.tries.get(&proposal.robot).and_then(|attempt| attempt.last.clone());
             return Ok(last.unwrap_or(Verdict::Waiting { by: None, why }));
         }
         if robot.mission.as_ref() == Some(&proposal.mission) {
+            let is_same = |(after, shapes): (f64, &[Shape])| proposal.asks_for(after, shapes);
+            if !robot.asked().is_none_or(is_same) {
+                return Err(Fault::MissionExists);
+            }
             return Ok(admitted(robot));
         }
         if robot.past.contains(&proposal.mission) {
@@ -139,6 +153,8 @@ impl Supervisor {
         for before in robot.mission.replace(mission).into_iter().chain(waiting) {
             Robot::outlives(&mut robot.past, before);
         }
+        // Where that one would have begun is not known.
+        robot.asked = None;
         self.tries.remove(name);
         let known = self.known(place);
         self.entries.push(Entry::Robot(Box::new(known)));
@@ -233,6 +249,7 @@ impl Supervisor {
         if let Some(before) = robot.mission.replace(mission.mission.clone()) {
             Robot::outlives(&mut robot.past, before);
         }
+        robot.asked = Some(Asked { after: mission.after, shapes: mission.shapes.len() });
         robot.waiting = None;
         let event = Event::Admitted {
             robot: robot.name.clone(),
@@ -285,6 +302,7 @@ impl Supervisor {
             path: robot.path,
             origin: robot.origin,
             mission: robot.mission.clone(),
+            asked: robot.asked,
             past: robot.past.clone(),
             at: robot.at,
             ceiling: robot.ceiling,

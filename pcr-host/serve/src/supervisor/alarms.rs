@@ -61,6 +61,10 @@ impl Supervisor {
                     let pose = robot.course.pose(*at);
                     ([pose.x, pose.y], (at - robot.at).max(0.0))
                 }
+                Some(Alarm::Back { between: [lo, hi], .. }) => {
+                    let pose = robot.course.pose(*hi);
+                    ([pose.x, pose.y], hi - lo)
+                }
             };
             // After a restart it may be anywhere until it is heard: no disc is as large, and everybody stops.
             let gone = robot.heard.map_or(f64::INFINITY, |heard| robot.abilities.speed * (now - heard).max(0.0));

@@ -5,7 +5,7 @@ use crate::course::FAR;
 use crate::entry::Entry;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::robot::{Alarm, ROOM};
+use crate::robot::{Alarm, BACK, ROOM, Robot};
 use serde::{Deserialize, Serialize};
 
 /// Who has not gone further than this has not moved \[m\].
@@ -38,9 +38,7 @@ impl Supervisor {
         if !(lo.is_finite() && hi.is_finite() && lo <= hi) {
             return Err(Fault::invalid(format!("at: {lo} to {hi} is no interval")));
         }
-        if !(0.0..=1e6).contains(age) {
-            return Err(Fault::invalid(format!("age: {age} is out of range; allowed is 0 to 1000000")));
-        }
+        let time = time(*age, now)?;
         if report.path > robot.path {
             return Err(Fault::NoSuchPath { path: robot.path });
         }
@@ -50,16 +48,28 @@ impl Supervisor {
             self.counts.outdated += 1;
             return Ok(());
         }
-        let told = self.robots[place].told;
-        if *hi > told + self.robots[place].abilities.margin + ROOM {
-            self.alarm(place, Some(Alarm::Beyond { told, at: *hi }), now - age);
+        let begun = self.begun(now);
+        let robot = &self.robots[place];
+        let (is_new, told, passed) = (is_new(robot, time, begun), robot.told, robot.at);
+        if *hi > told + robot.abilities.margin + ROOM {
+            if is_new {
+                self.alarm(place, Some(Alarm::Beyond { told, at: *hi }), time);
+            }
             return Ok(());
         }
-        // One from before it was seen that something is wrong says nothing of what is so now.
-        if self.robots[place].heard.is_none_or(|heard| now - age >= heard) {
-            self.alarm(place, None, now);
+        // It has rolled or was pushed back, where others may have the right to go by now. (What is known of it after a restart is from
+        // before that.)
+        let is_back = *hi < passed - 2.0 * robot.abilities.margin - BACK && time >= robot.heard.unwrap_or(begun);
+        if is_new && is_back {
+            self.alarm(place, Some(Alarm::Back { passed, between: [*lo, *hi] }), time);
+            return Ok(());
+        }
+        if is_new {
+            self.alarm(place, None, time);
         }
         let robot = &mut self.robots[place];
+        // A newer one says that it is not so far: it has gone back since. (After a restart it is not known what that says.)
+        let lo = if is_new || *lo <= robot.up_to { *lo } else { robot.at };
         // Whoever stands at its end has not left what is there, whatever rounding says of where that ends.
         let lo = lo.min(robot.told).min(robot.course.length() - ROOM);
         if lo > robot.at {
@@ -69,8 +79,8 @@ impl Supervisor {
             robot.at = lo;
             self.unsaved[place] = true;
         }
-        if robot.heard.is_none_or(|heard| now - age >= heard) {
-            robot.heard = Some(now - age);
+        if is_new {
+            robot.heard = Some(time);
             robot.up_to = hi.min(robot.told);
         }
         robot.up_to = robot.up_to.max(robot.at);
@@ -78,20 +88,29 @@ impl Supervisor {
     }
 
     /// Takes a message that a robot is not on its path, but here: the others keep away from wherever it can go, and stop where they
-    /// have been allowed to come near.
+    /// have been allowed to come near. It says how long ago that was \[s\]: what is older than what is known says nothing.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Invalid`].
-    pub fn off(&mut self, name: &str, at: [f64; 2], now: f64) -> Result<(), Fault> {
+    pub fn off(&mut self, name: &str, at: [f64; 2], age: f64, now: f64) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
         if at.iter().any(|value| !value.is_finite() || value.abs() > FAR) {
             return Err(Fault::invalid(format!("{at:?} is no place")));
         }
+        let time = time(age, now)?;
         self.counts.positions += 1;
         self.is_alive(place, now);
-        self.alarm(place, Some(Alarm::Off { x: at[0], y: at[1] }), now);
+        let begun = self.begun(now);
+        if is_new(&self.robots[place], time, begun) {
+            self.alarm(place, Some(Alarm::Off { x: at[0], y: at[1] }), time);
+        }
         Ok(())
+    }
+
+    /// The first time that it was told: what is in the journal that it was restored from is older.
+    pub(super) fn begun(&mut self, now: f64) -> f64 {
+        *self.begun.get_or_insert(now)
     }
 
     fn is_alive(&mut self, place: usize, now: f64) {
@@ -102,7 +121,7 @@ impl Supervisor {
         }
     }
 
-    /// Something is wrong with a robot, or no longer.
+    /// Something is wrong with a robot, or no longer, as it said at a time that is not before what is known of it.
     fn alarm(&mut self, place: usize, alarm: Option<Alarm>, heard: f64) {
         let robot = &mut self.robots[place];
         let same = |(a, b): (&Alarm, &Alarm)| std::mem::discriminant(a) == std::mem::discriminant(b);
@@ -138,4 +157,18 @@ impl Supervisor {
             }
         }
     }
+}
+
+/// When a message was true \[s\].
+fn time(age: f64, now: f64) -> Result<f64, Fault> {
+    match (0.0..=1e6).contains(&age) {
+        true => Ok(now - age),
+        false => Err(Fault::invalid(format!("age: {age} is out of range; allowed is 0 to 1000000"))),
+    }
+}
+
+/// Whether a message of this time is about what is so now: it is not older than what is known of the robot. An alarm that it had when the
+/// supervisor was started is as old as that, because nobody knows when it was seen last.
+fn is_new(robot: &Robot, time: f64, begun: f64) -> bool {
+    robot.heard.or(robot.alarm.as_ref().map(|_| begun)).is_none_or(|known| time >= known)
 }

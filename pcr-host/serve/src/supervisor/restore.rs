@@ -201,7 +201,7 @@ fn robot(known: Known) -> Result<Robot, Damaged> {
         return Err(Damaged(format!("{}: a number that cannot be", robot.name)));
     }
     (robot.path, robot.origin) = (known.path, known.origin);
-    (robot.mission, robot.past) = (known.mission, known.past);
+    (robot.mission, robot.asked, robot.past) = (known.mission, known.asked, known.past);
     robot.at = known.at.min(end);
     robot.up_to = robot.at;
     robot.ceiling = known.ceiling.max(robot.at).min(end);

@@ -127,6 +127,48 @@ fn a_late_state_ends_no_alarm() {
     assert!(!own.has_alarm());
 }
 
+/// Late states are all as old as the newest one but a little: the first one made the alarm as old as that, and the next one ended it.
+#[test]
+fn late_states_end_no_alarm_one_after_the_other() {
+    let mut own = Lone::driving();
+    let before = own.state();
+    let mut beyond = own.state();
+    beyond["agvPosition"]["x"] = json!(4.9);
+    let mut off = own.state();
+    off["agvPosition"]["y"] = json!(2.0);
+    own.hears(Kind::State, &off);
+    assert!(own.has_alarm());
+    own.time += 1.0;
+    own.hears(Kind::State, &beyond);
+    own.time += 0.1;
+    own.hears(Kind::State, &before);
+    own.turn();
+    assert!(own.has_alarm());
+    own.lasts(0.2);
+    assert!(!own.has_alarm());
+}
+
+/// It was back where it may be as soon as it said between two states that it was not.
+#[test]
+fn a_position_between_states_that_is_back_ends_no_alarm() {
+    let mut own = Lone::driving();
+    let mut state = own.state();
+    state["agvPosition"]["x"] = json!(own.robot_at() - 1.5);
+    own.hears(Kind::State, &state);
+    assert!(own.has_alarm());
+    let between = |own: &Lone, x: f64, header: u64| {
+        let mut message = state.clone();
+        (message["headerId"], message["agvPosition"]["x"]) = (json!(header), json!(x));
+        message["timestamp"] = json!("2031-01-01T00:00:00.000Z");
+        (message.to_string(), interfaces()[1].topic(Version::V2_1, &key(), Kind::Visualization), own.time)
+    };
+    for (x, header, alarm) in [(own.robot_at() - 1.4, 1, true), (own.robot_at(), 2, false)] {
+        let (text, topic, time) = between(&own, x, header);
+        own.bridge.receive(&mut own.supervisor, &topic, text.as_bytes(), time);
+        assert_eq!(own.has_alarm(), alarm, "{x}: {:?}", own.bridge.log());
+    }
+}
+
 /// It rolled back to where others may have been let through.
 #[test]
 fn a_vehicle_that_goes_back_is_not_where_it_may_be() {

@@ -104,7 +104,7 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
             supervisor.mission(&proposal, 0.0).unwrap();
             supervisor.settle(0.0).unwrap();
             let robot = supervisor.robot("a").unwrap();
-            let (number, whole) = (robot.path, robot.course.length());
+            let (number, whole, passed) = (robot.path, robot.course.length(), robot.at);
             let there = robot.course.pose(whole);
             assert!(
                 (there.x - end.x).hypot(there.y - end.y) < 1e-6,
@@ -118,6 +118,7 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
                 1 => (stop - 1e-3 * random.unit()).max(0.0),
                 _ => whole * random.unit(),
             };
+            let at = at.max(passed);
             supervisor.position(&Report { robot: "a".into(), path: number, at: [at; 2], age: 0.0 }, 1.0).unwrap();
             supervisor.settle(1.0).unwrap();
         }

@@ -7,7 +7,7 @@ use super::super::state::{Pose, State};
 use super::super::topics::Kind;
 use super::{Job, Lane};
 use crate::course::Start;
-use crate::robot::Robot;
+use crate::robot::{BACK, Robot};
 use crate::supervisor::{Report, Supervisor};
 use std::sync::Arc;
 
@@ -19,9 +19,6 @@ const KEPT: f64 = 30.0;
 
 /// The note of the map on which a vehicle is.
 const MAP: &str = "map";
-
-/// A vehicle that is further back than it can have been by so much more than it may be off is not where it was \[m\].
-const BACK: f64 = 0.05;
 
 /// A late message is so much older than the newest one at least, and no older than that \[s\].
 const LATE: f64 = 1e-3;
@@ -113,7 +110,7 @@ impl Lane {
                     // A node that it was not released yet; or that of an order before, at the beginning of this one.
                     let is_beyond = state.last_node_sequence_id > job.last().sequence;
                     if is_new && is_beyond && self.on_its_way(job, robot, pose).is_none() {
-                        let _ = supervisor.off(&self.name, at, now);
+                        let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
                     return Ok(());
                 };
@@ -141,14 +138,16 @@ impl Lane {
         };
         match found {
             // It has rolled or was pushed back, where others may have the right to go by now.
-            Some([_, hi]) if is_new && hi < back => _ = supervisor.off(&self.name, at, now),
+            Some([_, hi]) if is_new && hi < back => _ = supervisor.off(&self.name, at, 0.0, now),
+            // It may have passed the next node since, and be on its way back: no alarm, nor the end of one.
+            Some([_, hi]) if with == With::Between && hi < back => {}
             Some(at) => {
                 // Older than the newest one, by how much is not known.
                 let age = if with == With::Late { (now - self.heard_at).max(0.0) + LATE } else { 0.0 };
                 // The path is that of the robot, and the place on it: there is nothing to refuse.
                 let _ = supervisor.position(&Report { robot: self.name.clone(), path, at, age: age.min(OLDEST) }, now);
             }
-            None if is_new => _ = supervisor.off(&self.name, at, now),
+            None if is_new => _ = supervisor.off(&self.name, at, 0.0, now),
             None => {}
         }
         Ok(())
