@@ -214,11 +214,15 @@ impl Stop {
 }
 
 fn warn(file: &Path, warnings: &Warnings) {
+    say(file, warnings.lines());
+}
+
+fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
     if quiet() {
         return;
     }
     let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };
-    for line in warnings.lines() {
+    for line in lines {
         complain(&format!("warning: {name}: {line}"));
     }
 }

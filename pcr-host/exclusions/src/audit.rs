@@ -7,9 +7,9 @@
 
 use crate::meetings::Meetings;
 use crate::{Group, Rules, Target, Way, nearest, stretch};
-use pcr_formats::import::{Id, Imported, Layout};
+use pcr_formats::import::{Edge, Id, Imported, Layout};
 use pcr_formats::scenario::Placed;
-use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor};
+use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor, rounded};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -96,9 +96,11 @@ impl Audit {
             needless: Vec::new(),
             excluded: 0.0,
             needed: 0.0,
-            warnings: imported.layout.warnings.iter().chain(&rules.warnings).cloned().collect(),
-            of_layout: imported.layout.warnings.len(),
+            warnings: imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)).collect(),
+            of_layout: 0,
         };
+        audit.of_layout = audit.warnings.len();
+        audit.warnings.extend_from_slice(&rules.warnings);
         let places: HashMap<&Id, usize> =
             imported.layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
         let mut pairs: BTreeMap<[usize; 2], Vec<[[f64; 2]; 2]>> = BTreeMap::new();
@@ -188,12 +190,32 @@ impl<'a> Auditor<'a> {
         self.ways(a).flat_map(move |own| of_b.clone().into_iter().map(move |other| [own, other]))
     }
 
+    /// The tokens of two edges. Where vehicles on both can be on either of two levels, those of each level: who touches is on one of them,
+    /// and has to be kept apart by what holds there.
+    fn tokens(&self, pair: [usize; 2]) -> Vec<Vec<usize>> {
+        let all: Vec<usize> = self.meetings.tokens(pair).collect();
+        let levels = pair.map(|edge| {
+            let ends = self.layout().edges[edge].ends.iter();
+            ends.filter_map(|&end| self.layout().nodes.get(end)).map(|node| node.level).collect::<BTreeSet<usize>>()
+        });
+        let common: Vec<usize> = levels[0].intersection(&levels[1]).copied().collect();
+        if self.rules.levels.is_empty() || common.len() < 2 {
+            return vec![all];
+        }
+        let of =
+            |level: usize| all.iter().copied().filter(|&token| self.rules.levels.get(token) == Some(&level)).collect();
+        common.into_iter().map(of).collect()
+    }
+
     /// Where on two edges vehicles can touch, of these lengths of a lock: the deepest such place.
     fn gap(&self, pair: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<Gap> {
         let mut worst: Option<Gap> = None;
         let mut seen = BTreeSet::new();
-        for [own, other] in self.both_ways(pair) {
-            let [sections, others] = Way::between(own, other, self.meetings.tokens(pair));
+        let tokens = self.tokens(pair);
+        for ([own, other], tokens) in
+            self.both_ways(pair).flat_map(|ways| tokens.iter().map(move |tokens| (ways, tokens)))
+        {
+            let [sections, others] = Way::between(own, other, tokens.iter().copied());
             for own in &sections {
                 let Some(own_length) = common(own.length, a_length) else { continue };
                 for other in others.iter().filter(|other| !own.claim.excludes(&other.claim)) {
@@ -214,18 +236,15 @@ impl<'a> Auditor<'a> {
     fn touching(&self, [a, b]: [usize; 2], lengths: [[f64; 2]; 2]) -> Option<Gap> {
         let edges = [a, b].map(|place| &self.layout().edges[place]);
         let near = if self.imported.vehicle.footprint.is_none() {
-            let curves = [0, 1].map(|k| stretch(&edges[k].curve, lengths[k]));
+            let curves = [0, 1].map(|k| self.stretch(edges[k], lengths[k]));
             let reach = 2.0 * self.radius + edges[0].deviation + edges[1].deviation;
             near(&curves[0], &curves[1], reach)
         } else {
             // Lengths of a body are not those of its discs: the lock tells that there is contact, the discs how deep at most.
             self.discs(a, b)
         };
-        let (depth, at) = match near {
-            Some(near) => near,
-            // Without a length an edge is a point.
-            None => (2.0 * self.radius, self.layout().nodes.get(edges[0].ends[0])?.at),
-        };
+        // What cannot be told is as deep as can be.
+        let (depth, at) = near.unwrap_or((2.0 * self.radius, self.place(edges[0])));
         let shared = edges[0].ends.iter().any(|end| edges[1].ends.contains(end));
         (depth >= 0.0).then(|| Gap {
             a: Spot::Edge(edges[0].id.clone()),
@@ -252,6 +271,17 @@ impl<'a> Auditor<'a> {
         all.max_by(|x, y| x.0.total_cmp(&y.0)).map(|(depth, at)| (depth.max(0.0), at))
     }
 
+    /// Where an edge begins.
+    fn place(&self, edge: &Edge) -> [f64; 2] {
+        self.layout().nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at)
+    }
+
+    /// A part of an edge; without a length an edge is a point.
+    fn stretch(&self, edge: &Edge, lengths: [f64; 2]) -> Vec<Placed> {
+        let at = self.place(edge);
+        if edge.curve.is_empty() { vec![Placed::line(at, at)] } else { stretch(&edge.curve, lengths) }
+    }
+
     fn level(&self, level: usize) -> String {
         self.layout().levels.get(level).cloned().unwrap_or_default()
     }
@@ -264,11 +294,10 @@ impl<'a> Auditor<'a> {
         let open = sections.filter(|section| !claim.keeps_out(&section.claim));
         let ranges = open.filter_map(|section| common(section.length, length));
         let gaps = ranges.filter_map(|range| {
-            let curve = stretch(&own.curve, range);
-            let (depth, at) = match self.imported.vehicle.footprint {
-                None => near(&stands, &curve, 2.0 * self.radius + own.deviation)?,
-                Some(_) => near(&stands, &curve, 2.0 * self.radius).map(|(depth, at)| (depth.max(0.0), at))?,
-            };
+            let near = near(&stands, &self.stretch(own, range), 2.0 * self.radius + own.deviation);
+            let (depth, at) = near.unwrap_or((2.0 * self.radius, there.at));
+            // Of an outline the lock tells that there is contact.
+            let depth = if self.imported.vehicle.footprint.is_some() { depth.max(0.0) } else { depth };
             (depth >= 0.0).then(|| Gap {
                 a: Spot::Node(there.id.clone()),
                 b: Spot::Edge(own.id.clone()),

@@ -9,12 +9,13 @@
 //! | nav2 | takes the edge, bars those of its list | bars those of its list |
 //! | openTCS | takes u, the path, v, and all blocks in which one of them is | takes the point and its blocks |
 //! | Open-RMF | takes the groups of the lane and of v, no longer that of u | takes the group of the vertex |
-//! | VDA 5050 | takes the RELEASE zones that its contour touches | the same |
+//! | VDA 5050 | takes the RELEASE zones that its contour is sure to touch | the same |
 //! | pcr | takes the locks of the stretch it is on | bars the stretches of its locks |
 //!
 //! ```text
 //! way       an edge in one direction, and the resources of its stretches
 //! nearest   the least distance of two stretches
+//! reach     where on a curve a polygon is near
 //! meetings  tokens by which two edges can exclude each other
 //! audit     contacts that are not excluded, and exclusions that are not needed          Audit
 //! cover     covers of a graph by cliques, and a lower bound of their number
@@ -37,6 +38,7 @@ mod nearest;
 mod opentcs;
 mod outline;
 mod own;
+mod reach;
 pub mod report;
 mod rmf;
 mod settings;
@@ -189,6 +191,8 @@ pub struct Rules {
     pub groups: Vec<Group>,
     /// What was read and does nothing, and why.
     pub warnings: Vec<String>,
+    /// For each token the level on which it holds, for vehicles that are on one of several at a time; empty where a level does not count.
+    pub levels: Vec<usize>,
 }
 
 impl Rules {

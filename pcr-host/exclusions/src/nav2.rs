@@ -9,7 +9,7 @@
 use crate::edit::{Edits, ending};
 use crate::json::{Spanned, Value as Kind};
 use crate::{Claim, Group, Rules};
-use pcr_formats::import::{Id, ImportError, Imported};
+use pcr_formats::import::{Id, ImportError, Imported, parse_json};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,6 +36,11 @@ fn whole(value: &Value) -> Option<u64> {
         .or_else(|| value.as_f64().filter(|x| x.fract() == 0.0 && *x >= 0.0).map(|x| x as u64))
 }
 
+/// Nobody can ask the service to close this edge.
+fn unknown(edge: u64) -> ImportError {
+    ImportError::new(format!("edge {edge}: the service that closes edges knows ids up to {LARGEST}"))
+}
+
 /// Whether a feature is a node, or an edge; what is neither has no part in the graph.
 fn is_node(feature: &Value) -> Option<bool> {
     match feature["geometry"]["type"].as_str()? {
@@ -45,25 +50,23 @@ fn is_node(feature: &Value) -> Option<bool> {
     }
 }
 
-fn parse(text: &str) -> Result<Value, ImportError> {
-    serde_json::from_str(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| ImportError::new(format!("not JSON: {error}")))
-}
-
 /// Reads the lists.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let root = parse(text)?;
+    let root = parse_json(text)?;
     let mut lists: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
     let mut groups = Vec::new();
     for feature in root["features"].as_array().into_iter().flatten() {
         let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
         let what = if node { "node" } else { "edge" };
         let problem = || ImportError::new(format!("{what} {id}, metadata, {KEY}: ids of edges are expected"));
-        let list = match &feature["properties"]["metadata"][KEY] {
+        let list: BTreeSet<u64> = match &feature["properties"]["metadata"][KEY] {
             Value::Null => BTreeSet::new(),
             Value::Array(ids) => ids.iter().map(whole).collect::<Option<_>>().ok_or_else(problem)?,
             _ => return Err(problem()),
         };
+        if let Some(large) = list.last().filter(|id| **id > LARGEST) {
+            return Err(unknown(*large));
+        }
         if !list.is_empty() {
             let edges = list.iter().map(ToString::to_string).collect();
             groups.push(Group { name: format!("{what} {id}"), edges, ..Group::default() });
@@ -108,7 +111,7 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
     }
     locks.nodes.iter().flatten().for_each(|lock| close(true, &lock.node, &lock.edge));
     if let Some((large, _)) = closed[0].iter().find(|(id, _)| **id > LARGEST) {
-        return Err(ImportError::new(format!("edge {large}: the service that closes edges knows ids up to {LARGEST}")));
+        return Err(unknown(*large));
     }
     let (root, spans) = both(text)?;
     let mut edits = Edits::default();
@@ -142,7 +145,7 @@ fn set(edits: &mut Edits, properties: &Spanned, list: &str) {
 
 fn both(text: &str) -> Result<(Value, Spanned), ImportError> {
     let spans = Spanned::of(text).ok_or_else(|| ImportError::new("not JSON"))?;
-    Ok((parse(text)?, spans))
+    Ok((parse_json(text)?, spans))
 }
 
 fn features<'a>(root: &'a Value, spans: &'a Spanned) -> impl Iterator<Item = (&'a Value, &'a Spanned)> {

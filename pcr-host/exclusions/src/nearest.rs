@@ -54,7 +54,7 @@ fn scaled(shape: PathSegment, share: f64) -> PathSegment {
     }
 }
 
-fn point(piece: &Placed, length: f64) -> [f64; 2] {
+pub(crate) fn point(piece: &Placed, length: f64) -> [f64; 2] {
     part(piece, 0.0, length).end()
 }
 

@@ -68,7 +68,13 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 }
 
 /// Distance of a point from a polygon, of any shape; 0 inside \[m\].
-pub(crate) fn distance(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+pub(crate) fn distance(polygon: &[[f64; 2]], at: [f64; 2]) -> f64 {
+    (-depth(polygon, at)).max(0.0)
+}
+
+/// Distance of a point in a polygon, of any shape, from its sides; below 0 outside \[m\]. Where sides cross, what is inside twice is
+/// outside.
+pub(crate) fn depth(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     let mut inside = false;
     let mut least = f64::INFINITY;
     for (k, &b) in polygon.iter().enumerate() {
@@ -81,7 +87,7 @@ pub(crate) fn distance(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
         let share = if square > 0.0 { (((x - a[0]) * dx + (y - a[1]) * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
         least = least.min((a[0] + dx * share - x).hypot(a[1] + dy * share - y));
     }
-    if inside { 0.0 } else { least }
+    if inside { least } else { -least }
 }
 
 /// Whether two polygons of any shape have a point in common.

@@ -137,5 +137,5 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
     }
     let edges = layout.edges.iter().zip(marks).map(|(edge, marks)| Way::both(edge.length(), marks, Vec::new()));
-    Ok(Rules { edges: edges.collect(), nodes, groups, warnings: Vec::new() })
+    Ok(Rules { edges: edges.collect(), nodes, groups, ..Rules::default() })
 }

@@ -4,16 +4,22 @@
 //! its contour enters it. Hence any zones that cover all corridors keep vehicles apart. Here each line or arc of an
 //! edge is a zone, or each part of it if it is cut; both directions of one way share a zone. Vehicles do not enter a
 //! `BLOCKED` zone at all.
+//!
+//! When a file is read, a vehicle somewhere on an edge has a zone only if it is sure to need it, however far it is off
+//! the edge. That keeps off others who are sure to need it, too. Besides, one whose contour lies in the zone as a whole
+//! is kept off by whoever can reach into the zone at all: where they touch, both are in it. By the second rule the
+//! zones that are written here suffice, whatever the deviations and the outlines.
 
-use crate::outline::{around, distance};
+use crate::outline::{around, depth};
+use crate::reach::within;
 use crate::settings::{Notes, Settings};
 use crate::{Claim, Group, Mark, Rules, Way, stretch};
-use pcr_formats::import::{ImportError, Imported, Layout};
+use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;
 use pcr_planning::checksum::crc32;
 use serde_json::{Value, json};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_4;
 
 /// Zones reach this far beyond corridors, so that rounding does not count \[m\].
@@ -22,8 +28,12 @@ const BEYOND: f64 = 1e-6;
 /// Zones of arcs turn by no more than this \[rad\].
 const TURN: f64 = FRAC_PI_4;
 
-/// Lengths of edges within which the zones are the same, as a share of the radius.
-const STEP: f64 = 0.125;
+/// By how much vehicles have to reach farther than to the border of a zone that they are said to need, or to be within: less than
+/// [`BEYOND`] \[m\].
+const SURE: f64 = 1e-7;
+
+/// How much farther off vehicles are said to reach into a zone: more than what counts as contact in an audit \[m\].
+const POSSIBLE: f64 = 1e-4;
 
 /// Whether a text holds zone sets.
 pub(crate) fn is_zones(text: &str) -> bool {
@@ -52,25 +62,111 @@ struct Zone {
     map: String,
     blocked: bool,
     polygon: Vec<[f64; 2]>,
-    token: usize,
+    /// Corners of the box around it.
+    bounds: [[f64; 2]; 2],
+}
+
+/// Lengths of an edge at which a vehicle is in a zone.
+#[derive(Default)]
+struct Entered {
+    /// It is sure to need it.
+    sure: Vec<[f64; 2]>,
+    /// All of it is inside, wherever it is.
+    whole: Vec<[f64; 2]>,
+    /// It may reach into it.
+    possible: Vec<[f64; 2]>,
+}
+
+/// How far vehicles reach.
+struct Reach {
+    /// Of every point at most this far from the centre, all are in the contour; nothing is known where the centre is outside \[m\].
+    inner: Option<f64>,
+    /// No point of the contour is farther from the centre \[m\].
+    outer: f64,
+    /// How far the centre may be off its edge \[m\].
+    off: f64,
+}
+
+impl Reach {
+    fn of(imported: &Imported) -> Self {
+        let vehicle = &imported.vehicle;
+        let inner = match &vehicle.footprint {
+            None => Some(vehicle.radius),
+            Some(footprint) => Some(depth(footprint.polygon(), [0.0; 2])).filter(|depth| *depth >= 0.0),
+        };
+        // A margin is for how far vehicles are off their edges: their contours are no larger for it.
+        Self { inner, outer: vehicle.radius, off: vehicle.margin }
+    }
+
+    /// Where on a curve it is in a zone; `deviation` is how far the true curve may be off this one \[m\].
+    fn entered(&self, curve: &[Placed], deviation: f64, zone: &Zone) -> Entered {
+        let off = self.off + deviation;
+        let far = self.outer + off + POSSIBLE;
+        if !near(curve, far, zone.bounds) {
+            return Entered::default();
+        }
+        let within = |reach| within(curve, &zone.polygon, reach);
+        Entered {
+            // Of a contour beside its centre only a zone that holds all of it is sure to hold any of it.
+            sure: within(self.inner.unwrap_or(-self.outer) - off - SURE),
+            whole: within(-(self.outer + off + SURE)),
+            possible: within(far),
+        }
+    }
+}
+
+/// Whether a curve can come so near a box.
+fn near(curve: &[Placed], far: f64, [lo, hi]: [[f64; 2]; 2]) -> bool {
+    curve.iter().any(|piece| {
+        let ends = [piece.at, piece.end()];
+        // No point of a piece is farther from both ends than half its length.
+        let room = match piece.shape {
+            PathSegment::Line { .. } => 0.0,
+            PathSegment::Arc { .. } => piece.shape.length() / 2.0,
+        };
+        (0..2).all(|x| {
+            let (least, most) = (ends[0][x].min(ends[1][x]), ends[0][x].max(ends[1][x]));
+            least - room - far <= hi[x] && lo[x] <= most + room + far
+        })
+    })
+}
+
+fn bounds(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let of = |pick: fn(f64, f64) -> f64, from: f64| [0, 1].map(|x| polygon.iter().map(|at| at[x]).fold(from, pick));
+    [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
+}
+
+/// What two lists of ranges have in common.
+fn both(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let pairs = a.iter().flat_map(|a| b.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
+    pairs.filter(|[from, to]| from <= to).collect()
 }
 
 /// Reads the zones.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let root: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| ImportError::new(format!("not JSON: {error}")))?;
+    let root = parse_json(text)?;
     let layout = &imported.layout;
     let maps: BTreeSet<&str> = (0..layout.levels.len()).map(|level| map(layout, level)).collect();
     let (mut zones, mut groups, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    let mut sets: BTreeSet<&str> = BTreeSet::new();
     for message in messages(&root) {
         let set = &message["zoneSet"];
         let id = set["mapId"].as_str().ok_or_else(|| ImportError::new("zoneSet, mapId: missing"))?;
         if !maps.contains(id) {
             return Err(ImportError::new(format!("zoneSet, mapId: the layout has no map {id}")));
         }
+        if !sets.insert(id) {
+            let problem =
+                "a second one of this map; vehicles have one set of a map enabled at most, audit each by itself";
+            return Err(ImportError::new(format!("zoneSet, mapId {id}: {problem}")));
+        }
+        let mut names: BTreeSet<&str> = BTreeSet::new();
         for zone in set["zones"].as_array().into_iter().flatten() {
             let name = zone["zoneId"].as_str().unwrap_or_default();
             let problem = |what: &str| ImportError::new(format!("zone {name}, {what}"));
+            if !names.insert(name) {
+                return Err(problem("zoneId: there is another one of this name in the set"));
+            }
             let kind = zone["zoneType"].as_str().ok_or_else(|| problem("zoneType: missing"))?;
             if kind != "RELEASE" && kind != "BLOCKED" {
                 warnings.push(format!("zone {name}: {kind} keeps no vehicles apart"));
@@ -80,67 +176,75 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             let corners = zone["vertices"].as_array().into_iter().flatten().map(corner).collect::<Option<Vec<_>>>();
             let polygon = corners.filter(|corners| corners.len() >= 3);
             let polygon = polygon.ok_or_else(|| problem("vertices: three or more are expected"))?;
-            let token = groups.len();
             let level = (0..layout.levels.len()).find(|&level| map(layout, level) == id).unwrap_or_default();
             groups.push(Group { name: name.to_owned(), outline: polygon.clone(), level, ..Group::default() });
-            zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", polygon, token });
+            zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", bounds: bounds(&polygon), polygon });
         }
     }
-    let radius = imported.vehicle.radius + imported.vehicle.margin;
-    let claim = |levels: &[usize], at: [f64; 2], reach: f64| {
-        let near = zones.iter().filter(|zone| {
-            levels.iter().any(|&level| map(layout, level) == zone.map) && distance(&zone.polygon, at) <= reach
-        });
-        let (blocked, free): (Vec<&Zone>, Vec<&Zone>) = near.partition(|zone| zone.blocked);
-        let tokens = free.iter().map(|zone| zone.token).collect();
-        Claim { closed: !blocked.is_empty(), ..Claim::exclusive(tokens) }
+    let reach = Reach::of(imported);
+    // Tokens: who is sure to need a zone; who is in it as a whole has the second one of others and bars the third one for them, and who may
+    // reach into it the other way about.
+    let count = zones.len();
+    let tokens = |zone: usize, Entered { sure, whole, possible }: Entered| {
+        let of = |ranges: Vec<[f64; 2]>, takes: usize, bars: usize| {
+            ranges.into_iter().flat_map(move |range| {
+                [(takes, false), (bars, true)].map(|(kind, bars)| Mark { token: kind * count + zone, bars, range })
+            })
+        };
+        of(sure, 0, 0).chain(of(whole, 2, 1)).chain(of(possible, 1, 2)).collect::<Vec<_>>()
     };
+    let there = |zone: &Zone, level: usize| map(layout, level) == zone.map;
     let edges = layout.edges.iter().map(|edge| {
-        let levels: Vec<usize> =
-            edge.ends.iter().filter_map(|&end| layout.nodes.get(end).map(|node| node.level)).collect();
-        let reach = radius + edge.deviation;
-        let length = edge.length();
-        let count = (length / (STEP * radius)).ceil().max(1.0);
-        let (mut marks, mut closed): (Vec<Mark>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
-        // What the mark of a token, of takes and of bars, ends with goes on if the token is there in the next step.
-        let mut last: HashMap<(usize, bool), usize> = HashMap::new();
-        for k in 0..count as usize {
-            // The last one ends where the edge does, and not a digit before.
-            let [from, to] = [k, k + 1].map(|k| if k as f64 == count { length } else { length * k as f64 / count });
-            let at = stretch(&edge.curve, [(from + to) / 2.0; 2]);
-            let at = at.first().map_or(layout.nodes[edge.ends[0]].at, |piece| piece.at);
-            let claim = claim(&levels, at, reach + (to - from) / 2.0);
-            for (tokens, bars) in [(&claim.takes, false), (&claim.bars, true)] {
-                for &token in tokens {
-                    match last.get(&(token, bars)).and_then(|&place| marks.get_mut(place)) {
-                        Some(mark) if mark.range[1] == from => mark.range[1] = to,
-                        _ => {
-                            last.insert((token, bars), marks.len());
-                            marks.push(Mark { token, bars, range: [from, to] });
-                        }
-                    }
-                }
-            }
-            match closed.last_mut().filter(|last| last[1] == from) {
-                Some(last) if claim.closed => last[1] = to,
-                _ if claim.closed => closed.push([from, to]),
-                _ => {}
+        let ends = edge.ends.map(|end| layout.nodes.get(end).map_or(0, |node| node.level));
+        let curve = match &edge.curve[..] {
+            // Without a length an edge is a point.
+            [] => &[layout.nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at)].map(|at| Placed::line(at, at)),
+            curve => curve,
+        };
+        let mut marks = Vec::new();
+        // From map to map a vehicle may be on either: it is kept out where it is on both.
+        let mut closed: [Vec<[f64; 2]>; 2] = Default::default();
+        for (k, zone) in zones.iter().enumerate().filter(|(_, zone)| ends.iter().any(|&end| there(zone, end))) {
+            let entered = reach.entered(curve, edge.deviation, zone);
+            if zone.blocked {
+                let on = (0..2).filter(|&end| there(zone, ends[end]));
+                on.for_each(|end| closed[end].extend_from_slice(&entered.sure));
+            } else {
+                marks.extend(tokens(k, entered));
             }
         }
-        Way::both(length, marks, closed)
+        Way::both(edge.length(), marks, both(&closed[0], &closed[1]))
     });
     let edges: Vec<[Way; 2]> = edges.collect();
-    let nodes = layout.nodes.iter().map(|node| claim(&[node.level], node.at, radius)).collect();
+    let nodes = layout.nodes.iter().map(|node| {
+        let mut claim = Claim::default();
+        for (k, zone) in zones.iter().enumerate().filter(|(_, zone)| there(zone, node.level)) {
+            let entered = reach.entered(&[Placed::line(node.at, node.at)], 0.0, zone);
+            if zone.blocked {
+                claim.closed |= !entered.sure.is_empty();
+                continue;
+            }
+            for mark in tokens(k, entered) {
+                if mark.bars { claim.bars.push(mark.token) } else { claim.takes.push(mark.token) }
+            }
+        }
+        claim.takes.sort_unstable();
+        claim.bars.sort_unstable();
+        claim
+    });
+    let nodes = nodes.collect();
     let mut members: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
     for (edge, ways) in layout.edges.iter().zip(&edges) {
-        for mark in ways[0].marks().iter().filter(|mark| !mark.bars) {
-            members.entry(mark.token).or_default().insert(edge.id.to_string());
+        // Who may reach into it.
+        for mark in ways[0].marks().iter().filter(|mark| !mark.bars && (count..2 * count).contains(&mark.token)) {
+            members.entry(mark.token - count).or_default().insert(edge.id.to_string());
         }
     }
     for (token, edges) in members {
         groups[token].edges = edges.into_iter().collect();
     }
-    Ok(Rules { edges, nodes, groups, warnings })
+    let levels = (0..3 * count).map(|token| groups[token % count].level).collect();
+    Ok(Rules { edges, nodes, groups, warnings, levels })
 }
 
 /// Writes the zone set of each map: one message, or a list of them.

@@ -64,6 +64,7 @@ pub use rmf::is_navigation_graph;
 pub use route::{Step, cheapest, ride, turn};
 pub use timed::{seconds, sectioned};
 pub use useful::Kind;
+pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::Warnings;
 

@@ -168,7 +168,7 @@ impl Locks {
 }
 
 /// What has to be said of layouts of which routes round the corners.
-fn rounded(layout: &Layout) -> Option<String> {
+pub fn rounded(layout: &Layout) -> Option<String> {
     let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
     Some(format!(
         "corners: routes round them with {radius} m, off their edges by up to {radius} m (1 - cos(a/2)) in a turn by a; locks are those of \

@@ -2,7 +2,7 @@
 
 use super::help::STANDING;
 use super::sources::layout;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, write_to};
 use clap::Args;
 use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Settings, Target, report};
@@ -81,6 +81,10 @@ impl Asked {
         let name = input::stem(file);
         let (written, report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
             .map_err(|error| Stop::wrong(file, error))?;
+        if file == Path::new("-") {
+            // Otherwise they have been said when the layout was read.
+            say(file, report.warnings.iter().take(report.of_layout).cloned());
+        }
         write_to(output, &written)?;
         let mut out = printed.out(standard);
         match printed.form() {

@@ -1,10 +1,11 @@
 //! Sources of scenarios: the files that are named, otherwise standard input.
 
 use super::help::{DRIVING, STANDING, useless};
-use super::{Stop, warn};
+use super::{Stop, say, warn};
 use pcr_formats::import::{Imported, Options};
 use pcr_formats::input;
 use pcr_formats::scenario::Scenario;
+use pcr_planning::locks::rounded;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -115,5 +116,8 @@ pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) 
     };
     let (imported, warnings) = input::read_layout(file, import, moves)?;
     warn(file, &warnings);
+    if matches!(command, "locks" | DRIVING | STANDING) {
+        say(file, rounded(&imported.layout));
+    }
     Ok(imported)
 }

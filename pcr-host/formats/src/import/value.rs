@@ -2,12 +2,86 @@
 
 use super::ImportError;
 use crate::scenario::LIMIT;
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
+use std::fmt;
 
-/// The value in a JSON text; a byte order mark at its start is skipped.
-pub(super) fn parse(text: &str) -> Result<Value, ImportError> {
+/// The value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused: of its two values
+/// `serde_json` keeps the last one, other programs the first one, and somebody meant both.
+///
+/// # Errors
+/// Why it cannot be read.
+pub fn parse(text: &str) -> Result<Value, ImportError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    serde_json::from_str(text).map_err(|error| ImportError::new(format!("not JSON: {error}")))
+    let value: Result<Once, _> = serde_json::from_str(text);
+    value.map(|once| once.0).map_err(|error| ImportError::new(format!("not JSON: {error}")))
+}
+
+/// A value in which no object has a key twice.
+struct Once(Value);
+
+impl<'de> Deserialize<'de> for Once {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Reader).map(Self)
+    }
+}
+
+struct Reader;
+
+impl<'de> Visitor<'de> for Reader {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_string<E>(self, value: String) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
+        let mut elements = Vec::new();
+        while let Some(Once(element)) = list.next_element()? {
+            elements.push(element);
+        }
+        Ok(Value::Array(elements))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        let mut read = Map::new();
+        while let Some(key) = members.next_key::<String>()? {
+            if read.contains_key(&key) {
+                return Err(A::Error::custom(format_args!("an object with the key {key:?} twice")));
+            }
+            let Once(value) = members.next_value()?;
+            read.insert(key, value);
+        }
+        Ok(Value::Object(read))
+    }
 }
 
 /// An object and how messages name it.
@@ -116,5 +190,24 @@ fn kind(value: &Value) -> &'static str {
         Value::String(_) => "a text",
         Value::Array(_) => "a list",
         Value::Object(_) => "an object",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_those_of_serde_json_and_no_key_is_there_twice() {
+        let text =
+            r#"{"a": [1, -2, 0.5, 1e300, true, null, [], {}, "\u00e9\n"], "b": {"a": 18446744073709551615}, "c": "x"}"#;
+        let expected: Value = serde_json::from_str(text).unwrap();
+        assert_eq!(parse(text).unwrap(), expected);
+        assert_eq!(parse(&format!("\u{feff}{text}")).unwrap(), expected);
+        for text in [r#"{"a": 1, "a": 1}"#, r#"[{"b": {"a": [], "c": 1, "a": {}}}]"#, r#"{"a": 1, "\u0061": 2}"#] {
+            let error = parse(text).unwrap_err().to_string();
+            assert!(error.contains("the key \"a\" twice at line 1"), "{error}");
+        }
+        assert!(parse("{\"a\": 1} x").is_err() && parse("{\"a\": 1").is_err());
     }
 }
