@@ -20,6 +20,7 @@ mod delays_straight;
 mod documents;
 mod earned;
 mod exclusions;
+mod exclusions_audit;
 mod exclusions_forms;
 mod exclusions_less;
 mod firmware;

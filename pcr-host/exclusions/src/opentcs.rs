@@ -89,8 +89,12 @@ fn held(root: Node<'_, '_>, layout: &Layout, is_asked: impl Fn(&str) -> bool) ->
     // Each resource is a token of its own.
     let mut tokens: Vec<Vec<usize>> = (0..count).map(|place| vec![place]).collect();
     let (mut names, mut warnings) = (Vec::new(), Vec::new());
+    let mut seen = BTreeSet::new();
     let locations: BTreeSet<&str> = elements(root, "location").map(name).collect();
     for block in elements(root, "block").filter(|block| is_asked(name(*block))) {
+        if !seen.insert(name(block)) {
+            return Err(ImportError::new(format!("block {}: there is another one of this name", name(block))));
+        }
         if block.attribute("type").is_some_and(|kind| kind != "SINGLE_VEHICLE_ONLY") {
             warnings.push(format!(
                 "block {}: {} does not keep vehicles apart that follow one another; it is not counted",
@@ -142,6 +146,11 @@ fn envelopes(
                 ImportError::new(format!("{}, vehicleEnvelope: vertices are expected", name(element)))
             })?;
             if let Some(&place) = places.get(name(element)) {
+                // A model has one for each key, and nobody knows which.
+                if outlines.last().is_some_and(|(last, _)| *last == place) {
+                    let problem = "vehicleEnvelope: there is another one with this key";
+                    return Err(ImportError::new(format!("{}, {problem}", name(element))));
+                }
                 outlines.push((place, outline));
             }
         }

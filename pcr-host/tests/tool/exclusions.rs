@@ -1,6 +1,6 @@
 //! `pcr locks --write` and `--audit`: files for fleets, what is told about them, and exit status.
 
-use crate::fixture::{directory, run};
+use crate::fixture::{directory, run, run_with};
 use serde_json::Value;
 use std::fs;
 
@@ -70,18 +70,56 @@ fn what_cannot_be_done_is_refused() {
     for (arguments, reason) in [
         (&["locks", &lif, "--radius", "0.4", "--audit", "-q"][..], "files of this format hold no exclusions"),
         (
-            &["locks", &nav2, "--radius", "0.4", &format!("--audit={lif}")],
+            &["locks", &nav2, "--radius", "0.4", &format!("--audit={lif}"), "-q"],
             "neither a zone set of VDA 5050 nor a lock file",
         ),
-        (&["locks", &nav2, "--radius", "0.4", "--write", "rmf", "-o", &written], "written into files of rmf"),
-        (&["locks", &nav2, "--radius", "0.4", "--write", "pcr", "--split", "1", "-o", &written], "--split"),
-        (&["locks", &nav2, "--radius", "0.4", "--write", "nav2", "--envelopes", "a", "-o", &written], "--envelopes"),
+        (&["locks", &nav2, "--radius", "0.4", "--write", "rmf", "-o", &written, "-q"], "written into files of rmf"),
+        (&["locks", &nav2, "--radius", "0.4", "--write", "pcr", "--split", "1", "-o", &written, "-q"], "--split"),
+        (
+            &["locks", &nav2, "--radius", "0.4", "--write", "nav2", "--envelopes", "a", "-o", &written, "-q"],
+            "--envelopes",
+        ),
     ] {
         let message = run(arguments).failed(2);
         assert!(message.contains(reason), "{message}");
     }
     assert_eq!(run(&["locks", &nav2, "--radius", "0.4", "--write", "nav2"]).status, 2, "without a file");
     assert!(!std::path::Path::new(&written).exists());
+}
+
+/// Routes of nav2 leave the edges at corners, and locks are of the edges.
+#[test]
+fn that_routes_round_corners_is_said_by_whoever_looks_at_edges() {
+    let (nav2, lif, written) =
+        (real("nav2/sample_graph.geojson"), real("lif/example_07.lif.json"), output("said.geojson"));
+    let corners = "corners: routes round them with 1 m, off their edges by up to";
+    let count = |arguments: &[&str]| run(&[arguments, &["--radius", "0.3"]].concat()).err.matches(corners).count();
+    let write = ["locks", &nav2, "--write", "nav2", "-o", &written];
+    for arguments in [
+        &["locks", &nav2][..],
+        &["locks", &nav2, "--format", "csv"],
+        &["locks", &nav2, "--json"],
+        &["locks", &nav2, "--lines"],
+        &write,
+        &["locks", &written, "--audit"],
+        &["certify", &nav2],
+    ] {
+        assert_eq!(count(arguments), 1, "{arguments:?}");
+        assert_eq!(count(&[arguments, &["-q"]].concat()), 0, "{arguments:?}");
+    }
+    assert_eq!(count(&["locks", &lif]), 0);
+    // A layout that comes in by a pipe.
+    let layout = fs::read_to_string(&nav2).unwrap();
+    let piped = run_with(
+        &["locks", "-", "--radius", "0.3", "--from", "nav2", "--write", "nav2", "-o", &written],
+        layout.as_bytes(),
+    );
+    assert_eq!((piped.status, piped.err.matches(corners).count()), (0, 1), "{}", piped.err);
+    for asked in [&["locks", &written, "--audit", "--json"][..], &[&write[..], &["--json"]].concat()] {
+        let report: Value = serde_json::from_str(&run(&[asked, &["--radius", "0.3"]].concat()).out).unwrap();
+        let warnings = report["warnings"].as_array().unwrap();
+        assert!(warnings.iter().any(|said| said.as_str().unwrap().contains(corners)), "{report}");
+    }
 }
 
 /// openTCS reads models by this schema.

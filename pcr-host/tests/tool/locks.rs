@@ -169,7 +169,7 @@ fn an_index_that_is_out_of_date_gives_no_answer() {
     let index = directory("locks").join("stale.locks");
     let path = index.to_str().unwrap();
     let of = |layout: &str, radius: &str| {
-        run(&["locks", layout, "--radius", radius, "--index", path, "--edge", "7", "--json"])
+        run(&["locks", layout, "--radius", radius, "--index", path, "--edge", "7", "--json", "-q"])
     };
     assert_eq!(run(&["locks", &name, "--radius", "0.25", "--index", path, "-q"]).status, 0);
     let whole = std::fs::read(&index).unwrap();
@@ -273,7 +273,9 @@ fn delays_are_those_of_the_closed_form_in_every_form() {
     let csv = run(&[&arguments[..], &["--format", "csv"]].concat()).ok();
     assert!(csv.starts_with("a,a_direction,b,b_direction,from,to\n7,forward,7,forward,-0.5"), "{csv}");
     assert_eq!(csv.lines().count(), 1 + found.len());
-    let text = run(&arguments[..8]).ok();
+    let table = run(&arguments[..8]);
+    assert!(table.err.contains("corners: routes round them with 1 m"), "{}", table.err);
+    let text = table.out;
     let expected = "\
 delays: 3 intervals of unsafe delays, radius 0.25 m, at 1 m/s
   a   b   b later by [s]     to
@@ -295,7 +297,7 @@ fn delays_need_a_speed_and_locks_none() {
     let vain = run(&["locks", &name, "--radius", "0.25", "--speed", "1"]).failed(2);
     assert!(vain.contains("--speed is of no use: locks are of all ways of a vehicle, at any speed"), "{vain}");
     let outline = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/small/factsheet.json");
-    let refused = run(&["locks", &name, "--fleet", outline, "--delays", "--speed", "1"]).failed(2);
+    let refused = run(&["locks", &name, "--fleet", outline, "--delays", "--speed", "1", "-q"]).failed(2);
     assert!(refused.contains("delays are of discs"), "{refused}");
     // From rest to rest it takes longer over the crossing's ends, and no less far.
     let arguments = ["locks", &name, "--radius", "0.25", "--delays", "--speed", "1", "--json", "-q"];
