@@ -11,6 +11,7 @@ use pcr_formats::import::{Edge, Id, Imported, Layout};
 use pcr_formats::scenario::Placed;
 use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor, rounded};
 use serde::Serialize;
+use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// What has come of an audit.
@@ -212,6 +213,8 @@ impl<'a> Auditor<'a> {
         let mut worst: Option<Gap> = None;
         let mut seen = BTreeSet::new();
         let tokens = self.tokens(pair);
+        // The same for all lengths, and not quick.
+        let discs = LazyCell::new(|| self.discs(pair));
         for ([own, other], tokens) in
             self.both_ways(pair).flat_map(|ways| tokens.iter().map(move |tokens| (ways, tokens)))
         {
@@ -221,7 +224,7 @@ impl<'a> Auditor<'a> {
                 for other in others.iter().filter(|other| !own.claim.excludes(&other.claim)) {
                     let Some(other_length) = common(other.length, b_length) else { continue };
                     if seen.insert([own_length, other_length].map(|range| range.map(f64::to_bits))) {
-                        let gap = self.touching(pair, [own_length, other_length]);
+                        let gap = self.touching(pair, [own_length, other_length], &|| *discs);
                         if gap.as_ref().is_some_and(|gap| worst.as_ref().is_none_or(|worst| worst.depth < gap.depth)) {
                             worst = gap;
                         }
@@ -233,7 +236,12 @@ impl<'a> Auditor<'a> {
     }
 
     /// The gap of two stretches, if vehicles on them can touch.
-    fn touching(&self, [a, b]: [usize; 2], lengths: [[f64; 2]; 2]) -> Option<Gap> {
+    fn touching(
+        &self,
+        [a, b]: [usize; 2],
+        lengths: [[f64; 2]; 2],
+        discs: &dyn Fn() -> Option<(f64, [f64; 2])>,
+    ) -> Option<Gap> {
         let edges = [a, b].map(|place| &self.layout().edges[place]);
         let near = if self.imported.vehicle.footprint.is_none() {
             let curves = [0, 1].map(|k| self.stretch(edges[k], lengths[k]));
@@ -241,7 +249,7 @@ impl<'a> Auditor<'a> {
             near(&curves[0], &curves[1], reach)
         } else {
             // Lengths of a body are not those of its discs: the lock tells that there is contact, the discs how deep at most.
-            self.discs(a, b)
+            discs()
         };
         // What cannot be told is as deep as can be.
         let (depth, at) = near.unwrap_or((2.0 * self.radius, self.place(edges[0])));
@@ -264,8 +272,8 @@ impl<'a> Auditor<'a> {
         })
     }
 
-    fn discs(&self, a: usize, b: usize) -> Option<(f64, [f64; 2])> {
-        let tracks = [a, b].map(|place| corridor(&self.rides.on(&self.layout().edges[place])));
+    fn discs(&self, pair: [usize; 2]) -> Option<(f64, [f64; 2])> {
+        let tracks = pair.map(|place| corridor(&self.rides.on(&self.layout().edges[place])));
         let pairs = tracks[0].iter().flat_map(|own| tracks[1].iter().map(move |other| (own, other)));
         let all = pairs.filter_map(|((own, r), (other, s))| near(own, other, r + s));
         all.max_by(|x, y| x.0.total_cmp(&y.0)).map(|(depth, at)| (depth.max(0.0), at))
