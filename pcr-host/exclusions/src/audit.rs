@@ -13,6 +13,7 @@ use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor, rounded};
 use serde::Serialize;
 use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::fmt;
 
 /// What has come of an audit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,6 +51,15 @@ pub enum Spot {
     Edge(Id),
     /// A node, as in the layout.
     Node(Id),
+}
+
+impl fmt::Display for Spot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Edge(id) => write!(f, "edge {id}"),
+            Self::Node(id) => write!(f, "node {id}"),
+        }
+    }
 }
 
 /// Two places at which two vehicles can touch although they keep to the rules.

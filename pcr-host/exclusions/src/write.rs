@@ -133,7 +133,7 @@ pub fn write(
     let audit = Audit::of(&again, &locks, &rules, target);
     if let Some(gap) = audit.gaps.first() {
         let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
-        return refused(format!("{a:?} and {b:?} are not excluded by what would be written ({depth} m deep)"));
+        return refused(format!("{a} and {b} are not excluded by what would be written ({depth:.3} m deep)"));
     }
     // An edge excludes itself: two parts of one are lengths that it excludes without cutting, too.
     let squares = |layout: &Imported| layout.layout.edges.iter().map(|edge| edge.length().powi(2)).sum::<f64>();
