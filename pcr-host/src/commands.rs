@@ -146,6 +146,14 @@ fn survive_limits() {
 ///
 /// A pool whose threads do not all start cannot be made a second time, so they are tried before.
 fn spread() {
+    /// What a pool takes beside its threads, and more \[bytes\].
+    const SPARE: usize = 1 << 20;
+    // A thread that finds no memory as it starts ends the program. With a stack trace, which takes memory as well, it would never end.
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| complain("there is no memory for another thread")));
+    let mut spare = Vec::<u8>::new();
+    let has_spare = spare.try_reserve_exact(SPARE).is_ok();
+    std::hint::black_box(&mut spare);
     let gate = Arc::new(Mutex::new(()));
     let closed = gate.lock();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -155,12 +163,14 @@ fn spread() {
     };
     let threads: Vec<_> = (0..cores).map_while(|_| start()).collect();
     drop(closed);
-    let all = threads.len() == cores;
+    let all = has_spare && threads.len() == cores;
     // Their memory is taken again.
     threads.into_iter().for_each(|thread| drop(thread.join()));
+    drop(spare);
     let pool = rayon::ThreadPoolBuilder::new();
     // A pool that is there already will do.
     let _ = if all { pool.build_global() } else { pool.num_threads(1).use_current_thread().build_global() };
+    std::panic::set_hook(usual);
 }
 
 /// Why the tool stops.

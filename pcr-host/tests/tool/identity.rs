@@ -121,7 +121,10 @@ fn files_without_a_name_answer_by_their_own() {
     let csv = run(&["check", &real("ccbs/example_roadmap_task_log.xml"), "--radius", "0.35", "--format", "csv"]).out;
     assert!(csv.contains("\nexample_roadmap_task_log,"), "{csv}");
     let collection = json!({ "type": "FeatureCollection", "features": [
-        { "type": "Feature", "properties": { "id": 1 }, "geometry": { "type": "Point", "coordinates": [0, 0] } }] });
+        { "type": "Feature", "properties": { "id": 1 }, "geometry": { "type": "Point", "coordinates": [0, 0] } },
+        { "type": "Feature", "properties": { "id": 2 }, "geometry": { "type": "Point", "coordinates": [5, 0] } },
+        { "type": "Feature", "properties": { "id": 3, "startid": 1, "endid": 2 },
+          "geometry": { "type": "LineString", "coordinates": [[0, 0], [5, 0]] } }] });
     let geojson = file("identity", "hall 5.geojson", collection.to_string());
     assert_eq!(name(&["locks", &geojson, "--radius", "0.4"], "layout"), "hall 5");
     let mut nameless = crossing();

@@ -202,12 +202,12 @@ fn traffic_in_which_nobody_has_a_plan_is_no_success() {
                 "geometry": { "type": "MultiLineString", "coordinates": [[[5 * from, 0], [5 * to, 0]]] } })
     };
     let graph = |features: &[Value]| json!({ "type": "FeatureCollection", "features": features }).to_string();
-    let apart = file("plan", "apart.geojson", graph(&[point(0), point(1)]));
+    let apart = file("plan", "apart.geojson", graph(&[point(0), point(1), line(2, 0, 0)]));
     let joined = file("plan", "joined.geojson", graph(&[point(0), point(1), line(2, 0, 1)]));
     for (layout, planned, status) in [(apart, 0, 1), (joined, 1, 0)] {
         let limits = ["--radius", "0.4", "--speed", "1", "--acceleration", "1", "--rotation", "1"];
         let limits = [&limits[..], &["--rotation-acceleration", "1", "--agents", "1"]].concat();
-        let answer = run(&[&["traffic", &layout, "--json"], &limits[..]].concat()).json_of(status);
+        let answer = run(&[&["traffic", &layout, "--json", "-q"], &limits[..]].concat()).json_of(status);
         assert_eq!(answer["planned"], json!(planned));
     }
 }
