@@ -107,7 +107,8 @@ class Tool(unittest.TestCase):
             ("ccbs", real / "ccbs/solved/sparse_01_n15_log.xml", [], {}),
             ("grid", small / "grid.path", [], {}),
             ("path", small / "points.path", ["--radius", "0.3", "--tolerance", "0.01", "--margin", "0.1"], {"radius": 0.3, "tolerance": 0.01, "margin": 0.1}),
-            ("vda5050", real / "vda5050/order_v2_flywei.json", ["--fleet", str(small / "factsheet.json"), "--horizon"], {"fleet": small / "factsheet.json", "horizon": True}),
+            ("vda5050", real / "vda5050/order_v2_flywei.json", ["--fleet", str(small / "factsheet.json"), "--horizon", "--partial"],
+             {"fleet": small / "factsheet.json", "horizon": True, "partial": True}),
         ]
         for form, file, options, named in files:
             with self.subTest(file.name), tempfile.TemporaryDirectory() as folder:
