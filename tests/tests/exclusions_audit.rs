@@ -168,7 +168,7 @@ fn what_is_there_twice_is_refused() {
     let same = set("map", &[("s", "RELEASE", &beside(0.0)), ("s", "RELEASE", &beside(-1.0))]).to_string();
     assert!(refused(&imported, Target::Vda5050, &same).contains("zone s, zoneId: there is another one"));
     let keys = half.to_string().replacen("\"zones\":", "\"zones\":[],\"zones\":", 1);
-    assert!(refused(&imported, Target::Vda5050, &keys).contains("the key \"zones\" twice"));
+    assert!(refused(&imported, Target::Vda5050, &keys).contains("\"zones\" is there twice"));
     // The same in the files of others.
     let mut root = graph(&[[0.0, 0.0], [10.0, 0.0]], &[[1, 2]]);
     for feature in root["features"].as_array_mut().unwrap() {
@@ -176,7 +176,7 @@ fn what_is_there_twice_is_refused() {
     }
     assert!(audit(&imported, Target::Nav2, &root.to_string()).suffices());
     let keys = root.to_string().replacen("\"closed_edges\":", "\"closed_edges\":[],\"closed_edges\":", 1);
-    assert!(refused(&imported, Target::Nav2, &keys).contains("the key \"closed_edges\" twice"));
+    assert!(refused(&imported, Target::Nav2, &keys).contains("\"closed_edges\" is there twice"));
     assert!(layout(Format::Nav2, &keys, &disc(0.4), &mut Warnings::default()).is_err());
     let settings = Settings { target: Target::Pcr, split: None, envelopes: None };
     let (locks, ..) = write(Format::Nav2, &root.to_string(), &disc(0.4), "map", &settings).unwrap();

@@ -323,7 +323,7 @@ fn lists_stand_in_metadata_whatever_it_was() {
     }
     // Which of two members of one name counts depends on who reads them.
     let twice = graph(",\"metadata\":{\"closed_edges\":[7]},\"metadata\":{}");
-    assert!(refused(Format::Nav2, &twice, Target::Nav2, None).contains("the key \"metadata\" twice"));
+    assert!(refused(Format::Nav2, &twice, Target::Nav2, None).contains("\"metadata\" is there twice"));
 }
 
 /// Zones as the standard asks for them: names of their own, and what a RELEASE zone needs.

@@ -8,7 +8,6 @@
 //! fault        reasons why it refuses a request                       Fault
 //! entry        data that have to survive the process                  Entry, Keep
 //! journal      a file of entries                                      Journal
-//! json         JSON without repeated names                            Once
 //! writer       a journal on a thread of its own                       Writer, Kept
 //! supervisor   robots, missions, positions, holds                     Supervisor
 //! query        queries about a fleet                                  Question
@@ -37,7 +36,6 @@ pub mod event;
 pub mod fault;
 pub mod http;
 pub mod journal;
-pub mod json;
 pub mod lines;
 pub mod log;
 pub mod metrics;

@@ -5,10 +5,10 @@ use crate::course::Start;
 use crate::entry::Layout;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::json::Once;
 use crate::query::{self, Question};
 use crate::robot::Abilities;
 use crate::supervisor::{Proposal, Report, Supervisor};
+use pcr_formats::once::Once;
 use serde::Deserialize;
 use serde_json::{Value, json};
 

@@ -1,13 +1,11 @@
 //! Lenient reading of JSON: `null` counts as missing, and errors name a value of the wrong type.
 
 use super::ImportError;
+use crate::once::Once;
 use crate::scenario::LIMIT;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
-use std::fmt;
 
-/// The value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused: of its two values
-/// `serde_json` keeps the last one, other programs the first one, and somebody meant both.
+/// The value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused.
 ///
 /// # Errors
 /// Why it cannot be read.
@@ -15,73 +13,6 @@ pub fn parse(text: &str) -> Result<Value, ImportError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let value: Result<Once, _> = serde_json::from_str(text);
     value.map(|once| once.0).map_err(|error| ImportError::new(format!("not JSON: {error}")))
-}
-
-/// A value in which no object has a key twice.
-struct Once(Value);
-
-impl<'de> Deserialize<'de> for Once {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Reader).map(Self)
-    }
-}
-
-struct Reader;
-
-impl<'de> Visitor<'de> for Reader {
-    type Value = Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a value")
-    }
-
-    fn visit_unit<E>(self) -> Result<Value, E> {
-        Ok(Value::Null)
-    }
-
-    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_string<E>(self, value: String) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
-        let mut elements = Vec::new();
-        while let Some(Once(element)) = list.next_element()? {
-            elements.push(element);
-        }
-        Ok(Value::Array(elements))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
-        let mut read = Map::new();
-        while let Some(key) = members.next_key::<String>()? {
-            if read.contains_key(&key) {
-                return Err(A::Error::custom(format_args!("an object with the key {key:?} twice")));
-            }
-            let Once(value) = members.next_value()?;
-            read.insert(key, value);
-        }
-        Ok(Value::Object(read))
-    }
 }
 
 /// An object and how messages name it.

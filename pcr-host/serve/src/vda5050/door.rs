@@ -2,7 +2,7 @@
 //! are refused with a reason.
 
 use super::bounds::{self, VERBATIM};
-use crate::json::Once;
+use pcr_formats::once::Once;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt;

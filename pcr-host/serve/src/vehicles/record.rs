@@ -1,10 +1,11 @@
 //! A file with the true positions of vehicles, and the proof that they never touched.
 //!
 //! The first line names the vehicles: `{"format":"pcr-record","version":2,"vehicles":[{"name":"sim/1","radius":0.4}]}`.
-//! The last line is `{"lines":N,"crc32":C}`, with the number of those between and the checksum (as in PNG) of all that is
-//! before it; a record without it, or with other numbers, is not as it was written, and proves nothing. Each other line is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\]
-//! of a vehicle increase. Between two of its lines a vehicle moves straight at a constant speed; before the first and
-//! after the last line it stands.
+//! Each line after it is `[vehicle, time, x, y]`; vehicles are counted from 0, and the times \[s\] of a vehicle increase.
+//! Between two of its lines a vehicle moves straight at a constant speed; before the first and after the last one it
+//! stands. The last line of the file is `{"lines":N,"crc32":C}`, with the number of these lines and the checksum (as in
+//! PNG) of all that is before it. A record without it, or with other numbers, is not as it was written, and proves
+//! nothing.
 
 use crc32fast::Hasher;
 use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
