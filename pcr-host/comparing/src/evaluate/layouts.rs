@@ -42,11 +42,12 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         Extent::Quick => (&LAYOUTS[1..3], &SIZES[..1], 0.002),
     };
     let mut text = format!(
-        "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {sizes:?} robots where so many find a \
+        "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {} robots where so many find a \
         place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --compare`, seed 1). *Safe*: safe ends; up to as many robots no mission is refused for ever. *Alone*: missions an hour if nobody was \
         in anybody's way. *Locks*: the better one of locks on whole routes and on edges, by missions in all. *Decision*: by orders, 99 of 100 within.\n\n\
         | layout | radius | safe | robots | alone | orders | locks | start delays | orders / locks | orders / alone | stuck | decision | contact |\n\
-        |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
+        |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n",
+        sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ")
     );
     let mut small = Vec::new();
     for &(name, radius) in layouts {
@@ -74,7 +75,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
                 Ok((robots, layout)) => {
                     if agents == SIZES[0] {
                         let (nodes, safe) = (layout.nodes, layout.safe_ends.len());
-                        small.push(format!("{name}: {nodes} nodes, room for {robots} robots, {safe} safe ends"));
+                        small.push(format!("{name}: {nodes} nodes, {safe} safe ends, robots that find room: {robots}"));
                     }
                     break;
                 }
