@@ -30,6 +30,7 @@ mod golden;
 mod grid_plans;
 mod import_ccbs;
 mod import_damage;
+mod import_facing;
 mod import_factsheet;
 mod import_lif;
 mod import_nav2;

@@ -105,6 +105,16 @@ impl Footprint {
         self.growth
     }
 
+    /// Whether the outline is the same when the vehicle is turned by half a turn about its reference point, corner for corner (up to
+    /// 1e-9 of its size).
+    pub fn is_same_backward(&self) -> bool {
+        let corners = &self.polygon;
+        let near = 1e-9 * self.reach();
+        let opposite = corners.iter().cycle().skip(corners.len() / 2);
+        corners.len().is_multiple_of(2)
+            && corners.iter().zip(opposite).all(|(a, b)| distance(*a, b.map(|x| -x)) <= near)
+    }
+
     /// Radius of the disc around the reference point that holds all discs \[m\].
     pub fn reach(&self) -> f64 {
         self.discs.iter().map(|disc| disc.ahead.hypot(disc.left) + disc.radius).fold(0.0, f64::max)
@@ -223,6 +233,7 @@ mod tests {
         assert_eq!(footprint.discs().len(), 6);
         // The corner of a square of 0.4 m less half its side.
         assert!((footprint.overhang() - (0.08_f64.sqrt() - 0.2)).abs() < 1e-9);
+        assert!(!footprint.is_same_backward());
         check(&footprint);
     }
 

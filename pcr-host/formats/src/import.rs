@@ -244,12 +244,13 @@ fn imported(
     }
     let given = given(options, warnings)?;
     let vehicle = options.vehicle(&given, moves, warnings);
+    let outline = vehicle.footprint.as_ref();
     let mut layout = whole(options, warnings, |warnings| match format {
         Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings),
-        Format::Lif => lif::read(text, options, vehicle.footprint.is_some(), warnings),
-        Format::Rmf => rmf::read(text, options, warnings),
+        Format::Lif => lif::read(text, options, outline, warnings),
+        Format::Rmf => rmf::read(text, options, outline, warnings),
         Format::OpenDrive => opendrive::read(text, options, warnings),
-        Format::OpenTcs => opentcs::read(text, options, warnings),
+        Format::OpenTcs => opentcs::read(text, options, outline, warnings),
         Format::Ccbs => ccbs::roadmap(text, options, warnings),
         Format::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
         Format::Path => Err(ImportError::new("paths of agents are not a layout")),

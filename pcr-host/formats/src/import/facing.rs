@@ -2,14 +2,23 @@
 
 use super::value::Object;
 use super::{ImportError, Warnings};
+use crate::footprint::Footprint;
 use std::f64::consts::{PI, TAU};
 
 /// Angle that is rounding in a file and nothing else \[rad\].
 const ROUNDING: f64 = 1e-3;
 
-/// Whether an angle is none.
-pub(super) fn is_ahead(angle: f64) -> bool {
-    ((angle + PI).rem_euclid(TAU) - PI).abs() <= ROUNDING
+/// Whether an outline at this angle from its path is what it is along it.
+pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
+    let is_none = |angle: f64| ((angle + PI).rem_euclid(TAU) - PI).abs() <= ROUNDING;
+    is_none(angle) || is_none(angle - PI) && outline.is_same_backward()
+}
+
+/// Loses an edge that is travelled backward, unless it is a disc that does so or an outline that is the same then.
+pub(super) fn backward(of: &str, outline: Option<&Footprint>, warnings: &mut Warnings) {
+    if outline.is_some_and(|outline| !outline.is_same_backward()) {
+        warnings.lose(format_args!("{of}: it is travelled backward, and outlines face along their paths here"));
+    }
 }
 
 /// What is said of an orientation that is not read.
@@ -24,12 +33,13 @@ pub(super) fn along(
     field: &str,
     unit: f64,
     heading: Option<f64>,
+    outline: &Footprint,
     warnings: &mut Warnings,
 ) -> Result<(), ImportError> {
     let Some(orientation) = edge.number(field)? else { return Ok(()) };
     let is_global = edge.text("orientationType")?.is_some_and(|kind| kind.eq_ignore_ascii_case("GLOBAL"));
     let ahead = if is_global { heading } else { Some(0.0) };
-    if !ahead.is_some_and(|ahead| is_ahead(orientation * unit - ahead)) {
+    if !ahead.is_some_and(|ahead| is_ahead(outline, orientation * unit - ahead)) {
         lose(&edge.name, field, orientation, warnings);
     }
     Ok(())

@@ -7,6 +7,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::value::Object;
 use super::{ImportError, Options, Warnings, facing, trajectory, value};
+use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -23,7 +24,7 @@ pub(super) fn is_layout(root: &Value) -> bool {
 pub(super) fn read(
     text: &str,
     options: &Options,
-    outlined: bool,
+    outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
     let value = value::parse(text)?;
@@ -39,7 +40,7 @@ pub(super) fn read(
         edges: Names::new(),
         types: BTreeSet::new(),
         options,
-        outlined,
+        outline,
         warnings,
     };
     let mut edges = Vec::new();
@@ -92,8 +93,8 @@ struct Reader<'a> {
     edges: Names<Edge>,
     types: BTreeSet<String>,
     options: &'a Options,
-    /// Whether it matters which way the vehicle faces.
-    outlined: bool,
+    /// Of the vehicle, if it matters which way that faces.
+    outline: Option<&'a Footprint>,
     warnings: &'a mut Warnings,
 }
 
@@ -194,11 +195,11 @@ impl Reader<'_> {
         if let Some(property) = property {
             edge.speed = property.positive("maxSpeed")?;
             edge.rotation = property.positive("maxRotationSpeed")?;
-            if self.outlined {
+            if let Some(outline) = self.outline {
                 let ahead = straight.heading;
                 let ahead = Some(ahead).filter(|_| property.get("trajectory").is_none());
                 let edge = property.clone().called(format!("edge {id}"));
-                facing::along(&edge, "vehicleOrientation", 1_f64.to_radians(), ahead, self.warnings)?;
+                facing::along(&edge, "vehicleOrientation", 1_f64.to_radians(), ahead, outline, self.warnings)?;
             }
             if let Some(trajectory) = property.object("trajectory")? {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));

@@ -8,7 +8,8 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::nurbs::Bezier;
 use super::xml::{children, number, only, optional, parse};
-use super::{ImportError, Options, Warnings};
+use super::{ImportError, Options, Warnings, facing};
+use crate::footprint::Footprint;
 use crate::scenario::Placed;
 
 /// Metres of a millimetre.
@@ -21,7 +22,12 @@ const UNIT: f64 = 50.0;
 const DIFFERENCE: f64 = 0.01;
 
 /// Reads a model.
-pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+pub(super) fn read(
+    text: &str,
+    options: &Options,
+    outline: Option<&Footprint>,
+    warnings: &mut Warnings,
+) -> Result<Layout, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
     if !root.has_tag_name("model") {
@@ -56,6 +62,10 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         match edge(path, id, &nodes, units, options.tolerance(), warnings) {
             Ok(edge) => {
+                // In the other direction a vehicle drives backward: it does not turn round.
+                if edge.two_way {
+                    facing::backward(&format!("path {}", edge.id), outline, warnings);
+                }
                 edges.add(edge, warnings);
             }
             Err(error) => warnings.lose(error),

@@ -9,7 +9,8 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::value::Object;
 use super::vehicle::Given;
-use super::{ImportError, Options, Warnings};
+use super::{ImportError, Options, Warnings, facing};
+use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
@@ -63,7 +64,12 @@ pub fn is_navigation_graph(root: &Value) -> bool {
 }
 
 /// Reads a building, or a navigation graph.
-pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+pub(super) fn read(
+    text: &str,
+    options: &Options,
+    outline: Option<&Footprint>,
+    warnings: &mut Warnings,
+) -> Result<Layout, ImportError> {
     let value = yaml(text)?;
     let root = Object::new("building", &value)?;
     if root.get("rmf_fleet").is_some() {
@@ -91,9 +97,9 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         }
         let scale = if flipped < 0.0 { scale(&object, &vertices, warnings)? } else { 1.0 };
         let scale = [scale, scale * flipped];
-        let mut level = Level { name, graph, scale, vertices, nodes: HashMap::new(), layout: &mut layout };
+        let mut level = Level { name, graph, scale, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in object.list("lanes")?.iter().enumerate() {
-            match level.lane(k, lane, options, &mut graphs) {
+            match level.lane(k, lane, options, &mut graphs, warnings) {
                 Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
                 Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
@@ -184,6 +190,8 @@ struct Level<'a> {
     /// Metres of a pixel to the right and down.
     scale: [f64; 2],
     vertices: Vec<Vertex>,
+    /// Of the vehicle, if it matters which way that faces.
+    outline: Option<&'a Footprint>,
     /// Places of the nodes in the layout, by vertex.
     nodes: HashMap<usize, usize>,
     layout: &'a mut Layout,
@@ -208,6 +216,7 @@ impl Level<'_> {
         value: &Value,
         options: &Options,
         graphs: &mut BTreeSet<u64>,
+        warnings: &mut Warnings,
     ) -> Result<Option<String>, String> {
         let parameters = value.get(2);
         // A parameter that is there and has the wrong type is not left aside.
@@ -231,6 +240,17 @@ impl Level<'_> {
         // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
         let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
         let both_ways = two_way.unwrap_or(false);
+        let facing = if self.graph { "orientation_constraint" } else { "orientation" };
+        // Which way the vehicle faces both ways, as it does not turn round.
+        let is_backward = match typed(parameters, facing, |value| value.as_str().map(str::to_owned))?.as_deref() {
+            Some("backward") => true,
+            Some("forward") => both_ways && !self.graph,
+            None | Some("") => false,
+            Some(other) => return Err(format!("{facing}: {other} is not read")),
+        };
+        if is_backward {
+            facing::backward(&format!("lane {}/{k}", self.name), self.outline, warnings);
+        }
         let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
         self.layout.edges.push(Edge {
             id: Id::Text(format!("{}/{k}", self.name)),

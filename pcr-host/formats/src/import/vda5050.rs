@@ -15,6 +15,7 @@ use super::trace::Tracer;
 use super::value::Object;
 use super::warnings::TOGETHER;
 use super::{ImportError, Options, Vehicle, Warnings, facing, loads, route, trajectory};
+use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use crate::scenario::{Agent, MotionSpec, Scenario, label};
 use serde_json::Value;
@@ -192,7 +193,6 @@ impl Reader<'_> {
             let (before, after) = (nodes.get(k), nodes.get(k + 1));
             let edge = &edge.object;
             joins(edge, before, after)?;
-            let outlined = self.vehicle.footprint.is_some();
             let speed = match edge.positive("maxSpeed")? {
                 None => edge.positive("maximumSpeed")?,
                 speed => speed,
@@ -207,8 +207,8 @@ impl Reader<'_> {
             let is_straight = trajectory.is_none();
             let line = position.zip(target).filter(|_| is_straight);
             let ahead = line.map(|(from, to)| (to[1] - from[1]).atan2(to[0] - from[0]));
-            if outlined {
-                facing::along(edge, "orientation", 1.0, ahead, self.warnings)?;
+            if let Some(outline) = &self.vehicle.footprint {
+                facing::along(edge, "orientation", 1.0, ahead, outline, self.warnings)?;
             }
             let Some(trajectory) = trajectory else {
                 let missing = |node: Option<&Part<'_>>| {
@@ -229,8 +229,8 @@ impl Reader<'_> {
             position = Some(follow(&mut tracer, edge, &fit.pieces, position, target)?);
         }
         let stands = ways.iter().all(Option::is_none);
-        if self.vehicle.footprint.is_some() && !stands {
-            self.thetas(&nodes, &ways)?;
+        if let Some(outline) = self.vehicle.footprint.as_ref().filter(|_| !stands) {
+            self.thetas(&nodes, &ways, outline)?;
         }
         let stops = nodes.iter().any(|node| !node.object.list("actions").unwrap_or_default().is_empty());
         if stops {
@@ -245,14 +245,19 @@ impl Reader<'_> {
     }
 
     /// An outline at a node is as the path arrives there, or as it departs; `ways` are the headings of the edges at both ends.
-    fn thetas(&mut self, nodes: &[Part<'_>], ways: &[Option<[f64; 2]>]) -> Result<(), ImportError> {
+    fn thetas(
+        &mut self,
+        nodes: &[Part<'_>],
+        ways: &[Option<[f64; 2]>],
+        outline: &Footprint,
+    ) -> Result<(), ImportError> {
         for (k, node) in nodes.iter().enumerate() {
             let Some(theta) = node.object.object("nodePosition")?.map_or(Ok(None), |it| it.number("theta"))? else {
                 continue;
             };
             let arrives = k.checked_sub(1).and_then(|before| ways.get(before).copied().flatten()).map(|way| way[1]);
             let departs = ways.get(k).copied().flatten().map(|way| way[0]);
-            if !arrives.into_iter().chain(departs).any(|heading| facing::is_ahead(theta - heading)) {
+            if !arrives.into_iter().chain(departs).any(|heading| facing::is_ahead(outline, theta - heading)) {
                 facing::lose(&node.object.name, "theta", theta, self.warnings);
             }
         }

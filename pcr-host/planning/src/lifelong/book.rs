@@ -18,6 +18,8 @@ pub(super) struct Region {
     pub(super) hull: [Interval<f64>; 2],
     /// Of each of them as the second.
     gates: [Rc<[Timed]>; 2],
+    /// The nearest and the last of these, if there are any.
+    ends: [Option<[Timed; 2]>; 2],
     /// Which of the two goes first.
     pub(super) first: usize,
 }
@@ -33,15 +35,31 @@ impl Region {
         &self.gates[second]
     }
 
+    /// The nearest and the last gate of whoever is second, if there are any.
+    pub(super) fn ends(&self) -> Option<[Timed; 2]> {
+        self.ends[1 - self.first]
+    }
+
     /// With the two in the other order.
     fn swapped(&self) -> Self {
-        let Self { robots: [a, b], hull: [own, other], gates: [first, second], .. } = self;
-        Self { robots: [*b, *a], hull: [*other, *own], gates: [second.clone(), first.clone()], first: 1 - self.first }
+        let Self { robots: [a, b], hull: [own, other], gates: [first, second], ends: [head, tail], .. } = self;
+        Self {
+            robots: [*b, *a],
+            hull: [*other, *own],
+            gates: [second.clone(), first.clone()],
+            ends: [*tail, *head],
+            first: 1 - self.first,
+        }
     }
 
     /// Who is second.
     pub(super) fn second(&self) -> usize {
         self.robots[1 - self.first]
+    }
+
+    /// Who is second, and from which length on.
+    fn waits(&self) -> (usize, f64) {
+        (self.second(), self.hull[1 - self.first].lo)
     }
 
     /// Whether one of the two has left it behind.
@@ -75,6 +93,8 @@ struct Tie<'s> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Book {
     regions: Vec<Option<Region>>,
+    /// Of each of them who is second, and from which length on that one may have to wait \[m\]: what is asked for in each step of a robot.
+    seconds: Vec<(usize, f64)>,
     free: Vec<usize>,
     /// Those of each robot.
     rows: Vec<Vec<usize>>,
@@ -111,6 +131,7 @@ impl Book {
         for &(place, first) in firsts {
             if let Some(region) = &mut self.regions[place] {
                 region.first = usize::from(region.robots[1] == first);
+                self.seconds[place] = region.waits();
             }
         }
     }
@@ -118,8 +139,12 @@ impl Book {
     /// How far a robot may go.
     pub(super) fn hold(&self, robot: usize, robots: &[Robot], far: f64) -> f64 {
         let mut least = far;
-        for region in self.row(robot).filter(|region| region.second() == robot) {
-            if region.hull[1 - region.first].lo < least {
+        for &place in &self.rows[robot] {
+            let (second, from) = self.seconds[place];
+            if second == robot
+                && from < least
+                && let Some(region) = &self.regions[place]
+            {
                 least = least.min(hold(region.gates(), robots[region.robots[region.first]].at));
             }
         }
@@ -158,7 +183,9 @@ impl Book {
             let place = self.free.pop().unwrap_or(self.regions.len());
             if place == self.regions.len() {
                 self.regions.push(None);
+                self.seconds.push(region.waits());
             }
+            self.seconds[place] = region.waits();
             region.robots.iter().for_each(|&robot| self.rows[robot].push(place));
             self.regions[place] = Some(region);
         }
@@ -271,7 +298,8 @@ fn joined(ties: &mut [Tie<'_>], robot: usize, ways: [&Way; 2]) -> Vec<Region> {
             });
             pruned(all.collect()).into_iter().map(|gate| timed(gate, ways[1 - side], ways[side])).collect()
         });
-        Region { robots: [robot, group[0].other], hull, gates, first: 1 }
+        let ends = gates.each_ref().map(|gates: &Rc<[Timed]>| Some([*gates.first()?, *gates.last()?]));
+        Region { robots: [robot, group[0].other], hull, gates, ends, first: 1 }
     };
     ties.chunk_by(|a, b| a.group == b.group).map(region).collect()
 }

@@ -51,11 +51,21 @@ impl Run {
         };
         let mut due: Vec<usize> = (0..self.robots.len()).filter(due).collect();
         due.sort_by(|&a, &b| self.switched[a].total_cmp(&self.switched[b]));
-        for robot in due.into_iter().take(MOST) {
-            self.switched[robot] = now;
-            let begin = Instant::now();
-            let found = self.scene(now).switched(robot, GAIN);
-            self.decisions.push(begin.elapsed());
+        let mut due = due.into_iter().take(MOST).peekable();
+        while due.peek().is_some() {
+            // The waits of the fleet are found once, until one of them is another one.
+            let (mut tried, scene) = (Vec::new(), self.scene(now));
+            let waits = &Waits::of(scene.robots, scene.book);
+            let found = due.by_ref().find_map(|robot| {
+                let begin = Instant::now();
+                let found = scene.switched(robot, waits, GAIN);
+                tried.push((robot, begin.elapsed()));
+                found
+            });
+            for (robot, time) in tried {
+                self.switched[robot] = now;
+                self.decisions.push(time);
+            }
             if let Some(switched) = found {
                 self.outcome.revised += 1;
                 self.book.settle(&switched.firsts);
@@ -142,7 +152,7 @@ impl Run {
         }
         let earlier = self.scene(now).earlier();
         let Self { robots, abilities, book, timetable, .. } = self;
-        let waits = &Waits::of(robots, book, None);
+        let waits = &Waits::of(robots, book);
         for robot in (tick % ROUND..robots.len()).step_by(ROUND) {
             if robots[robot].has_arrived() {
                 continue;

@@ -112,7 +112,7 @@ impl Scene<'_> {
             return self.locked(robot, kept, candidates);
         }
         let it = &self.robots[robot];
-        let waits = &Waits::of(self.robots, self.book, Some(robot));
+        let waits = &Waits::of(self.robots, self.book);
         let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
         // The orders of all are sound before, the more so without this robot.
         let Scene { robots, abilities, time, .. } = *self;
@@ -124,7 +124,9 @@ impl Scene<'_> {
         let [least, most] = FORECASTS;
         let (alone, taken, budget) = match self.timetable {
             Some(_) => (Vec::new(), self.waiting_for(robot), FEW),
-            None => (alone().unwrap_or_default(), Vec::new(), (WORK / waits.len().max(1)).clamp(least, most)),
+            None => {
+                (alone().unwrap_or_default(), Vec::new(), (WORK / waits.len_without(robot).max(1)).clamp(least, most))
+            }
         };
         let (base, taken) = (self.timetable.map_or(&alone[..], |timetable| &timetable.lines), &taken[..]);
         let budget = &Cell::new(budget);

@@ -77,15 +77,26 @@ impl Ends {
     /// Of each node how many others are cut off if a robot stands there and at all safe ends, places on dead ends among them; all of a
     /// node where nobody should. Those behind a place are full already.
     pub(super) fn harm(&self, site: &Site) -> &[usize] {
+        /// Pairs of nodes around one, between which it costs less to look for ways than to count anew, about.
+        const FEW: usize = 64;
         self.harm.get_or_init(|| {
             let places: Vec<usize> = self.lanes.iter().flat_map(|lane| &lane[1..]).copied().collect();
             let all: Vec<usize> = self.nodes.iter().chain(&places).copied().collect();
             let mut harm = vec![usize::MAX; site.points.len()];
+            let mut search = Search::new(site);
             for (nodes, counted) in [(&self.nodes, &all), (&places, &self.nodes)] {
-                let least = left(site, counted, &self.safe);
+                let full = Left::of(site, counted, &self.safe);
+                let mut is_counted = vec![false; site.points.len()];
+                counted.iter().for_each(|&node| is_counted[node] = full.is_inside[node]);
                 for &node in nodes {
-                    let ends: Vec<usize> = self.safe.iter().chain([&node]).copied().collect();
-                    harm[node] = least.saturating_sub(left(site, counted, &ends));
+                    // What it parts is counted anew; else only the nodes are lost that it covers.
+                    harm[node] = if parts(&mut search, &full.is_inside, &full.is_open, node, FEW) {
+                        let ends: Vec<usize> = self.safe.iter().chain([&node]).copied().collect();
+                        full.count.saturating_sub(Left::of(site, counted, &ends).count)
+                    } else {
+                        let is_lost = |other: &usize| is_counted[*other] && full.is_open[site.standing(*other)];
+                        covered(site, node).into_iter().filter(is_lost).count()
+                    };
                 }
             }
             harm
@@ -99,7 +110,8 @@ impl Ends {
         self.nodes.iter().for_each(|&node| is_inside[node] = true);
         let other = |node: &usize| !is_inside[*node];
         let mut search = Search::new(site);
-        let never = |node: &usize| cuts_off(&mut search, &is_inside, *node);
+        let is_open = vec![true; site.atoms.len()];
+        let never = |node: &usize| cuts_off(&mut search, &is_inside, &is_open, *node);
         let mut safe = self.safe.clone();
         safe.sort_unstable();
         WellFormedness {
@@ -189,31 +201,56 @@ fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
         })
 }
 
-/// How many nodes can be reached from one another, at most, if robots stand at some of them.
-fn left(site: &Site, nodes: &[usize], ends: &[usize]) -> usize {
-    /// The largest part is found from one of so many nodes, but for odd layouts.
-    const HUBS: usize = 4;
-    let mut is_open = vec![true; site.atoms.len()];
-    for &end in ends {
-        site.covers(end).iter().for_each(|&atom| is_open[atom] = false);
+/// What is left of a layout if robots stand at some nodes.
+struct Left {
+    /// Of each atom whether none of them is in its way.
+    is_open: Vec<bool>,
+    /// Of each node whether it is in the largest part, in which all can be reached from one another.
+    is_inside: Vec<bool>,
+    /// How many nodes, of those that are counted, are in there and free.
+    count: usize,
+}
+
+impl Left {
+    fn of(site: &Site, counted: &[usize], ends: &[usize]) -> Self {
+        /// The largest part is found from one of so many nodes, but for odd layouts.
+        const HUBS: usize = 4;
+        let mut is_open = vec![true; site.atoms.len()];
+        for &end in ends {
+            site.covers(end).iter().for_each(|&atom| is_open[atom] = false);
+        }
+        let open = |atom: usize| is_open[atom];
+        let free: Vec<usize> = counted.iter().copied().filter(|&node| open(site.standing(node))).collect();
+        let parts = (0..HUBS.min(free.len())).map(|k| {
+            let hub = free[k * free.len() / HUBS.min(free.len())];
+            let [to, from] = [false, true].map(|back| reached(site, hub, back, open));
+            let is_inside: Vec<bool> = to.into_iter().zip(from).map(|(to, from)| to && from).collect();
+            (free.iter().filter(|&&node| is_inside[node]).count(), is_inside)
+        });
+        let (count, is_inside) = parts.max_by_key(|part| part.0).unwrap_or_else(|| (0, vec![false; site.points.len()]));
+        Self { is_open, is_inside, count }
     }
-    let open = |atom: usize| is_open[atom];
-    let free: Vec<usize> = nodes.iter().copied().filter(|&node| open(site.standing(node))).collect();
-    let sizes = (0..HUBS.min(free.len())).map(|k| {
-        let hub = free[k * free.len() / HUBS.min(free.len())];
-        let both = [false, true].map(|back| reached(site, hub, back, open));
-        free.iter().filter(|&&node| both[0][node] && both[1][node]).count()
-    });
-    sizes.max().unwrap_or(0)
+}
+
+/// The nodes at which a robot would touch one that stands at a node, itself among them.
+fn covered(site: &Site, node: usize) -> Vec<usize> {
+    site.covers(node).iter().filter_map(|&atom| atom.checked_sub(site.standing(0))).collect()
 }
 
 /// Whether a robot that stands at one of the nodes that can all be reached from one another cuts some of them off: other nodes within
-/// its disc, or those beyond it. Ways that lead past it begin where an edge comes near it and end where one leaves; there have to be others
-/// between these, and then there are for all.
-fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], node: usize) -> bool {
+/// its disc, or those beyond it.
+fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], is_open: &[bool], node: usize) -> bool {
+    covered(search.site, node).into_iter().any(|other| other != node && is_inside[other])
+        || parts(search, is_inside, is_open, node, usize::MAX)
+}
+
+/// Whether a robot that stands at a node parts others of those that can be reached from one another over open atoms. Ways that lead past it
+/// begin where an edge comes near it and end where one leaves; there have to be others between these, and then there are for all. Where there
+/// are more than so many pairs of these it is not looked for them: it may part them.
+fn parts(search: &mut Search<'_>, is_inside: &[bool], is_open: &[bool], node: usize, most: usize) -> bool {
     let site = search.site;
     let covers = site.covers(node);
-    let edges = || covers.iter().filter(|&&atom| site.atoms[atom].edge.is_some());
+    let edges = || covers.iter().filter(|&&atom| is_open[atom] && site.atoms[atom].edge.is_some());
     let ends = |end: usize| {
         let mut ends: Vec<usize> = edges().map(|&atom| site.atoms[atom].ends[end]).collect();
         ends.retain(|&end| end != node && is_inside[end]);
@@ -222,9 +259,8 @@ fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], node: usize) -> bool {
         ends
     };
     let [from, to] = [ends(0), ends(1)];
-    let mut others = covers.iter().filter_map(|&atom| atom.checked_sub(site.standing(0)));
-    let is_covered = others.any(|other| other != node && is_inside[other]);
-    is_covered || from.iter().any(|&from| to.iter().any(|&to| !search.leads(from, to, |atom| !covers.contains(&atom))))
+    let mut is_parted = |from, to| !search.leads(from, to, |atom| is_open[atom] && !covers.contains(&atom));
+    from.len() * to.len() > most || from.iter().any(|&from| to.iter().any(|&to| is_parted(from, to)))
 }
 
 /// Two-way edges without which not all nodes can be reached from one another.
@@ -311,12 +347,20 @@ mod tests {
             let mut is_inside = vec![false; site.points.len()];
             nodes.iter().for_each(|&node| is_inside[node] = true);
             let mut search = Search::new(&site);
-            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, node)).count();
+            let is_open = vec![true; site.atoms.len()];
+            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, &is_open, node)).count();
             for &node in &nodes {
                 let cuts = !is_open(&site, &nodes, &[node]);
-                assert_eq!(cuts_off(&mut search, &is_inside, node), cuts, "{count}, {radius}: {node}");
+                assert_eq!(cuts_off(&mut search, &is_inside, &is_open, node), cuts, "{count}, {radius}: {node}");
             }
             assert!(found > 0 && (found < nodes.len() || radius > 1.0), "{found} of {}", nodes.len());
+            let ends = Ends::of(&site, 1);
+            let full = Left::of(&site, &ends.nodes, &ends.safe).count;
+            for &node in &ends.nodes {
+                let standing: Vec<usize> = ends.safe.iter().chain([&node]).copied().collect();
+                let lost = full - Left::of(&site, &ends.nodes, &standing).count;
+                assert_eq!(ends.harm(&site)[node], lost, "{count}, {radius}: {node}");
+            }
             let cuts = |edge: usize| {
                 [false, true].into_iter().any(|back| {
                     let found = reached(&site, nodes[0], back, |atom| site.atoms[atom].edge != Some(edge));

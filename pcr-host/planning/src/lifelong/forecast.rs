@@ -11,12 +11,13 @@ use super::robot::{Robot, SHORT};
 use super::timetable::{Timeline, Timetable};
 use super::waits::{Wait, Waits, sort};
 use super::way::Way;
+use std::borrow::Cow;
 
 /// What is looked at: the fleet, one of its robots on another way.
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'t, 'w> {
     pub(super) robots: &'t [Robot],
-    /// Without those of the robot that has another way.
+    /// Those of the robot that has another way do not count.
     pub(super) waits: &'t Waits<'w>,
     pub(super) abilities: &'t Abilities,
     pub(super) time: f64,
@@ -71,17 +72,20 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
     }
 
     /// What a robot passes second.
-    fn row(&self, robot: usize) -> Vec<Wait<'t>> {
-        let known = self.waits.row(robot);
-        let mut row: Vec<Wait<'t>> = known.to_vec();
-        let regions = self.changed.iter().flat_map(|(.., regions)| regions.iter().enumerate());
-        for (place, region) in regions.filter(|(_, region)| region.second() == robot) {
-            row.extend(Wait::of(region, Some(place), region.robots.map(|robot| self.way(robot).1)));
+    fn row(&self, robot: usize) -> Cow<'t, [Wait<'t>]> {
+        let known: &'t [Wait<'t>] = self.waits.row(robot);
+        let Some((changed, .., regions)) = self.changed else { return known.into() };
+        let is_changed = robot == changed;
+        let is_kept = |wait: &&Wait<'_>| !is_changed && wait.first != changed;
+        let mut own = regions.iter().enumerate().filter(|(_, region)| region.second() == robot).peekable();
+        if own.peek().is_none() && known.iter().all(|wait| is_kept(&wait)) {
+            return known.into();
         }
-        if row.len() > known.len() {
-            sort(&mut row);
-        }
-        row
+        let at = |region: &Region| region.robots.map(|robot| self.way(robot).1);
+        let own = own.filter_map(|(place, region)| Wait::of(region, Some(place), at(region)));
+        let mut row: Vec<Wait<'t>> = known.iter().filter(is_kept).copied().chain(own).collect();
+        sort(&mut row);
+        row.into()
     }
 
     /// When robots would be where, or those that would wait for ever; nobody in particular where too many would have to be taken.
@@ -122,7 +126,10 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
             };
             match self.changed {
                 Some((changed, .., regions)) if changed == robot => regions.iter().for_each(look),
-                _ if line.is_later(&timetable.lines[robot]) => self.waits.regions(robot).for_each(&mut look),
+                _ if line.is_later(&timetable.lines[robot]) => {
+                    let is_kept = |region: &&Region| self.changed.is_none_or(|it| !region.robots.contains(&it.0));
+                    self.waits.regions(robot).filter(is_kept).for_each(&mut look);
+                }
                 _ => {}
             }
         }
@@ -147,7 +154,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
             let before = taken[place].steps;
             while let Some((first, timed, is_left)) = taken[place].ahead() {
                 let opens = match (places[first], self.kept) {
-                    (NONE, Some((timetable, _))) => Some(timetable.lines[first].opens(timed, self.time)),
+                    (NONE, Some((timetable, _))) => Some(timetable.lines[first].opens(&timed, self.time)),
                     (first, _) => {
                         let first = &taken[first as usize];
                         let is_known = timed.gate.needs <= first.known();
@@ -190,43 +197,66 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
 /// A robot that is taken from gate to gate.
 struct Taken<'r> {
     line: Timeline,
-    /// What it has still to pass second, the nearest last.
-    regions: Vec<Wait<'r>>,
-    /// Gates of regions that it may have to wait at, with who is first there and the place of the region, the nearest last.
-    gates: Vec<(&'r Timed, usize, Option<usize>)>,
+    /// What it has to pass second, the nearest first, and how many of these it has come to.
+    regions: Cow<'r, [Wait<'r>]>,
+    met: usize,
+    /// Those of them at which it may have to wait, with the gates that it has still to pass there.
+    open: Vec<Wait<'r>>,
+    /// The nearest of these gates: its length, infinite if there is none, and whose it is.
+    nearest: (f64, usize),
     length: f64,
     /// Gates and regions that it has passed.
     steps: usize,
 }
 
 impl<'r> Taken<'r> {
-    fn new(line: Timeline, mut regions: Vec<Wait<'r>>, length: f64) -> Self {
-        regions.reverse();
-        Self { line, regions, gates: Vec::new(), length, steps: 0 }
+    fn new(line: Timeline, regions: Cow<'r, [Wait<'r>]>, length: f64) -> Self {
+        Self { line, regions, met: 0, open: Vec::new(), nearest: (f64::INFINITY, 0), length, steps: 0 }
+    }
+
+    /// The nearest region that it has still to come to.
+    fn region(&self) -> Option<&Wait<'r>> {
+        self.regions.get(self.met)
     }
 
     /// Whether a region comes before the next gate.
     fn meets(&self) -> bool {
-        let gate = self.gates.last().map_or(f64::INFINITY, |gate| gate.0.gate.at);
-        self.regions.last().is_some_and(|wait| wait.gates[0].gate.at < gate)
+        self.region().is_some_and(|wait| wait.ends[0].gate.at < self.nearest.0)
+    }
+
+    /// Who waits at the nearest gate, and the gate.
+    fn gate(&self) -> Option<(&Wait<'r>, &'r Timed)> {
+        let wait = self.open.get(self.nearest.1)?;
+        Some((wait, wait.gates.first()?))
+    }
+
+    /// Finds the nearest gate; among equals that of the region that was met last.
+    fn look(&mut self) {
+        self.nearest = (f64::INFINITY, 0);
+        for (place, wait) in self.open.iter().enumerate() {
+            let at = wait.gates[0].gate.at;
+            if at <= self.nearest.0 {
+                self.nearest = (at, place);
+            }
+        }
     }
 
     /// What comes next: who is first there, and the gate; of a region the last one, which tells whether it has been left.
-    fn ahead(&self) -> Option<(usize, &'r Timed, bool)> {
+    fn ahead(&self) -> Option<(usize, Timed, bool)> {
         if self.next() >= self.length {
             return None;
         }
-        match (self.meets(), self.regions.last(), self.gates.last()) {
-            (true, Some(wait), _) => Some((wait.first, wait.ends()[1], true)),
-            (_, _, Some(&(timed, first, _))) => Some((first, timed, false)),
+        match (self.meets(), self.region(), self.gate()) {
+            (true, Some(wait), _) => Some((wait.first, wait.ends[1], true)),
+            (_, _, Some((wait, timed))) => Some((wait.first, *timed, false)),
             _ => None,
         }
     }
 
     /// Length of what comes next.
     fn next(&self) -> f64 {
-        let region = self.regions.last().map_or(f64::INFINITY, |wait| wait.gates[0].gate.at);
-        self.gates.last().map_or(region, |gate| gate.0.gate.at.min(region))
+        let region = self.region().map_or(f64::INFINITY, |wait| wait.ends[0].gate.at);
+        self.nearest.0.min(region)
     }
 
     /// Up to which length it is known when it is there.
@@ -237,25 +267,31 @@ impl<'r> Taken<'r> {
 
     /// Comes to a region that the first leaves then, if that is known: its gates count unless it has been left by then.
     fn meet(&mut self, left: Option<f64>) {
-        let Some(wait) = self.regions.pop() else { return };
+        let Some(&wait) = self.region() else { return };
+        self.met += 1;
         self.steps += 1;
-        if left.is_some_and(|left| self.line.comes(wait.ends()[0].comes) >= left) {
+        if left.is_some_and(|left| self.line.comes(wait.ends[0].comes) >= left) {
             return;
         }
-        self.gates.extend(wait.gates.iter().rev().map(|timed| (timed, wait.first, wait.place)));
-        self.gates.sort_by(|a, b| b.0.gate.at.total_cmp(&a.0.gate.at));
+        self.open.push(wait);
+        self.look();
     }
 
     /// Passes a gate, which opens then.
     fn wait(&mut self, opens: f64, lost: f64) {
-        if let Some((timed, ..)) = self.gates.pop() {
-            self.steps += 1;
-            self.line.wait(timed.gate.at, timed.comes, opens, lost);
+        let Some((wait, timed)) = self.gate() else { return };
+        let left = &wait.gates[1..];
+        self.steps += 1;
+        self.line.wait(timed.gate.at, timed.comes, opens, lost);
+        match left {
+            [] => drop(self.open.remove(self.nearest.1)),
+            _ => self.open[self.nearest.1].gates = left,
         }
+        self.look();
     }
 
     fn stuck(&self) -> Option<Stuck> {
         let (_, _, is_left) = self.ahead()?;
-        self.gates.last().filter(|_| !is_left).map(|gate| Stuck { region: gate.2 })
+        self.gate().filter(|_| !is_left).map(|(wait, _)| Stuck { region: wait.place })
     }
 }

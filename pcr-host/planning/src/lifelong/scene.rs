@@ -50,7 +50,7 @@ impl Scene<'_> {
     /// When all are where with the ways and orders that they have.
     pub(super) fn base(&self) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self;
-        let waits = &Waits::of(robots, self.book, None);
+        let waits = &Waits::of(robots, self.book);
         let earlier = self.earlier();
         Trial { robots, waits, abilities, time, changed: None, earlier, kept: None }.forecast()
     }

@@ -91,6 +91,7 @@ impl Run {
         // Tests do without, as it takes a while where nothing is optimized.
         if !cfg!(debug_assertions) {
             site.warm();
+            ends.harm(&site);
         }
         let abilities = Abilities::of(&imported.vehicle);
         if starts.is_empty() {

@@ -23,7 +23,7 @@ pub(super) struct Switched {
 
 impl Scene<'_> {
     /// Lets a robot of a large fleet go first where it waits, if it can and all are expected to arrive sooner by `gain` \[s\].
-    pub(super) fn switched(&self, robot: usize, gain: f64) -> Option<Switched> {
+    pub(super) fn switched(&self, robot: usize, waits: &Waits<'_>, gain: f64) -> Option<Switched> {
         let timetable = self.timetable?;
         let it = &self.robots[robot];
         let (places, mut regions): (Vec<usize>, Vec<Region>) = self.book.seen_by(robot).unzip();
@@ -36,7 +36,6 @@ impl Scene<'_> {
         if holds[nearest] > it.at + self.abilities.braking(self.abilities.speed) {
             return None;
         }
-        let waits = &Waits::of(self.robots, self.book, Some(robot));
         let (base, taken) = (&timetable.lines[..], &self.waiting_for(robot)[..]);
         let cost = base[robot].cost(&it.way, self.time, self.earlier());
         let budget = &Cell::new(FORECASTS);

@@ -102,13 +102,15 @@ impl Timetable {
     /// Whether the second of a region, which has this way, sets off too early at one of its gates if the first has this line; they are at
     /// these places.
     pub(super) fn is_broken(&self, region: &Region, first: &Timeline, now: f64, at: [f64; 2], way: &Way) -> bool {
-        let Some(wait) = Wait::of(region, None, at) else { return false };
+        let Some(ends) = region.ends() else { return false };
         let second = &self.lines[region.second()];
-        let is_early = |[at, needs]: [&Timed; 2]| {
-            at.gate.at < way.length() && first.opens(needs, now) > second.beyond(at.comes, at.gate.at, now)
+        let is_early = |[at, needs]: [Timed; 2]| {
+            at.gate.at < way.length() && first.opens(&needs, now) > second.beyond(at.comes, at.gate.at, now)
         };
         // Where the first has left before the second comes no gate matters.
-        is_early(wait.ends()) && wait.gates.iter().any(|timed| is_early([timed; 2]))
+        let is_met = |wait: Wait<'_>| is_early(wait.ends) && wait.gates.iter().any(|timed| is_early([*timed; 2]));
+        // Gates that are passed are nearer, so that it holds the more of them all.
+        is_early(ends) && Wait::of(region, None, at).is_some_and(is_met)
     }
 
     /// Other lines for some robots.

@@ -11,8 +11,12 @@ pub(super) struct Wait<'r> {
     pub(super) first: usize,
     /// The gates that it has still to pass there: at least one.
     pub(super) gates: &'r [Timed],
+    /// The nearest of them, and the one at which the first has left.
+    pub(super) ends: [Timed; 2],
     /// Its place among the regions of the robot that has another way.
     pub(super) place: Option<usize>,
+    /// Its place before they were sorted, which decides between equals.
+    order: usize,
 }
 
 impl<'r> Wait<'r> {
@@ -21,14 +25,17 @@ impl<'r> Wait<'r> {
         if region.is_over(at) {
             return None;
         }
-        let (gates, first) = (region.gates(), region.robots[region.first]);
-        let gates = &gates[gates.partition_point(|timed| timed.gate.needs <= at[region.first])..];
-        (!gates.is_empty()).then_some(Self { first, gates, place })
-    }
-
-    /// The nearest gate, and the one at which the first has left.
-    pub(super) fn ends(&self) -> [&'r Timed; 2] {
-        [&self.gates[0], &self.gates[self.gates.len() - 1]]
+        let ([mut nearest, last], at) = (region.ends()?, at[region.first]);
+        if last.gate.needs <= at {
+            return None;
+        }
+        // Most often none is passed, and the list need not be read.
+        let mut gates = region.gates();
+        if nearest.gate.needs <= at {
+            gates = &gates[gates.partition_point(|timed| timed.gate.needs <= at)..];
+            nearest = *gates.first()?;
+        }
+        Some(Self { first: region.robots[region.first], gates, ends: [nearest, last], place, order: 0 })
     }
 }
 
@@ -36,20 +43,18 @@ impl<'r> Wait<'r> {
 pub(super) struct Waits<'w> {
     robots: &'w [Robot],
     book: &'w Book,
-    without: Option<usize>,
     rows: Vec<OnceCell<Vec<Wait<'w>>>>,
 }
 
 impl<'w> Waits<'w> {
-    /// By the orders of the fleet, those of one robot left out.
-    pub(super) fn of(robots: &'w [Robot], book: &'w Book, without: Option<usize>) -> Self {
-        Self { robots, book, without, rows: vec![OnceCell::new(); robots.len()] }
+    /// By the orders of the fleet.
+    pub(super) fn of(robots: &'w [Robot], book: &'w Book) -> Self {
+        Self { robots, book, rows: vec![OnceCell::new(); robots.len()] }
     }
 
-    /// The regions of a robot, but for those of the one that is left out.
+    /// The regions of a robot.
     pub(super) fn regions(&self, robot: usize) -> impl Iterator<Item = &'w Region> {
-        let without = self.without;
-        self.book.row(robot).filter(move |region| without.is_none_or(|without| !region.robots.contains(&without)))
+        self.book.row(robot)
     }
 
     /// Those of a robot.
@@ -63,13 +68,15 @@ impl<'w> Waits<'w> {
         })
     }
 
-    /// Gates of all of them: what a forecast of all costs.
-    pub(super) fn len(&self) -> usize {
-        (0..self.robots.len()).flat_map(|robot| self.row(robot)).map(|wait| wait.gates.len()).sum()
+    /// Gates of all but one robot: what a forecast of all costs.
+    pub(super) fn len_without(&self, robot: usize) -> usize {
+        let others = (0..self.robots.len()).filter(|&other| other != robot).flat_map(|other| self.row(other));
+        others.filter(|wait| wait.first != robot).map(|wait| wait.gates.len()).sum()
     }
 }
 
 /// The nearest first.
 pub(super) fn sort(waits: &mut [Wait<'_>]) {
-    waits.sort_by(|a, b| a.gates[0].gate.at.total_cmp(&b.gates[0].gate.at));
+    waits.iter_mut().enumerate().for_each(|(place, wait)| wait.order = place);
+    waits.sort_unstable_by(|a, b| a.ends[0].gate.at.total_cmp(&b.ends[0].gate.at).then(a.order.cmp(&b.order)));
 }

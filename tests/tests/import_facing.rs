@@ -1,0 +1,105 @@
+//! Vehicles with outlines that are driven backward: layouts were read as if they turned round. One whose outline is the same backward
+//! may do so.
+
+use pcr_formats::import::{Format, Options, Warnings, layout};
+use std::path::{Path, PathBuf};
+
+/// A vehicle whose outline is a rectangle around its reference point.
+struct Centred(PathBuf);
+
+impl Centred {
+    fn new(name: &str) -> Self {
+        let file = std::env::temp_dir().join(format!("pcr-centred-{name}-{}.json", std::process::id()));
+        let physical = r#"{ "speedMax": 1.5, "accelerationMax": 0.6, "width": 0.8, "length": 1.9 }"#;
+        std::fs::write(&file, format!(r#"{{ "typeSpecification": {{}}, "physicalParameters": {physical} }}"#)).unwrap();
+        Self(file)
+    }
+}
+
+impl Drop for Centred {
+    fn drop(&mut self) {
+        std::fs::remove_file(&self.0).unwrap();
+    }
+}
+
+/// Whether a layout is read for a disc, for the outline and for one whose reference point is not in its middle, and why not for that.
+fn read(format: Format, text: &str, centred: &Centred) -> Result<(), String> {
+    let aside = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json"));
+    let of = |fleet: Option<&Path>| {
+        let radius = fleet.is_none().then_some(0.5);
+        let options = Options { radius, fleet: fleet.map(Path::to_path_buf), ..Options::default() };
+        let read = layout(format, text, &options, &mut Warnings::default());
+        read.map(|it| assert_eq!(it.vehicle.footprint.is_some(), fleet.is_some())).map_err(|error| error.to_string())
+    };
+    assert_eq!(of(None), Ok(()));
+    assert_eq!(of(Some(&centred.0)), Ok(()));
+    of(Some(aside))
+}
+
+#[test]
+fn paths_of_opentcs_are_driven_backward_in_their_other_direction() {
+    let centred = Centred::new("opentcs");
+    let plant = |limit: &str| {
+        format!(
+            "<model version=\"7.0.0\" name=\"m\"><point name=\"a\" positionX=\"0\" positionY=\"0\"/><point name=\"b\" positionX=\"5000\" positionY=\"0\"/>\
+            <path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"5000\" maxVelocity=\"1000\" {limit}/></model>"
+        )
+    };
+    for limit in ["", "maxReverseVelocity=\"0\""] {
+        assert_eq!(read(Format::OpenTcs, &plant(limit), &centred), Ok(()));
+    }
+    let error = read(Format::OpenTcs, &plant("maxReverseVelocity=\"500\""), &centred).unwrap_err();
+    assert!(error.starts_with("path p: it is travelled backward, and outlines"), "{error}");
+}
+
+#[test]
+fn lanes_of_open_rmf_say_which_way_vehicles_face() {
+    let centred = Centred::new("rmf");
+    let building = |parameters: &str| {
+        format!(
+            "levels:\n  L1:\n    vertices: [[0, 0, 0, a], [200, 0, 0, b]]\n    measurements: [[0, 1, {{distance: [3, 20.0]}}]]\n    \
+            lanes:\n      - [0, 1, {{{parameters}}}]\n"
+        )
+    };
+    let graph = |parameters: &str| {
+        format!(
+            "building_name: b\nlevels:\n  L1:\n    vertices: [[0, 0, {{name: a}}], [20, 0, {{name: b}}]]\n    lanes:\n      - [0, 1, {{{parameters}}}]\n"
+        )
+    };
+    for fine in [
+        building("orientation: [1, \"\"], bidirectional: [4, true]"),
+        building("orientation: [1, forward]"),
+        graph("orientation_constraint: forward, is_bidirectional: false"),
+        // What a building says is not what a graph says.
+        graph("orientation: backward"),
+    ] {
+        assert_eq!(read(Format::Rmf, &fine, &centred), Ok(()), "{fine}");
+    }
+    for backward in [
+        building("orientation: [1, backward]"),
+        building("orientation: [1, forward], bidirectional: [4, true]"),
+        building("orientation: [1, backward], bidirectional: [4, true]"),
+        graph("orientation_constraint: backward, is_bidirectional: false"),
+    ] {
+        let error = read(Format::Rmf, &backward, &centred).unwrap_err();
+        assert!(error.starts_with("lane L1/0: it is travelled backward, and outlines"), "{error}");
+    }
+    let unknown = building("orientation: [1, sideways]");
+    let error = layout(Format::Rmf, &unknown, &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    assert!(error.starts_with("lane L1/0: orientation: sideways is not read"), "{error}");
+}
+
+#[test]
+fn edges_of_lif_say_at_which_angle_vehicles_are() {
+    let centred = Centred::new("lif");
+    let lif = |orientation: f64| {
+        format!(
+            r#"{{ "layouts": [{{ "layoutId": "l", "nodes": [{{ "nodeId": "a", "mapId": "m", "nodePosition": {{ "x": 0, "y": 0 }} }},
+            {{ "nodeId": "b", "mapId": "m", "nodePosition": {{ "x": 5, "y": 0 }} }}], "edges": [{{ "edgeId": "e", "startNodeId": "a", "endNodeId": "b",
+            "vehicleTypeEdgeProperties": [{{ "vehicleTypeId": "t", "vehicleOrientation": {orientation} }}] }}] }}] }}"#
+        )
+    };
+    assert_eq!(read(Format::Lif, &lif(0.0), &centred), Ok(()));
+    let error = read(Format::Lif, &lif(180.0), &centred).unwrap_err();
+    assert!(error.starts_with("edge e: its vehicleOrientation 180, as outlines"), "{error}");
+}
