@@ -347,11 +347,11 @@ mod tests {
             let mut is_inside = vec![false; site.points.len()];
             nodes.iter().for_each(|&node| is_inside[node] = true);
             let mut search = Search::new(&site);
-            let is_open = vec![true; site.atoms.len()];
-            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, &is_open, node)).count();
+            let open = vec![true; site.atoms.len()];
+            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, &open, node)).count();
             for &node in &nodes {
                 let cuts = !is_open(&site, &nodes, &[node]);
-                assert_eq!(cuts_off(&mut search, &is_inside, &is_open, node), cuts, "{count}, {radius}: {node}");
+                assert_eq!(cuts_off(&mut search, &is_inside, &open, node), cuts, "{count}, {radius}: {node}");
             }
             assert!(found > 0 && (found < nodes.len() || radius > 1.0), "{found} of {}", nodes.len());
             let ends = Ends::of(&site, 1);
