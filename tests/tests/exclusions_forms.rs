@@ -357,9 +357,9 @@ fn of_zones_the_report_tells_what_they_are_for_and_their_level() {
     let around = |report: &Written| report.warnings.iter().any(|said| said.contains("the disc around the outline"));
     assert!(!around(&disc), "{:?}", disc.warnings);
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    // A lane that is driven backward faces along its path then.
-    let options = Options { fleet: Some(fleet.into()), partial: true, ..Options::default() };
-    let outline = write(Format::Rmf, GRAPH, &options, "site", &settings).unwrap().1;
+    let options = Options { fleet: Some(fleet.into()), ..Options::default() };
+    let ahead = GRAPH.replace("orientation_constraint: backward", "orientation_constraint: forward");
+    let outline = write(Format::Rmf, &ahead, &options, "site", &settings).unwrap().1;
     assert!(around(&outline), "{:?}", outline.warnings);
     // On which level a zone is drawn; a zone that slows vehicles down does not keep them apart.
     let imported = imported(Format::Rmf, GRAPH, 0.4);
