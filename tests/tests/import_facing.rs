@@ -22,7 +22,8 @@ impl Drop for Centred {
     }
 }
 
-/// Whether a layout is read for a disc, for the outline and for one whose reference point is not in its middle, and why not for that.
+/// Reads a layout for a vehicle whose reference point is not in its middle, or why it is refused; for a disc and a centred outline it has
+/// to be read.
 fn read(format: Format, text: &str, centred: &Centred) -> Result<(), String> {
     let aside = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json"));
     let of = |fleet: Option<&Path>| {
@@ -49,7 +50,13 @@ fn paths_of_opentcs_are_driven_backward_in_their_other_direction() {
         assert_eq!(read(Format::OpenTcs, &plant(limit), &centred), Ok(()));
     }
     let error = read(Format::OpenTcs, &plant("maxReverseVelocity=\"500\""), &centred).unwrap_err();
-    assert!(error.starts_with("path p: it is travelled backward, and outlines"), "{error}");
+    assert!(error.starts_with("path p, maxReverseVelocity: it is driven backward, and outlines"), "{error}");
+    // What is left out is the other direction.
+    let fleet = Some(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json").into());
+    let partial = Options { fleet, partial: true, ..Options::default() };
+    let text = plant("maxReverseVelocity=\"500\"");
+    let read = layout(Format::OpenTcs, &text, &partial, &mut Warnings::default()).unwrap().layout;
+    assert_eq!(read.edges.iter().map(|edge| edge.two_way).collect::<Vec<_>>(), [false]);
 }
 
 #[test]
@@ -82,10 +89,10 @@ fn lanes_of_open_rmf_say_which_way_vehicles_face() {
         graph("orientation_constraint: backward, is_bidirectional: false"),
     ] {
         let error = read(Format::Rmf, &backward, &centred).unwrap_err();
-        assert!(error.starts_with("lane L1/0: it is travelled backward, and outlines"), "{error}");
+        assert!(error.starts_with("lane L1/0: orientation"), "{error}");
+        assert!(error.contains(": it is driven backward, and outlines"), "{error}");
     }
-    let unknown = building("orientation: [1, sideways]");
-    let error = layout(Format::Rmf, &unknown, &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    let error = read(Format::Rmf, &building("orientation: [1, sideways]"), &centred).unwrap_err();
     assert!(error.starts_with("lane L1/0: orientation: sideways is not read"), "{error}");
 }
 

@@ -98,7 +98,7 @@ fn agents_on_routes_have_the_contour() {
 #[test]
 fn contours_grow_by_what_curves_are_off() {
     let mut warnings = Warnings::default();
-    // Its other direction, which is driven backward, is left out.
+    // The other direction of its paths, which is driven backward, is left out.
     let coarse = Options { tolerance: Some(0.02), partial: true, ..options(&["A:B"]) };
     let fleet = scenario(Format::OpenTcs, CURVES, &coarse, &mut warnings).unwrap();
     let footprint = fleet.agents[0].footprint.as_ref().unwrap();

@@ -105,14 +105,12 @@ impl Footprint {
         self.growth
     }
 
-    /// Whether the outline is the same when the vehicle is turned by half a turn about its reference point, corner for corner (up to
-    /// 1e-9 of its size).
+    /// Whether the outline is exactly the same when the vehicle is turned by half a turn about its reference point. A polygon with
+    /// needless corners on one side only counts as another one.
     pub fn is_same_backward(&self) -> bool {
         let corners = &self.polygon;
-        let near = 1e-9 * self.reach();
         let opposite = corners.iter().cycle().skip(corners.len() / 2);
-        corners.len().is_multiple_of(2)
-            && corners.iter().zip(opposite).all(|(a, b)| distance(*a, b.map(|x| -x)) <= near)
+        corners.len().is_multiple_of(2) && corners.iter().zip(opposite).all(|(a, b)| *a == b.map(|x| -x))
     }
 
     /// Radius of the disc around the reference point that holds all discs \[m\].
@@ -234,6 +232,15 @@ mod tests {
         // The corner of a square of 0.4 m less half its side.
         assert!((footprint.overhang() - (0.08_f64.sqrt() - 0.2)).abs() < 1e-9);
         assert!(!footprint.is_same_backward());
+        let centred = |half: [f64; 2]| {
+            [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(|sides| [0, 1].map(|k| half[k] * f64::from(sides[k])))
+        };
+        let mut corners = centred([0.6, 0.2]).to_vec();
+        assert!(Footprint::new(corners.clone(), None).unwrap().is_same_backward());
+        // A triangle has no corners opposite to its own, and a rounding in one corner is another outline.
+        assert!(!Footprint::new(corners[..3].to_vec(), None).unwrap().is_same_backward());
+        corners[0][0] = corners[0][0].next_up();
+        assert!(!Footprint::new(corners, None).unwrap().is_same_backward());
         check(&footprint);
     }
 

@@ -8,17 +8,18 @@ use std::f64::consts::{PI, TAU};
 /// Angle that is rounding in a file and nothing else \[rad\].
 const ROUNDING: f64 = 1e-3;
 
-/// Whether an outline at this angle from its path is what it is along it.
+/// Whether an outline at this angle from its path covers what it covers when it faces along it.
 pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
     let is_none = |angle: f64| ((angle + PI).rem_euclid(TAU) - PI).abs() <= ROUNDING;
     is_none(angle) || is_none(angle - PI) && outline.is_same_backward()
 }
 
-/// Loses an edge that is travelled backward, unless it is a disc that does so or an outline that is the same then.
-pub(super) fn backward(of: &str, outline: Option<&Footprint>, warnings: &mut Warnings) {
-    if outline.is_some_and(|outline| !outline.is_same_backward()) {
-        warnings.lose(format_args!("{of}: it is travelled backward, and outlines face along their paths here"));
-    }
+/// What is said of a way on which the vehicle drives backward, if that is not read.
+pub(super) const BACKWARD: &str = "it is driven backward, and outlines face along their paths here";
+
+/// Whether it matters that the vehicle drives backward: neither to a disc nor to an outline that is the same then.
+pub(super) fn is_other_backward(outline: Option<&Footprint>) -> bool {
+    outline.is_some_and(|outline| !outline.is_same_backward())
 }
 
 /// What is said of an orientation that is not read.

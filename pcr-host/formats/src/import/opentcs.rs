@@ -61,10 +61,11 @@ pub(super) fn read(
     for (k, path) in children(root, "path").enumerate() {
         let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         match edge(path, id, &nodes, units, options.tolerance(), warnings) {
-            Ok(edge) => {
+            Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
-                if edge.two_way {
-                    facing::backward(&format!("path {}", edge.id), outline, warnings);
+                if edge.two_way && facing::is_other_backward(outline) {
+                    edge.two_way = false;
+                    warnings.lose(format_args!("path {}, maxReverseVelocity: {}", edge.id, facing::BACKWARD));
                 }
                 edges.add(edge, warnings);
             }

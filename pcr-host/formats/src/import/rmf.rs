@@ -99,7 +99,7 @@ pub(super) fn read(
         let scale = [scale, scale * flipped];
         let mut level = Level { name, graph, scale, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in object.list("lanes")?.iter().enumerate() {
-            match level.lane(k, lane, options, &mut graphs, warnings) {
+            match level.lane(k, lane, options, &mut graphs) {
                 Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
                 Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
@@ -216,7 +216,6 @@ impl Level<'_> {
         value: &Value,
         options: &Options,
         graphs: &mut BTreeSet<u64>,
-        warnings: &mut Warnings,
     ) -> Result<Option<String>, String> {
         let parameters = value.get(2);
         // A parameter that is there and has the wrong type is not left aside.
@@ -240,16 +239,15 @@ impl Level<'_> {
         // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
         let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
         let both_ways = two_way.unwrap_or(false);
-        let facing = if self.graph { "orientation_constraint" } else { "orientation" };
-        // Which way the vehicle faces both ways, as it does not turn round.
-        let is_backward = match typed(parameters, facing, |value| value.as_str().map(str::to_owned))?.as_deref() {
-            Some("backward") => true,
-            Some("forward") => both_ways && !self.graph,
-            None | Some("") => false,
-            Some(other) => return Err(format!("{facing}: {other} is not read")),
-        };
-        if is_backward {
-            facing::backward(&format!("lane {}/{k}", self.name), self.outline, warnings);
+        if facing::is_other_backward(self.outline) {
+            let field = if self.graph { "orientation_constraint" } else { "orientation" };
+            match typed(parameters, field, |value| value.as_str().map(str::to_owned))?.as_deref() {
+                None | Some("") => {}
+                // A vehicle that does not turn round drives backward in the other direction.
+                Some("forward") if self.graph || !both_ways => {}
+                Some("forward" | "backward") => return Err(format!("{field}: {}", facing::BACKWARD)),
+                Some(other) => return Err(format!("{field}: {other} is not read")),
+            }
         }
         let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
         self.layout.edges.push(Edge {
