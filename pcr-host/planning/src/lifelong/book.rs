@@ -184,8 +184,9 @@ impl Book {
             if place == self.regions.len() {
                 self.regions.push(None);
                 self.seconds.push(region.waits());
+            } else {
+                self.seconds[place] = region.waits();
             }
-            self.seconds[place] = region.waits();
             region.robots.iter().for_each(|&robot| self.rows[robot].push(place));
             self.regions[place] = Some(region);
         }

@@ -53,7 +53,7 @@ impl Run {
         due.sort_by(|&a, &b| self.switched[a].total_cmp(&self.switched[b]));
         let mut due = due.into_iter().take(MOST).peekable();
         while due.peek().is_some() {
-            // The waits of the fleet are found once, until one of them is another one.
+            // The waits of the fleet are found once for all tries, and again after orders were turned round.
             let (mut tried, scene) = (Vec::new(), self.scene(now));
             let waits = &Waits::of(scene.robots, scene.book);
             let found = due.by_ref().find_map(|robot| {

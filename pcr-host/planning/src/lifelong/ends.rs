@@ -77,7 +77,7 @@ impl Ends {
     /// Of each node how many others are cut off if a robot stands there and at all safe ends, places on dead ends among them; all of a
     /// node where nobody should. Those behind a place are full already.
     pub(super) fn harm(&self, site: &Site) -> &[usize] {
-        /// Pairs of nodes around one, between which it costs less to look for ways than to count anew, about.
+        /// Up to about so many pairs of nodes around one it is quicker to look for ways between them than to count anew.
         const FEW: usize = 64;
         self.harm.get_or_init(|| {
             let places: Vec<usize> = self.lanes.iter().flat_map(|lane| &lane[1..]).copied().collect();
@@ -89,8 +89,8 @@ impl Ends {
                 let mut is_counted = vec![false; site.points.len()];
                 counted.iter().for_each(|&node| is_counted[node] = full.is_inside[node]);
                 for &node in nodes {
-                    // What it parts is counted anew; else only the nodes are lost that it covers.
-                    harm[node] = if parts(&mut search, &full.is_inside, &full.is_open, node, FEW) {
+                    // If it parts nothing, only the nodes that it covers are lost; else what is left is counted anew.
+                    harm[node] = if parts(&mut search, &full.is_inside, |atom| full.is_open[atom], node, FEW) {
                         let ends: Vec<usize> = self.safe.iter().chain([&node]).copied().collect();
                         full.count.saturating_sub(Left::of(site, counted, &ends).count)
                     } else {
@@ -110,8 +110,7 @@ impl Ends {
         self.nodes.iter().for_each(|&node| is_inside[node] = true);
         let other = |node: &usize| !is_inside[*node];
         let mut search = Search::new(site);
-        let is_open = vec![true; site.atoms.len()];
-        let never = |node: &usize| cuts_off(&mut search, &is_inside, &is_open, *node);
+        let never = |node: &usize| cuts_off(&mut search, &is_inside, *node);
         let mut safe = self.safe.clone();
         safe.sort_unstable();
         WellFormedness {
@@ -239,18 +238,24 @@ fn covered(site: &Site, node: usize) -> Vec<usize> {
 
 /// Whether a robot that stands at one of the nodes that can all be reached from one another cuts some of them off: other nodes within
 /// its disc, or those beyond it.
-fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], is_open: &[bool], node: usize) -> bool {
+fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], node: usize) -> bool {
     covered(search.site, node).into_iter().any(|other| other != node && is_inside[other])
-        || parts(search, is_inside, is_open, node, usize::MAX)
+        || parts(search, is_inside, |_| true, node, usize::MAX)
 }
 
 /// Whether a robot that stands at a node parts others of those that can be reached from one another over open atoms. Ways that lead past it
-/// begin where an edge comes near it and end where one leaves; there have to be others between these, and then there are for all. Where there
-/// are more than so many pairs of these it is not looked for them: it may part them.
-fn parts(search: &mut Search<'_>, is_inside: &[bool], is_open: &[bool], node: usize, most: usize) -> bool {
+/// begin where an edge comes near it and end where one leaves; there have to be others between these, and then there are for all. If these
+/// are more than `most` pairs, no ways are looked for, and the answer is that it may part them.
+fn parts(
+    search: &mut Search<'_>,
+    is_inside: &[bool],
+    is_open: impl Fn(usize) -> bool,
+    node: usize,
+    most: usize,
+) -> bool {
     let site = search.site;
     let covers = site.covers(node);
-    let edges = || covers.iter().filter(|&&atom| is_open[atom] && site.atoms[atom].edge.is_some());
+    let edges = || covers.iter().filter(|&&atom| is_open(atom) && site.atoms[atom].edge.is_some());
     let ends = |end: usize| {
         let mut ends: Vec<usize> = edges().map(|&atom| site.atoms[atom].ends[end]).collect();
         ends.retain(|&end| end != node && is_inside[end]);
@@ -259,7 +264,7 @@ fn parts(search: &mut Search<'_>, is_inside: &[bool], is_open: &[bool], node: us
         ends
     };
     let [from, to] = [ends(0), ends(1)];
-    let mut is_parted = |from, to| !search.leads(from, to, |atom| is_open[atom] && !covers.contains(&atom));
+    let mut is_parted = |from, to| !search.leads(from, to, |atom| is_open(atom) && !covers.contains(&atom));
     from.len() * to.len() > most || from.iter().any(|&from| to.iter().any(|&to| is_parted(from, to)))
 }
 
@@ -347,11 +352,10 @@ mod tests {
             let mut is_inside = vec![false; site.points.len()];
             nodes.iter().for_each(|&node| is_inside[node] = true);
             let mut search = Search::new(&site);
-            let open = vec![true; site.atoms.len()];
-            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, &open, node)).count();
+            let found = nodes.iter().filter(|&&node| cuts_off(&mut search, &is_inside, node)).count();
             for &node in &nodes {
                 let cuts = !is_open(&site, &nodes, &[node]);
-                assert_eq!(cuts_off(&mut search, &is_inside, &open, node), cuts, "{count}, {radius}: {node}");
+                assert_eq!(cuts_off(&mut search, &is_inside, node), cuts, "{count}, {radius}: {node}");
             }
             assert!(found > 0 && (found < nodes.len() || radius > 1.0), "{found} of {}", nodes.len());
             let ends = Ends::of(&site, 1);

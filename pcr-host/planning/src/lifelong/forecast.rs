@@ -17,7 +17,7 @@ use std::borrow::Cow;
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'t, 'w> {
     pub(super) robots: &'t [Robot],
-    /// Those of the robot that has another way do not count.
+    /// Those of the fleet; those of the robot that has another way are not looked at.
     pub(super) waits: &'t Waits<'w>,
     pub(super) abilities: &'t Abilities,
     pub(super) time: f64,

@@ -109,7 +109,7 @@ impl Timetable {
         };
         // Where the first has left before the second comes no gate matters.
         let is_met = |wait: Wait<'_>| is_early(wait.ends) && wait.gates.iter().any(|timed| is_early([*timed; 2]));
-        // Gates that are passed are nearer, so that it holds the more of them all.
+        // If it is not too early at the nearest gate of all, it is not at one that is farther either.
         is_early(ends) && Wait::of(region, None, at).is_some_and(is_met)
     }
 
