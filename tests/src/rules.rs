@@ -20,7 +20,7 @@ const PATIENCE: usize = 6;
 const STUCK: usize = 40;
 
 /// Largest distance of the end of an edge from its node on an edge that is travelled \[m\].
-const OFF: f64 = 1e-6;
+const OFF: f64 = 0.05;
 
 /// What has come of it.
 #[derive(Clone, Debug, Default)]

@@ -27,6 +27,14 @@ const AWS: &str = "nav2/aws_graph.geojson";
 const SAMPLE: &str = "nav2/sample_graph.geojson";
 const DEMO: &str = "opentcs/Demo-01.xml";
 const OFFICE: &str = "rmf/office.building.yaml";
+const TRIPLE_H: &str = "rmf/triple_H.building.yaml";
+const BATTLE_ROYALE: &str = "rmf/battle_royale.building.yaml";
+const HOTEL: &str = "rmf/hotel.building.yaml";
+const TRIANGLE: &str = "lif/example_07.lif.json";
+const CROSSING: &str = "lif/example_08.lif.json";
+const TOWN_1: &str = "opendrive/Town01.planview.xodr";
+const TOWN_2: &str = "opendrive/Town02.planview.xodr";
+const ROADMAP: &str = "ccbs/sparse_map.xml";
 
 const fn whole(file: &'static str, radius: f64, target: Target) -> Written {
     Written { file, radius, target, envelopes: false, split: None }
@@ -37,15 +45,15 @@ const fn cut(file: &'static str, radius: f64, target: Target, to: f64) -> Writte
 }
 
 /// All of them.
-pub const ALL: [Written; 21] = [
+pub const ALL: [Written; 40] = [
     whole(WAREHOUSE, 0.4, Target::Nav2),
     whole(AWS, 0.3, Target::Nav2),
     whole(SAMPLE, 0.3, Target::Nav2),
     cut(WAREHOUSE, 0.4, Target::Nav2, 1.5),
     whole(OFFICE, 0.45, Target::Rmf),
-    whole("rmf/triple_H.building.yaml", 0.45, Target::Rmf),
-    whole("rmf/battle_royale.building.yaml", 0.45, Target::Rmf),
-    whole("rmf/hotel.building.yaml", 0.45, Target::Rmf),
+    whole(TRIPLE_H, 0.45, Target::Rmf),
+    whole(BATTLE_ROYALE, 0.45, Target::Rmf),
+    whole(HOTEL, 0.45, Target::Rmf),
     cut(OFFICE, 0.3, Target::Rmf, 1.0),
     whole(DEMO, 0.9, Target::OpenTcs),
     cut(DEMO, 0.9, Target::OpenTcs, 2.0),
@@ -54,11 +62,30 @@ pub const ALL: [Written; 21] = [
     whole(WAREHOUSE, 0.4, Target::Vda5050),
     whole(SAMPLE, 0.3, Target::Vda5050),
     cut(SAMPLE, 0.3, Target::Vda5050, 0.8),
+    whole(AWS, 0.3, Target::Vda5050),
     whole(OFFICE, 0.3, Target::Vda5050),
+    whole(TRIPLE_H, 0.45, Target::Vda5050),
+    whole(BATTLE_ROYALE, 0.45, Target::Vda5050),
+    whole(HOTEL, 0.45, Target::Vda5050),
+    whole(DEMO, 0.9, Target::Vda5050),
+    whole(TRIANGLE, 0.4, Target::Vda5050),
+    whole(CROSSING, 0.4, Target::Vda5050),
+    whole(TOWN_1, 1.0, Target::Vda5050),
+    whole(TOWN_2, 1.0, Target::Vda5050),
+    whole(ROADMAP, 0.5, Target::Vda5050),
     whole(WAREHOUSE, 0.4, Target::Pcr),
     whole(AWS, 0.3, Target::Pcr),
     whole(SAMPLE, 0.3, Target::Pcr),
+    whole(OFFICE, 0.45, Target::Pcr),
+    whole(TRIPLE_H, 0.45, Target::Pcr),
+    whole(BATTLE_ROYALE, 0.45, Target::Pcr),
+    whole(HOTEL, 0.45, Target::Pcr),
     whole(DEMO, 0.9, Target::Pcr),
+    whole(TRIANGLE, 0.4, Target::Pcr),
+    whole(CROSSING, 0.4, Target::Pcr),
+    whole(TOWN_1, 1.0, Target::Pcr),
+    whole(TOWN_2, 1.0, Target::Pcr),
+    whole(ROADMAP, 0.5, Target::Pcr),
 ];
 
 impl fmt::Display for Written {

@@ -84,7 +84,10 @@ fn trajectories_become_arcs_within_the_tolerance() {
         assert!((4..=5).contains(&warnings.len()), "{warnings:?}");
         let off = edge.deviation > 1e-6;
         assert_eq!(warnings.iter().any(|line| line.contains("lines and arcs are up to")), off, "{warnings:?}");
-        assert_eq!(warnings[0], "edge N1-N2: its trajectory begins 5.000 m from its node");
+        assert_eq!(
+            warnings[0],
+            "edge N1-N2: its trajectory begins 5.000 m from its node; no route passes there, and no lock covers what is between them"
+        );
     }
 }
 
@@ -297,7 +300,13 @@ fn edges_have_the_limits_and_the_gaps_of_the_file() {
     assert_eq!(limits, expected.map(|(id, speed, rotation)| (id.to_owned(), speed, rotation)));
     assert!(layout.edges.iter().all(|edge| !edge.two_way));
     assert!((layout.edges[0].length() - 5.0).abs() < 1e-12 && layout.edges[4].curve.is_empty());
-    assert_eq!(warnings, ["edge off: its trajectory ends 0.500 m from its node", "edge none: its length is 0"]);
+    assert_eq!(
+        warnings,
+        [
+            "edge off: its trajectory ends 0.500 m from its node; no route passes there, and no lock covers what is between them",
+            "edge none: its length is 0"
+        ]
+    );
 }
 
 /// A vehicle that drives sideways was read as if its outline faced along the edge.

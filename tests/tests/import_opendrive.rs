@@ -1,7 +1,7 @@
 //! OpenDRIVE: lines and arcs as they are, joints closed, roads joined at shared nodes.
 
-use pcr_formats::import::{Edge, Format, Layout, Options, Warnings, layout, scenario};
-use pcr_formats::scenario::PathSegment;
+use pcr_formats::import::{Edge, Format, Id, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::scenario::{PathSegment, Placed};
 use pcr_planning::locks::Locks;
 
 const TOWN_1: &str = include_str!("../data/real/opendrive/Town01.planview.xodr");
@@ -36,8 +36,9 @@ fn every_record_is_a_line_or_an_arc() {
                 assert!((2.69..512.0).contains(&radius), "{radius}");
             }
         }
-        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert_eq!(warnings.len(), 2, "{warnings:?}");
         assert!(warnings[0].contains("joints are open, by "), "{warnings:?}");
+        assert!(warnings[1].contains("from its curve, by which its radius is larger"), "{warnings:?}");
     }
 }
 
@@ -180,6 +181,90 @@ fn an_arc_that_is_nearly_straight_counts_as_deviation() {
     let edge = &read(&text).0.edges[0];
     // At its end the arc is L² / 2R from its tangent.
     assert!((edge.deviation - 5e-3).abs() < 1e-12, "{}", edge.deviation);
+}
+
+/// Where a curve is at a length.
+fn place(curve: &[Placed], length: f64) -> [f64; 2] {
+    let mut rest = length;
+    for piece in curve {
+        if rest < piece.shape.length() {
+            let shape = match piece.shape {
+                PathSegment::Line { .. } => PathSegment::Line { length: rest },
+                PathSegment::Arc { radius, sweep } => {
+                    PathSegment::Arc { radius, sweep: (rest / radius).copysign(sweep) }
+                }
+            };
+            return Placed { shape, ..*piece }.end();
+        }
+        rest -= piece.shape.length();
+    }
+    curve.last().unwrap().end()
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+#[test]
+fn open_joints_are_closed_and_count_as_deviation_along_and_across() {
+    let records = [
+        Placed::line([0.0, 0.0], [5.0, 0.0]),
+        Placed::line([5.04, 0.0], [10.0, 0.0]),
+        Placed { at: [10.03, 0.03], heading: 0.0, shape: PathSegment::Arc { radius: 4.0, sweep: 1.5 } },
+        Placed { at: [14.0, 3.73], heading: 1.5, shape: PathSegment::Arc { radius: 2.0, sweep: -1.0 } },
+        Placed::line([15.01, 5.37], [18.0, 6.9]),
+    ];
+    let written = records.map(|Placed { at: [x, y], heading, shape }| {
+        let length = shape.length();
+        let shape = match shape {
+            PathSegment::Line { .. } => "<line/>".to_owned(),
+            PathSegment::Arc { radius, sweep } => format!("<arc curvature=\"{}\"/>", sweep.signum() / radius),
+        };
+        format!("<geometry x=\"{x}\" y=\"{y}\" hdg=\"{heading}\" length=\"{length}\">{shape}</geometry>")
+    });
+    let text = format!("<OpenDRIVE><road id=\"1\"><planView>{}</planView></road></OpenDRIVE>", written.concat());
+    let (layout, warnings) = read(&text);
+    assert!(warnings[0].contains("joints are open, by "), "{warnings:?}");
+    let edge = &layout.edges[0];
+    for pair in edge.curve.windows(2) {
+        assert!(distance(pair[0].end(), pair[1].at) < 1e-12, "{pair:?}");
+    }
+    let all: f64 = records.iter().map(|record| record.shape.length()).sum();
+    assert!((edge.length() - all).abs() > 0.02, "the gaps do not show in the length");
+    let lengths = (0..=2000).map(|k| all.max(edge.length()) * f64::from(k) / 2000.0);
+    let farthest =
+        lengths.map(|length| distance(place(&records, length), place(&edge.curve, length))).fold(0.0, f64::max);
+    assert!(
+        farthest > 0.05 && farthest <= edge.deviation && edge.deviation < 2.5 * farthest,
+        "{farthest} {}",
+        edge.deviation
+    );
+}
+
+/// Two roads share a node 4 cm from where one of them begins. There a vehicle touches one on the third road, 1.79 m away; at the end of
+/// the other road it would not.
+#[test]
+fn locks_hold_what_is_between_a_road_and_its_node() {
+    let road = |id: u8, [x, y, heading]: [f64; 3], link: &str| {
+        let line = format!("<geometry x=\"{x}\" y=\"{y}\" hdg=\"{heading}\" length=\"5\"><line/></geometry>");
+        format!("<road id=\"{id}\"><link>{link}</link><planView>{line}</planView></road>")
+    };
+    let next = "<successor elementType=\"road\" elementId=\"2\" contactPoint=\"start\"/>";
+    let roads = [road(1, [0.0, 0.0, 0.0], next), road(2, [5.0, 0.04, -1.57], ""), road(3, [2.5, 1.83, 0.0], "")];
+    let text = format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
+    let options = Options { radius: Some(0.9), ..Options::default() };
+    let imported = layout(Format::OpenDrive, &text, &options, &mut Warnings::default()).unwrap();
+    assert_eq!(imported.layout.nodes.len(), 5);
+    let deviations: Vec<f64> = imported.layout.edges.iter().map(|edge| edge.deviation).collect();
+    assert!(deviations[0] == 0.0 && (deviations[1] - 0.04).abs() < 1e-12 && deviations[2] == 0.0, "{deviations:?}");
+    let table = Locks::of(&imported, true).unwrap();
+    let has = |a: u64, b: u64| {
+        table.locks.iter().any(|lock| (lock.a.clone(), lock.b.clone()) == (Id::Number(a), Id::Number(b)))
+    };
+    assert!(has(2, 3) && !has(1, 3), "{:?}", table.locks);
+    let nodes = table.nodes.unwrap();
+    let at_node = nodes.iter().any(|lock| lock.node == Id::Text("1/end".into()) && lock.edge == Id::Number(3));
+    assert!(at_node, "{nodes:?}");
 }
 
 #[test]

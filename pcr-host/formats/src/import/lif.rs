@@ -5,8 +5,9 @@
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
+use super::trace::distance;
 use super::value::Object;
-use super::{ImportError, Options, Warnings, facing, trajectory, value};
+use super::{ImportError, Options, Warnings, facing, route, trajectory, value};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use serde_json::Value;
@@ -204,8 +205,8 @@ impl Reader<'_> {
             if let Some(trajectory) = property.object("trajectory")? {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
                 let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
-                self.gaps(id, &fit.pieces, at);
-                (edge.curve, edge.deviation) = (fit.pieces, fit.deviation);
+                let gap = self.gap(id, &fit.pieces, at);
+                (edge.curve, edge.deviation) = (fit.pieces, fit.deviation.max(gap));
             }
         }
         if edge.curve.is_empty() {
@@ -214,16 +215,21 @@ impl Reader<'_> {
         Ok(edge)
     }
 
-    /// Warns where a trajectory does not begin and end at its nodes.
-    fn gaps(&mut self, id: &str, pieces: &[Placed], at: [[f64; 2]; 2]) {
+    /// The largest gap between the ends of a trajectory and their nodes that a route passes \[m\], with warnings.
+    fn gap(&mut self, id: &str, pieces: &[Placed], at: [[f64; 2]; 2]) -> f64 {
+        let mut passed = 0.0_f64;
         let ends = pieces.first().zip(pieces.last()).map(|(first, last)| [first.at, last.end()]);
         for ((end, node), place) in ends.into_iter().flatten().zip(at).zip(["begins", "ends"]) {
-            let gap = (end[0] - node[0]).hypot(end[1] - node[1]);
+            let [gap, passes] = [distance(end, node), route::gap(end, node)];
+            passed = passed.max(passes);
             if gap > GAP {
+                let told =
+                    if passes > 0.0 { "" } else { "; no route passes there, and no lock covers what is between them" };
                 self.warnings
-                    .add(format_args!("edge {id}"), format!("its trajectory {place} {gap:.3} m from its node"));
+                    .add(format_args!("edge {id}"), format!("its trajectory {place} {gap:.3} m from its node{told}"));
             }
         }
+        passed
     }
 }
 

@@ -4,10 +4,12 @@
 //! reference lines meet; the node then has the names of all these ends. If the lines of linked roads do not meet,
 //! mostly because lanes shift them sideways, no path leads from one to the other, and there is a warning. Small gaps at
 //! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
-//! counts as deviation of its path. Lanes are not read.
+//! counts as deviation of its path. So do those between the ends of roads that share a node. Lanes are not read.
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
+use super::route::gap;
+use super::trace::distance;
 use super::xml::{child, children, number, only, optional, parse};
 use super::{ImportError, Options, Warnings};
 use crate::scenario::PathSegment;
@@ -42,7 +44,7 @@ fn windings(shape: &PathSegment) -> f64 {
 /// The reference line of a road.
 struct Curve {
     pieces: Vec<Placed>,
-    /// Distance of `pieces` from it, but for open joints \[m\].
+    /// Distance of `pieces` from it \[m\].
     deviation: f64,
     /// Gap \[m\] and angle \[rad\] of its widest joint.
     joint: [f64; 2],
@@ -177,7 +179,7 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
         if let Some(before) = curve.last() {
             let end = before.end();
             let turn = (heading - before.heading_at_end()).rem_euclid(std::f64::consts::TAU);
-            let gap = (end[0] - at[0]).hypot(end[1] - at[1]);
+            let gap = distance(end, at);
             if gap > GAP {
                 return Err(ImportError::new(format!("{name}: it begins {gap:.3} m from the end of the one before")));
             }
@@ -190,7 +192,33 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
     {
         return Err(ImportError::new(format!("{name}: its length is {length}, and its records have {along:.3} m")));
     }
-    Ok(Curve { pieces: curve, deviation, joint })
+    let closed = close(&mut curve);
+    Ok(Curve { pieces: curve, deviation: deviation + closed, joint })
+}
+
+/// Closes the joints that are open: a line goes from where the piece before ends to its own end, an arc is displaced as a whole.
+/// Returns how far a place may then be from that at the same length of the records \[m\].
+fn close(curve: &mut Vec<Placed>) -> f64 {
+    let Some(mut at) = curve.first().map(|first| first.at) else { return 0.0 };
+    let (mut longer, mut deviation) = (0.0_f64, 0.0_f64);
+    for piece in curve.iter_mut() {
+        let asked = *piece;
+        if distance(at, asked.at) > CLOSED {
+            *piece = match asked.shape {
+                PathSegment::Line { .. } => Placed::line(at, asked.end()),
+                PathSegment::Arc { .. } => Placed { at, ..asked },
+            };
+        }
+        let before = longer;
+        longer += piece.shape.length() - asked.shape.length();
+        let apart = distance(at, asked.at).max(distance(piece.end(), asked.end()));
+        if apart > CLOSED || longer.abs() > CLOSED {
+            deviation = deviation.max(apart + before.abs().max(longer.abs()));
+        }
+        at = piece.end();
+    }
+    curve.retain(|piece| piece.shape.length() > 0.0);
+    deviation
 }
 
 /// The speed limit of a road, the least one where it changes on the way \[m/s\].
@@ -251,7 +279,7 @@ fn groups(
                 (Ok(road), Some(point @ ("start" | "end"))) => {
                     let (end, other) = (2 * place + side, 2 * road + usize::from(point == "end"));
                     let [a, b] = [end, other].map(|end| end_of(roads.list(), end));
-                    let gap = (a[0] - b[0]).hypot(a[1] - b[1]);
+                    let gap = distance(a, b);
                     // A link is mostly told by both of its roads.
                     gaps.insert([end.min(other), end.max(other)], gap);
                     if gap <= GAP {
@@ -275,7 +303,8 @@ fn groups(
     ((0..group.len()).map(|end| find(&mut group, end)).collect(), links)
 }
 
-/// Gives the roads their nodes: linked ends that meet are one node, which has the names of all of them.
+/// Gives the roads their nodes: linked ends that meet are one node, which has the names of all of them. The way between an end and
+/// its node belongs to the road, as deviation.
 fn join(layout: &mut Layout, group: &[usize]) {
     let mut nodes = HashMap::new();
     for place in 0..layout.edges.len() {
@@ -289,7 +318,9 @@ fn join(layout: &mut Layout, group: &[usize]) {
             } else {
                 layout.aliases.push((id, node));
             }
-            layout.edges[place].ends[side] = node;
+            let edge = &mut layout.edges[place];
+            edge.ends[side] = node;
+            edge.deviation = edge.deviation.max(gap(at, layout.nodes[node].at));
         }
     }
 }

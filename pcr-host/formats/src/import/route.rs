@@ -5,8 +5,9 @@
 //! out if this distance is not less than the rest of the edge before (the arc of the previous corner has taken its
 //! part), or than the edge after. Without an arc the vehicle stops and turns.
 
+use super::biarc::ROUNDINGS;
 use super::layout::{Edge, Layout};
-use super::trace::{Trace, Tracer};
+use super::trace::{ROUNDING, Trace, Tracer, distance};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, speed};
 use crate::scenario::Placed;
@@ -20,6 +21,13 @@ const SHALLOW: f64 = 1e-9;
 
 /// Largest gap between a curve and its node: it counts as deviation of the path \[m\].
 const GAP: f64 = 0.05;
+
+/// How far an end of a curve is from its node, where a route passes from one to the other and it is more than rounding, else 0 \[m\].
+pub fn gap(end: [f64; 2], node: [f64; 2]) -> f64 {
+    let gap = distance(end, node);
+    let rounding = ROUNDING + ROUNDINGS * (node[0].abs() + node[1].abs());
+    if gap > rounding && gap <= GAP { gap } else { 0.0 }
+}
 
 /// An edge, and whether it is travelled from its end to its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +146,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
             let ends = curve.first().zip(curve.last()).map(|(first, last)| (first.at, last.end()));
             let (begin, end) = ends.unwrap_or((position, target));
             for (point, node, place) in [(begin, position, "begins"), (end, target, "ends")] {
-                let gap = (point[0] - node[0]).hypot(point[1] - node[1]);
+                let gap = distance(point, node);
                 if gap > GAP {
                     let name = &edge.id;
                     return Err(ImportError::new(format!("edge {name}: its curve {place} {gap:.3} m from its node")));

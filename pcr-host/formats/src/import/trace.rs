@@ -14,7 +14,7 @@ const NEAR: f64 = 1e-6;
 const STRAIGHT: f64 = 1e-9;
 
 /// Deviation that is rounding and nothing else \[m\].
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 
 /// A segment of a path and how fast it may be travelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ fn within_half_turn(angle: f64) -> f64 {
     if rest > PI { rest - TAU } else { rest }
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 

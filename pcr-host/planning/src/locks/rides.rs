@@ -5,7 +5,7 @@
 //! continue from it. It turns back along the same line only if no other way continues.
 
 use crate::bodies::tracks;
-use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
+use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, gap, ride, turn};
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::{KINK, Placed};
 use std::f64::consts::{PI, TAU};
@@ -53,13 +53,14 @@ pub struct Rides<'a> {
     vehicle: Vehicle,
     /// For each node the headings in which the vehicle comes to it, and leaves it \[rad\].
     headings: Vec<[Vec<f64>; 2]>,
+    /// How far from each node edges end there \[m\].
+    gaps: Vec<f64>,
 }
 
 impl<'a> Rides<'a> {
     /// Those of the vehicle with its margin.
     pub fn new(Imported { layout, vehicle }: &'a Imported) -> Self {
-        let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(vehicle.margin));
-        let vehicle = Vehicle { radius: vehicle.radius + vehicle.margin, footprint, margin: 0.0, ..vehicle.clone() };
+        let vehicle = Vehicle { margin: 0.0, ..grown(vehicle, vehicle.margin) };
         // A disc is the same in every heading.
         let turning = if vehicle.footprint.is_some() { &layout.edges[..] } else { &[] };
         let mut headings = vec![<[Vec<f64>; 2]>::default(); if turning.is_empty() { 0 } else { layout.nodes.len() }];
@@ -71,7 +72,17 @@ impl<'a> Rides<'a> {
                 }
             }
         }
-        Self { layout, vehicle, headings }
+        let mut gaps = vec![0.0_f64; layout.nodes.len()];
+        // What is not off its line at all ends at its nodes.
+        for edge in layout.edges.iter().filter(|edge| edge.deviation > 0.0) {
+            let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { continue };
+            for (&node, end) in edge.ends.iter().zip([first.at, last.end()]) {
+                if let Some((widest, node)) = gaps.get_mut(node).zip(layout.nodes.get(node)) {
+                    *widest = widest.max(gap(end, node.at));
+                }
+            }
+        }
+        Self { layout, vehicle, headings, gaps }
     }
 
     /// The vehicle, larger by its margin.
@@ -93,7 +104,7 @@ impl<'a> Rides<'a> {
             // Without a length it has no direction.
             return vec![self.at(step.origin())];
         };
-        let length = step.edge.length();
+        let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.deviation));
         let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
         let before = self.turns(step.origin(), 0, |arrives| start.heading - arrives);
         let after = self.turns(step.target(), 1, |leaves| leaves - end.heading);
@@ -101,7 +112,7 @@ impl<'a> Rides<'a> {
         let turns =
             [(from, start, before.map(|turn| -turn)), (to, end, after)].into_iter().filter_map(|(at, end, turns)| {
                 let [right, left] = [turns[0].min(turns[1]), turns[0].max(turns[1])];
-                let agent = (right < left).then(|| turn(&self.vehicle, end.at, end.heading + right, left - right));
+                let agent = (right < left).then(|| turn(&vehicle, end.at, end.heading + right, left - right));
                 Some(Ride { agent: agent?, lengths: Lengths::At(at) })
             });
         std::iter::once(self.along(step)).chain(turns).collect()
@@ -117,14 +128,15 @@ impl<'a> Rides<'a> {
     pub(super) fn along_with(&self, vehicle: &Vehicle, step: Step<'_>) -> Agent {
         match ends(step) {
             Some(_) => ride(vehicle, step),
-            None => turn(vehicle, self.place(step.origin()), 0.0, 0.0),
+            None => turn(&grown(vehicle, step.edge.deviation), self.place(step.origin()), 0.0, 0.0),
         }
     }
 
-    /// The vehicle that stands at a node, in any heading.
+    /// The vehicle that stands at a node, or where an edge ends beside it, in any heading.
     pub fn at(&self, node: usize) -> Ride {
         let angle = if self.vehicle.footprint.is_some() { TAU } else { 0.0 };
-        Ride { agent: turn(&self.vehicle, self.place(node), 0.0, angle), lengths: Lengths::At(0.0) }
+        let vehicle = grown(&self.vehicle, self.gaps.get(node).copied().unwrap_or_default());
+        Ride { agent: turn(&vehicle, self.place(node), 0.0, angle), lengths: Lengths::At(0.0) }
     }
 
     fn place(&self, node: usize) -> [f64; 2] {
@@ -143,6 +155,12 @@ impl<'a> Rides<'a> {
         let back = if there.is_empty() { 0.0 } else { PI };
         range.unwrap_or([-back, back])
     }
+}
+
+/// The vehicle, larger on all sides.
+fn grown(vehicle: &Vehicle, by: f64) -> Vehicle {
+    let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(by));
+    Vehicle { radius: vehicle.radius + by, footprint, ..vehicle.clone() }
 }
 
 /// The directions in which an edge may be travelled.
