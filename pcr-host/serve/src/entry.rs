@@ -66,6 +66,18 @@ pub struct Kept {
     pub lengths: [[f64; 2]; 2],
 }
 
+/// What others have to remember of a robot, by what it is about.
+pub type Notes = BTreeMap<String, Value>;
+
+/// Adds more to a list of them; false: what is there is no list.
+pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
+    let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
+        return false;
+    };
+    list.extend_from_slice(more);
+    true
+}
+
 /// A robot with all its orders.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Known {
@@ -98,7 +110,7 @@ pub struct Known {
     pub orders: Vec<Kept>,
     /// What others have to remember of it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub notes: BTreeMap<String, Value>,
+    pub notes: Notes,
 }
 
 /// A change.
@@ -148,6 +160,15 @@ pub enum Entry {
         key: String,
         /// It, in place of that before.
         note: Value,
+    },
+    /// More of a list that others have to remember of a robot.
+    More {
+        /// Of which.
+        robot: String,
+        /// What it is about.
+        key: String,
+        /// After what is in it.
+        more: Vec<Value>,
     },
     /// Something is wrong with a robot, or no longer.
     Alarm {

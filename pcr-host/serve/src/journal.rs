@@ -14,7 +14,7 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// What a journal begins with: what it is, and the version of its entries.
-const HEADER: &[u8; 16] = b"pcr-journal\0\x01\0\0\0";
+const HEADER: &[u8; 16] = b"pcr-journal\0\x02\0\0\0";
 
 /// Length, checksum of it and of the entries.
 const FRAME: usize = 12;
@@ -26,7 +26,7 @@ const LONGEST: usize = 1 << 28;
 const LONG: (u64, u64) = (16 << 20, 8);
 
 /// The file becomes longer by so many zeros at a time \[bytes\].
-const ROOM: u64 = 1 << 20;
+const ROOM: u64 = 1 << 18;
 
 /// What was found in a journal.
 #[derive(Debug)]

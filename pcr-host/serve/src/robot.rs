@@ -1,10 +1,9 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
 use crate::course::{Course, Shape};
+use crate::entry::Notes;
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
-use std::collections::BTreeMap;
 
 /// Discs are larger by this than they are \[m\]: what rounding does to paths that are cut and joined, and to lengths in messages.
 pub const ROOM: f64 = 1e-6;
@@ -164,7 +163,7 @@ pub struct Robot {
     /// Whether it has been said since then that nothing goes on because of it.
     pub stands: bool,
     /// What others have to remember of it, by what it is about.
-    pub notes: BTreeMap<String, Value>,
+    pub notes: Notes,
 }
 
 impl Robot {
@@ -194,7 +193,7 @@ impl Robot {
             silent: false,
             moved: None,
             stands: false,
-            notes: BTreeMap::new(),
+            notes: Notes::new(),
         }
     }
 

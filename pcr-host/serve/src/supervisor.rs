@@ -15,7 +15,7 @@ pub use places::Report;
 pub use restore::Damaged;
 
 use crate::course::{Course, Start};
-use crate::entry::{Entry, Keep, Layout};
+use crate::entry::{Entry, Keep, Layout, remember};
 use crate::event::Event;
 use crate::fault::Fault;
 use crate::robot::{Abilities, Robot};
@@ -302,6 +302,20 @@ impl Supervisor {
         let place = self.place(name)?;
         self.robots[place].notes.insert(key.into(), note.clone());
         self.entries.push(Entry::Note { robot: name.into(), key: key.into(), note });
+        Ok(())
+    }
+
+    /// Remembers more of a list, which begins with the first of it.
+    ///
+    /// # Errors
+    /// As [`Supervisor::note`].
+    pub fn note_more(&mut self, name: &str, key: &str, more: Vec<serde_json::Value>) -> Result<(), Fault> {
+        self.works()?;
+        let place = self.place(name)?;
+        if !remember(&mut self.robots[place].notes, key, &more) {
+            return Err(Fault::invalid(format!("{key}: what is remembered is no list")));
+        }
+        self.entries.push(Entry::More { robot: name.into(), key: key.into(), more });
         Ok(())
     }
 

@@ -1,10 +1,13 @@
 //! The process ends at any instant: after the restart no right is lost, and none is given to another robot.
 
-use crate::world::{STEP, Trouble, World};
-use pcr_serve::entry::{Kept, Nowhere};
+use crate::world::{Disc, STEP, Trouble, World};
+use pcr_serve::course::Start;
+use pcr_serve::entry::{Entry, Kept, Nowhere};
 use pcr_serve::event::Event;
 use pcr_serve::journal::{self, Journal};
+use pcr_serve::robot::Abilities;
 use pcr_serve::supervisor::{Settings, Supervisor};
+use serde_json::json;
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, ErrorKind, Seek, SeekFrom, Write};
 use std::path::PathBuf;
@@ -111,9 +114,41 @@ fn a_journal_that_is_damaged_is_not_gone_on_with() {
         }
     }
     let mut newer = bytes.clone();
-    newer[12] = 2;
+    newer[12] += 1;
     assert_eq!(journal::read(&newer).unwrap_err(), "it is that of another version");
     assert_eq!(journal::read(b"{}").unwrap_err(), "it is no journal");
+}
+
+/// What vehicles may go on to is a list that grows with each release. If all of it was written each time, a journal of an hour would have
+/// the square of that.
+#[test]
+fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
+    let disc = Disc::new();
+    let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
+    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+    own.add("a", Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    own.note("a", "list", json!([0])).unwrap();
+    own.settle(0.0).unwrap();
+    let mut sizes = Vec::new();
+    for k in 1..=1000 {
+        own.note_more("a", "list", vec![json!(k)]).unwrap();
+        own.settle(f64::from(k)).unwrap();
+        sizes.push(disc.bytes.lock().unwrap().len());
+    }
+    let grown = |frames: &[usize]| frames[frames.len() - 1] - frames[0];
+    assert!(grown(&sizes[800..]) < grown(&sizes[..200]) + 500, "{} {}", grown(&sizes[..200]), grown(&sizes[800..]));
+    let all = json!((0..=1000).collect::<Vec<_>>());
+    let restored = |entries| Supervisor::restored(Settings::default(), entries, Box::new(Nowhere));
+    assert_eq!(restored(disc.entries()).unwrap().robot("a").unwrap().notes["list"], all);
+    assert_eq!(restored(own.snapshot()).unwrap().robot("a").unwrap().notes["list"], all);
+    // More of what is no list, or of a robot that is not there, is damage.
+    own.note("a", "text", json!("no list")).unwrap();
+    assert!(own.note_more("a", "text", vec![json!(1)]).is_err() && own.note_more("b", "list", vec![]).is_err());
+    for (robot, key) in [("a", "text"), ("b", "list")] {
+        let more = Entry::More { robot: robot.into(), key: key.into(), more: vec![json!(1)] };
+        let entries: Vec<Entry> = own.snapshot().into_iter().chain([more]).collect();
+        assert!(restored(entries).is_err(), "{robot} {key}");
+    }
 }
 
 /// Where the last frame begins.

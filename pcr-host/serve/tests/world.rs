@@ -57,7 +57,7 @@ pub(crate) struct Disc {
 
 impl Disc {
     pub(crate) fn new() -> Self {
-        let header = b"pcr-journal\0\x01\0\0\0".to_vec();
+        let header = b"pcr-journal\0\x02\0\0\0".to_vec();
         Self { bytes: Arc::new(Mutex::new(header)), fails_at: Arc::new(AtomicUsize::new(usize::MAX)) }
     }
 

@@ -1,7 +1,7 @@
 //! Restores a supervisor from its journal.
 
 use super::{Settings, Supervisor, Table, fleet};
-use crate::entry::{Entry, Keep, Kept, Known, Layout};
+use crate::entry::{Entry, Keep, Kept, Known, Layout, remember};
 use crate::robot::{Alarm, Robot};
 use pcr_core::{Full, Mismatch, Pass, Reach};
 use std::collections::{HashMap, HashSet};
@@ -90,6 +90,11 @@ impl State {
             }
             Entry::Note { robot, key, note } => {
                 self.robot(&robot)?.notes.insert(key, note);
+            }
+            Entry::More { robot, key, more } => {
+                if !remember(&mut self.robot(&robot)?.notes, &key, &more) {
+                    return Err(Damaged(format!("{robot}, {key}: more of what is no list")));
+                }
             }
             Entry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
         }

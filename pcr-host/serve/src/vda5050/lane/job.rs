@@ -73,13 +73,6 @@ struct Given {
     cancel: Option<String>,
 }
 
-/// What is remembered of the vehicle's.
-#[derive(Serialize, Deserialize)]
-struct Base {
-    stops: Vec<Stop>,
-    sent: Option<Sent>,
-}
-
 /// The mission to a node, as the supervisor knows it.
 pub(super) fn mission(held: &Held, node: usize) -> String {
     format!("{}#{}", held.order_id, held.nodes.get(node).map_or(0, |node| node.sequence_id))
@@ -111,8 +104,8 @@ impl Job {
         let Given { held, start, version, cancel } = serde_json::from_value(note("order")?).ok()?;
         let way = Way::new(start, &held).ok()?;
         let mut job = Self { cancel, ..Self::new(held, way, version) };
-        if let Some(Base { stops, sent }) = note("base").and_then(|note| serde_json::from_value(note).ok()) {
-            (job.stops, job.sent) = (stops, sent);
+        if let Some(stops) = note("stops").and_then(|note| serde_json::from_value(note).ok()) {
+            (job.stops, job.sent) = (stops, note("sent").and_then(|note| serde_json::from_value(note).ok()));
         }
         job.asked = job.planned(robot).max(job.waiting(robot).unwrap_or(0));
         Some(job)
@@ -125,9 +118,9 @@ impl Job {
         serde_json::to_value(given).unwrap_or_default()
     }
 
-    /// What is to be remembered of the vehicle's.
-    pub(super) fn base(&self) -> Value {
-        serde_json::to_value(Base { stops: self.stops.clone(), sent: self.sent }).unwrap_or_default()
+    /// What is to be remembered of the update that was sent last.
+    pub(super) fn update(&self) -> Value {
+        serde_json::to_value(self.sent).unwrap_or_default()
     }
 
     /// The node that a mission leads to.

@@ -133,7 +133,8 @@ impl Lane {
     /// The vehicle has this order from now on.
     fn has(&mut self, supervisor: &mut Supervisor, job: Job) {
         self.note(supervisor, "order", job.given());
-        self.note(supervisor, "base", job.base());
+        self.note(supervisor, "stops", serde_json::to_value(&job.stops).unwrap_or_default());
+        self.note(supervisor, "sent", job.update());
         (self.job, self.astray) = (Some(job), None);
     }
 

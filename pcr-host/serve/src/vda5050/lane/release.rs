@@ -57,11 +57,14 @@ impl Lane {
         }
         let update = job.sent.map_or(0, |sent| sent.update + 1);
         let from = job.stops.len().saturating_sub(1);
+        let more = next.iter().map(|stop| serde_json::to_value(stop).unwrap_or_default()).collect();
         job.stops.extend(next);
         job.sent = Some(Sent { update, manager: job.held.update_id, from });
         (job.sent_at, job.changed) = (now, false);
-        let base = job.base();
-        self.note(supervisor, "base", base);
+        let update = job.update();
+        // All stops each time would be a journal that grows with the square of them.
+        let _ = supervisor.note_more(&self.name, "stops", more);
+        self.note(supervisor, "sent", update);
         self.send(version);
     }
 
