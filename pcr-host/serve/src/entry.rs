@@ -1,11 +1,10 @@
 //! The entries of the journal: everything that must be the same after a restart.
 
 use crate::course::Course;
-use crate::robot::{Abilities, Alarm, Asked, Waiting};
+use crate::robot::{Abilities, Alarm, Asked, Notes, Waiting};
 use pcr_core::Pass;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeMap;
 
 /// What is drawn on the page, and nothing else: it decides nothing.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -66,18 +65,6 @@ pub struct Kept {
     pub lengths: [[f64; 2]; 2],
 }
 
-/// What others have to remember of a robot, by what it is about.
-pub type Notes = BTreeMap<String, Value>;
-
-/// Adds more to a list of them; false: what is there is no list.
-pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
-    let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
-        return false;
-    };
-    list.extend_from_slice(more);
-    true
-}
-
 /// A robot with all its orders.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Known {
@@ -109,7 +96,7 @@ pub struct Known {
     /// Its orders with all others, in place of those that it had.
     pub orders: Vec<Kept>,
     /// What others have to remember of it.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "Notes::is_empty")]
     pub notes: Notes,
 }
 

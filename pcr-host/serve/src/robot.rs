@@ -1,9 +1,10 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
 use crate::course::{Course, Shape};
-use crate::entry::Notes;
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// Discs are larger by this than they are \[m\]: what rounding does to paths that are cut and joined, and to lengths in messages.
 pub const ROOM: f64 = 1e-6;
@@ -110,6 +111,18 @@ pub struct Wait {
     pub hold: Hold<f64>,
     /// The number of the robot that it waits for there, and where that one was \[m\]: when it has gone on there is more.
     pub by: Option<(usize, f64)>,
+}
+
+/// What others have to remember of a robot, by what it is about.
+pub type Notes = BTreeMap<String, Value>;
+
+/// Adds more to a list of them; false: what is there is no list.
+pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
+    let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
+        return false;
+    };
+    list.extend_from_slice(more);
+    true
 }
 
 /// A robot as the supervisor knows it.

@@ -15,10 +15,10 @@ pub use places::Report;
 pub use restore::Damaged;
 
 use crate::course::{Course, Start};
-use crate::entry::{Entry, Keep, Layout, remember};
+use crate::entry::{Entry, Keep, Layout};
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::robot::{Abilities, Robot};
+use crate::robot::{Abilities, Robot, remember};
 use pcr_core::{Full, Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

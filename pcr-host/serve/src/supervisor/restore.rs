@@ -1,8 +1,8 @@
 //! Restores a supervisor from its journal.
 
 use super::{Settings, Supervisor, Table, fleet};
-use crate::entry::{Entry, Keep, Kept, Known, Layout, remember};
-use crate::robot::{Alarm, Robot};
+use crate::entry::{Entry, Keep, Kept, Known, Layout};
+use crate::robot::{Alarm, Robot, remember};
 use pcr_core::{Full, Mismatch, Pass, Reach};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
