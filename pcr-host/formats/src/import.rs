@@ -61,7 +61,7 @@ mod xml;
 pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
 pub use rmf::is_navigation_graph;
-pub use route::{Step, cheapest, gap, ride, turn};
+pub use route::{Step, cheapest, ride, turn};
 pub use timed::{seconds, sectioned};
 pub use useful::Kind;
 pub use value::parse as parse_json;

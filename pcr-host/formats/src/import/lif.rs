@@ -206,7 +206,7 @@ impl Reader<'_> {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
                 let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
                 let gap = self.gap(id, &fit.pieces, at);
-                (edge.curve, edge.deviation) = (fit.pieces, fit.deviation.max(gap));
+                (edge.curve, edge.deviation) = (fit.pieces, fit.deviation + gap);
             }
         }
         if edge.curve.is_empty() {

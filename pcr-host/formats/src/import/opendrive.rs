@@ -308,6 +308,7 @@ fn groups(
 fn join(layout: &mut Layout, group: &[usize]) {
     let mut nodes = HashMap::new();
     for place in 0..layout.edges.len() {
+        let mut farthest = 0.0_f64;
         for side in 0..2 {
             let at = end_of(&layout.edges, 2 * place + side);
             let next = layout.nodes.len();
@@ -318,10 +319,10 @@ fn join(layout: &mut Layout, group: &[usize]) {
             } else {
                 layout.aliases.push((id, node));
             }
-            let edge = &mut layout.edges[place];
-            edge.ends[side] = node;
-            edge.deviation = edge.deviation.max(gap(at, layout.nodes[node].at));
+            layout.edges[place].ends[side] = node;
+            farthest = farthest.max(gap(at, layout.nodes[node].at));
         }
+        layout.edges[place].deviation += farthest;
     }
 }
 

@@ -23,7 +23,7 @@ const SHALLOW: f64 = 1e-9;
 const GAP: f64 = 0.05;
 
 /// How far an end of a curve is from its node, where a route passes from one to the other and it is more than rounding, else 0 \[m\].
-pub fn gap(end: [f64; 2], node: [f64; 2]) -> f64 {
+pub(super) fn gap(end: [f64; 2], node: [f64; 2]) -> f64 {
     let gap = distance(end, node);
     let rounding = ROUNDING + ROUNDINGS * (node[0].abs() + node[1].abs());
     if gap > rounding && gap <= GAP { gap } else { 0.0 }

@@ -5,7 +5,7 @@
 //! continue from it. It turns back along the same line only if no other way continues.
 
 use crate::bodies::tracks;
-use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, gap, ride, turn};
+use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::{KINK, Placed};
 use std::f64::consts::{PI, TAU};
@@ -53,7 +53,7 @@ pub struct Rides<'a> {
     vehicle: Vehicle,
     /// For each node the headings in which the vehicle comes to it, and leaves it \[rad\].
     headings: Vec<[Vec<f64>; 2]>,
-    /// How far from each node edges end there \[m\].
+    /// How far from each node a vehicle may be that has come to the end of an edge there \[m\].
     gaps: Vec<f64>,
 }
 
@@ -73,12 +73,10 @@ impl<'a> Rides<'a> {
             }
         }
         let mut gaps = vec![0.0_f64; layout.nodes.len()];
-        // What is not off its line at all ends at its nodes.
-        for edge in layout.edges.iter().filter(|edge| edge.deviation > 0.0) {
-            let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { continue };
-            for (&node, end) in edge.ends.iter().zip([first.at, last.end()]) {
-                if let Some((widest, node)) = gaps.get_mut(node).zip(layout.nodes.get(node)) {
-                    *widest = widest.max(gap(end, node.at));
+        for edge in &layout.edges {
+            for &node in &edge.ends {
+                if let Some(farthest) = gaps.get_mut(node) {
+                    *farthest = farthest.max(edge.deviation);
                 }
             }
         }
