@@ -19,7 +19,8 @@ const PATIENCE: usize = 6;
 /// Refusals after which it is taken out.
 const STUCK: usize = 40;
 
-/// Largest distance of the end of an edge from its node on an edge that is travelled \[m\].
+/// Largest distance of the end of an edge from its node, if the edge is travelled: as far as routes pass \[m\]. From the end of one edge to
+/// the beginning of the next it goes at once.
 const OFF: f64 = 0.05;
 
 /// What has come of it.

@@ -265,6 +265,11 @@ fn locks_hold_what_is_between_a_road_and_its_node() {
     let nodes = table.nodes.unwrap();
     let at_node = nodes.iter().any(|lock| lock.node == Id::Text("1/end".into()) && lock.edge == Id::Number(3));
     assert!(at_node, "{nodes:?}");
+    // A road that is linked to the second one, 4 cm further: 8 cm from the node, where no route passes.
+    let third = "<predecessor elementType=\"road\" elementId=\"2\" contactPoint=\"start\"/>";
+    let text = text.replace("</OpenDRIVE>", &format!("{}</OpenDRIVE>", road(4, [5.0, 0.08, -1.57], third)));
+    let edge = &read(&text).0.edges[3];
+    assert!((edge.deviation - 0.08).abs() < 1e-12, "{}", edge.deviation);
 }
 
 #[test]

@@ -40,6 +40,8 @@ const CAN: Abilities = Abilities {
 };
 /// What is measured counts from so long after everybody has got an order: until then, what came meanwhile is caught up with \[s\].
 const SETTLED: f64 = 1.0;
+/// So long it is tried to send a message.
+const PATIENCE: Duration = Duration::from_secs(10);
 /// Lanes get their orders one after the other over so long: else all vehicles would pass their nodes at the same time, again and again \[s\].
 const SPREAD: f64 = 4.0;
 /// Releases that follow from the one in front end as far behind it as all of those \[m\].
@@ -181,7 +183,9 @@ impl Load {
 
 /// Sends it, as soon as there is room for it.
 fn publish(link: &Link, message: Publish) {
+    let begin = Instant::now();
     while !link.publish(message.clone()) {
+        assert!(begin.elapsed() < PATIENCE, "it cannot be sent");
         std::thread::sleep(Duration::from_millis(1));
     }
 }

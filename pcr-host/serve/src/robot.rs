@@ -116,7 +116,7 @@ pub struct Wait {
 /// What others have to remember of a robot, by what it is about.
 pub type Notes = BTreeMap<String, Value>;
 
-/// Adds more to a list of them; false: what is there is no list.
+/// Adds to a list among them, which begins empty; false: what is there is no list.
 pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
     let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
         return false;

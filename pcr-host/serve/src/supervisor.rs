@@ -305,10 +305,11 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Remembers more of a list, which begins with the first of it.
+    /// Adds to a list that is remembered about a robot, and begins it if there is none. The journal grows by what is added, and not by
+    /// the whole list.
     ///
     /// # Errors
-    /// As [`Supervisor::note`].
+    /// As [`Supervisor::note`], and [`Fault::Invalid`] if what is remembered under that name is no list.
     pub fn note_more(&mut self, name: &str, key: &str, more: Vec<serde_json::Value>) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;

@@ -135,6 +135,7 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
         own.settle(f64::from(k)).unwrap();
         sizes.push(disc.bytes.lock().unwrap().len());
     }
+    // Its numbers and those of the frames get longer by a digit or two.
     let grown = |frames: &[usize]| frames[frames.len() - 1] - frames[0];
     assert!(grown(&sizes[800..]) < grown(&sizes[..200]) + 500, "{} {}", grown(&sizes[..200]), grown(&sizes[800..]));
     let all = json!((0..=1000).collect::<Vec<_>>());

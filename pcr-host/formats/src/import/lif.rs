@@ -16,6 +16,9 @@ use std::collections::BTreeSet;
 /// Largest gap between the end of a trajectory and its node that goes without a warning \[m\].
 const GAP: f64 = 1e-3;
 
+/// Gap that is rounding and nothing else \[m\].
+const CLOSED: f64 = 1e-9;
+
 /// Whether a JSON value looks like a layout.
 pub(super) fn is_layout(root: &Value) -> bool {
     root.get("layouts").is_some()
@@ -220,11 +223,14 @@ impl Reader<'_> {
         let mut passed = 0.0_f64;
         let ends = pieces.first().zip(pieces.last()).map(|(first, last)| [first.at, last.end()]);
         for ((end, node), place) in ends.into_iter().flatten().zip(at).zip(["begins", "ends"]) {
-            let [gap, passes] = [distance(end, node), route::gap(end, node)];
-            passed = passed.max(passes);
+            let gap = distance(end, node);
+            let is_passed = gap <= route::GAP;
+            if is_passed && gap > CLOSED {
+                passed = passed.max(gap);
+            }
             if gap > GAP {
                 let told =
-                    if passes > 0.0 { "" } else { "; no route passes there, and no lock covers what is between them" };
+                    if is_passed { "" } else { "; no route passes there, and no lock covers what is between them" };
                 self.warnings
                     .add(format_args!("edge {id}"), format!("its trajectory {place} {gap:.3} m from its node{told}"));
             }

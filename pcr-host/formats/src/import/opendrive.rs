@@ -8,7 +8,6 @@
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
-use super::route::gap;
 use super::trace::distance;
 use super::xml::{child, children, number, only, optional, parse};
 use super::{ImportError, Options, Warnings};
@@ -320,9 +319,12 @@ fn join(layout: &mut Layout, group: &[usize]) {
                 layout.aliases.push((id, node));
             }
             layout.edges[place].ends[side] = node;
-            farthest = farthest.max(gap(at, layout.nodes[node].at));
+            // Ends that are linked one to the next can be farther apart than [`GAP`]. No route passes there, but locks have to hold.
+            farthest = farthest.max(distance(at, layout.nodes[node].at));
         }
-        layout.edges[place].deviation += farthest;
+        if farthest > CLOSED {
+            layout.edges[place].deviation += farthest;
+        }
     }
 }
 

@@ -5,9 +5,8 @@
 //! out if this distance is not less than the rest of the edge before (the arc of the previous corner has taken its
 //! part), or than the edge after. Without an arc the vehicle stops and turns.
 
-use super::biarc::ROUNDINGS;
 use super::layout::{Edge, Layout};
-use super::trace::{ROUNDING, Trace, Tracer, distance};
+use super::trace::{Trace, Tracer, distance};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, speed};
 use crate::scenario::Placed;
@@ -20,14 +19,7 @@ use std::fmt;
 const SHALLOW: f64 = 1e-9;
 
 /// Largest gap between a curve and its node: it counts as deviation of the path \[m\].
-const GAP: f64 = 0.05;
-
-/// How far an end of a curve is from its node, where a route passes from one to the other and it is more than rounding, else 0 \[m\].
-pub(super) fn gap(end: [f64; 2], node: [f64; 2]) -> f64 {
-    let gap = distance(end, node);
-    let rounding = ROUNDING + ROUNDINGS * (node[0].abs() + node[1].abs());
-    if gap > rounding && gap <= GAP { gap } else { 0.0 }
-}
+pub(super) const GAP: f64 = 0.05;
 
 /// An edge, and whether it is travelled from its end to its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]

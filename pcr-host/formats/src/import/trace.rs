@@ -14,7 +14,7 @@ const NEAR: f64 = 1e-6;
 const STRAIGHT: f64 = 1e-9;
 
 /// Deviation that is rounding and nothing else \[m\].
-pub(super) const ROUNDING: f64 = 1e-12;
+const ROUNDING: f64 = 1e-12;
 
 /// A segment of a path and how fast it may be travelled.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -54,7 +54,7 @@ pub struct Rides<'a> {
     /// For each node the headings in which the vehicle comes to it, and leaves it \[rad\].
     headings: Vec<[Vec<f64>; 2]>,
     /// How far from each node a vehicle may be that has come to the end of an edge there \[m\].
-    gaps: Vec<f64>,
+    beside: Vec<f64>,
 }
 
 impl<'a> Rides<'a> {
@@ -72,15 +72,15 @@ impl<'a> Rides<'a> {
                 }
             }
         }
-        let mut gaps = vec![0.0_f64; layout.nodes.len()];
+        let mut beside = vec![0.0_f64; layout.nodes.len()];
         for edge in &layout.edges {
             for &node in &edge.ends {
-                if let Some(farthest) = gaps.get_mut(node) {
+                if let Some(farthest) = beside.get_mut(node) {
                     *farthest = farthest.max(edge.deviation);
                 }
             }
         }
-        Self { layout, vehicle, headings, gaps }
+        Self { layout, vehicle, headings, beside }
     }
 
     /// The vehicle, larger by its margin.
@@ -133,7 +133,7 @@ impl<'a> Rides<'a> {
     /// The vehicle that stands at a node, or where an edge ends beside it, in any heading.
     pub fn at(&self, node: usize) -> Ride {
         let angle = if self.vehicle.footprint.is_some() { TAU } else { 0.0 };
-        let vehicle = grown(&self.vehicle, self.gaps.get(node).copied().unwrap_or_default());
+        let vehicle = grown(&self.vehicle, self.beside.get(node).copied().unwrap_or_default());
         Ride { agent: turn(&vehicle, self.place(node), 0.0, angle), lengths: Lengths::At(0.0) }
     }
 

@@ -184,6 +184,12 @@ impl Lane {
         // A robot that is not there needs no memory; a broken journal tells no more holds either.
         let _ = supervisor.note(&self.name, key, note);
     }
+
+    /// Adds to a list that it has to remember.
+    fn note_more(&self, supervisor: &mut Supervisor, key: &str, more: Vec<Value>) {
+        // As above.
+        let _ = supervisor.note_more(&self.name, key, more);
+    }
 }
 
 /// An order of ours.

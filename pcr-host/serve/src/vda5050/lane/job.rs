@@ -119,7 +119,7 @@ impl Job {
     }
 
     /// What is to be remembered of the update that was sent last.
-    pub(super) fn update(&self) -> Value {
+    pub(super) fn sent_note(&self) -> Value {
         serde_json::to_value(self.sent).unwrap_or_default()
     }
 

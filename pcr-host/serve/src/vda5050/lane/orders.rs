@@ -134,7 +134,7 @@ impl Lane {
     fn has(&mut self, supervisor: &mut Supervisor, job: Job) {
         self.note(supervisor, "order", job.given());
         self.note(supervisor, "stops", serde_json::to_value(&job.stops).unwrap_or_default());
-        self.note(supervisor, "sent", job.update());
+        self.note(supervisor, "sent", job.sent_note());
         (self.job, self.astray) = (Some(job), None);
     }
 

@@ -61,10 +61,9 @@ impl Lane {
         job.stops.extend(next);
         job.sent = Some(Sent { update, manager: job.held.update_id, from });
         (job.sent_at, job.changed) = (now, false);
-        let update = job.update();
-        // All stops each time would be a journal that grows with the square of them.
-        let _ = supervisor.note_more(&self.name, "stops", more);
-        self.note(supervisor, "sent", update);
+        let sent = job.sent_note();
+        self.note_more(supervisor, "stops", more);
+        self.note(supervisor, "sent", sent);
         self.send(version);
     }
 
