@@ -150,7 +150,7 @@ struct Found {
 pub(super) struct Statistics {
     /// Time of each planning \[s\].
     pub(super) times: Vec<f64>,
-    /// How often no plan was found.
+    /// How often no plan was found, or none with which all arrive sooner.
     pub(super) kept: usize,
     /// How often a robot could not brake in time; it never should.
     pub(super) breaches: usize,
@@ -226,7 +226,8 @@ impl Supervisor {
         self.still = if moves { 0.0 } else { self.still + FRAME };
     }
 
-    /// Looks for a better plan, and keeps the old one where there is none. Where not all new missions can be taken up those are that can.
+    /// Looks for a plan with new missions, or where there are none for one with which all arrive sooner, and keeps the old one where there is
+    /// none. Where not all new missions can be taken up those are that can.
     fn replan(&mut self, now: f64) {
         let pending: Vec<bool> = self.agents.iter().map(|agent| agent.next.is_some()).collect();
         let again = self.plan.is_some() && !pending.contains(&true);
@@ -243,6 +244,7 @@ impl Supervisor {
             self.for_all(now, &pending, again).or_else(|| if again { None } else { self.for_some(now, &pending) });
         self.statistics.times.push(begin.elapsed().as_secs_f64());
         match found {
+            Some(found) if again && found.current.plan.cost >= self.left() => self.statistics.kept += 1,
             Some(found) => self.take_up(now, found),
             None => {
                 self.statistics.kept += 1;
@@ -268,9 +270,20 @@ impl Supervisor {
         };
         [1, 0].into_iter().find_map(|margin| {
             let robots = self.states(margin, taken)?;
-            let plans = Problem { now, robots: &robots, obstacles: &self.obstacles }.plans(&last, again);
-            plans.into_iter().find_map(|plan| self.found(plan, self.offsets(taken), taken, margin))
+            let problem = Problem { now, robots: &robots, obstacles: &self.obstacles };
+            let mut plans = problem.plans(&last, again);
+            plans.find_map(|plan| self.found(plan, self.offsets(taken), taken, margin))
         })
+    }
+
+    /// Sum of the times until arrival by the plan that all have, from where they are \[s\].
+    fn left(&self) -> f64 {
+        let Some(current) = &self.plan else { return f64::INFINITY };
+        let left = |(place, agent): (usize, &Agent)| {
+            let [at, end] = [agent.at.middle(), agent.course.length()].map(|length| current.reached(place, length));
+            (end - at).max(0.0)
+        };
+        self.agents.iter().enumerate().map(left).sum()
     }
 
     /// A plan in which as many as possible take up their new missions, while the others stay where they are; if everybody stands. On the
@@ -416,6 +429,8 @@ impl Control for Supervisor {
             agent.next = Some(course.clone());
         }
         self.next_plan = f64::NEG_INFINITY;
+        // From now on there is something to do.
+        self.still = 0.0;
     }
 
     fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command> {
