@@ -70,6 +70,8 @@ impl Extent {
 pub enum Problem {
     /// Of a file or directory.
     File(PathBuf, String),
+    /// Of the document of which parts were to be written anew.
+    Document(PathBuf, String),
     /// Of a fleet.
     Fleet(Failure),
     /// Of a method that has no answer, by its name.
@@ -79,7 +81,7 @@ pub enum Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File(path, problem) => write!(f, "{}: {problem}", path.display()),
+            Self::File(path, problem) | Self::Document(path, problem) => write!(f, "{}: {problem}", path.display()),
             Self::Fleet(failure) => failure.fmt(f),
             Self::Method(name, reason) => write!(f, "{name}: {reason}"),
         }
@@ -106,46 +108,69 @@ fn picture(name: &str, what: &str) -> String {
     format!("![{what}]({PICTURES}/{name}.svg)\n")
 }
 
+/// One after the other: they take the time of one another otherwise.
+type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
+
+/// The parts of the document, by their names.
+const PARTS: [(&str, Part); 12] = [
+    ("fleets", fleets::section),
+    ("shares", shares::section),
+    ("figures", figures::section),
+    ("grazing", grazing::section),
+    ("memory", memory::section),
+    ("traffic", traffic::section),
+    ("plans", plans::section),
+    ("lifelong", lifelong::section),
+    ("layouts", layouts::section),
+    ("execution", execution::section),
+    ("roadmaps", roadmaps::section),
+    ("scale", scale::section),
+];
+
+/// The names of the parts of the document.
+pub fn parts() -> impl Iterator<Item = &'static str> {
+    PARTS.iter().map(|(name, _)| *name)
+}
+
 /// Writes `evaluation.md` and its pictures into a directory; `data` is the directory with the fleets of the paper's Table VI and
-/// the layouts.
-/// `progress` is told how many sections are done, and of how many. Returns the files.
+/// the layouts. With the names of some parts in `only`, these are written anew in the document that is there.
+/// `progress` is told how many parts are done, and of how many. Returns the files.
 ///
 /// # Errors
-/// [`Problem`] where a fleet cannot be read, or a file cannot be written.
+/// [`Problem`] where a fleet cannot be read, or a file cannot be read or written.
 pub fn write(
     data: &Path,
     directory: &Path,
     extent: Extent,
+    only: &[String],
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<PathBuf>, Problem> {
-    /// One after the other: they take the time of one another otherwise.
-    type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
-    const PARTS: [Part; 12] = [
-        fleets::section,
-        shares::section,
-        figures::section,
-        grazing::section,
-        memory::section,
-        traffic::section,
-        plans::section,
-        lifelong::section,
-        layouts::section,
-        execution::section,
-        roadmaps::section,
-        scale::section,
-    ];
-    let mut text = machine::preamble(extent);
+    let document = directory.join("evaluation.md");
+    let mut text = match only {
+        [] => machine::preamble(extent),
+        _ => fs::read_to_string(&document)
+            .map_err(|error| Problem::Document(document.clone(), format!("cannot be read: {error}")))?,
+    };
     let fleets = Fleets::read(data, extent)?;
+    let wanted = PARTS.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|it| it == name));
+    let wanted: Vec<Part> = wanted.map(|&(_, part)| part).collect();
     let mut files = Vec::new();
-    for (done, part) in PARTS.iter().enumerate() {
-        progress(done, PARTS.len());
+    for (done, part) in wanted.iter().enumerate() {
+        progress(done, wanted.len());
         let section = part(&fleets, extent)?;
-        text.push('\n');
-        text.push_str(&section.text);
+        if only.is_empty() {
+            text.push('\n');
+            text.push_str(&section.text);
+        } else {
+            text = replaced(&text, &section.text).ok_or_else(|| {
+                let first = section.text.lines().next().unwrap_or_default();
+                Problem::Document(document.clone(), format!("has no section \"{first}\": write all of it"))
+            })?;
+        }
         let pictures = section.pictures.into_iter();
         files.extend(pictures.map(|(name, svg)| (directory.join(PICTURES).join(name).with_extension("svg"), svg)));
     }
-    files.insert(0, (directory.join("evaluation.md"), text));
+    files.insert(0, (document, text));
     let written = files.into_iter().map(|(path, content)| {
         let write = || {
             output::folder(path.parent().unwrap_or(directory))?;
@@ -155,6 +180,25 @@ pub fn write(
         Ok(path)
     });
     written.collect()
+}
+
+/// A document with other text in place of its sections that have the same headings; none where it does not have the first of them.
+fn replaced(document: &str, section: &str) -> Option<String> {
+    let is_heading = |line: &&str| line.starts_with("## ");
+    let headings: Vec<&str> = section.lines().filter(is_heading).collect();
+    let lines: Vec<&str> = document.lines().collect();
+    let begin = lines.iter().position(|line| Some(line) == headings.first())?;
+    let after = lines.iter().skip(begin).position(|line| is_heading(line) && !headings.contains(line));
+    let mut text: String = lines[..begin].iter().map(|line| format!("{line}\n")).collect();
+    text.push_str(section);
+    for line in after.map_or(&[][..], |after| &lines[begin + after..]).iter() {
+        if is_heading(line) && !text.ends_with("\n\n") {
+            text.push('\n');
+        }
+        text.push_str(line);
+        text.push('\n');
+    }
+    Some(text)
 }
 
 /// A row of the paper's Table VI, and our fleet for it.

@@ -19,6 +19,9 @@ pub(super) struct Arguments {
     /// Directory with the fleets of the paper's Table VI
     #[arg(long, value_name = "DIR", default_value = "tests/data")]
     data: PathBuf,
+    /// Write this part of the document anew, and leave the others as they are; as often as there are parts
+    #[arg(long, value_name = "PART", value_parser = clap::builder::PossibleValuesParser::new(evaluate::parts()))]
+    only: Vec<String>,
     /// Small fleets only, without the slowest methods: to see that it works
     #[arg(long)]
     quick: bool,
@@ -29,8 +32,9 @@ impl Arguments {
         let extent = if self.quick { Extent::Quick } else { Extent::Full };
         let written = |error| Stop::not_written(&self.output, &error);
         output::folder(&self.output).map_err(written)?;
-        let progress = Progress::new("sections");
-        let files = evaluate::write(&self.data, &self.output, extent, &mut |done, total| progress.set(done, total));
+        let progress = Progress::new("parts");
+        let Self { data, output, only, .. } = &self;
+        let files = evaluate::write(data, output, extent, only, &mut |done, total| progress.set(done, total));
         drop(progress);
         let files = files.map_err(|problem| match &problem {
             Problem::File(path, _) if path.starts_with(&self.output) => Stop::Error(problem.to_string(), NOT_WRITTEN),

@@ -27,6 +27,17 @@ fn the_document_and_all_its_pictures_are_written() {
         let document = roxmltree::Document::parse(&svg).unwrap();
         assert!(document.root_element().has_tag_name("svg") && !svg.contains("NaN"), "{name}");
     }
+    // One part anew: nothing else changes, and that part as little as memory does.
+    let target = output.to_str().unwrap();
+    let only = ["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", target, "--only", "memory"];
+    let written = run(&only).ok();
+    assert_eq!(written, format!("{}\n", output.join("evaluation.md").display()));
+    assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), text);
+    let without = text.replace("## Memory, and bytes on the wire", "## Something else");
+    fs::write(output.join("evaluation.md"), &without).unwrap();
+    let message = run(&only).failed(2);
+    assert!(message.contains("has no section \"## Memory, and bytes on the wire\""), "{message}");
+    assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), without);
     // Rows of the grazing table: double precision is never wrong, lines at 10 mm are wrong about all near misses.
     let row = |name: &str| text.lines().find(|line| line.starts_with(name) && line.contains('·')).unwrap();
     assert!(row("| pcr f64 ").ends_with("| 4 · 0 | 0 | – |"));

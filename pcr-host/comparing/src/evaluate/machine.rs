@@ -22,8 +22,8 @@ pub(super) fn preamble(extent: Extent) -> String {
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(
         "# Evaluation\n\n\
-        `cargo run --release --features peers -- evaluate` writes this document with all numbers and pictures; nothing is \
-        edited by hand.{quick}\n\n\
+        `cargo run --release --features peers -- evaluate` writes this document with all numbers and pictures, and with \
+        `--only PART` one part of it anew; nothing is edited by hand.{quick}\n\n\
         **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} ({cores} would keep all cores \
         busy). **Libraries in C++**: {libraries}. Times are medians. The results are the *ratios*: in each round all methods run one after the \
         other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; the time for \
