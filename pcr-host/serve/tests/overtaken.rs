@@ -55,6 +55,54 @@ fn a_slow_robot_gets_its_turn() {
     panic!("it does not arrive");
 }
 
+/// A robot stands for a minute before the way of one that has hardly any speed left. Far away from them a robot whose way is short goes before one that comes much
+/// later: it did not, as new missions were last everywhere while anybody stood. With a hundred vehicles somebody always does.
+#[test]
+fn one_that_stands_does_not_put_others_last() {
+    let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
+    let abilities = |speed| Abilities { radius: 0.4, margin: 0.0, speed, acceleration: 1.0 };
+    let starts = [
+        ("slow", 0.01, [-1.2, 0.0], 0.0),
+        ("held", 1.0, [0.0, -4.0], FRAC_PI_2),
+        ("far", 0.3, [60.0, 0.0], 0.0),
+        ("near", 1.0, [90.0, -3.0], FRAC_PI_2),
+    ];
+    for (name, speed, [x, y], heading) in starts {
+        // What it can do, not what it does.
+        let speed = if name == "slow" { 1.0 } else { speed };
+        own.add(name, abilities(speed), Start { x, y, heading }).unwrap();
+    }
+    let ask = |own: &mut Supervisor, robot: &str, length: f64, now: f64| {
+        let path = vec![Shape::Line { length }];
+        let mission = Proposal { robot: robot.into(), mission: "1".into(), after: None, start: None, path };
+        let verdict = own.mission(&mission, now).unwrap();
+        assert!(matches!(verdict, Verdict::Admitted { .. }), "{robot}: {verdict:?}");
+    };
+    ask(&mut own, "slow", 3.0, 0.0);
+    let mut drive = |own: &mut Supervisor, time: std::ops::Range<u32>| {
+        for step in time {
+            let now = f64::from(step) * STEP;
+            for (name, speed, ..) in starts {
+                let robot = own.robot(name).unwrap();
+                let at = (robot.at + speed * STEP).min(robot.granted);
+                own.position(&Report { robot: name.into(), path: robot.path, at: [at; 2], age: 0.0 }, now).unwrap();
+            }
+            own.settle(now).unwrap();
+        }
+    };
+    // It is where the other one would pass from 0.4 m to 2 m; from 1.2 m on it begins to leave.
+    drive(&mut own, 0..90);
+    ask(&mut own, "held", 8.0, 45.0);
+    drive(&mut own, 90..234);
+    let [held, slow] = ["held", "slow"].map(|name| own.robot(name).unwrap());
+    assert!(held.granted < 4.0 && held.at >= held.granted - 1e-6 && slow.at < 1.2, "{} {} {}", held.granted, held.at, slow.at);
+    ask(&mut own, "far", 60.0, 117.0);
+    drive(&mut own, 234..236);
+    ask(&mut own, "near", 6.0, 118.0);
+    drive(&mut own, 236..254);
+    assert!(own.robot("near").unwrap().has_arrived(0.1), "it waits for the one that comes in 100 s");
+}
+
 /// Robots in a row, each of which is to go to the place of the next one. The last one to ask is the one in front, which can go as soon as
 /// somebody has left. Of the missions whose time had come the oldest one was always tried, one at a time: with so many that wait nobody
 /// ever looked at the last one.

@@ -198,10 +198,10 @@ impl Supervisor {
         self.orders.passed(&progress);
         let mut fleet = fleet(&self.robots);
         let speeds: Vec<f64> = self.robots.iter().map(|robot| robot.abilities.speed).collect();
-        let (known, is_last) = (progress.clone(), self.is_overtaken(now));
-        let prefer = |region: &RegionRef<'_, f64>| match is_last {
-            true => Pass::Second,
-            false => preferred(region, own.at.lo, &known, &speeds),
+        let (known, overtaken) = (progress.clone(), self.overtaken(now));
+        let prefer = |region: &RegionRef<'_, f64>| match overtaken.get(region.other()) {
+            Some(true) => Pass::Second,
+            _ => preferred(region, own.at.lo, &known, &speeds),
         };
         let admission = loop {
             let mission = Mission { agent: place, motion, progress: own };

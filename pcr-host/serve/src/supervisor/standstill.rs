@@ -61,15 +61,11 @@ impl Supervisor {
         }
     }
 
-    /// Whether somebody has got nowhere for long, but the one that it waits for has: perhaps those that come after it go before it, again
-    /// and again. New missions are admitted behind everybody then, so that those before it become fewer until it goes on.
-    pub(super) fn is_overtaken(&self, now: f64) -> bool {
-        let patience = self.settings.patience;
-        let is_overtaken = |place: usize| {
-            let by = self.kept_by(place).filter(|_| !self.robots[place].has_arrived(self.settings.width));
-            self.since(place, now) > patience && by.is_some_and(|by| self.since(by, now) <= patience)
-        };
-        (0..self.robots.len()).any(is_overtaken)
+    /// Who has stood for long where it has to stop: perhaps those that come after it go before it, again and again. New missions are admitted
+    /// behind it then, so that those before it become fewer until it goes on; and each of these goes on, or has stood for long as well.
+    pub(super) fn overtaken(&self, now: f64) -> Vec<bool> {
+        let is_overtaken = |place| self.is_held(place) && self.since(place, now) > self.settings.patience;
+        (0..self.robots.len()).map(is_overtaken).collect()
     }
 
     fn since(&self, place: usize, now: f64) -> f64 {
@@ -80,12 +76,17 @@ impl Supervisor {
         robot.waiting.is_some() || !robot.has_arrived(self.settings.width)
     }
 
+    /// Whether a robot is on its way, and where it has to stop.
+    fn is_held(&self, place: usize) -> bool {
+        let (robot, width) = (&self.robots[place], self.settings.width);
+        !robot.has_arrived(width) && robot.told <= robot.at + width
+    }
+
     /// For whom a robot waits, that has something to do and may not go on.
     fn kept_by(&self, place: usize) -> Option<usize> {
         let robot = &self.robots[place];
         if !robot.has_arrived(self.settings.width) {
-            let waits = robot.told <= robot.at + self.settings.width;
-            return robot.hold.filter(|_| waits)?.by.map(|(by, _)| by);
+            return robot.hold.filter(|_| self.is_held(place))?.by.map(|(by, _)| by);
         }
         match self.tries.get(&robot.name).filter(|_| robot.waiting.is_some())?.last.as_ref()? {
             Verdict::Waiting { by: Some(by), .. } => self.place(by).ok().filter(|by| *by != place),
