@@ -95,7 +95,13 @@ fn one_that_stands_does_not_put_others_last() {
     ask(&mut own, "held", 8.0, 45.0);
     drive(&mut own, 90..234);
     let [held, slow] = ["held", "slow"].map(|name| own.robot(name).unwrap());
-    assert!(held.granted < 4.0 && held.at >= held.granted - 1e-6 && slow.at < 1.2, "{} {} {}", held.granted, held.at, slow.at);
+    assert!(
+        held.granted < 4.0 && held.at >= held.granted - 1e-6 && slow.at < 1.2,
+        "{} {} {}",
+        held.granted,
+        held.at,
+        slow.at
+    );
     ask(&mut own, "far", 60.0, 117.0);
     drive(&mut own, 234..236);
     ask(&mut own, "near", 6.0, 118.0);
