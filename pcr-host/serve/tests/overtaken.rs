@@ -79,7 +79,7 @@ fn one_that_stands_does_not_put_others_last() {
         assert!(matches!(verdict, Verdict::Admitted { .. }), "{robot}: {verdict:?}");
     };
     ask(&mut own, "slow", 3.0, 0.0);
-    let mut drive = |own: &mut Supervisor, time: std::ops::Range<u32>| {
+    let drive = |own: &mut Supervisor, time: std::ops::Range<u32>| {
         for step in time {
             let now = f64::from(step) * STEP;
             for (name, speed, ..) in starts {
