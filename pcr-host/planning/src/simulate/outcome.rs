@@ -164,7 +164,7 @@ pub struct Collision {
 pub struct Planning {
     /// How often it was done.
     pub count: usize,
-    /// How often no plan was found, and the old passing orders stayed.
+    /// How often no plan was found, or none with which all arrive sooner, and the old passing orders stayed.
     pub kept: usize,
     /// How often a robot could not brake in time for its passing order: 0, or the supervisor is wrong.
     pub breaches: usize,
