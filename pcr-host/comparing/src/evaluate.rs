@@ -151,6 +151,9 @@ pub fn write(
         _ => fs::read_to_string(&document)
             .map_err(|error| Problem::Document(document.clone(), format!("cannot be read: {error}")))?,
     };
+    if text.contains(machine::QUICK) != (extent == Extent::Quick) {
+        return Err(Problem::Document(document, "was written with --quick, or this is and it was not".to_owned()));
+    }
     let fleets = Fleets::read(data, extent)?;
     let wanted = PARTS.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|it| it == name));
     let wanted: Vec<Part> = wanted.map(|&(_, part)| part).collect();

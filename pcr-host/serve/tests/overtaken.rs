@@ -55,8 +55,8 @@ fn a_slow_robot_gets_its_turn() {
     panic!("it does not arrive");
 }
 
-/// A robot stands for a minute before the way of one that has hardly any speed left. Far away from them a robot whose way is short goes before one that comes much
-/// later: it did not, as new missions were last everywhere while anybody stood. With a hundred vehicles somebody always does.
+/// A robot stands for a minute before the way of one that hardly moves. Far away from them, a robot with a short way goes before one that
+/// comes much later. It did not: while anybody stood, new missions went last everywhere, and of a hundred vehicles somebody always stands.
 #[test]
 fn one_that_stands_does_not_put_others_last() {
     let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));

@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Then let all missions under way finish, within an hour
+    /// Then let all missions under way finish, until none has for an hour
     #[arg(long, requires = "time")]
     finish: bool,
     /// Without a broker: supervisor, route-locks or edge-locks

@@ -33,6 +33,9 @@ fn the_document_and_all_its_pictures_are_written() {
     let written = run(&only).ok();
     assert_eq!(written, format!("{}\n", output.join("evaluation.md").display()));
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), text);
+    let full: Vec<&str> = only.iter().copied().filter(|word| *word != "--quick").collect();
+    let message = run(&full).failed(2);
+    assert!(message.contains("was written with --quick"), "{message}");
     let without = text.replace("## Memory, and bytes on the wire", "## Something else");
     fs::write(output.join("evaluation.md"), &without).unwrap();
     let message = run(&only).failed(2);

@@ -5,6 +5,9 @@ use crate::compare::libraries;
 use std::fs;
 use std::thread::available_parallelism;
 
+/// What a document of small fleets says of itself.
+pub(super) const QUICK: &str = " Written with `--quick`: small fleets, without the slowest methods.";
+
 /// Title, command, machine and how to read the numbers.
 pub(super) fn preamble(extent: Extent) -> String {
     let cores = available_parallelism().map_or(1, usize::from);
@@ -17,7 +20,7 @@ pub(super) fn preamble(extent: Extent) -> String {
     let libraries = libraries().join("; ");
     let quick = match extent {
         Extent::Full => "",
-        Extent::Quick => " Written with `--quick`: small fleets, without the slowest methods.",
+        Extent::Quick => QUICK,
     };
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(

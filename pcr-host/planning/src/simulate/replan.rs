@@ -17,7 +17,7 @@ const BEFORE: f64 = 1e-4;
 /// Orders of priority in which everybody comes first once are tried for so many robots.
 const FIRST: usize = 8;
 
-/// More robots than this are not planned anew on the way where nothing is new: of 300 fleets none arrived sooner by that.
+/// More robots than this are not planned anew on the way where nothing is new: it takes long, and orders are kept without.
 pub(super) const SEARCHED: usize = 15;
 
 /// A robot as it is now.

@@ -200,7 +200,12 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     let mut left = None;
     if let Some(office) = run.office.as_mut().filter(|_| arguments.finish) {
         office.manager.end();
-        go_on(&mut run, time + LONGEST, |run| run.busy() > 0)?;
+        let mut busy = usize::MAX;
+        while run.busy() < busy && !flag.load(Ordering::Relaxed) {
+            busy = run.busy();
+            let until = run.fleet.time() + LONGEST;
+            go_on(&mut run, until, |run| run.busy() > 0)?;
+        }
         left = Some((run.busy(), run.fleet.time() - time));
     }
     let audit = run.fleet.audit().clone();
@@ -208,7 +213,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     told(vehicles, time, done, drops, &audit, left)
 }
 
-/// Whoever has not come to its end so long after the last mission was given never will \[s\].
+/// Where nobody has come to its end for so long, nobody ever will \[s\].
 const LONGEST: f64 = 3600.0;
 
 /// The same without a broker.
@@ -237,7 +242,13 @@ fn alone(
     }
     let (done, drops) = (yard.manager().done(), yard.drops());
     let left = match arguments.finish {
-        true => Some((yard.drain(LONGEST).map_err(broken)?, yard.time() - time)),
+        true => {
+            let (mut before, mut left) = (usize::MAX, yard.drain(LONGEST).map_err(broken)?);
+            while left > 0 && left < before {
+                (before, left) = (left, yard.drain(LONGEST).map_err(broken)?);
+            }
+            Some((left, yard.time() - time))
+        }
         false => None,
     };
     let (audit, longest) = (yard.audit().clone(), yard.longest());
