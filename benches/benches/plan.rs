@@ -46,7 +46,14 @@ fn agents(c: &mut Criterion) {
             b.iter(|| {
                 let planned = (0..motions.len()).filter(|&k| {
                     let regions = ecm.row(black_box(&motions), k).expect("its table");
-                    plan_speed::<f64, PHASES>(&motions[k], Drive::of(&motions[k]), regions, &[], &mut stations).is_ok()
+                    plan_speed::<f64, PHASES>(
+                        &motions[k],
+                        Drive::of(&motions[k]).expect("from rest to rest"),
+                        regions,
+                        &[],
+                        &mut stations,
+                    )
+                    .is_ok()
                 });
                 planned.count()
             });

@@ -213,7 +213,10 @@ fn together<S: Format>(fleet: &[Motion<'_, S>], ecm: &Ecm<S, Vec<Region>, Vec<Pi
         assert!(first_overlap(ego, row.clone(), interval).is_none_or(|met| !met.conflict.touching));
         assert!(met.is_none_or(|met| met.other != k));
         let mut stations = vec![Station::EMPTY; 24];
-        let _ = plan_speed::<S, PHASES>(ego, Drive::of(ego), row, &[], &mut stations);
+        let limits = Limits { speed: ego.profile().top_speed(), acceleration: interval.hi };
+        for drive in [Drive::of(ego), Some(Drive::rest_to_rest(limits))].into_iter().flatten() {
+            let _ = plan_speed::<S, PHASES>(ego, drive, row.clone(), &[], &mut stations);
+        }
         safe_intervals(fleet, k, interval, interval).expect("an agent of the fleet").for_each(drop);
         safe_lengths(fleet, k, interval).expect("an agent of the fleet").for_each(finite);
         itself(ego, interval);

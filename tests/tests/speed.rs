@@ -1,9 +1,10 @@
 //! Speed plans: against a fine dynamic program and the definition, in every format, and known answers.
 
 use pcr_core::{
-    Constraint, Drive as Speeds, Interval, Invalid, Limits, Motion, NoSpeedPlan, SpeedPlan, Station, plan_speed,
+    Constraint, Drive as Speeds, Interval, Invalid, Limits, Motion, NoSpeedPlan, Profile, SpeedPlan, Station,
+    plan_speed, plan_speeds, scalar::Micro,
 };
-use pcr_fixed::Q16;
+use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, leg};
@@ -279,6 +280,53 @@ fn constraints_are_kept_in_every_format() {
     constrained_in::<f64>(1e-8);
     constrained_in::<f32>(5e-4);
     constrained_in::<Q16>(5e-3);
+}
+
+/// Motions from rest to rest have a drive in every format; with a slower edge, a stop or a gentler brake they have none, and no plan makes
+/// them faster.
+fn driven_in<S: Format>() {
+    let dice = &mut Dice::seeded(7);
+    for _ in 0..400 {
+        let (speed, acceleration) = (dice.range(0.05, 4.0), dice.range(0.05, 4.0));
+        let disc = Disc { radius: 0.2, start: [0.0; 3], legs: vec![Leg::Line(dice.range(0.05, 40.0))] };
+        let course = Course::<S>::driven(&disc, &Drive::Limits(speed, acceleration), 0.0).expect("a valid disc");
+        let drive =
+            Speeds::of(&course.motion()).unwrap_or_else(|| panic!("{speed} m/s, {acceleration} m/s², {disc:?}"));
+        assert!(
+            drive.start == S::ZERO
+                && drive.goal == S::ZERO
+                && drive.limits.acceleration.to_f64() <= 1.01 * acceleration
+        );
+    }
+    let disc = Disc { radius: 0.2, start: [0.0; 3], legs: vec![Leg::Line(8.0)] };
+    let course = |pieces: &[(f64, f64)]| {
+        Course::<S>::driven(&disc, &Drive::Pieces(0.0, pieces.to_vec()), 0.0).expect("a valid disc")
+    };
+    for pieces in [
+        // 0.2 m/s on the second half; a stop; 0.5 m/s² to a stop, 1 m/s² from rest.
+        &[(1.0, 1.0), (3.02, 0.0), (0.8, -1.0), (19.9, 0.0), (0.2, -1.0)][..],
+        &[(1.0, 1.0), (3.0, 0.0), (1.0, -1.0), (2.0, 0.0), (1.0, 1.0), (3.0, 0.0), (1.0, -1.0)],
+        &[(1.0, 1.0), (6.5, 0.0), (2.0, -0.5)],
+    ] {
+        let slow = course(pieces);
+        assert_eq!(Speeds::of(&slow.motion()), None, "{pieces:?}");
+        let fleet = [slow.motion()];
+        let (ecm, mut plan) = (build_ecm(&fleet).expect("a small table"), fleet.to_vec());
+        let mut profiles = [Profile::<S, 16>::standing()];
+        plan_speeds(&ecm, &fleet, &mut plan, &mut [0], &mut profiles, &mut [Station::EMPTY; 100]).expect("a plan");
+        assert_eq!(plan[0].time(), fleet[0].time(), "{pieces:?}");
+    }
+    assert!(Speeds::of(&course(&[(1.0, 1.0), (7.0, 0.0), (1.0, -1.0)]).motion()).is_some());
+}
+
+#[test]
+fn who_is_slow_for_a_reason_has_no_drive() {
+    driven_in::<f64>();
+    driven_in::<f32>();
+    driven_in::<Micro>();
+    driven_in::<Q12>();
+    driven_in::<Q16>();
+    driven_in::<Q20>();
 }
 
 /// One agent that drives 4 m at 1 m/s and 1 m/s² at most, and is not to be on \[2 m, 3 m\] for some time.

@@ -1,8 +1,8 @@
 //! Waits on the way, stretched profiles and agents that may be late: against the definition, and known answers.
 
 use pcr_core::{
-    Interval, Motion, Profile, RegionRef, Station, earliest_departure, earliest_start, least_duration, plan_speed,
-    safe_intervals,
+    Drive as Speeds, Interval, Limits, Motion, Profile, RegionRef, Station, earliest_departure, earliest_start,
+    least_duration, plan_speed, safe_intervals,
 };
 use pcr_fixed::Q16;
 use pcr_planning::fleet::{Format, build_ecm};
@@ -219,13 +219,11 @@ fn plans_with_lateness_hold_for_all_delays_in_it() {
         let mut stations = vec![Station::EMPTY; 80];
         let by_delay = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)
             .map(|delay| (pair[0].1.clone(), pair[0].2 + delay));
-        let speeds = plan_speed::<f64, 48>(
-            &fleet[0],
-            pcr_core::Drive::of(&fleet[0]),
-            ecm.row(&fleet, 0).expect("the table of the fleet"),
-            &[],
-            &mut stations,
-        );
+        // One that is slower for a reason as well: only whom it meets counts here.
+        let limits = Limits { speed: fleet[0].profile().top_speed(), acceleration: 1.0 };
+        let drive = Speeds::of(&fleet[0]).unwrap_or(Speeds::rest_to_rest(limits));
+        let row = ecm.row(&fleet, 0).expect("the table of the fleet");
+        let speeds = plan_speed::<f64, 48>(&fleet[0], drive, row, &[], &mut stations);
         let by_speed = speeds.ok().map(|plan| {
             let phases = plan.profile.as_profile().phases();
             let speed = phases.first().map_or(0.0, |first| first.speed()[0]);

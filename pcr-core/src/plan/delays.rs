@@ -59,7 +59,7 @@ pub(super) fn earliest<'a, 'm, S: Scalar>(
 }
 
 /// The agent that forbids all late starts.
-fn blocking<'a, S: Scalar>(
+pub(super) fn blocking<'a, S: Scalar>(
     agent: usize,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     before: &[usize],

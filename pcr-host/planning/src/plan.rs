@@ -39,7 +39,8 @@ pub enum Method {
     /// Agents start later and then move as the scenario says.
     #[default]
     Delay,
-    /// Agents wait and change their speed on the way, under the largest speed and acceleration of their own motions.
+    /// Agents wait and change their speed on the way, under the largest speed and acceleration of their own motions. Those
+    /// that turn in place, or are slower on the way than these limits for another reason, start later instead.
     Speed,
 }
 

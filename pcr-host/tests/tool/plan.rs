@@ -62,6 +62,53 @@ fn speeds_are_planned_and_written_as_profiles() {
     assert_eq!(run(&["check", &written, "--format", "json"]).json()["conflicts"], json!([]));
 }
 
+/// A turn in place takes its time, and an edge with a lower limit as well: nobody drives faster there because of a plan.
+#[test]
+fn who_is_slow_for_a_reason_is_not_made_faster() {
+    let limits = json!({ "turn_v_max": 1.0, "turn_a_max": 1.0 });
+    let mut turning = straight(1, [0.0, 0.0, 0.0], 2.0);
+    turning.as_object_mut().unwrap().extend(limits.as_object().unwrap().clone());
+    let path = turning["path"].as_array_mut().unwrap();
+    path.extend([
+        json!({ "kind": "turn", "sweep": std::f64::consts::FRAC_PI_2 }),
+        json!({ "kind": "line", "length": 3.0 }),
+    ]);
+    // 1 m/s, then 0.2 m/s.
+    let mut slow = straight(1, [0.0, 0.0, 0.0], 8.0);
+    let slow_fields = slow.as_object_mut().unwrap();
+    slow_fields.retain(|key, _| !["v_max", "a_max"].contains(&key.as_str()));
+    let pieces = [[1.0, 1.0], [3.02, 0.0], [0.8, -1.0], [19.9, 0.0], [0.2, -1.0]];
+    let pieces = pieces.map(|[duration, accel]| json!({ "duration": duration, "accel": accel }));
+    slow_fields.insert("profile".to_owned(), json!({ "v0": 0.0, "pieces": pieces }));
+
+    for (name, first, why) in [("turns", turning, "it turns in place"), ("slow", slow, "its own profile is slower")] {
+        let agents = json!({ "agents": [first, straight(2, [6.0, 0.0, std::f64::consts::PI], 6.0)] });
+        let alone = json!({ "agents": [first] });
+        let (status, report, _) = plan(name, &alone, &["--method", "speed"]);
+        let (_, by_delay, _) = plan(name, &alone, &[]);
+        assert_eq!(
+            (status, &report["makespan"], &report["lower_bound"]),
+            (0, &by_delay["makespan"], &by_delay["lower_bound"])
+        );
+        let warning = report["warnings"][0].as_str().unwrap();
+        assert!(warning.starts_with("agent 1: ") && warning.contains(why), "{warning}");
+        let (status, report, _) = plan(name, &agents, &["--method", "speed"]);
+        if name == "turns" {
+            // The other one stops before it, and does not only start later.
+            let (_, by_delay, _) = plan(name, &agents, &[]);
+            let cost = |report: &Value| report["sum_of_costs"].as_f64().unwrap();
+            assert!(status == 0 && cost(&report) <= cost(&by_delay) + 1e-9 && cost(&report) > 15.0, "{report}");
+        } else {
+            assert_eq!((status, &report["agents"]), (1, &json!([])), "head-on, {report}");
+        }
+        let simulated = run(&["simulate", &file("plan", name, alone.to_string()), "--json", "-q"]).json();
+        assert!(
+            simulated["warnings"][0].as_str().is_some_and(|warning| warning.starts_with("agent 1: its ")),
+            "{simulated}"
+        );
+    }
+}
+
 #[test]
 fn what_cannot_work_is_named_and_nothing_is_written() {
     let head_on =

@@ -27,9 +27,27 @@ impl<'m> Planner<'_, 'm> {
             gap: 0.0,
             proved: false,
             unsolved: Vec::new(),
-            warnings: self.scenario.warnings.clone(),
+            warnings: self.warnings(),
             certificate: None,
         }
+    }
+
+    /// What was read otherwise than it was written, and what is planned otherwise than it was asked for.
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.scenario.warnings.clone();
+        if self.request.method == Method::Speed {
+            let keeps =
+                self.motions.iter().zip(&self.scenario.agents).filter(|(motion, _)| Drive::of(motion).is_none());
+            warnings.extend(keeps.map(|(_, agent)| {
+                let why = if agent.turns_in_place() {
+                    "it turns in place"
+                } else {
+                    "its own profile is slower on the way than its largest speed and acceleration"
+                };
+                format!("agent {}: {why}; it keeps its own speeds and only starts later", agent.id)
+            }));
+        }
+        warnings
     }
 
     /// A plan by the method, with delays that are known for all agents.
@@ -60,10 +78,14 @@ impl<'m> Planner<'_, 'm> {
     fn bound(&self, known: Option<&Known>) -> f64 {
         let least = |motion: &Motion<'_, f64>| match self.request.method {
             Method::Delay => motion.time().length(),
-            Method::Speed => bound::fastest(Drive::of(motion), motion.path().length()),
+            // An agent that keeps its own profile takes as long as that.
+            Method::Speed => {
+                Drive::of(motion).map_or(motion.time().length(), |drive| bound::fastest(drive, motion.path().length()))
+            }
         };
         let alone = match self.request.objective {
-            Objective::Sum => self.motions.iter().map(least).sum(),
+            // A sum of nothing is -0.
+            Objective::Sum => self.motions.iter().map(least).sum::<f64>() + 0.0,
             Objective::Makespan => {
                 let begin = self.begin();
                 let ends = self.motions.iter().map(|motion| motion.time().lo + least(motion) - begin);

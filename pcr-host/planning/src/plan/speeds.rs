@@ -7,7 +7,9 @@ use super::Priority;
 use super::task::Planner;
 use crate::fleet::HostEcm;
 use crate::regions::Failure;
-use pcr_core::{Drive, Motion, Profile, Station, Unsolved as Never, plan_speed, plan_speeds};
+use pcr_core::{
+    Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed, plan_speeds,
+};
 
 /// Phases of a speed profile, at most.
 const PHASES: usize = 128;
@@ -81,6 +83,48 @@ pub(super) fn plan<'m>(
     Ok(best)
 }
 
+/// The earliest arrival of one agent while others move as they do: by other speeds, or, where its own motion has reasons
+/// to be slower than its limits, with that motion and a later start.
+enum Found<'m> {
+    Speeds(Box<SpeedPlan<f64, PHASES>>),
+    Later(Motion<'m, f64>),
+}
+
+impl<'m> Found<'m> {
+    fn of<'a>(
+        motion: &Motion<'m, f64>,
+        regions: impl Iterator<Item = RegionRef<'a, f64>> + Clone,
+        stations: &mut [Station<f64>],
+    ) -> Option<Self> {
+        match Drive::of(motion) {
+            Some(drive) => {
+                plan_speed(motion, drive, regions, &[], stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
+            }
+            None => motion.delayed(earliest_start(regions, 0.0)?).ok().map(Self::Later),
+        }
+    }
+
+    /// When it arrives \[s\].
+    fn end(&self) -> f64 {
+        match self {
+            Self::Speeds(plan) => plan.end(),
+            Self::Later(motion) => motion.time().hi,
+        }
+    }
+
+    /// The motion, with its profile in the room; `None` where there is no room.
+    fn motion(self, motion: Motion<'m, f64>, room: &mut Room<'m>) -> Option<Motion<'m, f64>> {
+        match self {
+            Self::Speeds(plan) => {
+                let profile = room.next()?;
+                *profile = plan.profile;
+                motion.with_profile(profile.as_profile(), plan.start).ok()
+            }
+            Self::Later(motion) => Some(motion),
+        }
+    }
+}
+
 /// By how much later an agent arrives than by itself \[s\].
 fn late(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>], agent: usize) -> f64 {
     plan[agent].time().hi - planner.motions[agent].time().hi
@@ -121,15 +165,11 @@ fn again<'m>(
         for agent in order {
             let motion = planner.motions[agent];
             let regions = ecm.row(plan, agent).expect("the table of the fleet");
-            let Ok(found) = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, &[], stations) else {
-                continue;
-            };
+            let Some(found) = Found::of(&motion, regions, stations) else { continue };
             if found.end() >= plan[agent].time().hi - SOONER {
                 continue;
             }
-            let Some(profile) = room.next() else { return };
-            *profile = found.profile;
-            if let Ok(motion) = motion.with_profile(profile.as_profile(), found.start) {
+            if let Some(motion) = found.motion(motion, room) {
                 plan[agent] = motion;
                 sooner = true;
             }

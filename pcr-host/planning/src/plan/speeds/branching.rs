@@ -2,10 +2,10 @@
 //! round; the second agent is planned again, and so are those that come after it. Depth first, the cheaper branch
 //! first.
 
-use super::{PHASES, Room};
+use super::{Found, Room};
 use crate::fleet::HostEcm;
 use crate::plan::task::Planner;
-use pcr_core::{Drive, Interval, Motion, Station, first_overlap, plan_speed};
+use pcr_core::{Interval, Motion, Station, first_overlap};
 
 /// Nodes at most.
 const NODES: usize = 400;
@@ -122,9 +122,6 @@ fn plan_again<'m>(
     let motion = planner.motions[agent];
     let regions = ecm.row(&node.plan, agent).expect("the table of the fleet");
     let regions = regions.filter(|region| above.contains(&region.other()));
-    let found = plan_speed::<f64, PHASES>(&motion, Drive::of(&motion), regions, &[], stations).ok()?;
-    let profile = room.next()?;
-    *profile = found.profile;
-    node.plan[agent] = motion.with_profile(profile.as_profile(), found.start).ok()?;
+    node.plan[agent] = Found::of(&motion, regions, stations)?.motion(motion, room)?;
     Some(())
 }
