@@ -16,7 +16,7 @@ const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
 const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
 
 /// What is driven by each file.
-const MISSIONS: usize = 500;
+const MISSIONS: usize = 300;
 
 fn options(radius: f64) -> Options {
     Options { radius: Some(radius), ..Options::default() }

@@ -6,7 +6,7 @@ use pcr_tests::generators::Dice;
 
 const OPEN: &str = include_str!("../data/cases/lower-bound-open-2.json");
 
-const FLEETS: u64 = if cfg!(optimized) { 500 } else { 60 };
+const FLEETS: u64 = if cfg!(optimized) { 250 } else { 60 };
 
 /// The cost and the bound of a plan, where there is one.
 #[track_caller]

@@ -106,7 +106,7 @@ audited!(in_f64, f64);
 audited!(in_f32, f32);
 
 proptest! {
-    #![proptest_config(settings(300, 10, 38))]
+    #![proptest_config(settings(150, 5, 38))]
 
     #[test]
     fn p9_regions_are_the_connected_components_f64(pair in pairs()) {

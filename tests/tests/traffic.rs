@@ -58,12 +58,10 @@ fn agents_of_a_plan_keep_clear_and_those_at_once_do_not() {
 fn every_mission_that_is_placed_is_planned() {
     const AGENTS: usize = if cfg!(optimized) { 50 } else { 20 };
     let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    for seed in 1..=2 {
-        let (traffic, [_, plan]) = Traffic::of(&imported, Request { agents: AGENTS, seed }).unwrap();
-        assert_eq!(traffic.placed, AGENTS, "{seed}");
-        assert_eq!((traffic.planned, traffic.conflicts_after), (traffic.placed, 0), "{seed}: {:?}", traffic.unsolved);
-        assert!(traffic.passed_over > 0 && clearance(&plan) > 0.0);
-    }
+    let (traffic, [_, plan]) = Traffic::of(&imported, Request { agents: AGENTS, seed: 1 }).unwrap();
+    assert_eq!(traffic.placed, AGENTS);
+    assert_eq!((traffic.planned, traffic.conflicts_after), (traffic.placed, 0), "{:?}", traffic.unsolved);
+    assert!(traffic.passed_over > 0 && clearance(&plan) > 0.0);
 }
 
 /// Outlines keep clear as polygons, of which the discs around them would overlap.

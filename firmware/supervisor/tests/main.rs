@@ -1,0 +1,8 @@
+//! All tests of the supervisor's jobs, as one program.
+
+mod dump;
+mod limits;
+mod line;
+mod service;
+mod traffic;
+mod wire;
