@@ -183,6 +183,19 @@ fn what_is_there_twice_is_refused() {
     assert!(audit(&imported, Target::Pcr, &locks).suffices());
     let keys = locks.replacen("\"edges\":", "\"edges\": [], \"edges\":", 1);
     assert!(refused(&imported, Target::Pcr, &keys).contains("duplicate field `edges`"));
+    // An edge or a node again, without locks or with the same ones.
+    for (kind, id) in [("edge", 10), ("node", 1)] {
+        let mut again: Value = serde_json::from_str(&locks).unwrap();
+        let list = again[format!("{kind}s")].as_array_mut().unwrap();
+        let same = list.iter().find(|entry| entry[kind] == id).unwrap().clone();
+        list.push(json!({ kind: id, "locks": [] }));
+        assert_eq!(
+            refused(&imported, Target::Pcr, &again.to_string()),
+            format!("{kind} {id}: there is another one of it")
+        );
+        *again[format!("{kind}s")].as_array_mut().unwrap().last_mut().unwrap() = same;
+        assert!(refused(&imported, Target::Pcr, &again.to_string()).starts_with(&format!("{kind} {id}: ")));
+    }
     let plant = |more: &str| {
         let envelope = "<vehicleEnvelope key=\"k\"><vertex x=\"0\" y=\"0\"/><vertex x=\"8\" y=\"0\"/><vertex x=\"0\" y=\"1\"/></vehicleEnvelope>";
         let block = "<block name=\"x\"><member name=\"p\"/></block>";

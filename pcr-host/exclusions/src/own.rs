@@ -8,7 +8,7 @@ use pcr_formats::import::{Id, ImportError, Imported};
 use pcr_planning::locks::Locks;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write as _;
 
 /// What the file says that it is.
@@ -108,6 +108,10 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         let place = places.get(id).copied();
         place.ok_or_else(|| ImportError::new(format!("{what} {}: there is none in the layout", json!(id))))
     };
+    let once = |there: &mut HashSet<usize>, place: usize, what: &str, id: &Id| {
+        let first = there.insert(place);
+        first.then_some(()).ok_or_else(|| ImportError::new(format!("{what} {}: there is another one of it", json!(id))))
+    };
     let checked = |range: Option<[f64; 2]>| {
         let range = range.filter(|[from, to]| from <= to);
         range.ok_or_else(|| ImportError::new("locks: from and to are expected in each"))
@@ -115,8 +119,10 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     let mut marks: Vec<Vec<Mark>> = layout.edges.iter().map(|_| Vec::new()).collect();
     let mut nodes = vec![Claim::default(); layout.nodes.len()];
     let (mut groups, mut token) = (Vec::new(), 0);
+    let mut there = HashSet::new();
     for Entry { edge, locks, .. } in file.edges {
         let own = find(&places, &edge, "edge")?;
+        once(&mut there, own, "edge", &layout.edges[own].id)?;
         let mut others = Vec::new();
         for Lock { edge, other, own: range } in locks {
             let there = find(&places, &Some(edge), "edge")?;
@@ -127,8 +133,10 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
         groups.push(Group { name: layout.edges[own].id.to_string(), edges: others, ..Group::default() });
     }
+    let mut there = HashSet::new();
     for Entry { node, locks, .. } in file.nodes {
         let node = find(&spots, &node, "node")?;
+        once(&mut there, node, "node", &layout.nodes[node].id)?;
         for Lock { edge, other, .. } in locks {
             let there = find(&places, &Some(edge), "edge")?;
             marks[there].push(Mark { range: checked(Some(other))?, token, bars: false });

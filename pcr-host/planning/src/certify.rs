@@ -3,6 +3,7 @@
 //! The types match the JSON output, field by field in this order.
 
 mod motions;
+mod told;
 
 pub use motions::{Contact, Proof};
 
@@ -10,18 +11,26 @@ use pcr_certify::data::Table;
 use pcr_certify::dump;
 use pcr_certify::pair::{Findings, Promise};
 use pcr_certify::table::{Checker, Margin};
+use pcr_formats::scenario::Labels;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::path::Path;
+use told::{Asked, Cover, Told};
 
 /// What has been proved of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Certified {
     /// Name of the scenario.
     pub name: String,
+    /// What the agents are called, by their numbers.
+    #[serde(skip_serializing_if = "Labels::is_empty")]
+    pub labels: Labels,
     /// `proved`, `refuted` or `undecided`; none where the scenario was refused.
     pub verdict: Option<&'static str>,
     /// Discs.
     pub discs: usize,
+    /// Pairs of discs of different agents, those that are far apart among them: what the verdict is about.
+    pub pairs: usize,
     /// Pairs of segments that were looked at.
     pub segment_pairs: usize,
     /// Pieces of the table.
@@ -39,6 +48,8 @@ pub struct Certified {
     pub undecided: Vec<Point>,
     /// Why there is no verdict.
     pub error: Option<String>,
+    /// What was read otherwise than it was written.
+    pub warnings: Vec<String>,
 }
 
 /// A point of two paths.
@@ -60,16 +71,42 @@ pub struct Point {
     pub in_excess: f64,
 }
 
-/// The tables in an answer of `pcr regions --certificate`, of which nothing else counts, or that which a microcontroller prints.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// The format of the answers that have a certificate, and its version.
+pub(crate) const ANSWERS: &str = "pcr-regions";
+pub(crate) const VERSION: u32 = 1;
+
+/// The tables in an answer of `pcr regions --certificate`, or that which a microcontroller prints. What else is in the answer may be left
+/// out, and otherwise has to be what the tables hold.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Dump {
     /// Name of the scenario.
     pub name: String,
+    /// What its agents are called.
+    #[serde(default)]
+    pub labels: Labels,
+    /// What was read otherwise than it was written.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// That of contact, and that in which margins overlap, if there are any.
     pub certificate: Vec<Table>,
     /// Why there are no regions.
     #[serde(default)]
     error: Option<String>,
+    #[serde(default)]
+    agent: Option<u64>,
+    #[serde(default)]
+    regions: Option<Vec<Told>>,
+    #[serde(default)]
+    margin_regions: Option<Vec<Told>>,
+    #[serde(default)]
+    footprints: Vec<Cover>,
+}
+
+/// What a text says that it is, and in which version.
+#[derive(Deserialize)]
+struct Said {
+    format: Option<Value>,
+    version: Option<Value>,
 }
 
 impl Dump {
@@ -80,14 +117,45 @@ impl Dump {
     pub fn read(file: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
         if text.trim_start().starts_with('{') {
-            let dump: Self = serde_json::from_str(&text).map_err(|error| error.to_string())?;
-            return match dump.error {
-                None => Ok(dump),
-                Some(error) => Err(format!("its regions were not computed: {error}")),
-            };
+            return Self::of_json(&text);
         }
         let name = file.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        Ok(Self { name, certificate: vec![dump::decode(&text)?], error: None })
+        Ok(Self { name, certificate: vec![dump::decode(&text)?], ..Self::default() })
+    }
+
+    /// Reads one from a JSON text.
+    ///
+    /// # Errors
+    /// What is wrong with it: another format or version, two agents of one number, regions that are not those of the tables.
+    pub fn of_json(text: &str) -> Result<Self, String> {
+        let said: Said = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let (format, version) = (ANSWERS, VERSION);
+        if let Some(other) = said.format.filter(|said| said != format) {
+            return Err(format!("format: {other} where \"{format}\" is expected"));
+        }
+        if let Some(other) = said.version.filter(|said| said != version) {
+            return Err(format!("version: {other} where {version}, all that this pcr knows, is expected"));
+        }
+        let dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        if let Some(error) = dump.error {
+            return Err(format!("its regions were not computed: {error}"));
+        }
+        dump.certificate.iter().try_for_each(|table| told::bodies(table, &dump.footprints))?;
+        if let Some(regions) = &dump.regions {
+            let asked = Asked { agent: dump.agent, covers: &dump.footprints };
+            let lists = [("regions", Some(regions)), ("margin_regions", dump.margin_regions.as_ref())];
+            for (place, (name, list)) in lists.into_iter().enumerate() {
+                match (list, dump.certificate.get(place)) {
+                    (Some(list), Some(table)) => told::compare(name, list, table, asked)?,
+                    (Some(_), None) if place > 0 => {
+                        return Err(format!("{name}: the certificate has no table of them"));
+                    }
+                    (None, Some(_)) => return Err(format!("{name}: missing, and the certificate has a table of them")),
+                    _ => {}
+                }
+            }
+        }
+        Ok(dump)
     }
 }
 
@@ -103,6 +171,12 @@ impl Certified {
             Ok((findings, margin)) => Self::found(name, table, &findings, margin.map(|(margin, _)| margin)),
             Err(problem) => Self::refused(name, problem),
         }
+    }
+
+    /// With what its agents are called, and with these warnings.
+    #[must_use]
+    pub fn with(self, labels: &Labels, warnings: &[String]) -> Self {
+        Self { labels: labels.clone(), warnings: warnings.to_vec(), ..self }
     }
 
     fn found(name: &str, table: &Table, findings: &Findings, margin: Option<f64>) -> Self {
@@ -132,8 +206,10 @@ impl Certified {
         };
         Self {
             name: name.to_owned(),
+            labels: Labels::default(),
             verdict: Some(verdict),
             discs: table.agents.len(),
+            pairs: told::pairs(table),
             segment_pairs: findings.segments,
             pieces: findings.pieces,
             times: findings.times,
@@ -142,6 +218,7 @@ impl Certified {
             refuted: points(&findings.refuted),
             undecided: points(&findings.undecided),
             error: None,
+            warnings: Vec::new(),
         }
     }
 
@@ -149,8 +226,10 @@ impl Certified {
     pub fn refused(name: &str, error: String) -> Self {
         Self {
             name: name.to_owned(),
+            labels: Labels::default(),
             verdict: None,
             discs: 0,
+            pairs: 0,
             segment_pairs: 0,
             pieces: 0,
             times: 0,
@@ -159,6 +238,7 @@ impl Certified {
             refuted: Vec::new(),
             undecided: Vec::new(),
             error: Some(error),
+            warnings: Vec::new(),
         }
     }
 }

@@ -20,17 +20,21 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const MOST: usize = 256;
 
 /// Reads lines from here and writes answers there, until one of them ends. Returns when all that came in is answered.
-pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'static) {
+///
+/// # Errors
+/// There is no thread for the answers; nothing is read then.
+pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'static) -> io::Result<()> {
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     let (sender, lines) = outbox();
+    let writer = thread::Builder::new().name("answers".into()).spawn(move || write(&lines, output))?;
     if !handle.send(Input::Opened(number, sender)) {
-        return;
+        return Ok(());
     }
-    let writer = thread::spawn(move || write(&lines, output));
     // What cannot be read has ended.
     let _ = read(handle, number, BufReader::new(input));
     handle.send(Input::Closed(number));
     let _ = writer.join();
+    Ok(())
 }
 
 fn write(lines: &Lines, mut output: impl Write) {
@@ -99,17 +103,34 @@ pub fn listen(handle: &Handle, listener: &TcpListener) {
         if open.load(Ordering::Relaxed) >= MOST {
             continue;
         }
-        let (handle, open) = (handle.clone(), open.clone());
-        open.fetch_add(1, Ordering::Relaxed);
-        thread::spawn(move || {
+        let handle = handle.clone();
+        let place = Place::taken(&open);
+        // A client that no thread is left for is let go.
+        let _ = thread::Builder::new().name("client".into()).spawn(move || {
+            let _place = place;
             // Answers are short, and wanted at once.
             if stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).is_ok()
                 && let (Ok(input), Ok(output)) = (stream.try_clone(), stream.try_clone())
             {
-                serve(&handle, input, Closing(output));
+                let _ = serve(&handle, input, Closing(output));
             }
-            open.fetch_sub(1, Ordering::Relaxed);
         });
+    }
+}
+
+/// One of the places for clients at a time; free again when it is dropped.
+pub(crate) struct Place(Arc<AtomicUsize>);
+
+impl Place {
+    pub(crate) fn taken(of: &Arc<AtomicUsize>) -> Self {
+        of.fetch_add(1, Ordering::Relaxed);
+        Self(of.clone())
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

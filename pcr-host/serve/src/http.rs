@@ -1,6 +1,7 @@
 //! A small HTTP/1.1 server for the live page and the metrics. It only answers GET, so that nothing can be changed
 //! through it.
 
+use crate::clients::Place;
 use crate::metrics;
 use crate::query::View;
 use crate::server::Handle;
@@ -50,12 +51,13 @@ pub fn listen(handle: &Handle, listener: &TcpListener, site: Site) {
         if open.load(Ordering::Relaxed) >= MOST {
             continue;
         }
-        let (handle, site, open) = (handle.clone(), site.clone(), open.clone());
-        open.fetch_add(1, Ordering::Relaxed);
-        thread::spawn(move || {
+        let (handle, site) = (handle.clone(), site.clone());
+        let place = Place::taken(&open);
+        // Whoever no thread is left for gets no answer.
+        let _ = thread::Builder::new().name("request".into()).spawn(move || {
+            let _place = place;
             // Whoever has gone is not told.
             let _ = converse(&handle, &site, stream);
-            open.fetch_sub(1, Ordering::Relaxed);
         });
     }
 }

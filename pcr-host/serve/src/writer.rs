@@ -82,7 +82,9 @@ impl Writer {
             // Whoever waits for a write that has failed sees it.
             wake();
         };
-        let thread = std::thread::Builder::new().name("journal".into()).spawn(work)?;
+        let thread = std::thread::Builder::new().name("journal".into()).spawn(work);
+        let thread = thread
+            .map_err(|error| io::Error::new(error.kind(), format!("no thread can be started for it: {error}")))?;
         Ok(Self { sender: Some(sender), thread: Some(thread), kept })
     }
 

@@ -6,6 +6,8 @@ mod bridge;
 mod demo;
 #[cfg(feature = "serve")]
 mod run;
+#[cfg(feature = "serve")]
+mod threads;
 
 #[cfg(feature = "serve")]
 pub(super) use bridge::{VEHICLES, broker, interfaces};

@@ -4,7 +4,7 @@
 use super::vector::{Vector, add, dot, norm, scale, sub};
 
 /// Overlaps up to this depth \[m\] are rounding.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Two discs in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,11 @@
 //! The tasks of the robots, and the obstacles.
 
+use super::contact::ROUNDING;
 use super::course::Course;
-use super::vector::Vector;
+use super::vector::{Vector, norm, sub};
 use crate::fleet::Fleet;
 use crate::regions::Failure;
-use pcr_core::Limits;
+use pcr_core::{Drive, Limits};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
 
 /// A run: robots, what stands in their way, and their missions.
@@ -66,13 +67,14 @@ impl Robot {
 
 impl Task {
     /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
-    /// around all of them, and turns in place take no time.
+    /// around all of them, and turns in place take no time. Of a profile, only the largest speed and acceleration count: both are
+    /// among the warnings, and so are agents in the way that overlap one another: no run counts them as a collision.
     ///
     /// # Errors
     /// [`Failure::Refused`] where a value is out of range.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
-        let (mut robots, mut obstacles) = (Vec::new(), Vec::new());
+        let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
         for (agent, motion) in scenario.agents.iter().zip(fleet.motions()) {
             let course = Course::of(&motion);
             if course.length() > 0.0 {
@@ -81,15 +83,45 @@ impl Task {
                 robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
             } else {
                 let centre = course.point_at(0.0);
+                standing.push((agent.id, centre, agent.reach()));
                 obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
             }
         }
         let mut warnings = scenario.warnings.clone();
-        for agent in scenario.agents.iter().filter(|agent| agent.turns_in_place()) {
-            warnings.push(format!("agent {}: its turns in place take no time in a simulation", agent.id));
+        for (agent, motion) in scenario.agents.iter().zip(fleet.motions()) {
+            if agent.turns_in_place() {
+                warnings.push(format!("agent {}: its turns in place take no time in a simulation", agent.id));
+            } else if Drive::of(&motion).is_none() {
+                let why = "its own profile is slower on the way than its largest speed and acceleration, by which it is simulated";
+                warnings.push(format!("agent {}: {why}", agent.id));
+            }
         }
+        warnings.extend(overlapping(&standing));
         Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles, warnings })
     }
+}
+
+/// Those that overlap of some that stand, by their numbers, centres and radii.
+fn overlapping(standing: &[(u64, Vector, f64)]) -> Vec<String> {
+    /// Pairs that are named.
+    const NAMED: usize = 16;
+    let mut order: Vec<&(u64, Vector, f64)> = standing.iter().collect();
+    order.sort_by(|a, b| (a.1[0] - a.2).total_cmp(&(b.1[0] - b.2)));
+    let (mut named, mut count): (Vec<[u64; 2]>, usize) = (Vec::new(), 0);
+    for (place, (id, centre, radius)) in order.iter().enumerate() {
+        let right = centre[0] + radius;
+        let near = order[place + 1..].iter().take_while(|(_, at, its)| at[0] - its <= right);
+        for (other, ..) in near.filter(|(_, at, its)| radius + its - norm(sub(*centre, *at)) > ROUNDING) {
+            count += 1;
+            if named.len() < NAMED {
+                named.push([*id.min(other), *id.max(other)]);
+            }
+        }
+    }
+    named.sort_unstable();
+    let more = count - named.len();
+    let named = named.into_iter().map(|[i, j]| format!("agents {i} and {j} stand in contact"));
+    named.chain((more > 0).then(|| format!("{more} more pairs of agents stand in contact"))).collect()
 }
 
 /// Those of the scenario; of a profile, the most it makes use of, and where it never accelerates, a second to top speed.

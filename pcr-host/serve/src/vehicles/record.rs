@@ -150,17 +150,18 @@ pub struct Contact {
 /// Of the format of records. Those of version 1 had no last line.
 const VERSION: u32 = 2;
 
-/// Largest coordinate \[m\] and speed \[m/s\]: beyond them rounding hides contacts.
+/// Largest coordinate \[m\], speed \[m/s\] and time before or after 0 \[s\]: beyond them rounding hides contacts.
 const FARTHEST: f64 = 1e7;
 const FASTEST: f64 = 1e3;
+const LATEST: f64 = 1e10;
 
-/// Windows in which motions are checked \[s\].
+/// Windows in which motions are checked \[s\]; one that would have no line in it lasts until the next line.
 const WINDOW: f64 = 20.0;
 
 /// Proves that the vehicles of a record never touched, or shows where.
 ///
 /// # Errors
-/// Lines that are none of a record.
+/// Lines that are none of a record, and fewer than two vehicles: there would be nothing to be proved.
 pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     let wrong = |line: usize, why: String| io::Error::new(io::ErrorKind::InvalidData, format!("line {line}: {why}"));
     let mut lines = text.lines().enumerate();
@@ -172,6 +173,9 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     }
     if head.vehicles.is_empty() {
         return Err(wrong(1, "no vehicles".into()));
+    }
+    if head.vehicles.len() == 1 {
+        return Err(wrong(1, "there are no two vehicles, of which contacts could be certified".into()));
     }
     // Discs of radius 0 would never overlap, wherever they are.
     if let Some(none) = head.vehicles.iter().find(|vehicle| vehicle.radius <= 0.0) {
@@ -200,6 +204,9 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
             let track = tracks.get_mut(vehicle).ok_or("no such vehicle")?;
             if let Some(far) = [x, y].into_iter().find(|it| it.abs() > FARTHEST) {
                 return Err(format!("coordinates up to {FARTHEST:e} m are expected, not {far:e}"));
+            }
+            if time.abs() > LATEST {
+                return Err(format!("times up to {LATEST:e} s are expected, not {time:e}"));
             }
             if let Some([before, x0, y0]) = track.last() {
                 if *before >= time {
@@ -230,20 +237,20 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
 }
 
 fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>], error: Option<String>) -> Certificate {
-    let times = tracks.iter().flatten().map(|point| point[0]);
-    let (begin, end) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), time| (lo.min(time), hi.max(time)));
+    let mut times: Vec<f64> = tracks.iter().flatten().map(|point| point[0]).collect();
+    times.sort_by(f64::total_cmp);
+    let (begin, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
     let legs = tracks.iter().flat_map(|track| track.windows(2));
     let travelled = legs.map(|leg| (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2])).sum();
     let (format, version) = ("pcr-contacts", 1);
     let (count, time) = (vehicles.len(), end - begin);
     let mut found = Certificate { format, version, vehicles: count, time, travelled, error, ..Certificate::default() };
-    let windows = ((end - begin) / WINDOW).ceil().max(1.0) as usize;
-    for window in 0..windows {
-        let from = begin + window as f64 * WINDOW;
-        let to = (from + WINDOW).min(end).max(from);
-        let movers = vehicles.iter().zip(tracks).enumerate();
-        let movers = movers.map(|(id, (vehicle, track))| {
-            Mover::new(&agent(id as u64, vehicle.radius, &within(track, from, to)), [from, to])
+    let far = |track: &Vec<[f64; 3]>| track.iter().flat_map(|[_, x, y]| [x.abs(), y.abs()]).fold(1.0, f64::max);
+    let far: Vec<f64> = tracks.iter().map(far).collect();
+    for [from, to] in windows(&times) {
+        let movers = vehicles.iter().zip(tracks).zip(&far).enumerate();
+        let movers = movers.map(|(id, ((vehicle, track), &far))| {
+            Mover::new(&agent(id as u64, vehicle.radius, &within(track, from, to), far), [from, to])
         });
         match movers.collect::<Result<Vec<_>, _>>() {
             Ok(movers) => {
@@ -269,6 +276,21 @@ fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>], error: Option<String
     found
 }
 
+/// The windows from the first of these times to the last one, at most one a time: times are in order.
+fn windows(times: &[f64]) -> Vec<[f64; 2]> {
+    let (Some(&begin), Some(&end)) = (times.first(), times.last()) else { return Vec::new() };
+    let (mut windows, mut from, mut next) = (Vec::new(), begin, 0);
+    loop {
+        next += times[next..].partition_point(|&time| time <= from);
+        let to = times.get(next).map_or(end, |&time| time.max(from + WINDOW)).min(end);
+        windows.push([from, to]);
+        if to >= end {
+            return windows;
+        }
+        from = to;
+    }
+}
+
 /// The part of a track between two times.
 fn within(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
     let at = |time: f64| {
@@ -282,15 +304,16 @@ fn within(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
             (None, None) => [time, 0.0, 0.0],
         }
     };
-    let inside = track.iter().copied().filter(|point| point[0] > from && point[0] < to);
+    let [first, last] = [track.partition_point(|point| point[0] <= from), track.partition_point(|point| point[0] < to)];
+    let inside = track.get(first..last).unwrap_or_default().iter().copied();
     std::iter::once(at(from)).chain(inside).chain(std::iter::once(at(to))).collect()
 }
 
-/// A disc that goes from point to point.
-fn agent(id: u64, radius: f64, points: &[[f64; 3]]) -> Agent {
-    let first = points.first().copied().unwrap_or_default();
+/// A disc that goes from point to point; `far` is the largest coordinate of those that they were taken from \[m\].
+fn agent(id: u64, radius: f64, points: &[[f64; 3]], far: f64) -> Agent {
+    let [first, last] = [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
     let (mut segments, mut phases): (Vec<Segment>, Vec<Phase>) = (Vec::new(), Vec::new());
-    let (mut length, mut heading, mut initial) = (0.0, 0.0, None);
+    let (mut length, mut fastest, mut heading, mut initial) = (0.0, 0.0_f64, 0.0, None);
     for pair in points.windows(2) {
         let [a, b] = [pair[0], pair[1]];
         let (time, way) = (b[0] - a[0], (b[1] - a[1]).hypot(b[2] - a[2]));
@@ -305,6 +328,7 @@ fn agent(id: u64, radius: f64, points: &[[f64; 3]]) -> Agent {
             segments.push(Segment { length: way, radius: None, turns, from: length, to: length + way });
         }
         let speed = way / time;
+        fastest = fastest.max(speed);
         let [begin, end] = [a[0] - first[0], b[0] - first[0]];
         phases.push(Phase { time: [begin, end], length: [length, length + way], speed: [speed, speed] });
         length += way;
@@ -313,9 +337,9 @@ fn agent(id: u64, radius: f64, points: &[[f64; 3]]) -> Agent {
         segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
         phases.clear();
     }
-    // Each direction and each sum is rounded, along all of the way; and so are the coordinates.
-    let far = points.iter().flat_map(|point| [point[1].abs(), point[2].abs()]).fold(1.0, f64::max);
-    let rounding = f64::EPSILON * (length + far) * (64.0 + 4.0 * segments.len() as f64);
+    // Each direction and each sum is rounded, along all of the way; and so are the coordinates and the times.
+    let late = fastest * (last[0] - first[0]);
+    let rounding = f64::EPSILON * (length + late + far) * (64.0 + 4.0 * segments.len() as f64);
     let start = [first[1], first[2]];
     let path = Path { start, heading: Angle::Radians(initial.unwrap_or(0.0)), segments, rounding, step: 0.0 };
     // Discs that are nearer than that are taken for discs that touch.
@@ -392,6 +416,10 @@ mod tests {
         assert_eq!(fast, "line 3: speeds up to 1e3 m/s are expected, not 5e3");
         let again = record("[0,0.0,0.0,0.0]\n[0,0.0,0.0,0.0]\n[1,0.0,0.0,5.0]").unwrap_err().to_string();
         assert_eq!(again, "line 3: not later than the line before of this vehicle");
+        for (time, told) in [("1e300", "1e300"), ("-1e12", "-1e12"), ("10000000001.0", "1.0000000001e10")] {
+            let late = record(&format!("[1,{time},0.0,5.0]\n[0,0.0,0.0,0.0]")).unwrap_err().to_string();
+            assert_eq!(late, format!("line 2: times up to 1e10 s are expected, not {told}"));
+        }
         // As far as is allowed, on ways with many turns, discs that overlap by less than a micrometre.
         for k in 0..50 {
             let (mut points, base) = (String::new(), 9.9e6);
@@ -404,6 +432,36 @@ mod tests {
             points += &format!("[1,0.0,{:?},{:?}]", base + 1.0 - 1e-6, -base);
             assert_eq!(record(&points).unwrap().verdict, "contact", "{k}");
         }
+    }
+
+    /// From time to time a line, for three hundred years.
+    #[test]
+    fn times_without_lines_take_no_time() {
+        let head =
+            r#"{"format":"pcr-record","version":2,"vehicles":[{"name":"a","radius":0.5},{"name":"b","radius":0.5}]}"#;
+        let found = |points: &str| {
+            let text = format!("{head}\n{points}\n{{\"lines\":{}}}", points.lines().count());
+            certify(text.as_bytes()).unwrap()
+        };
+        let free = found("[0,-1e10,0,0]\n[0,1e10,100,0]\n[1,0,50,1.001]");
+        assert_eq!((free.verdict, free.time, free.travelled), ("proved", 2e10, 100.0), "{free:?}");
+        let touched = found("[0,-1e10,0,0]\n[0,1e10,100,0]\n[1,0,50,0.999]");
+        assert_eq!((touched.verdict, touched.undecided), ("contact", 0), "{touched:?}");
+        // A second at full speed in between.
+        let fast =
+            |side: f64| format!("[0,0,0,0]\n[0,1e9,0,0]\n[0,1000000001,900,0]\n[0,1e10,900,0]\n[1,5e9,450,{side}]");
+        assert_eq!(found(&fast(1.001)).verdict, "proved");
+        let touched = found(&fast(0.999));
+        assert_eq!((touched.verdict, touched.contacts.len()), ("contact", 1), "{touched:?}");
+        assert!((touched.contacts[0].time - 1e9 - 0.5).abs() < 0.01, "{touched:?}");
+    }
+
+    #[test]
+    fn windows_are_few_and_leave_nothing_out() {
+        assert_eq!(windows(&[3.0]), [[3.0, 3.0]]);
+        assert_eq!(windows(&[0.0, 1.0, 30.0, 40.0]), [[0.0, 20.0], [20.0, 40.0]]);
+        assert_eq!(windows(&[0.0, 0.0, 1e9, 1e9 + 5.0]), [[0.0, 1e9], [1e9, 1e9 + 5.0]]);
+        assert_eq!(windows(&[0.0, 10.0, 100.0]), [[0.0, 20.0], [20.0, 100.0]]);
     }
 
     #[test]
@@ -419,6 +477,9 @@ mod tests {
         }
         let nobody = certify(&br#"{"format":"pcr-record","version":2,"vehicles":[]}"#[..]).unwrap_err();
         assert_eq!(nobody.to_string(), "line 1: no vehicles");
+        let one = "{\"format\":\"pcr-record\",\"version\":2,\"vehicles\":[{\"name\":\"a\",\"radius\":0.5}]}\n[0,0,0,0]\n{\"lines\":1}";
+        let alone = certify(one.as_bytes()).unwrap_err();
+        assert_eq!(alone.to_string(), "line 1: there are no two vehicles, of which contacts could be certified");
         assert!(certify(&b""[..]).is_err());
         let head = text.lines().next().unwrap();
         assert!(certify(head.as_bytes()).is_err(), "nobody was anywhere");

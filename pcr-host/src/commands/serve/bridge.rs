@@ -160,7 +160,7 @@ pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log:
     let (ended, handle) = (stop.clone(), handle.clone());
     let (sender, events) = sync_channel(EVENTS);
     handle.send(Input::Tell(sender));
-    let thread = std::thread::spawn(move || {
+    let thread = super::threads::thread("bridge", move || {
         let bridge = Arc::new(Mutex::new(bridge));
         while !ended.load(Ordering::Relaxed) {
             match station.turn_at(&handle, &bridge, &events) {
@@ -176,7 +176,7 @@ pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log:
         }
         station.close();
         Ok(())
-    });
+    })?;
     Ok(Work { stop, thread })
 }
 

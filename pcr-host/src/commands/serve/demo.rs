@@ -42,13 +42,13 @@ impl Demo {
         let mut demo = Self { broker, child, folder, interfaces, profiles, drawn, stop: Arc::default(), thread: None };
         let mut run = fleet::Run::open(world, &demo.broker, &demo.interfaces, &crew, std::io::sink())?;
         let stop = demo.stop.clone();
-        demo.thread = Some(thread::spawn(move || {
+        demo.thread = Some(super::threads::thread("vehicles", move || {
             while !stop.load(Ordering::Relaxed) {
                 run.step().map_err(|error| error.to_string())?;
                 thread::sleep(Duration::from_millis(10));
             }
             run.close().map(drop).map_err(|error| error.to_string())
-        }));
+        })?);
         Ok(demo)
     }
 

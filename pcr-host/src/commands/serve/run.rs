@@ -1,8 +1,9 @@
 //! Runs the supervisor with its journal, clients and page.
 
 use super::super::printed::quiet;
-use super::super::{NOT_WRITTEN, Stop};
+use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
 use super::demo::Demo;
+use super::threads::thread;
 use super::{Arguments, bridge};
 use pcr_drawing::live;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
@@ -37,30 +38,46 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     };
     if let Some(listener) = arguments.listen.as_deref().map(|place| bound("--listen", place, log)).transpose()? {
         let handle = handle.clone();
-        thread::spawn(move || clients::listen(&handle, &listener));
+        thread("clients", move || clients::listen(&handle, &listener))?;
     }
     if let Some(listener) = page(&arguments).map(|place| bound("--page", place, log)).transpose()? {
         let site = site(&listener);
         let handle = handle.clone();
-        thread::spawn(move || http::listen(&handle, &listener, site));
+        thread("page", move || http::listen(&handle, &listener, site))?;
     }
     let stays = arguments.stay || demo.is_some();
-    let own = handle.clone();
-    thread::spawn(move || {
-        clients::serve(&own, std::io::stdin(), std::io::stdout());
-        if !stays {
-            own.send(Input::Stop);
-        }
-    });
-    interrupted(handle);
+    let last = Last { handle: handle.clone(), stays };
+    let lines = thread("lines", move || clients::serve(&last.handle, std::io::stdin(), std::io::stdout()))?;
+    interrupted(handle)?;
     let served = serve(&mut supervisor, &inputs, &kept, log);
     drop(inputs);
+    // While it waits for a line, it is left behind.
+    let read = if lines.is_finished() { lines.join() } else { Ok(Ok(())) };
     // The bridge and the demo end in order, whatever has ended this.
     let ended = ends.map_or(Ok(()), bridge::Work::end);
     let done = demo.map_or(Ok(()), Demo::end);
     served.map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
     ended.and(done)?;
-    Ok(ExitCode::SUCCESS)
+    let why = match read {
+        Ok(Ok(())) => return Ok(ExitCode::SUCCESS),
+        Ok(Err(error)) => error.to_string(),
+        Err(_) => "no memory for a thread".to_owned(),
+    };
+    Err(Stop::Error(format!("standard input: not read: {why}"), WRONG_INPUT))
+}
+
+/// Ends the supervisor when standard input has ended, unless it is to stay, or when its thread has found no memory.
+struct Last {
+    handle: Handle,
+    stays: bool,
+}
+
+impl Drop for Last {
+    fn drop(&mut self) {
+        if !self.stays || thread::panicking() {
+            self.handle.send(Input::Stop);
+        }
+    }
 }
 
 /// Least width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
@@ -99,7 +116,7 @@ fn page(arguments: &Arguments) -> Option<&str> {
 }
 
 /// Ctrl-C and its like end it in order.
-fn interrupted(handle: Handle) {
+fn interrupted(handle: Handle) -> Result<(), Stop> {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGINT, SIGTERM};
@@ -108,15 +125,16 @@ fn interrupted(handle: Handle) {
             // Where it cannot be caught, it ends the program as it does others: the journal bears that.
             let _ = signal_hook::flag::register(signal, flag.clone());
         }
-        thread::spawn(move || {
+        thread("signals", move || {
             while !flag.load(std::sync::atomic::Ordering::Relaxed) {
                 thread::sleep(std::time::Duration::from_millis(50));
             }
             handle.send(Input::Stop);
-        });
+        })?;
     }
     #[cfg(not(unix))]
     drop(handle);
+    Ok(())
 }
 
 fn open(arguments: &Arguments, settings: Settings, handle: &Handle, log: Log) -> Result<(Supervisor, Kept), Stop> {
