@@ -24,6 +24,7 @@ mod traffic;
 mod work;
 
 use crate::progress;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use pcr_formats::import::Warnings;
 use pcr_formats::input::InputError;
@@ -63,8 +64,8 @@ Examples:
 
 /// Exact collision regions of discs on paths of lines and arcs.
 ///
-/// Agents are discs that move on given paths. pcr computes, for each of them, at what times it must not be where on
-/// its path because of each other one: in closed form, without sampling. Without a command it shows the paper's 12 agents.
+/// Agents are discs that move on given paths. For each agent, pcr computes which parts of its path it has to keep out of, and
+/// when, as another agent is there: in closed form, without sampling. Without a command it shows the paper's 12 agents.
 #[derive(Parser)]
 #[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(crate) struct Arguments {
@@ -241,6 +242,20 @@ fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
 fn is_standard(output: Option<&PathBuf>) -> bool {
     output.is_some_and(|output| output == Path::new("-"))
 }
+
+/// The name of a folder to be written.
+fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|name| match name == "-" {
+        true => Err(NO_FOLDER),
+        false => Ok(PathBuf::from(name)),
+    })
+}
+
+/// Why `-` is refused where a folder is written.
+const NO_FOLDER: &str = "a folder is written, which standard output is not; one of this name is ./-";
+
+/// Why `-` is refused where a file is written that is not for standard output.
+const NO_STREAM: &str = "this is written to a file, not to standard output; one of this name is ./-";
 
 /// Writes a file, or standard output for `-`.
 fn write_to(output: &Path, content: &str) -> Result<(), Stop> {

@@ -3,7 +3,8 @@
 use crate::{Audit, Gap, Spot, Written};
 use pcr_planning::locks::LockVehicle;
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::{Document, printable, quoted};
+use pcr_planning::report::figures::thousandths;
+use pcr_planning::report::{Document, counted, printable, quoted};
 use std::io::{self, Write};
 
 impl Document for Written {
@@ -45,11 +46,11 @@ fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> 
 pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "{}: exclusions for {} on {} edges and {} nodes, {}",
+        "{}: exclusions for {} on {} and {}, {}",
         named(&written.layout),
         written.exclusions,
-        written.edges,
-        written.nodes,
+        counted(written.edges, "edge"),
+        counted(written.nodes, "node"),
         vehicle(&written.vehicle)
     )?;
     let cliques = |least| format!("; of places that all touch one another no fewer than {least} do");
@@ -86,9 +87,9 @@ fn spot(spot: &Spot) -> String {
 pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "{}: audit of {} groups of {}, {}",
+        "{}: audit of {} of {}, {}",
         named(&audit.layout),
-        audit.groups,
+        counted(audit.groups, "group"),
         audit.exclusions,
         vehicle(&audit.vehicle)
     )?;
@@ -116,9 +117,9 @@ pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
                 printable(&spot(&gap.a)),
                 printable(&spot(&gap.b)),
                 gap.relation.to_owned(),
-                format!("{:.3}", gap.depth),
-                format!("{x:.3}"),
-                format!("{y:.3}"),
+                thousandths(gap.depth),
+                thousandths(x),
+                thousandths(y),
             ]);
         }
         columns.write(out)?;

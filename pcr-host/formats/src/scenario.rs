@@ -201,7 +201,8 @@ impl Agent {
 
     /// Length of the path \[m\].
     pub fn length(&self) -> f64 {
-        self.path.iter().map(PathSegment::length).sum()
+        // A sum of nothing is -0.
+        self.path.iter().map(PathSegment::length).sum::<f64>() + 0.0
     }
 
     /// From setting off to arrival \[s\].

@@ -116,8 +116,12 @@ fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
-        // To the digits of `f32`, in which most formats have it.
-        Invalid::TooSmall(what) => format!("{what} is out of range; the least is {:e}", S::LEAST.to_f64() as f32),
+        Invalid::TooSmall(what) => {
+            let least = S::LEAST.to_f64();
+            // To the digits of `f32`, in which most formats have it, where it can hold it.
+            let least = if least as f32 > 0.0 { format!("{:e}", least as f32) } else { format!("{least:e}") };
+            format!("{what} is out of range; the least is {least}")
+        }
         reason => reason.to_string(),
     }
 }

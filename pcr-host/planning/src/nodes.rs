@@ -19,6 +19,8 @@ pub struct Listing<'a> {
     pub nodes: Vec<Place<'a>>,
     /// The ways between them.
     pub edges: Vec<Way<'a>>,
+    /// What was read otherwise than it was written.
+    pub warnings: &'a [String],
 }
 
 /// A node.
@@ -67,6 +69,7 @@ impl<'a> Listing<'a> {
             vehicles: &layout.vehicles,
             nodes,
             edges: layout.edges.iter().filter_map(|edge| Way::of(edge, layout)).collect(),
+            warnings: &layout.warnings,
         }
     }
 }

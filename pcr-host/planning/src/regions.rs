@@ -31,12 +31,15 @@ pub struct Answer {
     pub labels: Labels,
     /// Number format of the computation.
     pub scalar: &'static str,
+    /// The agent that was asked for: there are only regions that it has to keep out of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub agent: Option<u64>,
     /// Sorted by `i`, `j`, start time and start length.
     pub regions: Vec<Region>,
     /// The same for the discs with their margins, if any agent has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin_regions: Option<Vec<Region>>,
-    /// The covers of the agents that have footprints, if any has.
+    /// The covers of the agents that have footprints, if any has; of an agent with loads those of all its stretches.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
     /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
@@ -48,7 +51,7 @@ pub struct Answer {
     pub warnings: Vec<String>,
 }
 
-/// The discs that an agent with a footprint is computed with.
+/// The discs that an agent with a footprint, or with loads, is computed with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cover {
     /// Number of the agent.
@@ -56,7 +59,7 @@ pub struct Cover {
     /// First and last segment of its path with this outline, counted from 1; none where it is the same on all of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segments: Option<[usize; 2]>,
-    /// No point of a disc is farther than this from the outline \[m\].
+    /// No point of a disc is farther than this from the outline \[m\]; 0 where the outline is a disc.
     pub overhang: f64,
     /// How much larger the discs are in motion at most \[m\]: for turns, changes of speed, and digits that a number format does
     /// not have.
@@ -227,6 +230,7 @@ impl Answer {
             name: name.to_owned(),
             labels: Labels::default(),
             scalar: S::NAME,
+            agent: None,
             regions: Vec::new(),
             margin_regions: None,
             footprints: Vec::new(),
@@ -244,8 +248,11 @@ impl Cover {
             let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
             let own = own.iter().filter(|disc| disc.first() == outline.segments[0]);
             let growth = own.map(|disc| disc.growth).fold(0.0, f64::max);
-            let footprint = outline.footprint?;
-            let (overhang, discs) = (footprint.overhang(), footprint.discs().to_vec());
+            let (overhang, discs) = match outline.footprint {
+                Some(footprint) => (footprint.overhang(), footprint.discs().to_vec()),
+                None if agent.loads.is_empty() => return None,
+                None => (0.0, vec![Disc { ahead: 0.0, left: 0.0, radius: outline.radius }]),
+            };
             Some(Self { id: agent.id, segments, overhang, growth, discs })
         });
         covers.collect()

@@ -10,6 +10,7 @@ mod locks;
 mod nodes;
 mod overview;
 mod plans;
+mod proofs;
 mod rows;
 mod simulation;
 mod table;
@@ -31,7 +32,7 @@ pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;
 pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
-use crate::certify::Certified;
+use crate::certify::{self, Certified};
 use crate::check::Verdict;
 use crate::lifelong::Lifelong;
 use crate::locks::Locks;
@@ -55,7 +56,8 @@ pub trait Document: Serialize {
 }
 
 impl Document for Answer {
-    const FORMAT: &'static str = "pcr-regions";
+    const FORMAT: &'static str = certify::ANSWERS;
+    const VERSION: u32 = certify::VERSION;
 }
 impl Document for Verdict {
     const FORMAT: &'static str = "pcr-conflicts";
@@ -175,7 +177,7 @@ fn all_called(labels: &Labels, ids: &[u64]) -> String {
 }
 
 /// How many there are, in words: `1 lock`, `2 locks`.
-fn counted(count: usize, what: &str) -> String {
+pub fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 

@@ -6,7 +6,9 @@ use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT};
 use clap::Args;
 use pcr_formats::import::{Kind, Options};
 use pcr_formats::input;
+use pcr_formats::scenario::Labels;
 use pcr_planning::certify::{Certified, Dump};
+use pcr_planning::locks::rounded;
 use pcr_planning::regions::table_of;
 use pcr_planning::{locks, report};
 use std::io::Write;
@@ -69,9 +71,9 @@ impl Arguments {
         if certified.is_empty() {
             return Err(Stop::Error("there is no table to be certified".into(), WRONG_INPUT));
         }
-        if certified.iter().all(|one| one.discs < 2 && one.error.is_none()) {
+        if certified.iter().all(|one| one.pairs == 0 && one.error.is_none()) {
             return Err(Stop::Error(
-                "there are no two discs, of which contacts could be certified".into(),
+                "there are no two discs of different agents, of which contacts could be certified".into(),
                 WRONG_INPUT,
             ));
         }
@@ -103,12 +105,15 @@ impl Arguments {
             }
             let dump = Dump::read(file).map_err(|problem| Stop::wrong(file, problem))?;
             let tables = dump.certificate.iter();
-            return Ok(tables.map(|table| Certified::of(&dump.name, table, self.limit)).collect());
+            let certified = tables.map(|table| Certified::of(&dump.name, table, self.limit));
+            return Ok(certified.map(|one| one.with(&dump.labels, &dump.warnings)).collect());
         }
         let file = &source(self.file.clone())?;
+        let mut warnings = Vec::new();
         let scenarios = match input::kind(file, &self.import)? {
             Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
                 let imported = layout(file, &self.import, "locks", false)?;
+                warnings.extend(imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)));
                 locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
             }
             _ => vec![scenario(file, &self.import)?],
@@ -116,7 +121,9 @@ impl Arguments {
         let certified = scenarios.iter().map(|scenario| {
             let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
             let tables = tables.map_err(|failure| Stop::wrong(file, failure))?;
-            Ok(tables.iter().map(|table| Certified::of(&scenario.name, table, self.limit)).collect::<Vec<_>>())
+            let (labels, warnings) = (Labels::of(scenario), [&warnings[..], &scenario.warnings].concat());
+            let certified = tables.iter().map(|table| Certified::of(&scenario.name, table, self.limit));
+            Ok(certified.map(|one| one.with(&labels, &warnings)).collect::<Vec<_>>())
         });
         Ok(certified.collect::<Result<Vec<_>, Stop>>()?.into_iter().flatten().collect())
     }

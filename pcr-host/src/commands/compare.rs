@@ -1,7 +1,7 @@
 //! `pcr compare`.
 
 use super::sources::without_margin;
-use super::{STATUSES, Stop, quiet, scenario, sources};
+use super::{STATUSES, Stop, folder, quiet, scenario, sources};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_comparing::compare::{self, Comparison, Effort, Question};
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with = "format")]
     json: bool,
     /// Draw time against error to regions-1.svg and conflicts-1.svg in this directory, with the number of the scenario
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
     import: Options,

@@ -2,7 +2,7 @@
 
 use super::map::draw;
 use super::printed::quiet;
-use super::{STATUSES, Stop, WRONG_INPUT};
+use super::{STATUSES, Stop, WRONG_INPUT, folder};
 use clap::Args;
 use pcr_formats::paper;
 use pcr_formats::scenario::Scenario;
@@ -19,16 +19,16 @@ const DIRECTORY: &str = "pcr-out";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr demo                                  the paper's tables beside ours, and pictures in pcr-out/
-  pcr demo --scenario > paper12.json        the scenario, to try the other commands on
-  pcr demo --scenario | pcr check           who of them collides, moving as the paper says";
+  pcr demo                                the paper's tables beside ours, and pictures in pcr-out/
+  pcr demo --scenario > paper12.json      the scenario, to try the other commands on
+  pcr demo --scenario | pcr check         who of them collides, moving as the paper says";
 
 /// Show the paper's simulation of 12 agents: its tables beside ours, and pictures
 #[derive(Args, Default)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
     /// Directory for the pictures (pcr-out if left out)
-    #[arg(short, long, value_name = "DIR", conflicts_with = "scenario")]
+    #[arg(short, long, value_name = "DIR", value_parser = folder(), conflicts_with = "scenario")]
     output: Option<PathBuf>,
     /// Print the scenario instead, as a file
     #[arg(long)]

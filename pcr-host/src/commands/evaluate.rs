@@ -1,6 +1,6 @@
 //! `pcr evaluate`.
 
-use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, quiet};
+use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, folder, quiet};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_comparing::evaluate::{self, Extent, Problem};
@@ -14,7 +14,7 @@ use std::process::ExitCode;
 #[command(after_help = STATUSES)]
 pub(super) struct Arguments {
     /// Directory for the document and its pictures
-    #[arg(short, long, value_name = "DIR", default_value = "docs")]
+    #[arg(short, long, value_name = "DIR", value_parser = folder(), default_value = "docs")]
     output: PathBuf,
     /// Directory with the fleets of the paper's Table VI
     #[arg(long, value_name = "DIR", default_value = "tests/data")]

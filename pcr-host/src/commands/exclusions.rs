@@ -49,6 +49,11 @@ fn text(file: &Path) -> Result<String, Stop> {
 }
 
 impl Asked {
+    /// Whether the output is a layout, not a folder.
+    pub(super) fn is_to_be_written(&self) -> bool {
+        self.write.is_some()
+    }
+
     /// Does what is asked for, if anything is.
     pub(super) fn run(
         &self,

@@ -4,7 +4,7 @@
 //! examples and exit statuses. Options without effect in a command are not shown.
 
 use super::{Arguments, Stop};
-use clap::{Command, CommandFactory, FromArgMatches};
+use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
 
@@ -44,6 +44,7 @@ pub(super) fn command(long: bool) -> Command {
     let command = Arguments::command();
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let tailored = names.iter().fold(command, |command, name| command.mut_subcommand(name, |own| tailored(own, long)));
+    let tailored = with_help(tailored, long);
     match tailored.get_long_about().cloned() {
         Some(about) if long => tailored.about(about),
         // That there is more is said at `--help` already, and all commands need their lines.
@@ -60,14 +61,28 @@ fn tailored(command: Command, long: bool) -> Command {
         let argument = if argument.get_id() == "margin" { argument.help_heading(None) } else { argument };
         let hidden = argument.get_help_heading() == Some(LAYOUTS) && !long;
         let hidden = hidden || useless.contains(&argument.get_id().as_str());
-        argument.hide(hidden)
+        // Both texts are in the short form.
+        let of_long = argument.is_hide_short_help_set() && !long;
+        let argument = argument.hide(hidden).hide_short_help(of_long);
+        // What is out of range is said to be so, and no unknown option.
+        let is_value = !argument.is_positional() && argument.get_action().takes_values();
+        argument.allow_negative_numbers(is_value)
     });
+    let command = with_help(command, long);
     match (long, layouts) {
         (true, _) => command,
         (false, true) => command
             .after_help(format!("Options for layouts and other formats, examples, exit statuses: pcr {name} --help")),
         (false, false) => command.after_help(format!("Examples and exit statuses: pcr {name} --help")),
     }
+}
+
+/// With the option for help, which says of itself that there is more only where there is.
+fn with_help(command: Command, long: bool) -> Command {
+    let text = if long { "Print help" } else { "Print help (see more with '--help')" };
+    let help =
+        Arg::new("help").short('h').long("help").action(ArgAction::HelpShort).help(text).help_heading(None::<&str>);
+    command.disable_help_flag(true).arg(help)
 }
 
 /// Locks of vehicles at any speed.

@@ -1,7 +1,7 @@
 //! `pcr import`.
 
-use super::sources::together;
-use super::{STATUSES, Stop, scenario, sources, write_to};
+use super::sources::{foreign_sources, together};
+use super::{STATUSES, Stop, scenario, write_to};
 use clap::Args;
 use pcr_formats::import::{Format, Options};
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ impl Arguments {
             return Err(Stop::arguments("--from: the format is named already, as the first argument"));
         }
         let import = Options { from: Some(self.format), ..self.import };
-        let scenario = match sources(self.files)?.as_slice() {
+        let scenario = match foreign_sources(self.files)?.as_slice() {
             [file] => scenario(file, &import)?,
             files => together(files, &import)?,
         };

@@ -3,8 +3,8 @@
 use super::exclusions::Asked;
 use super::help::{DRIVING, STANDING};
 use super::printed::notes;
-use super::sources::{layout, source};
-use super::{Form, Printed, Stop};
+use super::sources::{layout, layout_source};
+use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, is_standard};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
@@ -26,13 +26,13 @@ Exit status:
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr locks warehouse.geojson --radius 0.4                      the table of locks of a nav2 route graph
-  pcr locks warehouse.geojson --radius 0.4 -o locks             and a page in which an edge shows what it blocks
-  pcr locks roadmap.xml --radius 0.5 --index roadmap.locks      a table of any size in a file
-  pcr locks roadmap.locks --edge e17                            what an edge shares its time with, from that file
+  pcr locks depot.geojson --radius 0.4                  the table of locks of a nav2 route graph
+  pcr locks depot.geojson --radius 0.4 -o locks         and a page: an edge shows what it blocks
+  pcr locks map.xml --radius 0.5 --index map.locks      a table of any size in a file
+  pcr locks map.locks --edge e17                        the locks of an edge, from that file
   pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
-  pcr locks warehouse.geojson --radius 0.4 --write nav2 -o guarded.geojson     and edges to be closed, into the file
-  pcr locks plant.xml --radius 0.5 --audit -o audit             what the blocks of the file do not keep apart";
+  pcr locks depot.geojson --radius 0.4 --write nav2 -o guarded.geojson   with what it excludes
+  pcr locks plant.xml --radius 0.5 --audit -o audit     what the file does not keep apart";
 
 /// Print which edges of a layout may not be used at the same time, and on which lengths
 #[derive(Args)]
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     /// Add what a vehicle blocks that stands at a node
     #[arg(long)]
     nodes: bool,
-    /// Print for how long one may not set off after another instead, at --speed (and from rest to rest with --acceleration)
+    /// Instead, print how much later than on one edge nobody may set off on another, at --speed (with --acceleration from rest to rest)
     #[arg(long, conflicts_with_all = ["edge", "index", "output"])]
     delays: bool,
     /// Print JSON Lines, a lock a line, for tables of any size
@@ -68,7 +68,13 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = &source(self.layout.clone())?;
+        if is_standard(self.output.as_ref()) && !self.asked.is_to_be_written() {
+            return Err(Stop::arguments(format!("--output -: {NO_FOLDER}")));
+        }
+        if is_standard(self.index.as_ref()) {
+            return Err(Stop::arguments(format!("--index -: {NO_STREAM}")));
+        }
+        let file = &layout_source(self.layout.clone())?;
         if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref()) {
             return done;
         }
@@ -186,7 +192,7 @@ impl Arguments {
             }
             held.of(edge).map_err(wrong)
         };
-        let partners = if Index::is_one(file) {
+        let (partners, warnings) = if Index::is_one(file) {
             if self.index.is_some() {
                 return Err(Stop::arguments("--index beside a table of locks: the layout is expected there"));
             }
@@ -197,18 +203,20 @@ impl Arguments {
                     file.display()
                 )));
             }
-            found(file, None)?
+            (found(file, None)?, Vec::new())
         } else if let Some(index) = &self.index {
-            found(index, Some(origin(&layout(file, &self.import, STANDING, false)?)))?
+            let imported = layout(file, &self.import, STANDING, false)?;
+            (found(index, Some(origin(&imported)))?, Locks::head(&imported, self.nodes).warnings)
         } else {
             let imported = layout(file, &self.import, STANDING, false)?;
             let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
-            sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?
+            let partners = sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?;
+            (partners, Locks::head(&imported, self.nodes).warnings)
         };
         let Some(partners) = partners else {
             return Err(Stop::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
         };
-        let locks = EdgeLocks { edge: edge.to_owned(), partners };
+        let locks = EdgeLocks { edge: edge.to_owned(), partners, warnings };
         let mut out = self.printed.out(false);
         match self.printed.form() {
             Form::Table => report::edge_table(&locks, &mut out)?,

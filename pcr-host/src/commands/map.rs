@@ -1,7 +1,7 @@
 //! `pcr map`.
 
 use super::sources::{source, without_margin};
-use super::{STATUSES, Stop, quiet, scenario};
+use super::{STATUSES, Stop, folder, quiet, scenario};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_core::Motion;
@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     /// Scenario (JSON); standard input if left out or `-`
     file: Option<PathBuf>,
     /// Directory for the pictures; created where it does not exist, files in it are overwritten
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: PathBuf,
     /// Only the map of the agent of this number or label, beside those that come near it; as often as there are agents to be drawn
     #[arg(long = "agent", value_name = "AGENT")]

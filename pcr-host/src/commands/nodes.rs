@@ -1,6 +1,6 @@
 //! `pcr nodes`.
 
-use super::sources::{layout, source};
+use super::sources::{layout, layout_source};
 use super::{Form, Printed, STATUSES, Stop};
 use clap::Args;
 use pcr_formats::import::Options;
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let imported = layout(&source(self.layout)?, &self.import, "nodes", false)?;
+        let imported = layout(&layout_source(self.layout)?, &self.import, "nodes", false)?;
         let listing = Listing::of(&imported.layout);
         let mut out = self.printed.out(false);
         match self.printed.form() {

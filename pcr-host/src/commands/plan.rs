@@ -3,7 +3,7 @@
 use super::map::draw;
 use super::printed::notes;
 use super::sources::{Source, gathered};
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, is_standard, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, write_to};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
@@ -28,9 +28,9 @@ Examples:
   pcr plan fleet.json -o plan.json                    the scenario with start delays
   pcr plan fleet.json -o - | pcr check                the table goes to standard error
   pcr plan fleet.json --pictures maps                 every agent's map before and after
-  pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way instead
+  pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way
   pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first
-  pcr plan fleet.json --leave-out -o plan.json        without those that cannot go, if there are any
+  pcr plan fleet.json --leave-out -o plan.json        without those that cannot go, if any
   pcr plan fleet.json --prove --time-limit 60         until it is the best, or a minute";
 
 /// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draw the collision maps before and after to folders of DIR
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder())]
     pictures: Option<PathBuf>,
     /// Later starts, or other speeds on the way as well
     #[arg(long, value_enum, default_value_t = Means::Delay)]
@@ -156,6 +156,12 @@ impl Arguments {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
                 "{option} is of no use: only start delays are searched for that long"
+            )));
+        }
+        if !matches!(self.priority, Asked::Known(Priority::Best)) && (self.prove || self.time_limit.is_some()) {
+            let option = if self.prove { "--prove" } else { "--time-limit" };
+            return Err(Stop::arguments(format!(
+                "{option} is of no use: --priority gives the order, and only for the best one is searched that long"
             )));
         }
         let sources = gathered(self.files.clone(), &self.import)?;

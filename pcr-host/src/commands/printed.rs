@@ -52,6 +52,11 @@ impl Printed {
     }
 }
 
+/// Where tables go that have no other form.
+pub(super) fn tables() -> Box<dyn Write> {
+    if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) }
+}
+
 /// Where notes go that are for people only.
 pub(super) fn notes() -> Box<dyn Write> {
     if quiet() { Box::new(io::sink()) } else { Box::new(io::stderr().lock()) }

@@ -1,7 +1,7 @@
 //! `pcr simulate`.
 
 use super::sources::source;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, scenario, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, scenario, write_to};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_drawing::replay;
@@ -119,7 +119,13 @@ impl Arguments {
         let named = |failure: Failure| Stop::wrong(&file, failure);
         let task = match self.foraging {
             true => forage::task(self.seed, self.trips.unwrap_or(TRIPS)),
-            false => Task::of(&scenario(&file, &self.import)?).map_err(named)?,
+            false => {
+                let scenario = scenario(&file, &self.import)?;
+                let task = Task::of(&scenario).map_err(named)?;
+                // Those of the scenario are said already.
+                say(&file, task.warnings.iter().skip(scenario.warnings.len()).cloned());
+                task
+            }
         };
         let Self { noise, slip, delay, drift, .. } = self;
         let disturbance = Disturbance { noise, slip, delay, drift };

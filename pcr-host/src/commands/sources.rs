@@ -11,6 +11,16 @@ use std::path::{Path, PathBuf};
 
 /// The files to be read; `-` for standard input where none is named and somebody writes to it.
 pub(super) fn sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
+    named(files, "name a scenario, or see pcr demo")
+}
+
+/// The same of a command that reads other formats only.
+pub(super) fn foreign_sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
+    named(files, "name a file of that format, as docs/layouts.md lists them")
+}
+
+/// The files, or standard input, or what to do where nothing comes from there.
+fn named(files: Vec<PathBuf>, hint: &str) -> Result<Vec<PathBuf>, Stop> {
     if files.iter().filter(|file| *file == Path::new("-")).count() > 1 {
         return Err(Stop::arguments("FILE: - is given twice; standard input can be read once"));
     }
@@ -18,7 +28,7 @@ pub(super) fn sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
         return Ok(files);
     }
     if io::stdin().is_terminal() {
-        return Err(Stop::arguments("no FILE, and nothing comes in by a pipe; name a scenario, or see pcr demo"));
+        return Err(Stop::arguments(format!("no FILE, and nothing comes in by a pipe; {hint}")));
     }
     Ok(vec![PathBuf::from("-")])
 }
@@ -27,6 +37,13 @@ pub(super) fn sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
 pub(super) fn source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
     let mut files = sources(file.into_iter().collect())?;
     // There is one.
+    Ok(files.pop().unwrap_or_default())
+}
+
+/// The one layout to be read.
+pub(super) fn layout_source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
+    let hint = "name a layout, such as the route graph of a site; docs/layouts.md lists the formats";
+    let mut files = named(file.into_iter().collect(), hint)?;
     Ok(files.pop().unwrap_or_default())
 }
 

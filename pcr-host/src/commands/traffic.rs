@@ -1,8 +1,8 @@
 //! `pcr traffic`.
 
 use super::printed::notes;
-use super::sources::{layout, source};
-use super::{CONFLICTS, Form, Printed, Stop, map, write_to};
+use super::sources::{layout, layout_source};
+use super::{CONFLICTS, Form, Printed, Stop, folder, map, write_to};
 use clap::Args;
 use pcr_drawing::Ground;
 use pcr_formats::import::Options;
@@ -15,10 +15,10 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr traffic warehouse.geojson --agents 50 --seed 1 --radius 0.4              who waits how long, and the throughput
-  pcr traffic warehouse.geojson --agents 50 --seed 1 --radius 0.4 -o traffic   and scenarios and pictures in traffic/
-  pcr traffic warehouse.geojson --hours 1 --agents 10 --radius 0.4             robots that get mission after mission
-  pcr traffic warehouse.geojson --hours 1 --agents 10 --radius 0.4 --compare   the same with locks and with start delays";
+  pcr traffic map.geojson --agents 50 --radius 0.4               who waits how long, and the throughput
+  pcr traffic map.geojson --agents 50 --radius 0.4 -o traffic    and files and pictures in traffic/
+  pcr traffic map.geojson --hours 1 --radius 0.4                 robots that get mission after mission
+  pcr traffic map.geojson --hours 1 --radius 0.4 --compare       and with locks and start delays";
 
 const STATUSES: &str = "\
 Exit status:
@@ -54,7 +54,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     printed: Printed,
     /// Write the missions (missions.json), the plan (plan.json) and pictures of it to this directory as well
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
     import: Options,
@@ -62,7 +62,7 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let file = &source(self.layout)?;
+        let file = &layout_source(self.layout)?;
         let imported = layout(file, &self.import, "traffic", true)?;
         if let Some(hours) = self.hours {
             let usual = Delays::default();

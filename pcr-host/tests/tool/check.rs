@@ -124,3 +124,17 @@ fn what_is_refused() {
         json!({ "format": "pcr-conflicts", "version": 1, "name": empty["name"], "conflicts": [], "closest": [], "error": null, "warnings": [] })
     );
 }
+
+#[test]
+fn a_contact_that_was_proved_is_told_as_in_the_table() {
+    let mut scenario = crossing();
+    scenario["agents"][0]["label"] = json!("AGV-7");
+    let name = file("check", "certified.json", scenario.to_string());
+    let table = run(&["check", &name, "--certify"]).out;
+    let line = table.lines().last().unwrap();
+    let numbers =
+        line.strip_prefix("certificate: contact, agents 1 AGV-7 and 2 at ").unwrap_or_else(|| panic!("{table}"));
+    let [time, _, _, clearance, _] = numbers.split(' ').collect::<Vec<_>>()[..] else { panic!("{table}") };
+    let decimals = |number: &str| number.split_once('.').map(|(_, behind)| behind.len());
+    assert_eq!((decimals(time), decimals(clearance)), (Some(3), Some(3)), "{line}");
+}

@@ -33,7 +33,8 @@ fn help_is_short() {
         let [short, long] = ["-h", "--help"].map(|option| run(&[command, &[option]].concat()).ok());
         assert!(short.lines().count() < 30, "{command:?}\n{short}");
         assert!(long.lines().count() < 60, "{command:?}\n{long}");
-        assert!(long.lines().all(|line| line.chars().count() <= 120), "{command:?}\n{long}");
+        assert!(long.lines().all(|line| line.chars().count() <= 100), "{command:?}\n{long}");
+        assert!(!long.contains("see more"), "{command:?}\n{long}");
         assert!(short.contains("--help") && long.contains("Usage: pcr"), "{command:?}");
         assert_eq!(run(&[&["help"], command].concat()).ok(), long, "{command:?}");
     }
@@ -47,6 +48,9 @@ fn options_are_listed_where_they_do_something() {
     assert!(
         !help("locks").contains("--route") && help("locks").contains("--speed") && help("locks").contains("--radius")
     );
+    for hidden in ["--index <", "--lines ", "--split <", "--envelopes <"] {
+        assert!(help("locks").contains(hidden) && !run(&["locks", "-h"]).ok().contains(hidden), "{hidden}");
+    }
     assert!(!help("traffic").contains("--horizon") && !help("import").contains("--from"));
     assert!(
         !help("check").contains("--margin") && !help("map").contains("--margin") && help("plan").contains("--margin")
@@ -86,6 +90,8 @@ fn options_that_do_nothing_are_refused() {
         (&["check", &plan, "--partial"], "--partial is of no use: it is read whole or refused"),
         (&["plan", &scenario, "--method", "speed", "--prove"], delays),
         (&["plan", &scenario, "--method", "speed", "--time-limit", "5"], delays),
+        (&["plan", &scenario, "--priority", "longest", "--prove"], "--prove is of no use: --priority gives the order"),
+        (&["plan", &scenario, "--priority", "2", "--time-limit", "5"], "--time-limit is of no use: --priority gives"),
         (&["certify", &scenario, "--format", "csv", "--limit"], "--limit is for --format json and table"),
         (
             &["compare", &scenario, "--method", "nonsense"],
@@ -137,6 +143,8 @@ fn quiet_is_quiet() {
     let pictures = directory("habits").join("quiet");
     silent(&["-q", "plan", &scenario, "--pictures", pictures.to_str().unwrap()], 0);
     silent(&["-q", "map", &scenario, "-o", pictures.to_str().unwrap()], 0);
+    #[cfg(feature = "serve")]
+    silent(&["-q", "fleet", &layout, "--vehicles", "2", "--alone", "supervisor", "--time", "5"], 0);
     // What a program asked for is there all the same, and so are errors.
     assert_eq!(run(&["check", "-q", "--json", &scenario]).out.lines().count(), 1);
     assert!(run(&["check", "-q", "missing.json"]).failed(2).contains("missing.json"));

@@ -57,6 +57,20 @@ cross: 1 lock of 1 pair of edges, radius 0.25 m
 }
 
 #[test]
+fn nothing_is_not_less_than_0() {
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/aws_graph.geojson");
+    for arguments in [&["locks", layout, "--radius", "0.4"][..], &["locks", layout, "--radius", "0.4", "--edge", "112"]]
+    {
+        let table = run(arguments).out;
+        assert!(table.contains(" 0.000  0.000 ") && !table.contains("-0.000"), "{table}");
+    }
+    assert!(!run(&["nodes", layout, "--json", "-q"]).out.contains("\"length\":-0"));
+    let edge = run(&["locks", layout, "--radius", "0.4", "--edge", "112", "--json"]);
+    let warnings: Value = serde_json::from_str(&edge.out).unwrap();
+    assert!(warnings["warnings"][0].as_str().unwrap().contains("edge 112: its length is 0"), "{warnings}");
+}
+
+#[test]
 fn pictures_are_written() {
     let pictures = directory("locks").join("pictures");
     let _ = std::fs::remove_dir_all(&pictures);
@@ -173,8 +187,9 @@ fn an_index_that_is_out_of_date_gives_no_answer() {
     };
     assert_eq!(run(&["locks", &name, "--radius", "0.25", "--index", path, "-q"]).status, 0);
     let whole = std::fs::read(&index).unwrap();
-    let answer = of(&name, "0.25").ok();
-    assert_eq!(answer, run(&["locks", path, "--edge", "7", "--json"]).ok());
+    // What there is to be said of the layout is not in the file.
+    let (asked, held) = (of(&name, "0.25").json(), run(&["locks", path, "--edge", "7", "--json"]).json());
+    assert_eq!((&asked["partners"], &held["warnings"]), (&held["partners"], &json!([])));
     let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";
     assert!(of(&name, "0.26").failed(2).contains(stale));
     // One node by a tenth of a micrometre.

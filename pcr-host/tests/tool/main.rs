@@ -1,5 +1,6 @@
 //! The binary `pcr`, end to end: arguments and standard input in; output, messages and exit status out.
 
+mod certify;
 mod check;
 mod compare;
 #[cfg(unix)]

@@ -37,6 +37,13 @@ fn values_out_of_range() {
 fn values_of_the_wrong_kind() {
     refused("/agents/1/id", json!(1), "agent 1, id: 1 is given to two agents");
     refused("/agents/1/id", json!(2.5), "agent at place 2, id: 2.5 where a whole number from 0 or a name is expected");
+    let digits =
+        "agent at place 2, id: \"12\" could be taken for the number; write it without quotation marks, or give a name";
+    refused("/agents/1/id", json!("12"), digits);
+    let long = "agent at place 2, id: has 201 characters; allowed are up to 200";
+    refused("/agents/1/id", json!("x".repeat(201)), long);
+    let escape = "agent at place 2, id: has the control character \\u{1b}; allowed is printable text";
+    refused("/agents/1/id", json!("a\u{1b}b"), escape);
     refused("/agents/1/start/x", json!("0"), "agent 2, start.x: \"0\" where a number is expected");
     refused(
         "/agents/1/path/0/kind",
@@ -119,6 +126,13 @@ fn values_that_f32_cannot_hold() {
 }
 
 #[test]
+fn the_least_radius_of_f64_is_not_0() {
+    let mut scenario = crossing();
+    scenario["agents"][1]["radius"] = json!(1e-320);
+    assert!(message(scenario.to_string(), &[]).ends_with("radius is out of range; the least is 1e-75 (f64)"));
+}
+
+#[test]
 fn files_that_cannot_be_read() {
     let directory = directory("unreadable").to_str().unwrap().to_owned();
     let missing = format!("{directory}/missing.json");
@@ -156,6 +170,9 @@ fn wrong_arguments() {
         assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
         assert!(run.err.starts_with("error: ") && run.err.contains("--help"), "{arguments:?}: {}", run.err);
     }
+    let negative = run(&["check", PAPER, "--radius", "-1"]).err;
+    let range = "invalid value '-1' for '--radius <M>': a number from 1e-6 to 1e6 is expected";
+    assert!(negative.contains(range), "{negative}");
     let message = run(&["regions", PAPER, "--slices", "3"]).failed(2);
     assert_eq!(message, "pcr: --slices is for --format json\n");
 }
@@ -166,6 +183,25 @@ fn directories_that_cannot_be_written() {
     let scenario = file("unwritable", "none.json", "{\"agents\": []}");
     let failed = run(&["map", &scenario, "-o", &blocked]).failed(3);
     assert!(failed.starts_with(&format!("pcr: {blocked}: cannot be written: ")), "{failed}");
+}
+
+#[test]
+fn standard_output_is_no_folder() {
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/aws_graph.geojson");
+    for arguments in [
+        &["map", PAPER, "-o", "-"][..],
+        &["locks", layout, "-o", "-"],
+        &["locks", layout, "--audit", "-o", "-"],
+        &["locks", layout, "--index", "-"],
+        &["traffic", layout, "-o", "-"],
+        &["compare", PAPER, "-o", "-"],
+        &["demo", "-o", "-"],
+        &["plan", PAPER, "--pictures", "-"],
+    ] {
+        let run = run(arguments);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.err.contains("standard output") && run.err.contains("is ./-"), "{arguments:?}: {}", run.err);
+    }
 }
 
 #[test]

@@ -66,7 +66,9 @@ fn every_output_fits_its_schema() {
         &["check", &labelled],
         &["check", PAPER, "--certify"],
         &["regions", PAPER, "--certificate"],
+        &["regions", PAPER, "--certificate", "--agent", "3"],
         &["certify", PAPER, "--limit"],
+        &["certify", &labelled],
         &["plan", PAPER],
         &["plan", &labelled, "--method", "speed"],
         &["plan", &stuck],
@@ -93,6 +95,7 @@ fn every_output_fits_its_schema() {
         fits(&run_with(&[refused, &["--json"]].concat(), b"{}\n").out);
     }
     formats.push(fits(&run(&["plan", &labelled, "-o", "-", "-q"]).out));
+    formats.push(fits(&run(&["demo", "--scenario"]).out));
     let lock_file = ["locks", &layout, "--radius", "0.3", "--write", "pcr", "-o", "-", "-q"];
     formats.push(fits(&run(&lock_file).out));
     let factsheet = format!("{ROOT}/tests/data/small/factsheet.json");

@@ -70,3 +70,28 @@ fn what_is_wrong_with_a_scenario_is_said_as_elsewhere() {
     let expected = format!("pcr: {name}:1: agent 2, radius: -1 is out of range; allowed is above 0, up to 1e10\n");
     assert_eq!(run(&["simulate", &name]).failed(2), expected);
 }
+
+/// Agents that never move are no robots, so that no run counts their contacts.
+#[test]
+fn agents_that_stand_in_contact_are_warned_about() {
+    let stands = |id: u64, [x, y]: [f64; 2], radius: f64| {
+        let start = json!({ "x": x, "y": y, "heading": 0 });
+        json!({ "id": id, "radius": radius, "v_max": 2, "a_max": 4, "start": start, "path": [] })
+    };
+    let agents = json!([stands(3, [0.5, -1.0], 0.1), stands(2, [2.0, -1.0], 0.5), stands(1, [0.5, 0.0], 1.0)]);
+    let name = file("simulate", "heap.json", json!({ "agents": agents }).to_string());
+    let result = run(&["simulate", &name, "--json"]);
+    assert_eq!(result.status, 0);
+    assert_eq!(result.err, format!("pcr: warning: {name}: agents 1 and 3 stand in contact\n"));
+    let simulation: serde_json::Value = serde_json::from_str(&result.out).unwrap();
+    assert_eq!(simulation["warnings"], json!(["agents 1 and 3 stand in contact"]));
+    // They just touch.
+    let agents = json!([stands(1, [0.0, 0.0], 0.5), stands(2, [1.0, 0.0], 0.5)]);
+    let name = file("simulate", "touch.json", json!({ "agents": agents }).to_string());
+    assert_eq!(run(&["simulate", &name, "--json"]).json()["warnings"], json!([]));
+    // Of a heap only some are named.
+    let agents: Vec<_> = (0..10).map(|id| stands(id, [0.0, 0.0], 0.5)).collect();
+    let name = file("simulate", "many.json", json!({ "agents": agents }).to_string());
+    let said = run(&["simulate", &name, "--controller", "orca"]).err;
+    assert!(said.lines().count() == 17 && said.ends_with(": 29 more pairs of agents stand in contact\n"), "{said}");
+}

@@ -49,6 +49,13 @@ fn a_terminal_is_not_waited_for() {
     let Ok(output) = output else { panic!("script (util-linux) is needed for this test") };
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.contains("pcr: no FILE, and nothing comes in by a pipe") && text.contains("status 2"), "{text}");
+    assert!(text.contains("name a scenario"), "{text}");
+    for command in ["locks", "nodes", "traffic", "import nav2"] {
+        let command = format!("{pcr} {command}");
+        let output = std::process::Command::new("script").args(["-qec", &command, "/dev/null"]).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(text.contains("docs/layouts.md") && !text.contains("scenario"), "{text}");
+    }
 }
 
 #[test]

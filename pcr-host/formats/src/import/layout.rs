@@ -76,7 +76,8 @@ pub struct Edge {
 impl Edge {
     /// Length \[m\].
     pub fn length(&self) -> f64 {
-        self.curve.iter().map(|placed| placed.shape.length()).sum()
+        // A sum of nothing is -0.
+        self.curve.iter().map(|placed| placed.shape.length()).sum::<f64>() + 0.0
     }
 }
 

@@ -198,7 +198,10 @@ impl Agent {
         let id = match (id, fields.required("id")?) {
             (Some(id), _) => id,
             (None, given) => {
-                return Err(fields.unexpected("id", given, "a whole number from 0 or a name"));
+                return Err(match &given.data {
+                    Data::Text(text) => fields.error(given.line, "id", no_name(text)),
+                    _ => fields.unexpected("id", given, "a whole number from 0 or a name"),
+                });
             }
         };
         match fields.get("label").map(|label| (label, &label.data)) {
@@ -270,6 +273,15 @@ impl Agent {
             return refused(field, problem);
         }
         Ok((agent, is_text))
+    }
+}
+
+/// Why a text is no id.
+fn no_name(text: &str) -> String {
+    match labels::fault(text) {
+        Some(fault) => fault,
+        None if text.is_empty() => "\"\" where a whole number from 0 or a name is expected".into(),
+        None => format!("\"{text}\" could be taken for the number; write it without quotation marks, or give a name"),
     }
 }
 

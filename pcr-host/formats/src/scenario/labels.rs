@@ -1,14 +1,14 @@
 //! Labels of agents: texts that people use in addition to numbers.
 
 use super::{Agent, Scenario};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Longest label, in characters.
 pub const LONGEST_LABEL: usize = 200;
 
 /// The labels of the agents that have one, by their numbers.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Labels(BTreeMap<u64, String>);
 

@@ -15,7 +15,7 @@ pub struct Outcome {
     pub robots: usize,
     /// Goals reached.
     pub missions: usize,
-    /// The same an hour, after the first tenth of the time.
+    /// The same an hour, after the first tenth of the time, without those that were under way at its end.
     pub missions_per_hour: f64,
     /// Mean of the times from when missions were given until goals were reached, over those of a robot alone; none without any.
     pub travel_over_unimpeded: Option<f64>,

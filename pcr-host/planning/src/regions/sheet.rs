@@ -144,6 +144,7 @@ impl<'s, S: Format> Sheet<'s, S> {
             name: self.scenario.name.clone(),
             labels: self.labels.clone(),
             scalar: S::NAME,
+            agent: self.request.agent,
             regions: Vec::new(),
             margin_regions: self.has_margins().then(Vec::new),
             footprints: agents.flat_map(|(agent, own)| Cover::of(agent, &self.bodies.discs[own.clone()])).collect(),

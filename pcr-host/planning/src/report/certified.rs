@@ -1,12 +1,13 @@
 //! Results of the checker for tables, as text.
 
 use super::columns::Columns;
-use super::{heading, quoted};
+use super::figures::{small, thousandths};
+use super::{agents, called, heading, quoted};
 use crate::certify::Certified;
 use std::io::{self, Write};
 
 /// The header line of [`certified_csv`].
-pub const CERTIFIED_CSV_HEADER: &str = "name,verdict,promise,i,j,l_i,l_j,clearance,in_excess\n";
+pub const CERTIFIED_CSV_HEADER: &str = "name,verdict,promise,i,j,l_i,l_j,clearance,in_excess,i_label,j_label\n";
 
 /// A line a place that is not proved, or one that says that all is.
 ///
@@ -18,11 +19,12 @@ pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<
         for point in points {
             let (promise, numbers) = (point.promise, [point.l_i, point.l_j, point.clearance, point.in_excess]);
             let numbers = numbers.map(|number| number.to_string()).join(",");
-            writeln!(out, "{name},{verdict},{promise},{},{},{numbers}", point.i, point.j)?;
+            let [a, b] = [point.i, point.j].map(|id| quoted(certified.labels.get(id)));
+            writeln!(out, "{name},{verdict},{promise},{},{},{numbers},{a},{b}", point.i, point.j)?;
         }
     }
     if certified.verdict == Some("proved") {
-        writeln!(out, "{name},proved,,,,,,,")?;
+        writeln!(out, "{name},proved,,,,,,,,,")?;
     }
     Ok(())
 }
@@ -54,11 +56,12 @@ pub fn certified_table(certified: &Certified, out: &mut impl Write) -> io::Resul
             continue;
         }
         writeln!(out, "{title}:")?;
-        let mut columns = Columns::new(&["i", "j", "l_i [m]", "l_j [m]", "clearance [m]", "in ε", "<"]);
+        let [i, j] = agents(&certified.labels);
+        let mut columns = Columns::new(&[i, j, "l_i [m]", "l_j [m]", "clearance [m]", "in ε", "<"]);
         for point in points {
-            let mut row = vec![point.i.to_string(), point.j.to_string()];
+            let mut row = [point.i, point.j].map(|id| called(&certified.labels, id)).to_vec();
             row.extend([point.l_i, point.l_j].map(|length| format!("{length:.6}")));
-            row.extend([format!("{:.3e}", point.clearance), format!("{:.3}", point.in_excess), point.promise.into()]);
+            row.extend([small(point.clearance), thousandths(point.in_excess), point.promise.into()]);
             columns.row(row);
         }
         columns.write(out)?;

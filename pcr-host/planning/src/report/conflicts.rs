@@ -1,7 +1,8 @@
 //! Conflicts as text.
 
 use super::columns::Columns;
-use super::figures::small;
+use super::figures::{small, thousandths};
+use super::proofs::proof_line;
 use super::{agents, called, heading, quoted};
 use crate::check::{Conflict, Verdict};
 use std::io::{self, Write};
@@ -43,9 +44,9 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()
         let touching = verdict.conflicts.iter().filter(|conflict| conflict.touching).count();
         for conflict in &verdict.conflicts {
             let mut row = [conflict.i, conflict.j].map(|id| called(&verdict.labels, id)).to_vec();
-            row.extend(conflict.t.map(|time| format!("{time:.3}")));
+            row.extend(conflict.t.map(thousandths));
             row.push(small(conflict.depth));
-            row.extend(conflict.l_i.into_iter().chain(conflict.l_j).map(|length| format!("{length:.3}")));
+            row.extend(conflict.l_i.into_iter().chain(conflict.l_j).map(thousandths));
             row.push(if conflict.touching { "*" } else { "" }.into());
             columns.row(row);
         }
@@ -63,13 +64,13 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()
         let mut columns = Columns::new(&[i, j, "t [s]", "separation [m]", "clearance [m]"]);
         for pair in closest {
             let mut row = [pair.i, pair.j].map(|id| called(&verdict.labels, id)).to_vec();
-            row.extend([format!("{:.3}", pair.t), small(pair.separation), small(pair.clearance)]);
+            row.extend([thousandths(pair.t), small(pair.separation), small(pair.clearance)]);
             columns.row(row);
         }
         columns.write(out)?;
     }
     if let Some(proof) = &verdict.certificate {
-        writeln!(out, "{}", proof.sentence())?;
+        writeln!(out, "{}", proof_line(proof, &verdict.labels))?;
     }
     Ok(())
 }

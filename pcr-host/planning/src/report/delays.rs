@@ -1,6 +1,7 @@
 //! Tables of unsafe delays, for programs and for reading.
 
 use super::columns::Columns;
+use super::figures::thousandths;
 use super::locks::LocksUnprinted;
 use super::{Document, counted, json, printable, quoted};
 use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
@@ -205,8 +206,7 @@ pub fn delays_lines(
 fn range([from, to]: [f64; 2]) -> [String; 2] {
     // What rounding adds is no millisecond.
     let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
-    // No minus before 0.
-    [format!("{:.3}", from + 0.0), format!("{:.3}", to + 0.0)]
+    [from, to].map(thousandths)
 }
 
 /// The delays in columns.

@@ -7,13 +7,19 @@ pub fn digits(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
+/// To the third digit behind the point, as most tables have it. What becomes 0 has no minus.
+pub fn thousandths(value: f64) -> String {
+    let text = format!("{value:.3}");
+    if text == "-0.000" { "0.000".into() } else { text }
+}
+
 /// A length in metres: to the millimetre, and three digits of what is shorter than that.
 pub fn small(length: f64) -> String {
     if length == 0.0 {
         return "0".into();
     }
     if length.abs() >= 1e-3 {
-        return format!("{length:.3}");
+        return thousandths(length);
     }
     let text = format!("{length:.2e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -57,7 +63,13 @@ pub fn share(part: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::small;
+    use super::{small, thousandths};
+
+    #[test]
+    fn there_is_no_minus_before_zero() {
+        let texts = [-0.0, -4e-4, -6e-4, 0.0, -1.5].map(thousandths);
+        assert_eq!(texts, ["0.000", "0.000", "-0.001", "0.000", "-1.500"]);
+    }
 
     #[test]
     fn what_is_small_is_not_zero() {

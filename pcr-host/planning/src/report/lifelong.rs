@@ -1,7 +1,7 @@
 //! Fleets that run for hours, for reading.
 
 use super::columns::Columns;
-use super::{heading, printable};
+use super::{counted, heading, printable};
 use crate::lifelong::{Driven, Lifelong, Shares, WellFormedness};
 use pcr_formats::import::Id;
 use std::io::{self, Write};
@@ -55,7 +55,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
 pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
     let Lifelong { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };
-    writeln!(out, "{}: {asked} robots for {hours} h, seed {seed}", heading(name))?;
+    writeln!(out, "{}: {} for {hours} h, seed {seed}", heading(name), counted(*asked, "robot"))?;
     writeln!(
         out,
         "stopped for {} % of the time, {} s each; up to {} % slower",
@@ -109,6 +109,10 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
         ]);
     }
     columns.write(out)?;
+    writeln!(
+        out,
+        "an hour: without the first tenth of the time, in which all set off, and without what was under way at its end"
+    )?;
     for run in runs {
         if let Some(why) = &run.outcome.idle_because {
             writeln!(out, "{}: nobody reached a goal, as {why}", run.outcome.method.name())?;

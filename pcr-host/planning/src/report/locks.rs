@@ -1,6 +1,7 @@
 //! Tables of locks, for programs and for reading.
 
 use super::columns::Columns;
+use super::figures::thousandths;
 use super::{Document, counted, json, printable, quoted};
 use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
@@ -113,6 +114,8 @@ pub struct EdgeLocks {
     pub edge: String,
     /// By edges, then nodes.
     pub partners: Vec<Partner>,
+    /// What was read otherwise than it was written; of a table of locks in a file, said when that was written.
+    pub warnings: Vec<String>,
 }
 
 impl Document for EdgeLocks {
@@ -141,7 +144,7 @@ pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
 /// # Errors
 /// Those of the writer.
 pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "{}: {} locks", printable(&locks.edge), locks.partners.len())?;
+    writeln!(out, "{}: {}", printable(&locks.edge), counted(locks.partners.len(), "lock"))?;
     let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
     for Partner { name, node, own, other } in &locks.partners {
         let name = format!("{}{name}", if *node { "node " } else { "" });
@@ -154,7 +157,7 @@ pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
 fn range([from, to]: [f64; 2]) -> [String; 2] {
     // What rounding adds is no millimetre.
     let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
-    [format!("{from:.3}"), format!("{to:.3}")]
+    [from, to].map(thousandths)
 }
 
 /// The locks in columns, lengths outward to the millimetre.

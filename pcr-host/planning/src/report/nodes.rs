@@ -1,7 +1,8 @@
 //! Nodes and edges of a layout as text.
 
 use super::columns::Columns;
-use super::{heading, printable, quoted};
+use super::figures::thousandths;
+use super::{counted, heading, printable, quoted};
 use crate::nodes::Listing;
 use std::io::{self, Write};
 
@@ -29,8 +30,8 @@ pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> 
 /// # Errors
 /// Those of the writer.
 pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
-    let (nodes, edges) = (listing.nodes.len(), listing.edges.len());
-    writeln!(out, "{}: {nodes} nodes, {edges} edges", heading(listing.layout))?;
+    let (nodes, edges) = (counted(listing.nodes.len(), "node"), counted(listing.edges.len(), "edge"));
+    writeln!(out, "{}: {nodes}, {edges}", heading(listing.layout))?;
     let lists = [("levels", listing.levels), ("vehicle types", listing.vehicle_types), ("vehicles", listing.vehicles)];
     for (what, names) in lists {
         let names: Vec<String> = names.iter().filter(|name| !name.is_empty()).map(|name| printable(name)).collect();
@@ -40,7 +41,7 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()
     }
     let mut columns = Columns::new(&["<node", "<names", "<level", "x [m]", "y [m]"]);
     for node in &listing.nodes {
-        let [x, y] = node.at.map(|x| format!("{x:.3}"));
+        let [x, y] = node.at.map(thousandths);
         let names = printable(&node.names.join(" "));
         columns.row(vec![printable(&node.id.to_string()), names, printable(node.level), x, y]);
     }
@@ -49,9 +50,9 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()
     let mut columns = Columns::new(&["<edge", "<from", "<to", "length [m]", "<ways", "speed [m/s]"]);
     for edge in &listing.edges {
         let [id, from, to] = [edge.id, edge.from, edge.to].map(|id| printable(&id.to_string()));
-        let speed = edge.speed.map_or_else(|| "-".to_owned(), |speed| format!("{speed:.3}"));
+        let speed = edge.speed.map_or_else(|| "-".to_owned(), thousandths);
         let ways = if edge.two_way { "both" } else { "one" };
-        columns.row(vec![id, from, to, format!("{:.3}", edge.length), ways.to_owned(), speed]);
+        columns.row(vec![id, from, to, thousandths(edge.length), ways.to_owned(), speed]);
     }
     columns.write(out)
 }

@@ -1,6 +1,8 @@
 //! Plans as text.
 
 use super::columns::Columns;
+use super::figures::thousandths;
+use super::proofs::proof_line;
 use super::{all_called, called, heading, quoted};
 use crate::plan::{Plan, Planned};
 use std::collections::HashMap;
@@ -46,12 +48,12 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     let agents: HashMap<u64, &Planned> = plan.agents.iter().map(|agent| (agent.id, agent)).collect();
     let by_priority = plan.order.iter().filter_map(|id| agents.get(id));
     for agent in by_priority {
-        columns.row(vec![called(&plan.labels, agent.id), format!("{:.3}", agent.delay), format!("{:.3}", agent.t_end)]);
+        columns.row(vec![called(&plan.labels, agent.id), thousandths(agent.delay), thousandths(agent.t_end)]);
     }
     columns.write(out)?;
     writeln!(out, "{}", costs(plan))?;
     match &plan.certificate {
-        Some(proof) => writeln!(out, "{}", proof.sentence()),
+        Some(proof) => writeln!(out, "{}", proof_line(proof, &plan.labels)),
         None => Ok(()),
     }
 }

@@ -1,6 +1,7 @@
 //! Regions and crossings for reading.
 
 use super::columns::Columns;
+use super::figures::thousandths;
 use super::{agents, called, counted, crossings, heading, types};
 use crate::regions::{Answer, Descriptor, Region};
 use pcr_formats::scenario::Labels;
@@ -63,7 +64,8 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&answer.name);
     let (regions, crossings) = (counted(answer.regions.len(), "collision region"), counted(all.len(), "crossing"));
     writeln!(out, "{name}: {regions}, {crossings} ({})", answer.scalar)?;
-    for cover in &answer.footprints {
+    // Loads that are a disc are none of a footprint.
+    for cover in answer.footprints.iter().filter(|cover| cover.overhang > 0.0) {
         let discs = cover.discs.len();
         let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
         let (id, overhang) = (cover.id, cover.overhang + cover.growth);
@@ -90,7 +92,7 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
             let [i, j] = [i, j].map(|id| called(&answer.labels, *id));
             let mut row = vec![i, j, k.to_string(), (*piece_type).to_owned()];
             let numbers = [crossing.time, crossing.length, crossing.r_hat, crossing.v, crossing.theta];
-            row.extend(numbers.map(|number| format!("{number:.3}")));
+            row.extend(numbers.map(thousandths));
             row.extend([arc(crossing.sigma_i, crossing.dir_i), arc(crossing.sigma_j, crossing.dir_j)]);
             columns.row(row);
         }
@@ -121,7 +123,7 @@ fn extents(
     }
     for (index, region) in regions.iter().enumerate() {
         let mut row = [region.i, region.j].map(|id| called(labels, id)).to_vec();
-        row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(|number| format!("{number:.3}")));
+        row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(thousandths));
         let open = match (region.open_start, region.open_end) {
             (false, false) => "-",
             (true, false) => "start",

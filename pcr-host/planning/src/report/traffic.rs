@@ -1,7 +1,9 @@
 //! Traffic for reading.
 
 use super::columns::Columns;
-use super::{all_called, heading, printable};
+use super::figures::thousandths;
+use super::proofs::proof_line;
+use super::{all_called, counted, heading, printable};
 use crate::traffic::{PassedOver, Traffic};
 use pcr_formats::scenario::Labels;
 use std::io::{self, Write};
@@ -45,10 +47,10 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
         )?;
     }
     let mut columns = Columns::new(&["agent", "<from", "<to", "length [m]", "delay [s]", "t_end [s]"]);
-    let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| format!("{time:.3}"));
+    let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), thousandths);
     for mission in &traffic.missions {
         let [from, to] = [&mission.from, &mission.to].map(|id| printable(&id.to_string()));
-        let length = format!("{:.3}", mission.length);
+        let length = thousandths(mission.length);
         columns.row(vec![mission.id.to_string(), from, to, length, time(mission.delay), time(mission.t_end)]);
     }
     columns.write(out)?;
@@ -59,10 +61,12 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     let Traffic { regions, conflicts_before, conflicts_after, .. } = traffic;
     writeln!(
         out,
-        "{regions} regions; {conflicts_before} conflicts if all set off at once, {conflicts_after} as planned"
+        "{}; {} if all set off at once, {conflicts_after} as planned",
+        counted(*regions, "region"),
+        counted(*conflicts_before, "conflict")
     )?;
     let Traffic { makespan, sum_of_costs, lower_bound, missions_per_hour, .. } = traffic;
     let costs = format!("sum of costs {sum_of_costs:.3} s (without any wait {lower_bound:.3} s)");
     writeln!(out, "makespan {makespan:.3} s, {costs}, {missions_per_hour:.1} missions an hour")?;
-    writeln!(out, "{}", traffic.certificate.sentence())
+    writeln!(out, "{}", proof_line(&traffic.certificate, &Labels::default()))
 }

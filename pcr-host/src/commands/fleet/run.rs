@@ -1,8 +1,8 @@
 //! Vehicles and their manager at a broker.
 
-use super::super::printed::notes;
+use super::super::printed::{notes, tables};
 use super::super::serve::{AT_BROKERS, VEHICLES, broker, interfaces};
-use super::super::{CONFLICTS, Stop};
+use super::super::{CONFLICTS, NO_STREAM, Stop, is_standard};
 use super::Arguments;
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
 use pcr_planning::lifelong::{streets, well_formedness};
@@ -139,6 +139,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     if let Some(file) = &arguments.certify {
         return certified(file);
     }
+    if is_standard(arguments.record.as_ref()) {
+        return Err(Stop::arguments(format!("--record -: {NO_STREAM}")));
+    }
     for (name, value, lo, hi) in [
         ("--pace", arguments.pace, 0.1, 100.0),
         ("--drops", arguments.drops, 0.0, 1e4),
@@ -254,7 +257,7 @@ fn alone(
     let (audit, longest) = (yard.audit().clone(), yard.longest());
     yard.close()?;
     let done = told(crew.vehicles, time, done, drops, &audit, left)?;
-    writeln!(io::stdout().lock(), "{}: nobody with an order stood longer than {longest:.0} s", method.name())?;
+    writeln!(tables(), "{}: nobody with an order stood longer than {longest:.0} s", method.name())?;
     Ok(done)
 }
 
@@ -266,7 +269,7 @@ fn told(
     audit: &Audit,
     left: Option<(usize, f64)>,
 ) -> Result<ExitCode, Stop> {
-    let mut out = io::stdout().lock();
+    let mut out = tables();
     writeln!(out, "{vehicles} vehicles, {time:.0} s of theirs: {done} missions done, {drops} connections lost")?;
     writeln!(out, "two with the right to one place: {} times in {} looks", audit.twice, audit.looks)?;
     if let Some((time, [a, b])) = &audit.first {
