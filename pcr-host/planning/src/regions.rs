@@ -93,6 +93,8 @@ pub enum Failure {
     NoSuchAgent(u64, Vec<u64>),
     /// The path of this robot, or its disc with the margins of a simulation, is out of range.
     Robot(u64),
+    /// This robot of a simulation sets off later than at this time \[s\].
+    Late(u64, f64),
     /// An obstacle of a simulation, by its centre \[m\], is out of range.
     Obstacle([f64; 2]),
     /// There is no agent of the label asked for; these are there.
@@ -126,6 +128,9 @@ impl fmt::Display for Failure {
                 "agents {i} and {j}: more than 65535 pairs of segments within reach of one another; join short segments"
             ),
             Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),
+            Self::Late(id, latest) => {
+                write!(f, "agent {id}, t_start: a simulation begins at 0 s, and everybody sets off by {latest} s")
+            }
             Self::Obstacle([x, y]) => write!(f, "obstacle at {x}, {y}: it is out of range"),
             Self::NoSuchAgent(asked, there) => {
                 let there = there.iter().map(u64::to_string).collect();

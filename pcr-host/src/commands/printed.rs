@@ -52,7 +52,8 @@ impl Printed {
     }
 }
 
-/// Where tables go that have no other form.
+/// Where tables go that have no other form: those of `pcr fleet`.
+#[cfg(feature = "serve")]
 pub(super) fn tables() -> Box<dyn Write> {
     if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) }
 }

@@ -69,6 +69,12 @@ fn what_is_wrong_with_a_scenario_is_said_as_elsewhere() {
     let name = file("simulate", "wrong.json", scenario.to_string());
     let expected = format!("pcr: {name}:1: agent 2, radius: -1 is out of range; allowed is above 0, up to 1e10\n");
     assert_eq!(run(&["simulate", &name]).failed(2), expected);
+    scenario["agents"][1]["radius"] = json!(0.2);
+    scenario["agents"][1]["t_start"] = json!(1e6);
+    let name = file("simulate", "late.json", scenario.to_string());
+    let expected =
+        format!("pcr: {name}: agent 2, t_start: a simulation begins at 0 s, and everybody sets off by 10000 s\n");
+    assert_eq!(run(&["simulate", &name]).failed(2), expected);
 }
 
 /// Agents that never move are no robots, so that no run counts their contacts.

@@ -8,6 +8,9 @@ use crate::regions::Failure;
 use pcr_core::{Drive, Limits};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
 
+/// When the last robot may set off \[s\]: every frame until then is simulated and kept.
+const LATEST: f64 = 1e4;
+
 /// A run: robots, what stands in their way, and their missions.
 #[derive(Clone, Debug)]
 pub struct Task {
@@ -71,13 +74,16 @@ impl Task {
     /// among the warnings, and so are agents in the way that overlap one another: no run counts them as a collision.
     ///
     /// # Errors
-    /// [`Failure::Refused`] where a value is out of range.
+    /// [`Failure::Refused`] where a value is out of range, [`Failure::Late`] where somebody sets off too late.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
         let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
         for (agent, motion) in scenario.agents.iter().zip(fleet.motions()) {
             let course = Course::of(&motion);
             if course.length() > 0.0 {
+                if agent.t_start > LATEST {
+                    return Err(Failure::Late(agent.id, LATEST));
+                }
                 let missions = vec![Mission { release: agent.t_start, course }];
                 let limits = limits(&agent.motion);
                 robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
