@@ -12,7 +12,7 @@ use pcr_serve::vehicles::weather::Climate;
 use std::sync::mpsc::channel;
 
 pub(crate) const FAIR: Scene<'_> = Scene {
-    count: 1,
+    count: 2,
     versions: &[Version::V2_1],
     abilities: &[Abilities {
         radius: 0.4,
@@ -31,10 +31,10 @@ pub(crate) const FAIR: Scene<'_> = Scene {
 
 #[test]
 #[ignore = "needs a broker: .ci/test.sh serve"]
-fn one_vehicle_does_its_missions() {
-    let broker = Mosquitto::start("one");
+fn two_vehicles_do_their_missions() {
+    let broker = Mosquitto::start("two");
     let (mut site, profiles) = Site::open(&broker, FAIR);
-    let desk = Desk::open(&broker, profiles, "one", Box::new(Nowhere));
+    let desk = Desk::open(&broker, profiles, "two", Box::new(Nowhere));
     let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(1)));
     assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();

@@ -75,8 +75,8 @@ fn a_file_without_a_certificate_is_refused_before_anything_is_sent() {
 
 #[test]
 #[ignore = "needs a broker and openssl: .ci/test.sh tls"]
-fn a_vehicle_does_its_missions_over_tls() {
-    let broker = Mosquitto::secured("secured-one", "pcr", "secret");
+fn vehicles_do_their_missions_over_tls() {
+    let broker = Mosquitto::secured("secured-two", "pcr", "secret");
     let (mut site, profiles) = Site::open(&broker, FAIR);
     let desk = Desk::open(&broker, profiles, "secured", Box::new(Nowhere));
     let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(1)));
