@@ -28,7 +28,7 @@ fn planned(plan: &GridPlan) -> f64 {
 
 #[track_caller]
 fn assert_sound(outcome: &Outcome, case: &str) {
-    assert_eq!((outcome.proof.verdict, outcome.stuck), ("proved", 0), "{case}: {}", outcome.proof.sentence());
+    assert_eq!((outcome.proof.verdict, outcome.stuck), ("proved", 0), "{case}: {:?}", outcome.proof);
     assert!(outcome.travel >= outcome.alone, "{case}");
 }
 

@@ -161,7 +161,7 @@ impl Arguments {
         if !matches!(self.priority, Asked::Known(Priority::Best)) && (self.prove || self.time_limit.is_some()) {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
-                "{option} is of no use: --priority gives the order, and only for the best one is searched that long"
+                "{option} is of no use: --priority gives the order, and no better one is searched for"
             )));
         }
         let sources = gathered(self.files.clone(), &self.import)?;

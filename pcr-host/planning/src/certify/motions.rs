@@ -87,20 +87,4 @@ impl Proof {
     fn undecided(self) -> Self {
         Self { verdict: "undecided", ..self }
     }
-
-    /// A sentence about it.
-    pub fn sentence(&self) -> String {
-        let place = |those: &[Contact]| {
-            those.first().map_or(String::new(), |at| {
-                format!("agents {} and {} at {} s, clearance {:.3e} m", at.i, at.j, at.t, at.clearance)
-            })
-        };
-        match (self.verdict, &self.error) {
-            (_, Some(problem)) => format!("certificate: none, {problem}"),
-            ("proved", _) if self.pairs == 1 => "certificate: no contact at any time, proved (1 pair of discs)".into(),
-            ("proved", _) => format!("certificate: no contact at any time, proved ({} pairs of discs)", self.pairs),
-            ("contact", _) => format!("certificate: contact, {}", place(&self.contacts)),
-            _ => format!("certificate: not decided, {}", place(&self.undecided)),
-        }
-    }
 }

@@ -19,6 +19,7 @@ use pcr_serve::{clients, http};
 use std::io::ErrorKind;
 use std::net::TcpListener;
 use std::process::ExitCode;
+use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
 pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
@@ -46,35 +47,46 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         thread("page", move || http::listen(&handle, &listener, site))?;
     }
     let stays = arguments.stay || demo.is_some();
-    let last = Last { handle: handle.clone(), stays };
-    let lines = thread("lines", move || clients::serve(&last.handle, std::io::stdin(), std::io::stdout()))?;
+    let (failed, failures) = channel();
+    let last = Last { handle: handle.clone(), stays, failed };
+    thread("lines", move || {
+        if let Err(error) = clients::serve(&last.handle, std::io::stdin(), std::io::stdout()) {
+            last.fails(error.to_string());
+        }
+    })?;
     interrupted(handle)?;
     let served = serve(&mut supervisor, &inputs, &kept, log);
     drop(inputs);
-    // While it waits for a line, it is left behind.
-    let read = if lines.is_finished() { lines.join() } else { Ok(Ok(())) };
     // The bridge and the demo end in order, whatever has ended this.
     let ended = ends.map_or(Ok(()), bridge::Work::end);
     let done = demo.map_or(Ok(()), Demo::end);
     served.map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
     ended.and(done)?;
-    let why = match read {
-        Ok(Ok(())) => return Ok(ExitCode::SUCCESS),
-        Ok(Err(error)) => error.to_string(),
-        Err(_) => "no memory for a thread".to_owned(),
-    };
-    Err(Stop::Error(format!("standard input: not read: {why}"), WRONG_INPUT))
+    match failures.try_recv() {
+        Ok(why) => Err(Stop::Error(format!("standard input: not read: {why}"), WRONG_INPUT)),
+        Err(_) => Ok(ExitCode::SUCCESS),
+    }
 }
 
-/// Ends the supervisor when standard input has ended, unless it is to stay, or when its thread has found no memory.
+/// Ends the supervisor when standard input has ended, unless it is to stay, and when it cannot be read. Why is told before.
 struct Last {
     handle: Handle,
     stays: bool,
+    failed: Sender<String>,
+}
+
+impl Last {
+    fn fails(&self, why: String) {
+        let _ = self.failed.send(why);
+        self.handle.send(Input::Stop);
+    }
 }
 
 impl Drop for Last {
     fn drop(&mut self) {
-        if !self.stays || thread::panicking() {
+        if thread::panicking() {
+            self.fails("there is no memory for its thread".into());
+        } else if !self.stays {
             self.handle.send(Input::Stop);
         }
     }
