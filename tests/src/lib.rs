@@ -20,7 +20,6 @@ pub mod paper;
 pub mod plans;
 pub mod polygons;
 pub mod reference;
-pub mod roadmap_tasks;
 pub mod rules;
 pub mod search;
 pub mod settings;

@@ -1,7 +1,7 @@
 //! Fleets that run for a while on a real layout: no contact, nobody beyond its hold, everybody arrives in the end.
 
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
-use pcr_planning::lifelong::{Delays, Lifelong, Method, Outcome, Request, Shares, run, streets};
+use pcr_planning::lifelong::{Delays, Lifelong, Method, Outcome, Request, Shares, run, streets, well_formedness};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 
@@ -97,6 +97,17 @@ fn large_fleets_never_touch_and_all_arrive() {
     let (agents, minutes) = if cfg!(optimized) { (100, 2.0) } else { (70, 1.0) };
     let outcome = driven(&streets(10), agents, minutes, 0.05, Method::Orders);
     assert!(outcome.robots == agents && outcome.missions > agents / 4, "{outcome:?}");
+}
+
+/// Too many nodes to look at all sets of ends, and no dead ends: no end is known to be safe. Robots drove one at a time there.
+#[test]
+fn robots_drive_together_where_no_end_is_safe() {
+    let mut imported = streets(32);
+    imported.layout.edges.retain(|edge| !edge.two_way);
+    let form = well_formedness(&imported, 3).expect("a layout");
+    assert!(form.safe_ends.is_empty() && form.dead_ends_only, "{form:?}");
+    let outcome = driven(&imported, 12, 4.0, 0.02, Method::Orders);
+    assert!(outcome.robots == 12 && outcome.missions > 12 && outcome.time.idle < 0.2, "{outcome:?}");
 }
 
 /// The same missions, the same delays.

@@ -12,6 +12,7 @@
 //! plans       costs of start delays, and proved bounds
 //! lifelong    fleets that run in the warehouse for an hour
 //! layouts     fleets that run on other layouts
+//! tasks       lifelong tasks on roadmaps, beside published figures
 //! execution   execution of plans on grids while robots are late
 //! roadmaps    tables of locks and of unsafe delays
 //! scale       fleets of up to 100,000 agents
@@ -29,6 +30,7 @@ mod plans;
 mod roadmaps;
 mod scale;
 mod shares;
+mod tasks;
 mod traffic;
 
 use crate::compare::Effort;
@@ -112,7 +114,7 @@ fn picture(name: &str, what: &str) -> String {
 type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
 
 /// The parts of the document, by their names.
-const PARTS: [(&str, Part); 12] = [
+const PARTS: [(&str, Part); 13] = [
     ("fleets", fleets::section),
     ("shares", shares::section),
     ("figures", figures::section),
@@ -122,6 +124,7 @@ const PARTS: [(&str, Part); 12] = [
     ("plans", plans::section),
     ("lifelong", lifelong::section),
     ("layouts", layouts::section),
+    ("tasks", tasks::section),
     ("execution", execution::section),
     ("roadmaps", roadmaps::section),
     ("scale", scale::section),

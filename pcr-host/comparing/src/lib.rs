@@ -3,9 +3,11 @@
 //! ```text
 //! compare   this library and other methods                Comparison
 //! report    comparisons as JSON, CSV and tables
+//! roadmap   roadmaps with tasks of others
 //! evaluate  the paper's evaluation and more, as a document
 //! ```
 
 pub mod compare;
 pub mod evaluate;
 pub mod report;
+pub mod roadmap;

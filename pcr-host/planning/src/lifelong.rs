@@ -20,6 +20,7 @@
 //! waits      what robots wait for on their ways
 //! forecast   whether all can finish, and when
 //! tasks      first places of robots, and a stream of tasks        Tasks
+//! assign     which robot does which task
 //! locks      locks on one edge after the other, for comparison
 //! scene      the present fleet, and routes through it
 //! search     orders on a way
@@ -41,6 +42,7 @@
 mod abilities;
 mod alone;
 mod answer;
+mod assign;
 mod book;
 mod clearing;
 mod decide;

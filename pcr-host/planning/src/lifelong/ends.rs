@@ -8,11 +8,11 @@ use serde::Serialize;
 use std::cell::OnceCell;
 use std::collections::VecDeque;
 
-/// How often safe ends are looked for, from another order of nodes.
+/// How often safe ends are looked for, from another order of nodes, at most.
 const DRAWS: usize = 40;
 
-/// Up to so many nodes any node may be a safe end; beyond only dead ends are looked at.
-const SMALL: usize = 400;
+/// Pairs of nodes that are looked at for that, about: in a layout of more than 2,828 nodes only dead ends are looked at.
+const PAIRS: usize = 8_000_000;
 
 /// Where missions can be carried out without end, and what stands against it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -50,7 +50,8 @@ pub(super) struct Ends {
 impl Ends {
     pub(super) fn of(site: &Site, seed: u64) -> Self {
         let nodes = strongest(site);
-        let safe = if nodes.len() <= SMALL { drawn(site, &nodes, seed) } else { dead_ends(site, &nodes) };
+        let found = [dead_ends(site, &nodes), drawn(site, &nodes, seed)];
+        let safe = found.into_iter().max_by_key(Vec::len).unwrap_or_default();
         let mut is_safe = vec![false; site.points.len()];
         safe.iter().for_each(|&end| is_safe[end] = true);
         Self { lane: vec![None; is_safe.len()], lanes: Vec::new(), harm: OnceCell::new(), nodes, safe, is_safe }
@@ -119,7 +120,7 @@ impl Ends {
             safe_ends: ids(safe),
             never_ends: ids(self.nodes.iter().copied().filter(never).collect()),
             bridges: bridges(site, &is_inside).into_iter().map(|edge| layout.edges[edge].id.clone()).collect(),
-            dead_ends_only: self.nodes.len() > SMALL,
+            dead_ends_only: draws(&self.nodes) == 0,
         }
     }
 }
@@ -141,11 +142,16 @@ fn strongest(site: &Site) -> Vec<usize> {
     best
 }
 
+/// How often safe ends are looked for among so many nodes.
+fn draws(nodes: &[usize]) -> usize {
+    (PAIRS / nodes.len().pow(2).max(1)).min(DRAWS)
+}
+
 /// The largest set that is found from some orders of nodes, dead ends first.
 fn drawn(site: &Site, nodes: &[usize], seed: u64) -> Vec<usize> {
     let mut random = Random(seed);
     let mut best = Vec::new();
-    for _ in 0..DRAWS {
+    for _ in 0..draws(nodes) {
         let mut candidates = random.shuffled(nodes);
         candidates.sort_by_key(|&node| site.leaving[node].len() > 1);
         let mut ends: Vec<usize> = Vec::new();
@@ -164,14 +170,17 @@ fn drawn(site: &Site, nodes: &[usize], seed: u64) -> Vec<usize> {
     best
 }
 
-/// Dead ends where a robot touches nobody on any other edge: nothing else leads past them.
+/// Nodes with one neighbour where a robot touches nobody on any edge but those to that: nothing else leads past them.
 fn dead_ends(site: &Site, nodes: &[usize]) -> Vec<usize> {
     let mut ends: Vec<usize> = Vec::new();
     let mut taken = vec![false; site.atoms.len()];
     for &node in nodes {
+        let [leaving] = site.leaving[node][..] else { continue };
+        let neighbour = site.atoms[leaving].ends[1];
+        let is_dead = site.coming[node].iter().all(|&atom| site.atoms[atom].ends[0] == neighbour);
         let own = |&atom: &usize| site.atoms[atom].ends.contains(&node);
         let covers = site.covers(node);
-        if site.leaving[node].len() == 1 && covers.iter().all(own) && !taken[site.standing(node)] {
+        if is_dead && covers.iter().all(own) && !taken[site.standing(node)] {
             covers.iter().for_each(|&atom| taken[atom] = true);
             ends.push(node);
         }
@@ -182,10 +191,10 @@ fn dead_ends(site: &Site, nodes: &[usize]) -> Vec<usize> {
 /// Whether all nodes that robots at `ends` leave free can be reached from one another, and each of the ends with its own
 /// robot away. Nodes that they cover otherwise are lost: there must be none.
 fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
-    let free = |node: usize| ends.iter().all(|&end| !site.collide(end, node));
-    let Some(&hub) = nodes.iter().find(|&&node| free(node)) else { return false };
     let mut blocked = vec![0_u16; site.atoms.len()];
     ends.iter().for_each(|&end| site.covers(end).iter().for_each(|&atom| blocked[atom] += 1));
+    let free = |node: usize| blocked[site.standing(node)] == 0;
+    let Some(&hub) = nodes.iter().find(|&&node| free(node)) else { return false };
     let both = [false, true].map(|back| reached(site, hub, back, |atom| blocked[atom] == 0));
     nodes.iter().all(|&node| if free(node) { both.iter().all(|reached| reached[node]) } else { ends.contains(&node) })
         && ends.iter().all(|&end| {
@@ -359,6 +368,9 @@ mod tests {
             }
             assert!(found > 0 && (found < nodes.len() || radius > 1.0), "{found} of {}", nodes.len());
             let ends = Ends::of(&site, 1);
+            // Corners of one-way streets have one edge in and one out, and are no dead ends.
+            let dead = dead_ends(&site, &nodes);
+            assert!(is_open(&site, &nodes, &ends.safe) && is_open(&site, &nodes, &dead), "{count}, {radius}: {dead:?}");
             let full = Left::of(&site, &ends.nodes, &ends.safe).count;
             for &node in &ends.nodes {
                 let standing: Vec<usize> = ends.safe.iter().chain([&node]).copied().collect();

@@ -77,6 +77,13 @@ impl Routes {
         Self { abilities, times, after, before, left: RefCell::default(), goals: RefCell::default(), found }
     }
 
+    /// Finds the times to these goals now, if there is room for all of them.
+    pub(super) fn warm(&self, site: &Site, goals: &[usize]) {
+        if goals.len() * self.times.len() * size_of::<f32>() <= ROOM {
+            goals.iter().for_each(|&goal| drop(self.left(site, goal)));
+        }
+    }
+
     /// The least times to a goal from the ends of all atoms, without tolls, rounded down \[s\].
     fn left(&self, site: &Site, goal: usize) -> Rc<[f32]> {
         if let Some(known) = self.left.borrow().get(&goal) {
@@ -109,6 +116,18 @@ impl Routes {
         goals.push_back(goal);
         known.insert(goal, left.clone());
         left
+    }
+
+    /// The least times to a goal from other nodes, without tolls \[s\].
+    pub(super) fn times<'s>(&'s self, site: &'s Site, goal: usize) -> impl Fn(From) -> f64 + 's {
+        let left = self.left(site, goal);
+        move |From { node, heading }| {
+            let over = |&atom: &usize| {
+                let corner = corner(&self.abilities, heading, site.atoms[atom].headings);
+                corner + self.times[atom] + f64::from(left[atom])
+            };
+            if node == goal { 0.0 } else { site.leaving[node].iter().map(over).fold(f64::INFINITY, f64::min) }
+        }
     }
 
     /// Whether few atoms lead to a goal and none of them from a node: found from the side of the goal, where a search from the other side would

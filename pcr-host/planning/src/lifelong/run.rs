@@ -28,7 +28,8 @@ pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
 }
 
 /// Runs a fleet on a layout that has tasks to do, the robots that the tasks say; until all are done, or for the duration of the request.
-/// Each task is given to the idle robot that is nearest, the oldest task first.
+/// A task is done by the first robot that comes to its node, or stands there, after it has come. Robots without a task are sent for those
+/// that are old and near, also in place of another one that would be there later.
 ///
 /// # Errors
 /// As [`run`], and where a place is none of the layout.
@@ -98,7 +99,11 @@ impl Run {
             if open {
                 *share(&mut self.outcome.time, it, hold, now) += 1.0;
             }
-            if it.drive(hold, now, STEP, &self.abilities) {
+            let before = it.at;
+            let has_come = it.drive(hold, now, STEP, &self.abilities);
+            if self.tasks.is_some() {
+                self.passed(robot, before, now + STEP);
+            } else if has_come {
                 self.arrived(robot, now + STEP);
             }
             if tick % 10 == robot % 10 {

@@ -69,7 +69,7 @@ pub(super) struct Run {
     pub(super) travel: (f64, f64),
     pub(super) steady: usize,
     pub(super) last_arrival: f64,
-    /// Tasks that are not given yet, where not everybody has a mission of its own.
+    /// Tasks that are not done yet, where not everybody has a mission of its own.
     pub(super) tasks: Option<Queue>,
 }
 
@@ -88,12 +88,16 @@ impl Run {
             site = Site::new(&queued)?;
             ends = ends.queued(&site, lanes);
         }
+        let abilities = Abilities::of(&imported.vehicle);
+        let network = Routes::new(&site, abilities);
         // Tests do without, as it takes a while where nothing is optimized.
         if !cfg!(debug_assertions) {
             site.warm();
             ends.harm(&site);
+            if tasks.is_some() {
+                network.warm(&site, &ends.nodes);
+            }
         }
-        let abilities = Abilities::of(&imported.vehicle);
         if starts.is_empty() {
             return Err("the layout has no two nodes that can be reached from one another".into());
         }
@@ -123,7 +127,7 @@ impl Run {
         Ok(Self {
             book: Book::new(&site, &robots),
             locks: Locks::new(count),
-            network: Routes::new(&site, abilities),
+            network,
             timetable: Timetable::new(count),
             layout,
             crowded,
@@ -150,37 +154,13 @@ impl Run {
 
     /// Whether there are missions yet.
     pub(super) fn has_work(&self) -> bool {
-        self.tasks.as_ref().is_none_or(|tasks| !tasks.is_empty() || self.missions.iter().any(Option::is_some))
-    }
-
-    /// Gives tasks to those who have none, the nearest ones.
-    fn assign(&mut self, mut tasks: Queue, now: f64) -> Queue {
-        while let Some(goal) = tasks.due(now) {
-            let at = self.site.points[goal];
-            let away = |robot: usize| {
-                let here = self.robots[robot].way.point(&self.site, self.robots[robot].at);
-                (here[0] - at[0]).hypot(here[1] - at[1])
-            };
-            let idle = (0..self.robots.len()).filter(|&robot| self.missions[robot].is_none());
-            let Some(robot) = idle.min_by(|&a, &b| away(a).total_cmp(&away(b))) else { break };
-            let since = tasks.take();
-            let it = &self.robots[robot];
-            if it.has_arrived() && it.way.end() == goal {
-                self.outcome.missions += 1;
-                self.last_arrival = now;
-                continue;
-            }
-            let prepared = Duration::ZERO;
-            self.missions[robot] =
-                Some(Mission { goal, since, alone: 0.0, admitted: false, passed: 0, next_try: now, prepared });
-        }
-        tasks
+        self.tasks.as_ref().is_none_or(|tasks| !tasks.is_empty())
     }
 
     /// Gives a mission to everybody who has none.
     pub(super) fn give(&mut self, now: f64) {
-        if let Some(tasks) = self.tasks.take() {
-            self.tasks = Some(self.assign(tasks, now));
+        if self.tasks.is_some() {
+            self.assign(now);
             return;
         }
         for robot in 0..self.robots.len() {
@@ -205,9 +185,10 @@ impl Run {
         }
     }
 
-    /// Whether decisions look at some of the robots only.
+    /// Whether decisions look at some of the robots only: in a large fleet, and where robots share their tasks, so that another one does
+    /// what one of them is late for.
     pub(super) fn is_large(&self) -> bool {
-        self.request.method == Method::Orders && self.robots.len() > WHOLE
+        self.request.method == Method::Orders && (self.robots.len() > WHOLE || self.tasks.is_some())
     }
 
     pub(super) fn scene(&self, now: f64) -> Scene<'_> {

@@ -1,7 +1,8 @@
-//! Starting places of robots, and a stream of tasks, each of which any robot may do.
+//! Starting places of robots, and a stream of tasks, each of which any robot may do, also on its way to another one.
 
 use super::site::Site;
 use std::collections::VecDeque;
+use std::time::Duration;
 
 /// Places of robots and tasks.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,28 +30,48 @@ impl Tasks {
     }
 }
 
-/// Tasks that are not given yet, by their times.
+/// A task that nobody has done yet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Task {
+    pub(super) node: usize,
+    /// When it came \[s\].
+    pub(super) since: f64,
+    /// Who is to do it.
+    pub(super) robot: Option<usize>,
+}
+
+/// Tasks that are to come, by their times, and those that have come.
 #[derive(Clone, Debug)]
-pub(super) struct Queue(VecDeque<(usize, f64)>);
+pub(super) struct Queue {
+    left: VecDeque<(usize, f64)>,
+    pub(super) open: Vec<Task>,
+    /// Time spent on giving tasks since the last one was given.
+    pub(super) spent: Duration,
+    /// When those were looked at last for which a robot is sent \[s\].
+    pub(super) looked: f64,
+}
 
 impl Queue {
     pub(super) fn of(tasks: &Tasks) -> Self {
         let mut tasks = tasks.tasks.clone();
         tasks.sort_by(|a, b| a.1.total_cmp(&b.1));
-        Self(tasks.into())
+        Self { left: tasks.into(), open: Vec::new(), spent: Duration::ZERO, looked: 0.0 }
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.left.is_empty() && self.open.is_empty()
     }
 
-    /// The node of the oldest task, if it has come.
-    pub(super) fn due(&self, now: f64) -> Option<usize> {
-        self.0.front().filter(|(_, since)| *since <= now).map(|(node, _)| *node)
+    /// Opens those that have come.
+    pub(super) fn come(&mut self, now: f64) {
+        while let Some(&(node, since)) = self.left.front().filter(|(_, since)| *since <= now) {
+            self.left.pop_front();
+            self.open.push(Task { node, since, robot: None });
+        }
     }
 
-    /// Takes the oldest task away; when it came \[s\].
-    pub(super) fn take(&mut self) -> f64 {
-        self.0.pop_front().map_or(0.0, |(_, since)| since)
+    /// A robot is at a node: takes the tasks there.
+    pub(super) fn done(&mut self, node: usize) -> Vec<Task> {
+        self.open.extract_if(.., |task| task.node == node).collect()
     }
 }

@@ -47,8 +47,7 @@ impl Run {
     }
 
     /// How many drive at a time where there are more robots than safe ends: as many as those. Where hardly any end is safe, they do
-    /// not tell, and it is a third of the nodes (`tests/examples/tasks.rs`: 12 times the tasks on the largest roadmaps, of which each
-    /// node is on somebody's way). At least one.
+    /// not tell, and it is a third of the nodes. At least one.
     fn most_active(&self) -> usize {
         let safe = self.ends.safe.len();
         let few = 8 * safe < self.robots.len();

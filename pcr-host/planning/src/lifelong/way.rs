@@ -117,6 +117,18 @@ impl Way {
         site.atoms[self.atoms[k]].point(length - self.offsets[k])
     }
 
+    /// The node at exactly this length, if there is one.
+    pub(super) fn node(&self, site: &Site, length: f64) -> Option<usize> {
+        let k = self.offsets.iter().position(|&offset| offset == length)?;
+        Some(self.atoms.get(k).map_or(self.end, |&next| site.atoms[next].ends[0]))
+    }
+
+    /// The nodes beyond a length, up to another one.
+    pub(super) fn nodes(&self, site: &Site, from: f64, to: f64) -> Vec<usize> {
+        let ends = self.atoms.iter().zip(&self.offsets[1..]);
+        ends.filter(|(_, at)| from < **at && **at <= to).map(|(&atom, _)| site.atoms[atom].ends[1]).collect()
+    }
+
     /// The last node.
     pub(super) fn end(&self) -> usize {
         self.end

@@ -1,4 +1,5 @@
-//! Roadmaps with tasks that come over time, as Adcombrink/CPLP-LifelongMAPFR writes them (JSON of networkx).
+//! Roadmaps with tasks that come over time, as Adcombrink/CPLP-LifelongMAPFR (Combrink, Roselli, Fabian, arXiv 2503.13175) writes them
+//! (JSON of networkx).
 
 use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
 use pcr_formats::scenario::Placed;

@@ -1,0 +1,94 @@
+//! Lifelong tasks on roadmaps of others, beside the published figures of a method for discrete orders.
+
+use super::{Extent, Fleets, Problem, Section};
+use crate::roadmap;
+use pcr_planning::lifelong::{Delays, Method, Report, Request, run_tasks};
+use pcr_planning::report::figures::digits;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// Sets of the benchmark.
+const SETS: usize = 9;
+
+/// All tasks are done by then \[s\].
+const LONGEST: f64 = 1200.0;
+
+pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+    let (sets, count) = match extent {
+        Extent::Full => (SETS, usize::MAX),
+        Extent::Quick => (1, 5),
+    };
+    let usual = Delays::default();
+    let mut text = format!(
+        "## Tasks on roadmaps\n\nTasks that come over time on the roadmaps of CPLP (Combrink, Roselli, Fabian, arXiv 2503.13175; `tests/data/real/cplp`), \
+        for discs of 1 m at 1 m/s that start, stop and turn at once, as published. A task is done by the first robot that is at its node after it has \
+        come. *A second*: all tasks divided by the time of the last one; *published*: the mean of the three instances of each set, of which \
+        the first one is done here. *Late*: the same if robots are stopped for {} % of the time, {} s each, and are up to {} % slower. \
+        *Decision*: mean time to choose robot, way and orders, beside the published mean of a call of their planner (Python, another machine). \
+        *Contact*: verdict of the independent checker on the recorded motions, without and with delays. Decisions look at those whom they are about, \
+        as in large fleets.\n\n\
+        | set | nodes | robots | tasks | safe ends | a second | published | ratio | late | decision | published | faster | stuck | contact |\n\
+        |---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n",
+        100.0 * usual.stopped,
+        usual.stop,
+        100.0 * usual.slip
+    );
+    let folder = fleets.data.join("real/cplp");
+    let stats = folder.join("published-stats.json");
+    let published: Value =
+        serde_json::from_str(&read(&stats)?).map_err(|error| Problem::File(stats, error.to_string()))?;
+    for set in 0..sets {
+        let file = folder.join(file(set));
+        let problem = |problem: String| Problem::File(file.clone(), problem);
+        let (imported, mut tasks) = roadmap::read(&read(&file)?).map_err(problem)?;
+        tasks.tasks.truncate(count);
+        let done = |delays: Delays| {
+            let request = Request { agents: 0, duration: LONGEST, delays, seed: 1, method: Method::Orders };
+            run_tasks(&imported, request, &tasks).map_err(problem)
+        };
+        let runs = [done(Delays { stopped: 0.0, slip: 0.0, ..usual })?, done(usual)?];
+        text.push_str(&row(set, &runs, &published[format!("set_{set}")]));
+    }
+    Ok(Section { text, pictures: Vec::new() })
+}
+
+/// The file of a set.
+fn file(set: usize) -> String {
+    const FILES: [&str; SETS] =
+        ["301c854d", "688009a3", "7cd988d3", "082915a1", "83630882", "bb6cd4d7", "6fcc5c86", "2910f867", "15ee252a"];
+    format!("set{set}_{}.json", FILES[set])
+}
+
+fn row(set: usize, runs: &[Report; 2], published: &Value) -> String {
+    let [report, late] = runs;
+    let theirs = |what: &str| published[what]["mean"].as_f64().unwrap_or(f64::NAN);
+    let [rate, call] = ["Throughput", "Planning Computation Time (per call)"].map(theirs);
+    let a_second = |report: &Report| report.outcome.missions as f64 / report.last_arrival;
+    let decision =
+        report.decisions.iter().map(|it| it.as_secs_f64()).sum::<f64>() / report.decisions.len().max(1) as f64;
+    let [stuck, late_stuck] = [report, late].map(|report| report.outcome.stuck);
+    let verdicts = [report, late].map(|report| match report.outcome.certificate.verdict {
+        "proved" => "none, proved",
+        other => other,
+    });
+    let contact = if verdicts[0] == verdicts[1] { verdicts[0].to_owned() } else { verdicts.join("; ") };
+    format!(
+        "| {set} | {} | {} | {} | {} | {:.3} | {rate:.3} | {:.2} | {:.3} | {} ms | {} ms | {} × | {} | {contact} |\n",
+        report.layout.nodes,
+        report.outcome.robots,
+        report.outcome.missions,
+        report.layout.safe_ends.len(),
+        a_second(report),
+        a_second(report) / rate,
+        a_second(late),
+        digits(1e3 * decision),
+        digits(1e3 * call),
+        digits(call / decision),
+        stuck + late_stuck,
+    )
+}
+
+fn read(path: &Path) -> Result<String, Problem> {
+    fs::read_to_string(path).map_err(|error| Problem::File(path.to_owned(), format!("cannot be read: {error}")))
+}

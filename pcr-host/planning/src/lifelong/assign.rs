@@ -1,0 +1,142 @@
+//! Which robot does which task. A task is done by the first robot that comes to its node, or stands there, after it has come; whoever
+//! was sent for it then gets another one.
+
+use super::scene::Scene;
+use super::site::From;
+use super::state::{Mission, Run};
+use std::time::Instant;
+
+/// A robot takes a task over from another one if it would be there sooner by so much \[s\].
+const SOONER: f64 = 3.0;
+
+/// Between two looks at tasks that others are sent for \[s\].
+const AGAIN: f64 = 1.0;
+
+/// A robot without a task, where it can leave its way, and when it is there \[s\].
+#[derive(Clone, Copy)]
+struct Idle {
+    robot: usize,
+    from: From,
+    there: f64,
+}
+
+impl Run {
+    /// Gives the tasks that have come to robots that have none.
+    pub(super) fn assign(&mut self, now: f64) {
+        self.come(now);
+        let mut begin = Instant::now();
+        let mut idle = self.idle(now);
+        let looks_again = self.tasks.as_ref().is_some_and(|tasks| now - tasks.looked >= AGAIN);
+        while let Some((task, robot)) =
+            self.best(&idle, now).or_else(|| looks_again.then(|| self.sooner(&idle, now))?)
+        {
+            idle.retain(|other| other.robot != robot);
+            self.send(robot, task, now, begin);
+            begin = Instant::now();
+        }
+        if let Some(tasks) = &mut self.tasks {
+            tasks.spent += begin.elapsed();
+            tasks.looked = if looks_again { now } else { tasks.looked };
+        }
+    }
+
+    /// Opens tasks. Those where somebody stands are done.
+    fn come(&mut self, now: f64) {
+        let Some(tasks) = &mut self.tasks else { return };
+        let known = tasks.open.len();
+        tasks.come(now);
+        let come: Vec<usize> = tasks.open[known..].iter().map(|task| task.node).collect();
+        for node in come {
+            if self.robots.iter().any(|robot| robot.way.node(&self.site, robot.at) == Some(node)) {
+                self.visit(node, now);
+            }
+        }
+    }
+
+    /// The robots without a task.
+    fn idle(&self, now: f64) -> Vec<Idle> {
+        let scene = self.scene(now);
+        let idle = (0..self.robots.len()).filter(|&robot| self.missions[robot].is_none());
+        idle.map(|robot| scene.idle(robot)).collect()
+    }
+
+    /// Sends a robot for a task, and nobody else; since `begin` it was looked for.
+    fn send(&mut self, robot: usize, task: usize, now: f64, begin: Instant) {
+        let Some(tasks) = &mut self.tasks else { return };
+        let prepared = std::mem::take(&mut tasks.spent) + begin.elapsed();
+        let task = &mut tasks.open[task];
+        let (goal, since, other) = (task.node, task.since, task.robot.replace(robot));
+        self.release(other);
+        self.missions[robot] =
+            Some(Mission { goal, since, alone: 0.0, admitted: false, passed: 0, next_try: now, prepared });
+    }
+
+    /// A robot has no task any more.
+    fn release(&mut self, robot: Option<usize>) {
+        if let Some(robot) = robot {
+            self.missions[robot] = None;
+            self.robots[robot].way.goals.clear();
+        }
+    }
+
+    /// Of the tasks that nobody is sent for, and these robots, the pair that is next: a second of age counts as much as one on the way.
+    fn best(&self, idle: &[Idle], now: f64) -> Option<(usize, usize)> {
+        let (scene, tasks) = (self.scene(now), self.tasks.as_ref()?);
+        let free = tasks.open.iter().enumerate().filter(|(_, task)| task.robot.is_none());
+        let pairs = free.flat_map(|(place, task)| {
+            let time = scene.network.times(scene.site, task.node);
+            idle.iter().map(move |it| (it.there + time(it.from) + task.since, (place, it.robot)))
+        });
+        pairs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|pair| pair.0 < f64::INFINITY).map(|pair| pair.1)
+    }
+
+    /// Of the tasks that somebody is sent for, and these robots, the pair by which most is gained.
+    fn sooner(&self, idle: &[Idle], now: f64) -> Option<(usize, usize)> {
+        let (scene, tasks) = (self.scene(now), self.tasks.as_ref()?);
+        let sent = tasks.open.iter().enumerate().filter_map(|(place, task)| Some((place, task.node, task.robot?)));
+        let pairs = sent.flat_map(|(place, node, other)| {
+            let time = scene.network.times(scene.site, node);
+            let least = scene.time_left(other, &time) - SOONER;
+            idle.iter().map(move |it| (it.there + time(it.from) - least, (place, it.robot)))
+        });
+        pairs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|pair| pair.0 < 0.0).map(|pair| pair.1)
+    }
+
+    /// A robot is at a node: the tasks there are done.
+    fn visit(&mut self, node: usize, now: f64) {
+        let Some(tasks) = &mut self.tasks else { return };
+        for task in tasks.done(node) {
+            self.outcome.missions += 1;
+            self.last_arrival = now;
+            self.release(task.robot);
+        }
+    }
+
+    /// A robot has come from a length of its way to where it is.
+    pub(super) fn passed(&mut self, robot: usize, from: f64, now: f64) {
+        let it = &self.robots[robot];
+        let nodes = it.way.nodes(&self.site, from, it.at);
+        nodes.into_iter().for_each(|node| self.visit(node, now));
+    }
+}
+
+impl Scene<'_> {
+    fn idle(&self, robot: usize) -> Idle {
+        let (it, kept) = (&self.robots[robot], self.kept(robot));
+        let length: f64 = kept.atoms.iter().map(|&atom| self.site.atoms[atom].length).sum();
+        let there = it.way.time(it.at.max(kept.before + length)) - it.way.time(it.at);
+        Idle { robot, from: kept.on, there }
+    }
+
+    /// The time that a robot takes to the task that it is sent for, if nobody is in its way; by the times to that \[s\].
+    fn time_left(&self, robot: usize, time: impl Fn(From) -> f64) -> f64 {
+        let it = &self.robots[robot];
+        match it.way.goals.first() {
+            Some(&goal) => it.way.time(goal) - it.way.time(it.at),
+            None => {
+                let Idle { from, there, .. } = self.idle(robot);
+                there + time(from)
+            }
+        }
+    }
+}
