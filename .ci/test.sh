@@ -327,17 +327,17 @@ fuzz() {
   fuzz/run.sh
 }
 
-# Everything, in two lanes: much of the second one waits for one thing at a time (a link, an emulator), and nothing that it
-# builds is in a folder that the first one builds in; the tool for Python is built by the time that it is asked for. What it prints comes when it is done, or when it fails.
+# Everything, in two lanes that take about as long: much of the second one waits for one thing at a time (a link, an emulator), and nothing
+# that it builds is in a folder that the first one builds in. What it prints comes when it is done, or when it fails.
 everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions packages release proofs python >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions packages release proofs >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
-  for part in style docs features tests serve pages web schemas; do
+  for part in style docs features tests serve pages web schemas python; do
     kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
     timed "$part"
   done

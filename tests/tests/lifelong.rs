@@ -110,6 +110,17 @@ fn robots_drive_together_where_no_end_is_safe() {
     assert!(outcome.robots == 12 && outcome.missions > 12 && outcome.time.idle < 0.2, "{outcome:?}");
 }
 
+/// 20 robots in a tree of 21 nodes and the room on its dead ends. Nobody moved any more after three minutes, as all places were on routes
+/// that were reserved for one another.
+#[test]
+fn a_tree_full_of_robots_goes_on() {
+    let imported = layout(Format::Rmf, include_str!("../data/real/rmf/battle_royale.building.yaml"), 0.3);
+    let request = Request { agents: 20, duration: 900.0, delays: Delays::default(), seed: 2, method: Method::Orders };
+    let outcome = run(&imported, request).expect("a run").outcome;
+    assert!(outcome.robots == 20 && outcome.missions > 50, "{outcome:?}");
+    assert_eq!((outcome.certificate.verdict, outcome.stuck), ("proved", 0));
+}
+
 /// The same missions, the same delays.
 #[test]
 fn orders_do_more_missions_than_locks_and_start_delays() {

@@ -1,6 +1,8 @@
 //! Missions are tried in the order of their age, and others make way for the robot that has waited longest.
 
 use super::decide::{AGAIN, TRIES};
+use super::dispatch::Admitted;
+use super::scene::Scene;
 use super::state::{Mission, Run};
 use std::time::{Duration, Instant};
 
@@ -153,7 +155,7 @@ impl Run {
                     continue;
                 }
                 let begin = Instant::now();
-                let found = self.scene(now).make_way(by);
+                let found = self.scene(now).make_way(by).or_else(|route| self.make_some_way(by, now).ok_or(route));
                 self.decisions.push(begin.elapsed());
                 match found {
                     Ok(admitted) => {
@@ -175,5 +177,14 @@ impl Run {
                 level = self.reserved.len();
             }
         }
+    }
+
+    /// A way for a robot where all places are on routes that are reserved: to one that is neither on that of the oldest mission nor on that
+    /// of whoever has to go first for it. The routes between these are found anew when they are next.
+    fn make_some_way(&self, by: usize, now: f64) -> Option<Admitted> {
+        let [first, _, .., last] = &self.reserved[..] else { return None };
+        let ends = [first.clone(), last.clone()];
+        let scene = Scene { reserved: &ends, ..self.scene(now) };
+        if scene.is_on_reserved(by) { scene.make_way(by).ok() } else { None }
     }
 }
