@@ -234,7 +234,10 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
     let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
     let pose = Pose { position, heading: S::angle(heading) };
     let mut origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
-    let (mut segments, mut sources, mut turns) = (Vec::<Segment<S>>::new(), Vec::new(), Vec::new());
+    // Fleets are large, and paths are short: a list that grows would have room for four.
+    let count = agent.path.len();
+    let mut segments: Vec<Segment<S>> = Vec::with_capacity(count.max(1));
+    let (mut sources, mut turns) = (Vec::with_capacity(count), Vec::new());
     for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
         let at = |problem| (Some(("segment", source)), problem);
         if let Some(sweep) = turn_in_place::<S>(segment) {

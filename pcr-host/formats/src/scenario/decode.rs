@@ -222,9 +222,11 @@ impl Agent {
         let start = fields.object("start", "start.", &["x", "y", "heading"])?;
         let start =
             [start.number("x", Range::Any)?, start.number("y", Range::Any)?, start.number("heading", Range::Any)?];
-        let path = fields.array("path")?.iter().enumerate();
-        let path = path.map(|(index, json)| PathSegment::decode(json, &place.part("segment", index)));
-        let path: Vec<PathSegment> = path.collect::<Result<_, _>>()?;
+        let segments = fields.array("path")?;
+        let mut path = Vec::with_capacity(segments.len());
+        for (index, json) in segments.iter().enumerate() {
+            path.push(PathSegment::decode(json, &place.part("segment", index))?);
+        }
         let refused = |field, problem| {
             let line = fields.get(field).map_or(fields.line, |json| json.line);
             Err(fields.error(line, field, problem))
