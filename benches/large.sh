@@ -1,7 +1,7 @@
 #!/bin/bash
 # benches/large.sh PCR [AGENTS...]: what the commands take for fleets of pairs that cross, 8 m apart: processor time an agent and memory, as
-# a table. The time is that of all cores, reading and printing included, and hardly depends on what else the machine does. `map` draws
-# one agent with those that it meets.
+# a table. The time is that of all cores, reading and printing included, and hardly depends on what else the machine does; it is the mean of
+# some runs where it is short. `map` draws one agent with those that it meets.
 set -euo pipefail
 tool=${1:?the tool}
 shift
@@ -26,12 +26,15 @@ for agents in "$@"; do
         }
         printf "]}"
     }' > "$folder/fleet.json"
-    row="| $agents |"
+    row="| $agents |" runs=$((agents < 100000 ? 20 : agents < 1000000 ? 3 : 1))
     for command in "${commands[@]}"; do
         read -ra words <<< "$command"
-        # They collide: exit status 1 is an answer.
-        /usr/bin/time -o "$folder/time" -f '%U %S %M' "$tool" "${words[0]}" "$folder/fleet.json" "${words[@]:1}" > /dev/null || [ $? = 1 ]
-        row+=$(tail -1 "$folder/time" | awk -v agents="$agents" '{ printf " %.1f µs | %d MB |", ($1 + $2) / agents * 1e6, $3 / 1000 }')
+        rm -f "$folder/time"
+        for ((run = 0; run < runs; run++)); do
+            # They collide: exit status 1 is an answer.
+            /usr/bin/time -a -o "$folder/time" -f '%U %S %M' "$tool" "${words[0]}" "$folder/fleet.json" "${words[@]:1}" > /dev/null || [ $? = 1 ]
+        done
+        row+=$(grep -v status "$folder/time" | awk -v agents="$agents" '{ time += $1 + $2; most = $3 } END { printf " %.1f µs | %d MB |", time / NR / agents * 1e6, most / 1000 }')
     done
     echo "$row"
 done
