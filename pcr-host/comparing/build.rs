@@ -6,17 +6,12 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is installed on Debian: when it changes, libraries may have come or gone.
-const INSTALLED: &str = "/var/lib/dpkg/status";
-
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=peers");
     let directory = env::var_os("OUT_DIR").map(PathBuf::from);
     let Some(directory) = directory.filter(|_| env::var_os("CARGO_FEATURE_PEERS").is_some()) else { return };
-    if Path::new(INSTALLED).exists() {
-        println!("cargo:rerun-if-changed={INSTALLED}");
-    }
+    watch();
     println!("cargo:rerun-if-env-changed=CI");
     let in_ci = env::var("CI").is_ok_and(|ci| ci == "true");
     let mut failed = false;
@@ -42,6 +37,20 @@ fn main() {
     if failed {
         eprintln!("a program that other libraries are compared with cannot be built");
         std::process::exit(1);
+    }
+}
+
+/// Where pkg-config looks: when something changes there, libraries may have come or gone. Not all that is installed is watched, or this and
+/// what uses it would be built again after each package that has nothing to do with it. Without pkg-config it is built again each time.
+fn watch() {
+    println!("cargo:rerun-if-env-changed=PKG_CONFIG_PATH");
+    let folders = run(Command::new("pkg-config").args(["--variable", "pc_path", "pkg-config"]));
+    let Ok(folders) = folders else { return println!("cargo:rerun-if-changed=no pkg-config") };
+    let more = env::var("PKG_CONFIG_PATH").unwrap_or_default();
+    // What is not there would count as changed each time.
+    let folders = folders.trim().split(':').chain(more.split(':')).filter(|folder| Path::new(folder).exists());
+    for folder in folders {
+        println!("cargo:rerun-if-changed={folder}");
     }
 }
 
