@@ -48,6 +48,11 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             run_tasks(&imported, request, &tasks).map_err(problem)
         };
         let runs = [done(Delays { stopped: 0.0, slip: 0.0, ..usual })?, done(usual)?];
+        // The rate of those that are done would be too high.
+        if let Some(run) = runs.iter().find(|run| run.outcome.missions < tasks.tasks.len()) {
+            let (done, all) = (run.outcome.missions, tasks.tasks.len());
+            return Err(problem(format!("{done} of {all} tasks are done after {LONGEST} s")));
+        }
         text.push_str(&row(set, &runs, &published[format!("set_{set}")]));
     }
     Ok(Section { text, pictures: Vec::new() })
