@@ -3,11 +3,11 @@
 //! called `set3_...json`; its `stats.json` has the published times of the preprocessing of each set. Exit status 1 for any contact that is
 //! missing and any end that is too far out.
 
+use pcr_comparing::roadmap;
 use pcr_formats::import::ImportError;
 use pcr_planning::locks::{Delays, Driving, Straight, Unsafe};
-use pcr_tests::delays::Exact;
-use pcr_tests::delays::cplp::{RADIUS, Roadmap, SPEED};
 use pcr_tests::delays::published::cut_conic;
+use pcr_tests::delays::{Exact, ends_of};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::read_to_string;
@@ -32,9 +32,9 @@ fn main() -> ExitCode {
     for file in &roadmaps {
         let name = Path::new(file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let set = name.split('_').next().unwrap_or_default().replace("set", "set_");
-        let roadmap = Roadmap::read(&read_to_string(file).expect("a roadmap"));
-        let imported = roadmap.imported();
-        let driving = Driving { speed: SPEED, acceleration: None };
+        let (imported, _) = roadmap::read(&read_to_string(file).expect("a roadmap")).expect("a roadmap");
+        let (layout, speed) = (&imported.layout, imported.vehicle.speed);
+        let driving = Driving { speed, acceleration: None };
         let mut least = f64::INFINITY;
         let mut found: HashMap<[usize; 2], [f64; 2]> = HashMap::new();
         for _ in 0..TIMES {
@@ -57,11 +57,11 @@ fn main() -> ExitCode {
                 })
                 .collect();
         }
-        let reach = 2.0 * RADIUS;
+        let reach = 2.0 * imported.vehicle.radius;
         let (mut pairs, mut missing, mut wide, mut wrong) = (0, 0, 0, 0);
-        let ends = (0..roadmap.edges.len()).map(|edge| roadmap.ends(edge));
+        let ends = layout.edges.iter().map(|edge| ends_of(layout, edge));
         let all: Vec<_> = ends
-            .map(|[a, b]| (Exact::new(a, b, SPEED), Straight::new(a, b, SPEED).expect("an edge"), [a, b]))
+            .map(|[a, b]| (Exact::new(a, b, speed), Straight::new(a, b, speed).expect("an edge"), [a, b]))
             .collect();
         for (a, (exact, straight, ends)) in all.iter().enumerate() {
             for (b, (other_exact, other, other_ends)) in all.iter().enumerate().skip(a) {
@@ -91,8 +91,8 @@ fn main() -> ExitCode {
         let beside = time.map_or(String::new(), |time| format!("{time:.2} {:.0}", time / least));
         println!(
             "{name} {} {} | {pairs} {} {missing} {wide} | {wrong} | {:.2} | {beside}",
-            roadmap.nodes.len(),
-            roadmap.edges.len(),
+            layout.nodes.len(),
+            layout.edges.len(),
             found.len(),
             1e3 * least
         );

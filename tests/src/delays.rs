@@ -4,10 +4,15 @@
 //! evenly, and its minimum f(δ) over that time is had by a projection. f is convex (a minimum over one variable of a convex function of
 //! two), so that the unsafe delays are one interval, and three values of f tell that nothing is outside of one that was found.
 
-pub mod cplp;
 pub mod published;
 
 use pcr_certify::twofold::Twofold;
+use pcr_formats::import::{Edge, Layout};
+
+/// Where an edge begins and ends.
+pub fn ends_of(layout: &Layout, edge: &Edge) -> [[f64; 2]; 2] {
+    edge.ends.map(|node| layout.nodes[node].at)
+}
 
 /// A straight edge with 106 bits.
 #[derive(Clone, Copy, Debug)]

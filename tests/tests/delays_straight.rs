@@ -1,23 +1,32 @@
 //! Unsafe delays of straight edges at constant speed against their definition with 106 bits.
 
+use pcr_comparing::roadmap;
+use pcr_formats::import::{Imported, Node};
 use pcr_planning::locks::{Delays, Driving, Straight, Unsafe};
-use pcr_tests::delays::Exact;
-use pcr_tests::delays::cplp::{RADIUS, Roadmap, SPEED};
+use pcr_tests::delays::{Exact, ends_of};
 use pcr_tests::generators::Dice;
 use std::collections::HashMap;
 
-const ROADMAP: &str = include_str!("../data/real/cplp/set0_301c854d.json");
+/// Discs of radius 1 at speed 1.
+fn published() -> Imported {
+    roadmap::read(include_str!("../data/real/cplp/set0_301c854d.json")).unwrap().0
+}
 
 /// All pairs of a published roadmap, also those that are not near one another.
 #[test]
 fn every_interval_of_a_roadmap_is_that_of_the_definition() {
-    let roadmap = Roadmap::read(ROADMAP);
-    let (count, reach) = (roadmap.edges.len(), 2.0 * RADIUS);
-    let ends = (0..count).map(|edge| roadmap.ends(edge));
+    let imported = published();
+    let layout = &imported.layout;
+    let (count, reach) = (layout.edges.len(), 2.0);
+    let place = |name: String| {
+        let is_called = |node: &&Node| node.id.to_string() == name;
+        layout.nodes.iter().find(is_called).unwrap().at
+    };
+    let ends = layout.edges.iter().map(|edge| ends_of(layout, edge));
     let (exact, straight): (Vec<Exact>, Vec<Straight>) =
-        ends.map(|[a, b]| (Exact::new(a, b, SPEED), Straight::new(a, b, SPEED).unwrap())).unzip();
-    let driving = Driving { speed: SPEED, acceleration: None };
-    let delays = Delays::new(&roadmap.imported(), driving, true).unwrap();
+        ends.map(|[a, b]| (Exact::new(a, b, 1.0), Straight::new(a, b, 1.0).unwrap())).unzip();
+    let driving = Driving { speed: 1.0, acceleration: None };
+    let delays = Delays::new(&imported, driving, true).unwrap();
     let (mut found, mut times, mut pairs) = (HashMap::new(), 0, 0);
     let all = delays.each::<_, pcr_formats::import::ImportError>(&|_, _| {}, <[Unsafe]>::to_vec, |row| {
         for unsafe_ in row {
@@ -25,8 +34,7 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
                 Unsafe::Delays(pair, interval) => assert_eq!(found.insert(pair, interval), None),
                 Unsafe::Times(node, way, interval) => {
                     times += 1;
-                    let name = delays.nodes()[node].to_string();
-                    let at = roadmap.nodes.iter().find(|(id, _)| *id == name).unwrap().1;
+                    let at = place(delays.nodes()[node].to_string());
                     let apart = interval.map(|time| exact[way].apart_from_at(at, time).sqrt().to_f64());
                     let ends = [0.0, exact[way].duration()];
                     for (apart, (time, end)) in apart.into_iter().zip(interval.into_iter().zip(ends)) {
@@ -34,9 +42,7 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
                     }
                 }
                 Unsafe::Nodes([a, b]) => {
-                    let at = |place: usize| delays.nodes()[place].to_string();
-                    let of = |name: String| roadmap.nodes.iter().find(|(id, _)| *id == name).unwrap().1;
-                    let [[x, y], [u, v]] = [of(at(a)), of(at(b))];
+                    let [[x, y], [u, v]] = [a, b].map(|node| place(delays.nodes()[node].to_string()));
                     assert!((x - u).hypot(y - v) <= reach + 1e-12);
                     pairs += 1;
                 }
@@ -58,17 +64,17 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
 /// Every node against every edge: what has no times is out of reach.
 #[test]
 fn what_is_told_of_no_node_is_out_of_its_reach() {
-    let roadmap = Roadmap::read(ROADMAP);
-    let reach = 2.0 * RADIUS;
+    let layout = published().layout;
+    let reach = 2.0;
     let mut free = 0;
-    for edge in 0..roadmap.edges.len() {
-        let [from, to] = roadmap.ends(edge);
-        let (exact, straight) = (Exact::new(from, to, SPEED), Straight::new(from, to, SPEED).unwrap());
-        for (_, at) in &roadmap.nodes {
-            let apart = exact.apart(&Exact::new(*at, *at, SPEED)).sqrt().to_f64();
-            match straight.times_at(*at, reach) {
+    for edge in &layout.edges {
+        let [from, to] = ends_of(&layout, edge);
+        let (exact, straight) = (Exact::new(from, to, 1.0), Straight::new(from, to, 1.0).unwrap());
+        for at in layout.nodes.iter().map(|node| node.at) {
+            let apart = exact.apart(&Exact::new(at, at, 1.0)).sqrt().to_f64();
+            match straight.times_at(at, reach) {
                 None => {
-                    assert!(apart > reach, "{edge} {at:?} {apart}");
+                    assert!(apart > reach, "{from:?} {to:?} {at:?} {apart}");
                     free += 1;
                 }
                 Some(_) => assert!(apart < reach + 1e-12),

@@ -21,9 +21,11 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
     let (mut nodes, mut places) = (Vec::new(), HashMap::new());
     for (place, node) in list(graph, "nodes")?.iter().enumerate() {
         let id = text_of(&node["id"])?;
-        let at = [0, 1].map(|axis| node["pos"][axis].as_f64().unwrap_or(f64::NAN));
+        let [Some(x), Some(y)] = [0, 1].map(|axis| node["pos"][axis].as_f64()) else {
+            return Err(format!("{id}: pos: two numbers are expected"));
+        };
         places.insert(id.clone(), place);
-        nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+        nodes.push(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] });
     }
     let place = |value: &Value| {
         let id = text_of(value)?;

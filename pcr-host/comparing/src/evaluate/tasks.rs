@@ -37,7 +37,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let folder = fleets.data.join("real/cplp");
     let stats = folder.join("published-stats.json");
     let published: Value =
-        serde_json::from_str(&read(&stats)?).map_err(|error| Problem::File(stats, error.to_string()))?;
+        serde_json::from_str(&read(&stats)?).map_err(|error| Problem::File(stats.clone(), error.to_string()))?;
     for set in 0..sets {
         let file = folder.join(file(set));
         let problem = |problem: String| Problem::File(file.clone(), problem);
@@ -53,7 +53,13 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             let (done, all) = (run.outcome.missions, tasks.tasks.len());
             return Err(problem(format!("{done} of {all} tasks are done after {LONGEST} s")));
         }
-        text.push_str(&row(set, &runs, &published[format!("set_{set}")]));
+        let figures = &published[format!("set_{set}")];
+        let [Some(rate), Some(call)] =
+            ["Throughput", "Planning Computation Time (per call)"].map(|what| figures[what]["mean"].as_f64())
+        else {
+            return Err(Problem::File(stats, format!("set_{set}: its throughput or time of a call is missing")));
+        };
+        text.push_str(&row(set, &runs, [rate, call]));
     }
     Ok(Section { text, pictures: Vec::new() })
 }
@@ -65,10 +71,9 @@ fn file(set: usize) -> String {
     format!("set{set}_{}.json", FILES[set])
 }
 
-fn row(set: usize, runs: &[Report; 2], published: &Value) -> String {
+/// A line of the table, beside the published rate \[1/s\] and time of a call \[s\].
+fn row(set: usize, runs: &[Report; 2], [rate, call]: [f64; 2]) -> String {
     let [report, late] = runs;
-    let theirs = |what: &str| published[what]["mean"].as_f64().unwrap_or(f64::NAN);
-    let [rate, call] = ["Throughput", "Planning Computation Time (per call)"].map(theirs);
     let a_second = |report: &Report| report.outcome.missions as f64 / report.last_arrival;
     let decision =
         report.decisions.iter().map(|it| it.as_secs_f64()).sum::<f64>() / report.decisions.len().max(1) as f64;
