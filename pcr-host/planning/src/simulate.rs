@@ -126,6 +126,8 @@ pub struct Snapshot {
 
 /// Something that tells robots how to move.
 trait Control {
+    /// A robot will get this path, its first one, at a time \[s\].
+    fn announce(&mut self, _robot: usize, _course: &Course, _release: f64) {}
     /// A robot that stands gets a path.
     fn assign(&mut self, robot: usize, course: &Course);
     /// A command for each robot.
@@ -164,6 +166,7 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
         Controller::Orca => Box::new(Orca::new(task, noise + drift)),
     };
     let mut world = World::new(task, settings);
+    world.announce(control.as_mut());
     let frames = (time_limit(task) / FRAME).ceil() as usize;
     for frame in 0..frames {
         world.missions(frame, control.as_mut());
@@ -175,6 +178,7 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     let snapshots = control.take_snapshots();
     let waiting = control.waiting();
     Ok(Outcome {
+        planned: control.planning().map_or_else(Vec::new, |planning| planning.times.clone()),
         run: Run::of(task, controller, &world.trace, control.planning(), &waiting),
         trace: world.trace,
         snapshots,

@@ -21,6 +21,8 @@ pub struct Outcome {
     pub trace: Trace,
     /// The plans of the supervisor.
     pub snapshots: Vec<Snapshot>,
+    /// Time of each planning of the supervisor \[s\].
+    pub planned: Vec<f64>,
 }
 
 /// Where everything was.

@@ -17,7 +17,11 @@ const BEFORE: f64 = 1e-4;
 /// Orders of priority in which everybody comes first once are tried for so many robots.
 const FIRST: usize = 8;
 
-/// More robots than this are not planned anew on the way where nothing is new: it takes long, and orders are kept without.
+/// If so many orders have no plan, others have none either, as a rule.
+const FAILED: usize = 2;
+
+/// More robots than this are not planned by orders of priority, and not anew on the way where nothing is new: it takes long, and passing
+/// orders are kept without.
 pub(super) const SEARCHED: usize = 15;
 
 /// A robot as it is now.
@@ -28,6 +32,8 @@ pub(super) struct State {
     /// \[m/s\]
     pub(super) speed: f64,
     pub(super) limits: Limits<f64>,
+    /// It stands, and sets off no sooner \[s\].
+    pub(super) release: f64,
     /// With its margin \[m\].
     pub(super) radius: f64,
 }
@@ -62,33 +68,27 @@ pub(super) struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Plans, the best of each kind first: start delays, where all stand; by several orders of priority. Where nothing is new (`again`), the
-    /// last order is enough.
-    pub(super) fn plans(&self, last_order: &[usize], again: bool) -> impl Iterator<Item = Plan> {
-        let searched = move || if again { Vec::new() } else { self.by_priority(last_order) };
-        let first = if again { self.plan(last_order.to_vec()) } else { self.delayed() };
-        first.into_iter().chain(std::iter::once_with(searched).flatten())
-    }
-
     /// Robots that all stand set off one after the other, and wait nowhere else.
     pub(super) fn delayed(&self) -> Option<Plan> {
+        if self.robots.iter().any(|robot| robot.speed > 0.0) {
+            return None;
+        }
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
         let mut standing = self.standing()?;
         let goes = |motion: &&Motion<'_, f64>| motion.path().length() > 0.0;
         standing.extend(motions.iter().filter(|motion| !goes(motion)));
         let going: Vec<Motion<'_, f64>> = motions.iter().filter(goes).copied().collect();
-        if self.robots.iter().any(|robot| robot.speed > 0.0) || !going.iter().all(|motion| is_clear(motion, &standing))
-        {
+        if !going.iter().all(|motion| is_clear(motion, &standing)) {
             return None;
         }
         let alone: Vec<Vec<usize>> = (0..going.len()).map(|robot| vec![robot]).collect();
         let mut found = start_delays(&going, &alone)?.into_iter();
         let delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
         let delays = motions.iter().map(delay).collect::<Option<Vec<f64>>>()?;
-        let later = |(robot, delay): (&State, &f64)| Problem { now: self.now + delay, ..*self }.through(robot);
+        let later = |(robot, delay): (&State, &f64)| Problem { now: self.begin(robot) + delay, ..*self }.through(robot);
         let drives: Vec<Drive> = self.robots.iter().zip(&delays).map(later).collect::<Option<_>>()?;
-        let cost = delays.iter().zip(&motions).map(|(delay, motion)| delay + motion.time().length()).sum();
+        let cost = delays.iter().zip(&motions).map(|(delay, motion)| motion.time().hi + delay - self.now).sum();
         let mut order: Vec<usize> = (0..delays.len()).collect();
         order.sort_by(|&a, &b| delays[a].total_cmp(&delays[b]));
         Some(Plan { drives, order, cost })
@@ -129,6 +129,11 @@ impl Problem<'_> {
         self.best(self.robots.get(robot)?, &others)
     }
 
+    /// When a robot goes on \[s\].
+    fn begin(&self, robot: &State) -> f64 {
+        self.now.max(robot.release)
+    }
+
     fn all_through(&self) -> Option<Vec<Drive>> {
         self.robots.iter().map(|robot| self.through(robot)).collect()
     }
@@ -163,16 +168,18 @@ impl Problem<'_> {
             .or_else(|| self.standing()?.iter().position(meets).map(InTheWay::Obstacle))
     }
 
-    fn by_priority(&self, last_order: &[usize]) -> Vec<Plan> {
+    /// Plans by several orders of priority, the best one first.
+    pub(super) fn by_priority(&self, last_order: &[usize]) -> Vec<Plan> {
         let alone = |robot: &State| self.through(robot).and_then(|drive| Some(drive.motion(1.0)?.time().length()));
         let times: Vec<f64> = self.robots.iter().map(|robot| alone(robot).unwrap_or(0.0)).collect();
         let least: f64 = times.iter().sum();
         let mut plans: Vec<Plan> = Vec::new();
-        for order in self.orders(&times, last_order) {
-            plans.extend(self.plan(order));
-            if plans.last().is_some_and(|plan| plan.cost <= least * (1.0 + 1e-12)) {
+        for (tried, order) in self.orders(&times, last_order).into_iter().enumerate() {
+            let is_best = plans.last().is_some_and(|plan| plan.cost <= least * (1.0 + 1e-12));
+            if is_best || (plans.is_empty() && tried == FAILED) {
                 break;
             }
+            plans.extend(self.plan(order));
         }
         plans.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         plans
@@ -194,8 +201,8 @@ impl Problem<'_> {
         different
     }
 
-    /// The plan for an order; a robot for which there is no motion is moved to the front, once each.
-    fn plan(&self, mut order: Vec<usize>) -> Option<Plan> {
+    /// The plan for an order of priority; a robot for which there is no motion is moved to the front, once each.
+    pub(super) fn plan(&self, mut order: Vec<usize>) -> Option<Plan> {
         for _ in 0..=order.len() {
             match self.in_order(&order) {
                 Ok(drives) => {
@@ -232,7 +239,7 @@ impl Problem<'_> {
         if length <= 0.0 {
             return Drive::standing(robot.rest.clone(), self.now);
         }
-        Drive::new(robot.rest.clone(), speed, &to_rest(speed, length, robot.limits)?, self.now)
+        Drive::new(robot.rest.clone(), speed, &to_rest(speed, length, robot.limits)?, self.begin(robot))
     }
 
     /// The motion that arrives first among those considered.
@@ -261,7 +268,7 @@ impl Problem<'_> {
             return None;
         }
         let mut pieces = to_rest(speed, stop, robot.limits)?;
-        let stops_at = self.now + pieces.iter().map(|(duration, _)| duration).sum::<f64>();
+        let stops_at = self.begin(robot) + pieces.iter().map(|(duration, _)| duration).sum::<f64>();
         let onward = robot.rest.from(stop).ok()?;
         let further = to_rest(0.0, onward.length(), robot.limits)?;
         let onward = Drive::new(onward, 0.0, &further, stops_at)?;
@@ -270,7 +277,7 @@ impl Problem<'_> {
         pieces.push((wait, 0.0));
         pieces.extend(further);
         pieces.retain(|(duration, _)| *duration > 0.0);
-        let drive = Drive::new(robot.rest.clone(), speed, &pieces, self.now)?;
+        let drive = Drive::new(robot.rest.clone(), speed, &pieces, self.begin(robot))?;
         let clear = is_clear(&drive.motion(robot.radius)?, others);
         clear.then_some(drive)
     }

@@ -51,6 +51,8 @@ struct Agent {
     speed: f64,
     /// A mission that no plan takes up yet.
     next: Option<Course>,
+    /// When it may set off on its mission \[s\].
+    release: f64,
 }
 
 impl Agent {
@@ -77,6 +79,7 @@ impl Agent {
             at: Interval::new(0.0, 0.0),
             speed: 0.0,
             next: None,
+            release: 0.0,
         };
         let largest = agent.radius + agent.margins[1];
         let fits =
@@ -244,7 +247,7 @@ impl Supervisor {
             self.for_all(now, &pending, again).or_else(|| if again { None } else { self.for_some(now, &pending) });
         self.statistics.times.push(begin.elapsed().as_secs_f64());
         match found {
-            Some(found) if again && found.current.plan.cost >= self.left() => self.statistics.kept += 1,
+            Some(found) if again && found.current.plan.cost >= self.left(now) => self.statistics.kept += 1,
             Some(found) => self.take_up(now, found),
             None => {
                 self.statistics.kept += 1;
@@ -268,20 +271,25 @@ impl Supervisor {
             Some(current) => current.plan.order.clone(),
             None => (0..self.agents.len()).collect(),
         };
-        [1, 0].into_iter().find_map(|margin| {
+        let of = |margin: usize, plans: &dyn Fn(&Problem<'_>) -> Vec<Plan>| {
             let robots = self.states(margin, taken)?;
-            let problem = Problem { now, robots: &robots, obstacles: &self.obstacles };
-            let mut plans = problem.plans(&last, again);
-            plans.find_map(|plan| self.found(plan, self.offsets(taken), taken, margin))
-        })
+            let plans = plans(&Problem { now, robots: &robots, obstacles: &self.obstacles });
+            plans.into_iter().find_map(|plan| self.found(plan, self.offsets(taken), taken, margin))
+        };
+        let with = |plans: &dyn Fn(&Problem<'_>) -> Vec<Plan>| [1, 0].into_iter().find_map(|margin| of(margin, plans));
+        if again {
+            return with(&|problem| problem.plan(last.clone()).into_iter().collect());
+        }
+        let found = with(&|problem| problem.delayed().into_iter().collect());
+        if self.agents.len() > SEARCHED { found } else { found.or_else(|| with(&|problem| problem.by_priority(&last))) }
     }
 
-    /// Sum of the times until arrival by the plan that all have, from where they are \[s\].
-    fn left(&self) -> f64 {
+    /// Sum of the times until arrival by the plan that all have, from where they are, or from now for those that are ahead of it \[s\].
+    fn left(&self, now: f64) -> f64 {
         let Some(current) = &self.plan else { return f64::INFINITY };
         let left = |(place, agent): (usize, &Agent)| {
             let [at, end] = [agent.at.middle(), agent.course.length()].map(|length| current.reached(place, length));
-            (end - at).max(0.0)
+            (end - at.min(now)).max(0.0)
         };
         self.agents.iter().enumerate().map(left).sum()
     }
@@ -297,10 +305,16 @@ impl Supervisor {
             let plan = Problem { now, robots: &robots, obstacles: &self.obstacles }.delayed()?;
             self.found(plan, self.offsets(&taken), &taken, margin)
         };
+        if !stands {
+            return [1, 0].into_iter().find_map(|margin| self.one_beside(now, pending, margin));
+        }
+        let barred = self.barred(pending, |_| true);
+        let most = (0..pending.len()).filter(|&robot| pending[robot] && !barred[robot]).count();
         let count = |found: &Found| found.taken.iter().filter(|taken| **taken).count();
-        match stands {
-            true => [0, 1].into_iter().filter_map(together).max_by_key(count),
-            false => [1, 0].into_iter().find_map(|margin| self.one_beside(now, pending, margin)),
+        // With the smaller margin more may go. Of those that have gone before, all others can go later.
+        match together(1) {
+            Some(found) if self.plan.is_some() || count(&found) >= most => Some(found),
+            found => together(0).into_iter().chain(found).max_by_key(count),
         }
     }
 
@@ -408,7 +422,7 @@ impl Agent {
     fn state(&self, margin: usize, taken: bool) -> Option<State> {
         let (course, at, speed) = self.to_plan(taken);
         let radius = self.radius + self.margins.get(margin)?;
-        Some(State { rest: course.from(at.middle()).ok()?, speed, limits: self.limits, radius })
+        Some(State { rest: course.from(at.middle()).ok()?, speed, limits: self.limits, release: self.release, radius })
     }
 }
 
@@ -423,10 +437,19 @@ fn standing([x, y]: [f64; 2]) -> Result<Course, Invalid> {
 }
 
 impl Control for Supervisor {
+    fn announce(&mut self, robot: usize, course: &Course, release: f64) {
+        if let Some(agent) = self.agents.get_mut(robot) {
+            (agent.next, agent.release) = (Some(course.clone()), release);
+        }
+    }
+
     fn assign(&mut self, robot: usize, course: &Course) {
         if let Some(agent) = self.agents.get_mut(robot) {
-            agent.at = Interval::new(agent.course.length(), agent.course.length());
-            agent.next = Some(course.clone());
+            // What was announced is planned already, or looked for.
+            if std::mem::take(&mut agent.release) <= 0.0 {
+                agent.at = Interval::new(agent.course.length(), agent.course.length());
+                agent.next = Some(course.clone());
+            }
         }
         self.next_plan = f64::NEG_INFINITY;
         // From now on there is something to do.

@@ -35,6 +35,15 @@ impl<'a> World<'a> {
         Self { agents, trace: Trace { positions, travelled, journeys: Vec::new() } }
     }
 
+    /// Tells of the first mission of each robot before it begins.
+    pub(super) fn announce(&self, control: &mut dyn Control) {
+        for (place, agent) in self.agents.iter().enumerate() {
+            if let Some(first) = agent.robot.missions.first().filter(|first| first.release > 0.0) {
+                control.announce(place, &first.course, first.release);
+            }
+        }
+    }
+
     /// Ends and begins missions at a frame.
     pub(super) fn missions(&mut self, frame: usize, control: &mut dyn Control) {
         let time = frame as f64 * FRAME;
