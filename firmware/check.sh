@@ -4,7 +4,7 @@
 #   check.sh                     what continuous integration has time for: two of six targets and formats, of a third one the demo, one board
 #   check.sh all                 everything
 #   check.sh TARGET:FORMAT...    some
-#   check.sh examples            those for all boards; that for an STM32F4 is in README.md, and is built with it
+#   check.sh examples            those for all boards; continuous integration builds that for an STM32F4, which is in README.md
 #   UPDATE=1 check.sh ...        writes the files in expected/ instead of comparing with them; budgets hold all the same
 # Installs what is missing as root on Debian, and says so; elsewhere it says what to install.
 set -euo pipefail
@@ -324,7 +324,8 @@ else
     step "${pair%%:*}, ${pair##*:}: no public function can panic, or its proof would not link"
     build "${pair%%:*}" "${pair##*:}" proof
   done
-  examples rp2040
+  step "what the examples for boards share, in fixed point"
+  (cd examples && ../cross.sh thumbv7em-none-eabihf check --locked --release --quiet -p example-fleet --features q16)
   # It builds the one for an STM32F4.
   step "what README.md says to paste"
   ../.ci/readme.py "On your board"

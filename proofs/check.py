@@ -125,7 +125,9 @@ def by_sum(claim):
 def by_exhaustive(claim):
     if "--quick" in sys.argv:
         return "left out (--quick)"
-    command = ["cargo", "run", "-q", "--profile", "checked", "--locked", "-p", "pcr-fixed", "--example", "exhaust", "--"]
+    # Optimized as far as it can be, with all checks: half the time.
+    fast = [f"--config=profile.checked.package.{crate}.opt-level=3" for crate in ("pcr-core", "pcr-fixed")]
+    command = ["cargo", "run", "-q", "--profile", "checked", *fast, "--locked", "-p", "pcr-fixed", "--example", "exhaust", "--"]
     run = subprocess.run(command + claim["runs"], cwd=ROOT, text=True, capture_output=True)
     return run.returncode == 0 or run.stdout + run.stderr
 

@@ -5,8 +5,8 @@
 //! cargo run --profile checked -p pcr-fixed --example exhaust -- [turns-sine] [f32-arctangent] [f32-sine]
 //! ```
 //!
-//! Prints the largest errors. The exit status is 1 if one exceeds its bound, or if a bound is much too large. Takes two
-//! minutes on one core.
+//! Prints the largest errors. The exit status is 1 if one exceeds its bound, or if a bound is much too large. Takes a
+//! minute on one core.
 
 use pcr_core::Radians;
 use pcr_core::scalar::Angle;
@@ -14,6 +14,7 @@ use pcr_fixed::{Q16, Sine, Turns};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 /// Unit roundoff of `f32`.
 const U: f64 = 0.5 * f32::EPSILON as f64;
@@ -64,10 +65,39 @@ const RUNS: [Run; 3] = [
 fn turns_sine(number: u32) -> Worst {
     let bits = number as i32 - (1 << 29);
     let (sin, cos) = Angle::<Q16>::sin_cos(Turns::from_bits(bits));
-    let exact = (f64::from(bits) * (TAU / 4_294_967_296.0)).sin_cos();
+    let exact = EXACT.of(bits);
     let off = |found: Sine, exact: f64| (found.to_f64() - exact).abs() * f64::from(1 << 30);
     let (sin, cos) = (off(sin, exact.0), off(cos, exact.1));
-    [sin, cos, sin.hypot(cos)]
+    [sin, cos, length(sin, cos)]
+}
+
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
+static EXACT: LazyLock<Angles> = LazyLock::new(Angles::new);
+
+/// Sines and cosines of all multiples of 2⁻³² turns and of 2⁻¹⁷ turns that are less than a quarter: that of any angle is the sum of two of
+/// them, within 4 · 2⁻⁵³, in a fifth of the time.
+struct Angles {
+    fine: Vec<(f64, f64)>,
+    coarse: Vec<(f64, f64)>,
+}
+
+impl Angles {
+    const FINE: u32 = 15;
+
+    fn new() -> Self {
+        let of = |bits: i32| (f64::from(bits) * (TAU / 4_294_967_296.0)).sin_cos();
+        let fine = (0..1 << Self::FINE).map(of).collect();
+        Self { fine, coarse: (-(1 << 14)..1 << 14).map(|bits| of(bits << Self::FINE)).collect() }
+    }
+
+    fn of(&self, bits: i32) -> (f64, f64) {
+        let (fine, coarse) = (bits & ((1 << Self::FINE) - 1), (bits >> Self::FINE) + (1 << 14));
+        let ((sin, cos), (s, c)) = (self.coarse[coarse as usize], self.fine[fine as usize]);
+        (sin * c + cos * s, cos * c - sin * s)
+    }
 }
 
 fn arctangent(bits: u32) -> Worst {
@@ -88,7 +118,7 @@ fn float_sine(bits: u32) -> Worst {
     let exact = x.sin_cos();
     let off = |found: f32, exact: f64| (f64::from(found) - exact).abs() / U;
     let (sin, cos) = (off(sin, exact.0), off(cos, exact.1));
-    [sin.max(cos), sin.hypot(cos), if x <= PI { sin / x } else { 0.0 }]
+    [sin.max(cos), length(sin, cos), if x <= PI { sin / x } else { 0.0 }]
 }
 
 impl Run {
