@@ -333,11 +333,11 @@ everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions packages release proofs >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions packages release python proofs >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT
-  for part in style docs features tests serve pages web schemas python; do
+  for part in style docs features tests serve pages web schemas; do
     kill -0 "$beside" 2>/dev/null || wait "$beside" || { cat "$log" >&2; return 1; }
     timed "$part"
   done

@@ -234,7 +234,7 @@ impl Supervisor {
     fn replan(&mut self, now: f64) {
         let pending: Vec<bool> = self.agents.iter().map(|agent| agent.next.is_some()).collect();
         let again = self.plan.is_some() && !pending.contains(&true);
-        if again && self.agents.len() > SEARCHED {
+        if again && (self.agents.len() > SEARCHED || self.all_wait(now)) {
             return;
         }
         let robots: Vec<[bool; 2]> = self.agents.iter().map(|it| [it.next.is_some(), it.stands()]).collect();
@@ -258,6 +258,15 @@ impl Supervisor {
                 self.failed = Some(Failed { robots, pause, until });
             }
         }
+    }
+
+    /// Whether all stand where they are planned to stand.
+    fn all_wait(&self, now: f64) -> bool {
+        let Some(current) = &self.plan else { return false };
+        self.agents
+            .iter()
+            .enumerate()
+            .all(|(place, agent)| agent.speed <= 0.0 && agent.at.hi >= current.length_at(place, now))
     }
 
     /// A plan for all robots, of which these take up their new missions: with the margins of a plan, or if robots are too near each other
