@@ -327,8 +327,9 @@ fuzz() {
   fuzz/run.sh
 }
 
-# Everything, in two lanes that take about as long: much of the second one waits for one thing at a time (a link, an emulator), and nothing
-# that it builds is in a folder that the first one builds in. What it prints comes when it is done, or when it fails.
+# Everything, in two lanes that take about as long: much of the second one waits for one thing at a time (a link, an emulator). What it
+# builds is in folders that the first one does not build in; only its last two steps use what the first one has built by then, and wait for
+# it where it has not. What the second lane prints comes when it is done, or when it fails.
 everything() {
   local part log failed=0
   log=$(mktemp)

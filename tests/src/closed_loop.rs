@@ -100,9 +100,10 @@ pub fn fleet(seed: u64, largest: usize, missions: Missions, tally: &mut Tally) -
     let taken = begin.elapsed().as_secs_f64();
     let Run { done, not_done, collisions, planning, duration, waiting_for, .. } = &outcome.run;
     let planning = planning.expect("a supervisor plans");
-    for (agent, travelled) in scenario.agents.iter().zip(&outcome.trace.travelled) {
-        let before = travelled.iter().take((agent.t_start / FRAME) as usize);
-        assert!(before.copied().all(|length| length == 0.0), "agent {} of seed {seed} sets off too early", agent.id);
+    for (agent, drive) in outcome.snapshots.iter().flat_map(|plan| scenario.agents.iter().zip(&plan.drives)) {
+        let motion = drive.motion(agent.radius).expect("a planned motion");
+        let stands = motion.path().length() <= 0.0;
+        assert!(stands || motion.time().lo >= agent.t_start, "agent {} of seed {seed} is planned too early", agent.id);
     }
     tally.contacts += collisions.len();
     tally.breaches += planning.breaches;

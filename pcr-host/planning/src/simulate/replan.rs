@@ -32,7 +32,7 @@ pub(super) struct State {
     /// \[m/s\]
     pub(super) speed: f64,
     pub(super) limits: Limits<f64>,
-    /// It stands, and sets off no sooner \[s\].
+    /// If it has not set off on its first mission, it does so no sooner than this \[s\]; else 0.
     pub(super) release: f64,
     /// With its margin \[m\].
     pub(super) radius: f64,

@@ -51,7 +51,7 @@ struct Agent {
     speed: f64,
     /// A mission that no plan takes up yet.
     next: Option<Course>,
-    /// When it may set off on its mission \[s\].
+    /// Of a first mission that is known before it begins: when it begins \[s\]; else 0.
     release: f64,
 }
 
@@ -454,7 +454,7 @@ impl Control for Supervisor {
 
     fn assign(&mut self, robot: usize, course: &Course) {
         if let Some(agent) = self.agents.get_mut(robot) {
-            // What was announced is planned already, or looked for.
+            // What was announced is planned already, or a plan for it is looked for.
             if std::mem::take(&mut agent.release) <= 0.0 {
                 agent.at = Interval::new(agent.course.length(), agent.course.length());
                 agent.next = Some(course.clone());
