@@ -72,7 +72,10 @@ pub use overlaps::overlaps;
 pub use pair::footprint::Share;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
-pub use plan::{Constraint, Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speeds};
+pub use plan::{
+    Constraint, Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speed_below,
+    plan_speeds,
+};
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
     Approach, BroadPhase, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start,

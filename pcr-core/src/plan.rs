@@ -5,20 +5,26 @@
 //! delays      start delays of a fleet                            plan_delays
 //! times       sets of times of fixed capacity                    (internal)
 //! constraint  lengths that an agent must avoid during a time     Constraint
-//! lattice     the motions from which a speed plan is chosen      Drive
+//! lattice     a set of motions from which a speed plan is chosen  (internal)
+//! drive       limits of a speed plan                             Drive
+//! ramps       the motions under one speed and acceleration       (internal)
+//! below       the motions that are nowhere faster than one       (internal)
 //! station     data for each border of cells along the path       Station
 //! outcome     a speed plan, or why there is none                 SpeedPlan
 //! search      the fastest of these motions without a conflict    (internal)
 //! tighten     shortens its waits as far as contacts allow        (internal)
-//! speed       speed plan of one agent                            plan_speed
+//! speed       speed plan of one agent                            plan_speed, plan_speed_below
 //! speeds      speed plans of a fleet                             plan_speeds
 //! ```
 
+mod below;
 mod constraint;
 mod delays;
+mod drive;
 mod lattice;
 mod order;
 mod outcome;
+mod ramps;
 mod search;
 mod speed;
 mod speeds;
@@ -28,9 +34,9 @@ mod times;
 
 pub use constraint::Constraint;
 pub use delays::plan_delays;
-pub use lattice::Drive;
+pub use drive::Drive;
 pub use order::Unsolved;
 pub use outcome::{NoSpeedPlan, SpeedPlan};
-pub use speed::plan_speed;
+pub use speed::{plan_speed, plan_speed_below};
 pub use speeds::plan_speeds;
 pub use station::Station;

@@ -36,6 +36,26 @@ impl Grid {
 
     /// The earliest arrival at rest from rest at the time 0, free for good, before the time `latest` \[s\].
     pub fn earliest(&self, ego: &Disc, others: &[(Disc, Drive, f64)], latest: f64) -> Option<f64> {
+        self.earliest_below(ego, |_| self.top_speed(), others, latest)
+    }
+
+    /// The same with a largest speed \[m/s\] for each length \[m\].
+    pub fn earliest_below(
+        &self,
+        ego: &Disc,
+        limit: impl Fn(f64) -> f64,
+        others: &[(Disc, Drive, f64)],
+        latest: f64,
+    ) -> Option<f64> {
+        let limits: Vec<f64> = (0..=self.lengths).map(|at| limit(at as f64 * self.unit()) + 1e-9).collect();
+        let allowed: Vec<Bits> = (0..=self.speeds)
+            .map(|speed| {
+                let speed = speed as f64 * self.acceleration * self.step;
+                let mut allowed = Bits::none(self.lengths);
+                limits.iter().enumerate().filter(|(_, limit)| speed <= **limit).for_each(|(at, _)| allowed.set(at));
+                allowed
+            })
+            .collect();
         let pairs: Vec<(Pair, Travel)> = others
             .iter()
             .map(|(disc, drive, start)| (Pair::new(ego, disc), Travel::new(drive, disc.length(), *start)))
@@ -61,6 +81,7 @@ impl Grid {
             if let Some(free) = free.get(k + 1) {
                 next.iter_mut().for_each(|lengths| lengths.keep(free));
             }
+            next.iter_mut().zip(&allowed).for_each(|(lengths, allowed)| lengths.keep(allowed));
             reached = next;
         }
         None

@@ -3,17 +3,18 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::plan::constraint::Constraint;
-use crate::plan::lattice::{LEVELS, Lattice, SLABS, borders};
+use crate::plan::lattice::{Edge, LEVELS, Lattice, SLABS, borders};
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::station::Station;
 use crate::plan::times::Times;
 use crate::profile::{Phase, Profile};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
+use core::borrow::Borrow;
 
 /// The regions that an agent on a path of this length has to avoid, and the motions to choose from.
-pub(super) struct Search<'c, S: Scalar, I> {
-    pub(super) lattice: Lattice<S>,
+pub(super) struct Search<'c, S: Scalar, L, I> {
+    pub(super) lattice: L,
     pub(super) regions: I,
     pub(super) constraints: &'c [Constraint<S>],
     /// Length of the path \[m\].
@@ -26,13 +27,13 @@ struct Blocked<S> {
     end: Times<S>,
 }
 
-impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, I> {
+impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, L, I> {
     /// Initializes the stations, with the times at which the agent may set off from the first one.
     pub(super) fn begin(&self, from: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
-        let cells = self.lattice.cells().map(|(cell, _)| cell);
+        let cells = self.lattice.cells().map(Some);
         let mut length = S::ZERO;
-        for (station, cell) in stations.iter_mut().zip(core::iter::once(S::ZERO).chain(cells)) {
-            length = length + cell;
+        for (station, cell) in stations.iter_mut().zip(core::iter::once(None).chain(cells)) {
+            length = cell.map_or(length, |cell| self.lattice.end(cell, length));
             station.clear();
             station.length = length;
         }
@@ -42,12 +43,14 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         }
         let [start, _] = self.lattice.ends();
         let at_rest = start == 0;
+        let begin = from;
+        let from = begin + self.lattice.stands_at(S::ZERO);
         let before = if at_rest { Interval::new(-S::LIMIT, from) } else { Interval::new(from, from) };
         stands(&self.regions, S::ZERO, before)?;
         let mut blocked = Times::NONE;
         self.cover(&mut blocked, Interval::new(S::ZERO, S::ZERO));
         // No other agent is there before, and constraints on the time before do not count.
-        let until = blocked.iter().find(|window| window.hi > from).map_or(S::LIMIT, |window| window.lo);
+        let until = blocked.iter().find(|window| window.hi > begin).map_or(S::LIMIT, |window| window.lo);
         if until < from {
             return Err(NoSpeedPlan::Constrained { length: S::ZERO });
         }
@@ -70,7 +73,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
     }
 
     /// The regions on a part of the path.
-    fn near(&self, part: Interval<S>) -> impl Iterator<Item = RegionRef<'a, S>> + use<'a, S, I> {
+    fn near(&self, part: Interval<S>) -> impl Iterator<Item = RegionRef<'a, S>> + use<'a, S, L, I> {
         self.regions.clone().filter(move |region| region.length().meets(part))
     }
 
@@ -111,17 +114,17 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
     /// Computes the times at which the agent can be at each station with each speed.
     pub(super) fn reach(&self, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
         let (mut rest, mut is_first) = (stations, true);
-        for (_, is_middle) in self.lattice.cells() {
+        for cell in self.lattice.cells() {
             let Some((here, after)) = rest.split_first_mut() else { break };
             let is_last = after.len() <= 1;
             let Some(next) = after.first_mut() else { break };
             let blocked = self.blocked(Interval::new(here.length, next.length));
             for from in self.levels(is_first, false) {
                 for to in self.levels(false, is_last) {
-                    let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(is_middle, from, to))
-                    else {
+                    let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(cell, from, to)) else {
                         continue;
                     };
+                    let edge: &Edge<S> = edge.borrow();
                     let departures = self.departures(reached, &edge.passes, &blocked);
                     let Some(arrivals) = next.reached_mut(to) else { continue };
                     departures
@@ -131,7 +134,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
                 }
             }
             if let Some(times) = next.reached.first_mut().filter(|_| self.levels(false, is_last).contains(&0)) {
-                wait(times, &blocked.end);
+                stand(times, self.lattice.stands_at(next.length), &blocked.end);
             }
             if next.reached.iter().all(Times::is_empty) {
                 return Err(self.stopped(Interval::new(here.length, next.length)));
@@ -188,7 +191,7 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
             (last.level, last.leaves) = (goal, arrival);
         }
         let mut rest = stations;
-        for (_, is_middle) in self.lattice.cells().rev() {
+        for place in self.lattice.cells().rev() {
             let Some((next, before)) = rest.split_last_mut() else { break };
             let is_first = before.len() <= 1;
             let Some(here) = before.last_mut() else { break };
@@ -196,18 +199,20 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
             let blocked = self.blocked(cell);
             // At rest the agent may have waited since its place became free.
             let waits = next.level == 0;
+            let until = next.leaves - if waits { self.lattice.stands_at(next.length) } else { S::ZERO };
             let since =
                 blocked.end.iter().map(|window| window.hi).filter(|&hi| hi <= next.leaves).fold(-S::LIMIT, S::max);
             let mut best: Option<(S, S, usize)> = None;
             for from in self.levels(is_first, false) {
-                let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(is_middle, from, next.level))
+                let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(place, from, next.level))
                 else {
                     continue;
                 };
+                let edge: &Edge<S> = edge.borrow();
                 for times in self.departures(reached, &edge.passes, &blocked).iter() {
                     let Some(arrivals) = later(times, edge.duration()) else { continue };
-                    let at = arrivals.hi.min(next.leaves);
-                    let possible = arrivals.lo <= at && if waits { since <= at } else { at >= next.leaves };
+                    let at = arrivals.hi.min(until);
+                    let possible = arrivals.lo <= at && if waits { since <= at } else { at >= until };
                     // Prefers the shortest wait, then the highest speed.
                     if possible && best.is_none_or(|(best, ..)| at >= best) {
                         best = Some((at, (at - edge.duration()).clamp(times.lo, times.hi), from));
@@ -223,19 +228,19 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
 
     /// The motion that was chosen.
     pub(super) fn profile<const N: usize>(&self, stations: &[Station<S>]) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
-        let [start, _] = self.lattice.ends();
-        let first = stations.first().map_or(S::ZERO, |station| station.leaves);
-        let mut phase = Phase::origin(self.lattice.speed(start));
+        let first = stations.first().map_or(S::ZERO, |station| station.leaves - self.lattice.stands_at(S::ZERO));
+        let mut phase = Phase::origin(self.lattice.speed());
         let mut profile = Profile::standing();
         let mut now = first;
         let pairs = stations.iter().zip(stations.iter().skip(1));
-        for ((here, next), (_, is_middle)) in pairs.zip(self.lattice.cells()) {
+        for ((here, next), cell) in pairs.zip(self.lattice.cells()) {
             let wait = here.leaves - now;
             if here.level == 0 && wait > S::ZERO {
                 let stand = phase.until(wait, phase.length().hi, S::ZERO, S::ZERO);
                 profile.extend(&mut phase, stand)?;
             }
-            let edge = self.lattice.edge(is_middle, here.level, next.level).ok_or(Invalid::Disconnected("phase"))?;
+            let edge = self.lattice.edge(cell, here.level, next.level).ok_or(Invalid::Disconnected("phase"))?;
+            let edge: &Edge<S> = edge.borrow();
             let mut parts = edge.phases().peekable();
             while let Some((duration, way, speed, acceleration)) = parts.next() {
                 let to = if parts.peek().is_some() { phase.length().hi + way } else { next.length };
@@ -244,6 +249,8 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
             }
             now = here.leaves.max(now) + edge.duration();
         }
+        let stand = phase.until(self.lattice.stands_at(self.length), phase.length().hi, phase.speed()[1], S::ZERO);
+        profile.extend(&mut phase, stand)?;
         Ok(SpeedPlan { start: first, profile })
     }
 }
@@ -265,10 +272,16 @@ fn later<S: Scalar>(times: Interval<S>, duration: S) -> Option<Interval<S>> {
     (lo <= S::LIMIT).then(|| Interval::new(lo, (times.hi + duration).min(S::LIMIT)))
 }
 
-/// Extends each interval of times by waiting, until the place of the agent is blocked.
-fn wait<S: Scalar>(times: &mut Times<S>, blocked: &Times<S>) {
-    let arrivals = core::mem::replace(times, Times::NONE);
-    for arrival in arrivals.iter() {
+/// The times at which an agent may go on that arrives at these and stands for a duration at least. It may wait until its
+/// place is blocked.
+fn stand<S: Scalar>(times: &mut Times<S>, least: S, blocked: &Times<S>) {
+    let mut arrivals = core::mem::replace(times, Times::NONE);
+    if least > S::ZERO {
+        for window in blocked.iter() {
+            arrivals.remove(Interval::new(window.lo - least, window.hi));
+        }
+    }
+    for arrival in arrivals.iter().filter_map(|arrival| later(arrival, least)) {
         let until = blocked.iter().map(|window| window.lo).find(|&lo| lo >= arrival.lo).unwrap_or(S::LIMIT);
         times.add(Interval::new(arrival.lo, arrival.hi.max(until)));
     }

@@ -14,9 +14,12 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::plan::below::Below;
 use crate::plan::constraint::Constraint;
-use crate::plan::lattice::{Drive, Lattice};
+use crate::plan::drive::Drive;
+use crate::plan::lattice::Lattice;
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
+use crate::plan::ramps::Ramps;
 use crate::plan::search::{Search, stands};
 use crate::plan::station::Station;
 use crate::profile::Profile;
@@ -70,6 +73,63 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
     constraints: &[Constraint<S>],
     stations: &mut [Station<S>],
 ) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
+    let lattice = |most| Ramps::new(ego.path().length(), drive, most);
+    plan(ego, lattice, regions, constraints, stations)
+}
+
+/// The earliest arrival of an agent that is nowhere faster than its motion `ego`: [`plan_speed`] with another set of
+/// motions. It is for limits that differ along the path, such as a lower speed on some edges of a roadmap or turns in
+/// place: `ego` is then the fastest motion under them.
+///
+/// Accelerations and decelerations are at most the least one that `ego` has between the same two stops. Where `ego`
+/// stands, the agent stands at least as long. Speeds at the start and the end are those of `ego`.
+///
+/// The plan is the earliest among the motions that stop and change their speed at borders of cells only, which are parts
+/// of the phases of `ego` (at least one for each). The motion of `ego` with a later start is one of these. Everything else
+/// is as for [`plan_speed`].
+///
+/// # Errors
+/// [`NoSpeedPlan`].
+///
+/// ```
+/// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, SpeedPlan, Station};
+/// let east = Pose { position: Point::new(-4.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(2.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let paths = [Path::<f64, 1>::starting_at(east)?.line(8.0)?, Path::starting_at(north)?.line(4.0)?];
+/// // 1 m/s on the first half, 0.5 m/s on the second one.
+/// let slower = Profile::<f64, 5>::from_pieces(0.0, [(1.0, 1.0), (3.125, 0.0), (0.5, -1.0), (7.75, 0.0), (0.5, -1.0)])?;
+/// let crosses = Profile::<f64, 5>::from_pieces(0.0, [(5.0, 0.0), (1.0, 1.0), (3.0, 0.0), (1.0, -1.0)])?;
+/// let motion = |path, profile| Motion::new(path, profile, 0.25, 0.0);
+/// let fleet = [
+///     motion(paths[0].as_path(), slower.as_profile())?,
+///     motion(paths[1].as_path(), crosses.as_profile())?,
+/// ];
+/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+///
+/// let mut stations = [const { Station::EMPTY }; 65];
+/// let plan: SpeedPlan<f64, 32> = pcr_core::plan_speed_below(&fleet[0], ecm.row(&fleet, 0)?, &[], &mut stations)?;
+/// let speeds = plan.profile.as_profile();
+/// assert!(speeds.top_speed() <= 1.0 && speeds.speed_at(speeds.first_time_at(5.0)) <= 0.5);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn plan_speed_below<'a, S: Scalar, const N: usize>(
+    ego: &Motion<'_, S>,
+    regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
+    constraints: &[Constraint<S>],
+    stations: &mut [Station<S>],
+) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
+    let lattice = |most| Below::new(ego.profile(), ego.path().length(), most);
+    plan(ego, lattice, regions, constraints, stations)
+}
+
+/// The earliest of the motions of a lattice, which is made for a largest number of cells.
+fn plan<'a, S: Scalar, L: Lattice<S>, const N: usize>(
+    ego: &Motion<'_, S>,
+    lattice: impl FnOnce(usize) -> Result<L, Invalid>,
+    regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
+    constraints: &[Constraint<S>],
+    stations: &mut [Station<S>],
+) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
     let (from, length) = (ego.time().lo, ego.path().length());
     constraints.iter().try_for_each(Constraint::checked)?;
     if length <= S::ZERO {
@@ -79,7 +139,7 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
         }
         return Ok(SpeedPlan { start: from, profile: Profile::standing() });
     }
-    let lattice = Lattice::new(length, drive, stations.len().saturating_sub(1))?;
+    let lattice = lattice(stations.len().saturating_sub(1))?;
     let search = Search { lattice, regions, constraints, length };
     let used = search.lattice.cells().fold(1_usize, |count, _| count.saturating_add(1));
     let stations = stations.get_mut(..used).ok_or(Invalid::Full("station"))?;

@@ -4,10 +4,10 @@ use crate::ecm::{Ecm, Region};
 use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::plan::delays::{self, earliest};
-use crate::plan::lattice::Drive;
+use crate::plan::drive::Drive;
 use crate::plan::order::{Blocked, Unsolved, complete, in_order, separated, verified};
-use crate::plan::outcome::NoSpeedPlan;
-use crate::plan::speed::plan_speed;
+use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
+use crate::plan::speed::{plan_speed, plan_speed_below};
 use crate::plan::station::Station;
 use crate::profile::Profile;
 use crate::region::RegionRef;
@@ -18,8 +18,8 @@ use crate::scalar::Scalar;
 ///
 /// Each agent keeps the largest speed and acceleration of its motion in the fleet, and begins and ends at the same
 /// speeds ([`Drive::of`]). It gets the plan of [`plan_speed`] or its own profile with a later start, whichever arrives
-/// first. Only the latter if its own motion is slower on its way than these limits allow, for example because it turns
-/// in place. `order` and the radii are as in [`plan_delays`](crate::plan_delays). Every plan of an agent takes one of the
+/// first. If its own motion is slower on its way than these limits allow, for example because it turns in place, it gets
+/// the plan of [`plan_speed_below`], and is nowhere faster than that motion. `order` and the radii are as in [`plan_delays`](crate::plan_delays). Every plan of an agent takes one of the
 /// `profiles`: one for each agent, and one more each time that an agent is planned again because another one was moved
 /// up. Their contents are overwritten.
 ///
@@ -55,17 +55,23 @@ where
             let later = earliest(motion, regions.clone());
             // An arrival that is earlier only by a rounding does not justify another profile.
             let earlier = |end: S| later.is_none_or(|later| end < later.time().hi - S::tolerance(end.abs()));
-            let speeds =
-                Drive::of(&motion).map(|drive| plan_speed::<S, N>(&motion, drive, regions.clone(), &[], stations));
+            let drive = Drive::of(&motion);
+            let speeds: Result<SpeedPlan<S, N>, _> = match drive {
+                Some(drive) => plan_speed(&motion, drive, regions.clone(), &[], stations),
+                None => plan_speed_below(&motion, regions.clone(), &[], stations),
+            };
             match speeds {
-                Some(Ok(speeds)) if earlier(speeds.end()) => {
+                Ok(speeds) if earlier(speeds.end()) => {
                     let full = || Blocked::Never(Unsolved::Full(agent));
                     let profile = profiles.next().ok_or_else(full)?;
                     *profile = speeds.profile;
                     motion.with_profile(profile.as_profile(), speeds.start).map_err(|_| full())
                 }
-                Some(speeds) => later.ok_or_else(|| blocking(agent, regions, speeds.err())),
-                None => later.ok_or_else(|| delays::blocking(agent, regions, before)),
+                // There is no room for other speeds: what is left are start delays.
+                Err(NoSpeedPlan::Invalid(_)) if drive.is_none() => {
+                    later.ok_or_else(|| delays::blocking(agent, regions, before))
+                }
+                speeds => later.ok_or_else(|| blocking(agent, regions, speeds.err())),
             }
         }?;
         if let Some(planned) = plan.get_mut(agent) {

@@ -4,6 +4,7 @@ use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::plan::constraint::Constraint;
+use crate::plan::lattice::Lattice;
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::search::Search;
 use crate::profile::{Phase, Profile};
@@ -14,7 +15,7 @@ use crate::scalar::Scalar;
 /// Largest number of bisections for a wait; formats with fewer digits need fewer.
 const HALVINGS: u32 = 32;
 
-impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, I> {
+impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, L, I> {
     /// Whether the plan has no conflict from a time on and breaks no constraint.
     fn is_free<const N: usize>(&self, ego: &Motion<'_, S>, plan: &SpeedPlan<S, N>, from: S) -> Result<bool, Invalid> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
@@ -69,8 +70,8 @@ impl<'a, S: Scalar, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, 
         }
         let mut place = 0_usize;
         while let Some(phase) = plan.profile.as_profile().phases().get(place) {
-            let wait = phase.time().length();
-            if phase.speed() == [S::ZERO; 2] {
+            let wait = phase.time().length() - self.lattice.stands_at(phase.length().hi);
+            if wait > S::ZERO && phase.speed() == [S::ZERO; 2] {
                 self.shorten(ego, plan, Some(place), wait)?;
             }
             place = place.saturating_add(1);

@@ -40,7 +40,8 @@ pub enum Method {
     #[default]
     Delay,
     /// Agents wait and change their speed on the way, under the largest speed and acceleration of their own motions. Those
-    /// that turn in place, or are slower on the way than these limits for another reason, start later instead.
+    /// that turn in place, or are slower on the way than these limits for another reason, are nowhere faster than their
+    /// own motions.
     Speed,
 }
 

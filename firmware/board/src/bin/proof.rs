@@ -17,7 +17,7 @@ use pcr_core::{
     Pass, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused,
     Region, RegionRef, Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector,
     crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration,
-    overlaps, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths, union,
+    overlaps, plan_delays, plan_speed, plan_speed_below, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -282,9 +282,10 @@ fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_
     let stations: &mut [Station<S>] = any(&mut [][..]);
     let constraints: &[Constraint<S>] = any(&[][..]);
     any(row.clone().map(|region| [Constraint::before(&region), Constraint::after(&region)]).next());
-    if let Ok(plan) = any(plan_speed::<S, 8>(motion, any(drive), row, constraints, stations)) {
+    if let Ok(plan) = any(plan_speed::<S, 8>(motion, any(drive), row.clone(), constraints, stations)) {
         any((SpeedPlan::end(&plan), plan));
     }
+    any(plan_speed_below::<S, 8>(motion, row, constraints, stations).is_ok());
     any(plan_delays(ecm, fleet, any(&mut [][..]), any(&mut [][..])).is_ok());
     let profiles: &mut [Profile<S, 8>] = any(&mut [][..]);
     any(plan_speeds(ecm, fleet, any(&mut [][..]), any(&mut [][..]), profiles, stations).is_ok());

@@ -44,7 +44,7 @@ impl<'m> Planner<'_, 'm> {
                 } else {
                     "its own profile is slower on the way than its largest speed and acceleration"
                 };
-                format!("agent {}: {why}; it keeps its own speeds and only starts later", agent.id)
+                format!("agent {}: {why}; it is nowhere faster than its own motion", agent.id)
             }));
         }
         warnings
@@ -78,7 +78,7 @@ impl<'m> Planner<'_, 'm> {
     fn bound(&self, known: Option<&Known>) -> f64 {
         let least = |motion: &Motion<'_, f64>| match self.request.method {
             Method::Delay => motion.time().length(),
-            // An agent that keeps its own profile takes as long as that.
+            // An agent that is nowhere faster than its own motion takes as long as that.
             Method::Speed => {
                 Drive::of(motion).map_or(motion.time().length(), |drive| bound::fastest(drive, motion.path().length()))
             }

@@ -8,7 +8,8 @@ use super::task::Planner;
 use crate::fleet::HostEcm;
 use crate::regions::Failure;
 use pcr_core::{
-    Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed, plan_speeds,
+    Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed,
+    plan_speed_below, plan_speeds,
 };
 
 /// Phases of a speed profile, at most.
@@ -84,7 +85,7 @@ pub(super) fn plan<'m>(
 }
 
 /// The earliest arrival of one agent while others move as they do: by other speeds, or, where its own motion has reasons
-/// to be slower than its limits, with that motion and a later start.
+/// to be slower than its limits, also with that motion and a later start.
 enum Found<'m> {
     Speeds(Box<SpeedPlan<f64, PHASES>>),
     Later(Motion<'m, f64>),
@@ -96,12 +97,16 @@ impl<'m> Found<'m> {
         regions: impl Iterator<Item = RegionRef<'a, f64>> + Clone,
         stations: &mut [Station<f64>],
     ) -> Option<Self> {
-        match Drive::of(motion) {
-            Some(drive) => {
-                plan_speed(motion, drive, regions, &[], stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
-            }
-            None => motion.delayed(earliest_start(regions, 0.0)?).ok().map(Self::Later),
-        }
+        let Some(drive) = Drive::of(motion) else {
+            let later = earliest_start(regions.clone(), 0.0).and_then(|delay| motion.delayed(delay).ok());
+            let plan = plan_speed_below(motion, regions, &[], stations).ok();
+            let sooner = |end: f64| later.is_none_or(|later| end < later.time().hi - SOONER);
+            return match plan.filter(|plan| sooner(plan.end())) {
+                Some(plan) => Some(Self::Speeds(Box::new(plan))),
+                None => later.map(Self::Later),
+            };
+        };
+        plan_speed(motion, drive, regions, &[], stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
     }
 
     /// When it arrives \[s\].

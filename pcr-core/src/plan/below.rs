@@ -1,0 +1,181 @@
+//! The motions from which a speed plan is chosen if the agent may nowhere be faster than a given motion.
+//!
+//! Each phase of the given motion is divided into equal cells. At the border of two cells the agent has the speed v of
+//! that motion, or less: the squares of the five speeds are 0, 1/4, 1/2, 3/4 and 1 times v². At a constant acceleration
+//! the square of the speed is linear in the length. So a motion whose speed changes over the whole cell, from one of
+//! these to another, is nowhere faster than the given one. Where that has a constant speed, the speed may also change
+//! in a part of the cell. No acceleration is larger than the least one of the given motion between the same two stops.
+//! Where that motion stands, the agent stands at least as long.
+
+use crate::error::Invalid;
+use crate::geometry::Interval;
+use crate::plan::lattice::{Edge, LEVELS, Lattice};
+use crate::profile::{Phase, ProfileRef};
+use crate::scalar::{Scalar, Wide};
+use core::borrow::Borrow;
+
+/// Index of the speed of the given motion.
+const TOP: usize = LEVELS - 1;
+
+/// The motion that is not exceeded, on a path of this length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Below<'p, S> {
+    phases: &'p [Phase<S>],
+    /// Length of the path \[m\].
+    length: S,
+    /// No cell is divided into halves that are shorter than this \[m\].
+    shortest: S,
+}
+
+/// A cell: a part of a phase.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<'p, S> {
+    phase: &'p Phase<S>,
+    /// Lengths along the path \[m\].
+    length: Interval<S>,
+    /// Largest acceleration and deceleration \[m/s²\].
+    acceleration: S,
+}
+
+impl<'p, S: Scalar> Below<'p, S> {
+    /// A lattice of at most `most` cells.
+    pub(super) fn new(profile: ProfileRef<'p, S>, length: S, most: usize) -> Result<Self, Invalid> {
+        let phases = profile.phases();
+        let lasts = |phase: &Phase<S>| phase.time().length() > S::ZERO;
+        // The length of such a phase was rounded away.
+        if phases.iter().any(|phase| !moves(phase) && lasts(phase) && phase.speed() != [S::ZERO; 2]) {
+            return Err(Invalid::OutOfRange("length of a phase"));
+        }
+        let mut below = Self { phases, length, shortest: S::slack(length) };
+        while below.cells().take(most.saturating_add(1)).count() > most {
+            if below.shortest <= S::ZERO || below.shortest > length {
+                return Err(Invalid::Full("station"));
+            }
+            below.shortest = below.shortest.double();
+        }
+        Ok(below)
+    }
+
+    /// The cells of a phase.
+    fn within(&self, place: usize, phase: &'p Phase<S>) -> impl DoubleEndedIterator<Item = Cell<'p, S>> + use<'p, S> {
+        let acceleration = self.acceleration(place);
+        let [before, after] = phase.speed();
+        let fast = before.max(after);
+        // From one speed to the next: v² / 8 a.
+        let ramp = fast.times(fast.quotient(acceleration)).half().half().half().narrow();
+        let least = ramp.max(self.shortest);
+        let (mut part, mut count) = (phase.length().length(), 1_usize);
+        while part.half() >= least && part.half() > S::ZERO {
+            (part, count) = (part.half(), count.saturating_mul(2));
+        }
+        let is_last = phase.length().hi >= self.phases.last().map_or(S::ZERO, |last| last.length().hi);
+        let end = if is_last { self.length } else { phase.length().hi };
+        (0..count).map(move |cell| {
+            let next = cell.saturating_add(1);
+            let lo = phase.length().lo + multiple(part, cell);
+            let hi = if next == count { end } else { phase.length().lo + multiple(part, next) };
+            Cell { phase, length: Interval::new(lo, hi), acceleration }
+        })
+    }
+
+    /// The least acceleration or deceleration of the given motion between the stops before and after a phase; 0 if its
+    /// speed is the same all the time there.
+    fn acceleration(&self, place: usize) -> S {
+        let (before, from) = self.phases.split_at_checked(place).unwrap_or((self.phases, &[]));
+        let stops_after = |phase: &&Phase<S>| phase.speed()[1] <= S::ZERO;
+        let stops_before = |phase: &&Phase<S>| phase.speed()[0] <= S::ZERO;
+        let back = before.iter().rev().take_while(|phase| !stops_after(phase));
+        let on = from.iter().skip(1).take_while(|phase| !stops_before(phase));
+        let run = back.chain(from.first()).chain(on).filter(|phase| moves(phase));
+        let accelerations = run.map(|phase| phase.acceleration().abs());
+        accelerations.filter(|&acceleration| acceleration > S::ZERO).reduce(S::min).unwrap_or_default()
+    }
+}
+
+impl<'p, S: Scalar> Lattice<S> for Below<'p, S> {
+    type Cell = Cell<'p, S>;
+
+    fn cells(&self) -> impl DoubleEndedIterator<Item = Cell<'p, S>> {
+        let phases = (0..self.phases.len()).zip(self.phases).filter(|(_, phase)| moves(phase));
+        phases.flat_map(|(place, phase)| self.within(place, phase))
+    }
+
+    fn end(&self, cell: Cell<'p, S>, _: S) -> S {
+        cell.length.hi
+    }
+
+    fn edge(
+        &self,
+        Cell { phase, length, acceleration }: Cell<'p, S>,
+        from: usize,
+        to: usize,
+    ) -> Option<impl Borrow<Edge<S>>> {
+        let times = [length.lo, length.hi].map(|length| phase.time_at(length));
+        let [before, after] = times.map(|time| phase.speed_at(time));
+        let (start, goal) = (part(before, from)?, part(after, to)?);
+        let is_top = |speed: S, level: usize| level == TOP || speed <= S::ZERO;
+        if is_top(before, from) && is_top(after, to) {
+            let [enters, leaves] = times;
+            return Some(Edge::steady(start, goal, length.length(), leaves - enters, phase.acceleration()));
+        }
+        if phase.acceleration() == S::ZERO {
+            return Edge::new(start, goal, length.length(), acceleration);
+        }
+        let sum = start + goal;
+        if sum <= S::ZERO {
+            return None;
+        }
+        let duration = length.length().double().quotient(sum);
+        let change = (goal - start).quotient(duration);
+        (duration <= S::LIMIT && change.abs() <= acceleration)
+            .then(|| Edge::steady(start, goal, length.length(), duration, change))
+    }
+
+    fn ends(&self) -> [usize; 2] {
+        let first = self.phases.first().map_or(S::ZERO, |first| first.speed()[0]);
+        let last = self.phases.last().map_or(S::ZERO, |last| last.speed()[1]);
+        [first, last].map(|speed| if speed > S::ZERO { TOP } else { 0 })
+    }
+
+    fn speed(&self) -> S {
+        self.phases.first().map_or(S::ZERO, |first| first.speed()[0])
+    }
+
+    fn stands_at(&self, length: S) -> S {
+        let end = self.phases.last().map_or(S::ZERO, |last| last.length().hi);
+        let place = |phase: &Phase<S>| if phase.length().hi >= end { self.length } else { phase.length().hi };
+        let stands = self.phases.iter().filter(|&phase| !moves(phase) && place(phase) == length);
+        stands.fold(S::ZERO, |sum, phase| sum + phase.time().length())
+    }
+}
+
+/// Whether the agent gets any further in a phase.
+fn moves<S: Scalar>(phase: &Phase<S>) -> bool {
+    phase.length().length() > S::ZERO
+}
+
+/// The speed with this index where the given motion has the speed `of`; `None` if that is rest and the index is not.
+fn part<S: Scalar>(of: S, level: usize) -> Option<S> {
+    let square = of.times(of);
+    let (half, quarter) = (square.half(), square.half().half());
+    match level {
+        0 => Some(S::ZERO),
+        _ if of <= S::ZERO => None,
+        1 => Some(quarter.sqrt()),
+        2 => Some(half.sqrt()),
+        3 => Some((half + quarter).sqrt()),
+        _ => Some(of),
+    }
+}
+
+/// A length, so many times.
+fn multiple<S: Scalar>(mut length: S, mut times: usize) -> S {
+    let mut sum = S::ZERO;
+    while times > 0 {
+        if times & 1 == 1 {
+            sum = sum + length;
+        }
+        (length, times) = (length.double(), times >> 1);
+    }
+    sum
+}
