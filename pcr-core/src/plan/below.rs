@@ -47,7 +47,7 @@ impl<'p, S: Scalar> Below<'p, S> {
             return Err(Invalid::OutOfRange("length of a phase"));
         }
         let mut below = Self { phases, length, shortest: S::slack(length) };
-        while below.cells().take(most.saturating_add(1)).count() > most {
+        while below.cells().nth(most).is_some() {
             if below.shortest <= S::ZERO || below.shortest > length {
                 return Err(Invalid::Full("station"));
             }
@@ -57,8 +57,8 @@ impl<'p, S: Scalar> Below<'p, S> {
     }
 
     /// The cells of a phase.
-    fn within(&self, place: usize, phase: &'p Phase<S>) -> impl DoubleEndedIterator<Item = Cell<'p, S>> + use<'p, S> {
-        let acceleration = self.acceleration(place);
+    fn within(&self, phase: &'p Phase<S>) -> impl DoubleEndedIterator<Item = Cell<'p, S>> + use<'p, S> {
+        let acceleration = self.acceleration(phase);
         let [before, after] = phase.speed();
         let fast = before.max(after);
         // From one speed to the next: v² / 8 a.
@@ -80,15 +80,23 @@ impl<'p, S: Scalar> Below<'p, S> {
 
     /// The least acceleration or deceleration of the given motion between the stops before and after a phase; 0 if its
     /// speed is the same all the time there.
-    fn acceleration(&self, place: usize) -> S {
-        let (before, from) = self.phases.split_at_checked(place).unwrap_or((self.phases, &[]));
-        let stops_after = |phase: &&Phase<S>| phase.speed()[1] <= S::ZERO;
-        let stops_before = |phase: &&Phase<S>| phase.speed()[0] <= S::ZERO;
-        let back = before.iter().rev().take_while(|phase| !stops_after(phase));
-        let on = from.iter().skip(1).take_while(|phase| !stops_before(phase));
-        let run = back.chain(from.first()).chain(on).filter(|phase| moves(phase));
-        let accelerations = run.map(|phase| phase.acceleration().abs());
-        accelerations.filter(|&acceleration| acceleration > S::ZERO).reduce(S::min).unwrap_or_default()
+    fn acceleration(&self, of: &Phase<S>) -> S {
+        let (mut least, mut is_found) = (None, false);
+        for phase in self.phases.iter().filter(|phase| moves(phase)) {
+            let [before, _] = phase.speed();
+            if before <= S::ZERO {
+                if is_found {
+                    break;
+                }
+                least = None;
+            }
+            is_found |= core::ptr::eq(phase, of);
+            let acceleration = phase.acceleration().abs();
+            if acceleration > S::ZERO {
+                least = Some(least.map_or(acceleration, |least| acceleration.min(least)));
+            }
+        }
+        least.unwrap_or_default()
     }
 }
 
@@ -96,8 +104,7 @@ impl<'p, S: Scalar> Lattice<S> for Below<'p, S> {
     type Cell = Cell<'p, S>;
 
     fn cells(&self) -> impl DoubleEndedIterator<Item = Cell<'p, S>> {
-        let phases = (0..self.phases.len()).zip(self.phases).filter(|(_, phase)| moves(phase));
-        phases.flat_map(|(place, phase)| self.within(place, phase))
+        self.phases.iter().filter(|phase| moves(phase)).flat_map(|phase| self.within(phase))
     }
 
     fn end(&self, cell: Cell<'p, S>, _: S) -> S {
