@@ -46,8 +46,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     };
     let mut text = format!(
         "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {} robots where so many find a \
-        place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --compare --seed SEED`). Missions are the sums of seeds 1 to {runs}. *Safe*: safe ends; up to as many robots no mission is refused for ever. *Alone*: missions an hour if nobody was \
-        in anybody's way, the mean of the seeds. *Locks*: the better one of locks on whole routes and on edges, by missions in all. *Orders / alone*: by missions an hour; where it is 1, no method can do more. *Decision*: by orders, 99 of 100 within, the longest of the seeds.\n\n\
+        place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --compare --seed SEED`). *Orders*, *locks*, *start delays*: missions an hour, without the first tenth of the time and what is finished after its end, the mean of seeds 1 to {runs}. *Safe*: safe ends; up to as many robots no mission is refused for ever. *Alone*: the same if nobody was \
+        in anybody's way; where *orders / alone* is 1, no method can do more. *Locks*: the better one of locks on whole routes and on edges. *Decision*: by orders, 99 of 100 within, the longest of the seeds.\n\n\
         | layout | radius | safe | robots | alone | orders | locks | start delays | orders / locks | orders / alone | stuck | decision | contact |\n\
         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n",
         sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ")
@@ -113,13 +113,12 @@ fn row(name: &str, radius: f64, agents: usize, answers: &[Lifelong]) -> String {
         let runs = answers.iter().flat_map(|answer| &answer.runs);
         runs.filter(move |run| run.outcome.method == method)
     };
-    let missions = |method| runs(method).map(|run| run.outcome.missions).sum::<usize>();
-    let [orders, routes, edges, delays] = Method::ALL.map(missions);
+    let seeds = answers.len().max(1) as f64;
+    let an_hour = |method| runs(method).map(|run| run.outcome.missions_per_hour).sum::<f64>() / seeds;
+    let [orders, routes, edges, delays] = Method::ALL.map(an_hour);
     let locks = routes.max(edges);
     let which = if routes >= edges { Method::RouteLocks } else { Method::EdgeLocks };
-    let seeds = answers.len().max(1) as f64;
     let alone = answers.iter().map(|answer| answer.alone).sum::<f64>() / seeds;
-    let an_hour = runs(Method::Orders).map(|run| run.outcome.missions_per_hour).sum::<f64>() / seeds;
     let decision = runs(Method::Orders).map(|run| run.decision_p99).fold(0.0, f64::max);
     let all = || answers.iter().flat_map(|answer| &answer.runs).map(|run: &Driven| &run.outcome);
     let stuck: usize = all().map(|outcome| outcome.stuck).sum();
@@ -127,12 +126,15 @@ fn row(name: &str, radius: f64, agents: usize, answers: &[Lifelong]) -> String {
     let contact = verdicts.fold("none, proved", |worst, verdict| if verdict == "proved" { worst } else { verdict });
     let ratio = |a: f64, b: f64| if b > 0.0 { digits(a / b) } else { "–".to_owned() };
     format!(
-        "| {name} | {radius} | {} | {agents} | {} | {orders} | {locks} ({}) | {delays} | {} | {} | {stuck} | {} ms | {contact} |\n",
+        "| {name} | {radius} | {} | {agents} | {} | {} | {} ({}) | {} | {} | {} | {stuck} | {} ms | {contact} |\n",
         answers.first().map_or(0, |answer| answer.well_formedness.safe_ends.len()),
         digits(alone),
+        digits(orders),
+        digits(locks),
         which.name(),
-        ratio(orders as f64, locks as f64),
-        ratio(an_hour, alone),
+        digits(delays),
+        ratio(orders, locks),
+        ratio(orders, alone),
         digits(1e3 * decision)
     )
 }
