@@ -17,6 +17,9 @@ use core::borrow::Borrow;
 /// Index of the speed of the given motion.
 const TOP: usize = LEVELS - 1;
 
+/// Cells are not divided into parts of less than 2 to the power of minus this of the path.
+const FINEST: u32 = 12;
+
 /// The motion that is not exceeded, on a path of this length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Below<'p, S> {
@@ -46,12 +49,17 @@ impl<'p, S: Scalar> Below<'p, S> {
         if phases.iter().any(|phase| !moves(phase) && lasts(phase) && phase.speed() != [S::ZERO; 2]) {
             return Err(Invalid::OutOfRange("length of a phase"));
         }
-        let mut below = Self { phases, length, shortest: S::slack(length) };
+        let shortest = (0..FINEST).fold(length, |part, _| part.half()).max(S::slack(length));
+        let mut below = Self { phases, length, shortest };
         while below.cells().nth(most).is_some() {
             if below.shortest <= S::ZERO || below.shortest > length {
                 return Err(Invalid::Full("station"));
             }
             below.shortest = below.shortest.double();
+        }
+        // The path may be shorter than the profile by its tolerance, and cells shorter than a rounding.
+        if below.cells().any(|cell| cell.length.length() <= S::ZERO) {
+            return Err(Invalid::OutOfRange("length of a phase"));
         }
         Ok(below)
     }

@@ -19,9 +19,9 @@ use crate::scalar::Scalar;
 /// Each agent keeps the largest speed and acceleration of its motion in the fleet, and begins and ends at the same
 /// speeds ([`Drive::of`]). It gets the plan of [`plan_speed`] or its own profile with a later start, whichever arrives
 /// first. If its own motion is slower on its way than these limits allow, for example because it turns in place, it gets
-/// the plan of [`plan_speed_below`], and is nowhere faster than that motion. `order` and the radii are as in [`plan_delays`](crate::plan_delays). Every plan of an agent takes one of the
-/// `profiles`: one for each agent, and one more each time that an agent is planned again because another one was moved
-/// up. Their contents are overwritten.
+/// the plan of [`plan_speed_below`], and is nowhere faster than that motion. `order` and the radii are as in
+/// [`plan_delays`](crate::plan_delays). Every plan of an agent takes one of the `profiles`: one for each agent, and one
+/// more each time that an agent is planned again because another one was moved up. Their contents are overwritten.
 ///
 /// Cost: for each agent that of [`plan_speed`] and [`earliest_start`](crate::earliest_start); agents behind one that is
 /// moved up are planned again.

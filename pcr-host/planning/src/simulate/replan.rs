@@ -85,18 +85,27 @@ impl Problem<'_> {
         let alone: Vec<Vec<usize>> = (0..going.len()).map(|robot| vec![robot]).collect();
         let mut found = start_delays(&going, &alone)?.into_iter();
         let delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
-        let delays = motions.iter().map(delay).collect::<Option<Vec<f64>>>()?;
-        let later = |(robot, delay): (&State, &f64)| Problem { now: self.begin(robot) + delay, ..*self }.through(robot);
-        let drives: Vec<Drive> = self.robots.iter().zip(&delays).map(later).collect::<Option<_>>()?;
-        let cost = delays.iter().zip(&motions).map(|(delay, motion)| motion.time().hi + delay - self.now).sum();
+        let delays = motions.iter().map(delay).map(|delay| Some(Some(delay?))).collect::<Option<Vec<_>>>()?;
+        self.later(&motions, &delays)
+    }
+
+    /// Robots that set off so much later than they could \[s\], or stay where they are.
+    fn later(&self, motions: &[Motion<'_, f64>], delays: &[Option<f64>]) -> Option<Plan> {
+        let drive = |(robot, delay): (&State, &Option<f64>)| match delay {
+            Some(delay) => Problem { now: self.begin(robot) + delay, ..*self }.through(robot),
+            None => self.staying(robot),
+        };
+        let drives: Vec<Drive> = self.robots.iter().zip(delays).map(drive).collect::<Option<_>>()?;
+        let costs = delays.iter().zip(motions).map(|(delay, motion)| Some(motion.time().hi + (*delay)? - self.now));
+        let cost = costs.flatten().sum();
         let mut order: Vec<usize> = (0..delays.len()).collect();
-        order.sort_by(|&a, &b| delays[a].total_cmp(&delays[b]));
+        order.sort_by(|&a, &b| delays[a].unwrap_or(0.0).total_cmp(&delays[b].unwrap_or(0.0)));
         Some(Plan { drives, order, cost })
     }
 
-    /// Of robots that all stand, as many as have start delays together while all others stay where they are; of those that are `wanted`. Who
-    /// stays matters: all whose paths lead past there stay, too.
-    pub(super) fn most(&self, wanted: &[bool]) -> Option<Vec<bool>> {
+    /// A plan of robots that all stand, by start delays, in which as many as possible go of those that are `wanted`, while all others stay
+    /// where they are; and who goes. Who stays matters: all whose paths lead past there stay, too.
+    pub(super) fn most(&self, wanted: &[bool]) -> Option<(Plan, Vec<bool>)> {
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
         let stays: Vec<Drive> = self.robots.iter().map(|robot| self.staying(robot)).collect::<Option<_>>()?;
@@ -117,8 +126,10 @@ impl Problem<'_> {
         let places = |with: &Vec<usize>| with.iter().filter_map(|robot| going.binary_search(robot).ok()).collect();
         let with: Vec<Vec<usize>> = going.iter().map(|&robot| places(&with[robot])).collect();
         let delays = start_delays(&going.iter().map(|&robot| motions[robot]).collect::<Vec<_>>(), &with)?;
-        going.iter().zip(&delays).for_each(|(&robot, delay)| goes[robot] = delay.is_some());
-        goes.contains(&true).then_some(goes)
+        let mut found = vec![None; wanted.len()];
+        going.iter().zip(&delays).for_each(|(&robot, delay)| found[robot] = *delay);
+        let goes: Vec<bool> = found.iter().map(Option::is_some).collect();
+        Some((self.later(&motions, &found)?, goes)).filter(|(_, goes)| goes.contains(&true))
     }
 
     /// The motion of one robot among others that go on as they are planned.

@@ -309,9 +309,7 @@ impl Supervisor {
         let stands = self.agents.iter().all(Agent::stands);
         let together = |margin: usize| {
             let robots = self.states(margin, pending)?;
-            let taken = Problem { now, robots: &robots, obstacles: &self.obstacles }.most(pending)?;
-            let robots = self.states(margin, &taken)?;
-            let plan = Problem { now, robots: &robots, obstacles: &self.obstacles }.delayed()?;
+            let (plan, taken) = Problem { now, robots: &robots, obstacles: &self.obstacles }.most(pending)?;
             self.found(plan, self.offsets(&taken), &taken, margin)
         };
         if !stands {
