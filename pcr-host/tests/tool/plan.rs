@@ -109,36 +109,6 @@ fn who_is_slow_for_a_reason_is_not_made_faster() {
     }
 }
 
-/// Who has a lower limit on a part of its path waits on the way, instead of keeping others from passing its start. The limit is kept.
-#[test]
-fn who_is_slow_for_a_reason_waits_on_the_way() {
-    // 1 m/s until 4 m, then 0.2 m/s.
-    let pieces = [[1.0, 1.0], [3.02, 0.0], [0.8, -1.0], [19.9, 0.0], [0.2, -1.0]];
-    let pieces = pieces.map(|[duration, accel]| json!({ "duration": duration, "accel": accel }));
-    let slow = json!({ "id": 1, "radius": 0.25, "start": [0.0, 0.0, 0.0], "path": [{ "kind": "line", "length": 8.0 }],
-        "profile": { "v0": 0.0, "pieces": pieces } });
-    let north = std::f64::consts::FRAC_PI_2;
-    // One crosses its way slowly, one passes its start.
-    let mut crosses = straight(2, [3.0, -0.8, north], 3.0);
-    crosses["v_max"] = json!(0.05);
-    let agents = json!({ "agents": [slow, crosses, straight(3, [0.0, -4.0, north], 9.0)] });
-    let cost = |report: &Value| report["sum_of_costs"].as_f64().unwrap();
-    let (status, report, written) = plan("slow-waits", &agents, &["--method", "speed"]);
-    let (_, by_delay, _) = plan("slow-waits", &agents, &[]);
-    assert!(status == 0 && cost(&report) < cost(&by_delay) - 5.0, "{report} {by_delay}");
-    let warning = report["warnings"][0].as_str().unwrap();
-    assert!(warning.ends_with("it is nowhere faster than its own motion"), "{warning}");
-    let planned: Value = serde_json::from_str(&fs::read_to_string(written.unwrap()).unwrap()).unwrap();
-    let (mut length, mut speed) = (0.0_f64, 0.0_f64);
-    for piece in planned["agents"][0]["profile"]["pieces"].as_array().unwrap() {
-        let [duration, accel] = ["duration", "accel"].map(|field| piece[field].as_f64().unwrap());
-        length += duration * (speed + accel * duration / 2.0);
-        speed += accel * duration;
-        assert!(length < 4.0 - 1e-9 || speed < 0.2 + 1e-9, "{speed} m/s at {length} m");
-    }
-    assert!((length - 8.0).abs() < 1e-6, "{length} m");
-}
-
 #[test]
 fn what_cannot_work_is_named_and_nothing_is_written() {
     let head_on =
