@@ -2,7 +2,7 @@
 
 use pcr_core::{
     Constraint, Drive as Speeds, Interval, Invalid, Limits, Motion, NoSpeedPlan, Profile, SpeedPlan, Station,
-    plan_speed, plan_speed_below, plan_speeds, scalar::Micro,
+    earliest_start, plan_speed, plan_speed_below, plan_speeds, scalar::Micro,
 };
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::{Format, build_ecm};
@@ -340,10 +340,9 @@ fn two_speeds(dice: &mut Dice) -> Vec<(f64, f64)> {
         vec![(fast, 1.0), (cruise, 0.0), (fast - slow, -1.0), (rest / slow, 0.0), (slow, -1.0)]
     } else {
         let other = steps(dice, 20);
-        let [cruise, rest] = [1.5, 2.5].map(|length: f64| length.max(0.0));
         let stand = 0.05 * dice.below(60) as f64;
         let run = |speed: f64, length: f64| [(speed, 1.0), ((length - speed * speed) / speed, 0.0), (speed, -1.0)];
-        [&run(fast, cruise)[..], &[(stand, 0.0)], &run(other, rest)[..]].concat()
+        [&run(fast, 1.5)[..], &[(stand, 0.0)], &run(other, 2.5)[..]].concat()
     }
 }
 
@@ -495,6 +494,33 @@ fn alone_the_plan_below_a_motion_is_that_motion() {
     let many: Vec<_> = (0..100).flat_map(|_| [(0.1, 1.0), (0.3, 0.0), (0.1, -1.0)]).collect();
     let many = line([-2.0, 0.0, 0.0], 4.0, Drive::Pieces(0.0, many), 0.0);
     assert_eq!(planned_below(&[many]).err(), Some(NoSpeedPlan::Invalid(Invalid::Full("station"))));
+}
+
+/// An agent with a lower limit on a part of its path, which has to leave its start early and to let somebody pass on the way, for which no
+/// start delay helps.
+#[test]
+fn who_is_slow_on_a_part_waits_on_the_way() {
+    let pieces = vec![(1.0, 1.0), (3.02, 0.0), (0.8, -1.0), (19.9, 0.0), (0.2, -1.0)];
+    let ego = line([-2.0, 0.0, 0.0], 8.0, Drive::Pieces(0.0, pieces), 0.0);
+    let crosses = line([1.0, -0.55, PI / 2.0], 3.0, Drive::Limits(0.05, 1.0), 0.0);
+    let passes_start = line([-2.0, -4.0, PI / 2.0], 9.0, Drive::Limits(1.0, 1.0), 0.0);
+    let courses = [ego, crosses, passes_start];
+    let fleet: Vec<Motion<'_, f64>> = courses.iter().map(Course::motion).collect();
+    let ecm = build_ecm(&fleet).expect("a small table");
+    assert_eq!(earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0), None);
+    let plan = planned_below(&courses).expect("a plan");
+    let profile = plan.profile.as_profile();
+    assert!(plan.start < 4.0 && plan.end() < 24.92 + 22.0, "{plan:?}");
+    let slow = profile.phases().iter().filter(|phase| phase.length().lo >= 4.0 - 1e-9);
+    assert!(slow.flat_map(|phase| phase.speed()).all(|speed| speed <= 0.2 + 1e-9), "{plan:?}");
+}
+
+#[test]
+fn a_last_phase_beyond_the_path_is_refused() {
+    // The path ends 3 µm before the profile, which is within its tolerance; the last phase begins 1 µm before its own end.
+    let pieces = vec![(1.0, 1.0), (3.000_002, 0.0), (0.999, -1.0), (0.001, -1.0)];
+    let ego = line([-2.0, 0.0, 0.0], 4.0 - 1e-6, Drive::Pieces(0.0, pieces), 0.0);
+    assert_eq!(planned_below(&[ego]).err(), Some(NoSpeedPlan::Invalid(Invalid::OutOfRange("length of a phase"))));
 }
 
 /// One agent that drives 4 m at 1 m/s and 1 m/s² at most, and is not to be on \[2 m, 3 m\] for some time.

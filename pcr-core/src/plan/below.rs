@@ -9,7 +9,7 @@
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
-use crate::plan::lattice::{Edge, LEVELS, Lattice};
+use crate::plan::lattice::{Edge, LEVELS, Lattice, level};
 use crate::profile::{Phase, ProfileRef};
 use crate::scalar::{Scalar, Wide};
 use core::borrow::Borrow;
@@ -127,7 +127,11 @@ impl<'p, S: Scalar> Lattice<S> for Below<'p, S> {
     ) -> Option<impl Borrow<Edge<S>>> {
         let times = [length.lo, length.hi].map(|length| phase.time_at(length));
         let [before, after] = times.map(|time| phase.speed_at(time));
-        let (start, goal) = (part(before, from)?, part(after, to)?);
+        let is_rest = |speed: S, index: usize| speed <= S::ZERO && index > 0;
+        if is_rest(before, from) || is_rest(after, to) {
+            return None;
+        }
+        let (start, goal) = (level(before, from), level(after, to));
         let is_top = |speed: S, level: usize| level == TOP || speed <= S::ZERO;
         if is_top(before, from) && is_top(after, to) {
             let [enters, leaves] = times;
@@ -167,20 +171,6 @@ impl<'p, S: Scalar> Lattice<S> for Below<'p, S> {
 /// Whether the agent gets any further in a phase.
 fn moves<S: Scalar>(phase: &Phase<S>) -> bool {
     phase.length().length() > S::ZERO
-}
-
-/// The speed with this index where the given motion has the speed `of`; `None` if that is rest and the index is not.
-fn part<S: Scalar>(of: S, level: usize) -> Option<S> {
-    let square = of.times(of);
-    let (half, quarter) = (square.half(), square.half().half());
-    match level {
-        0 => Some(S::ZERO),
-        _ if of <= S::ZERO => None,
-        1 => Some(quarter.sqrt()),
-        2 => Some(half.sqrt()),
-        3 => Some((half + quarter).sqrt()),
-        _ => Some(of),
-    }
 }
 
 /// A length, so many times.

@@ -1,7 +1,8 @@
 //! A set of motions from which a speed plan is chosen.
 //!
 //! The path is divided into cells. At the border of two cells the agent has one of a few speeds, one of which is rest.
-//! Inside a cell it speeds up at once, or slows down as late as possible, at full acceleration:
+//! Inside a cell its speed changes over the whole cell, or it speeds up at once and slows down as late as possible, at
+//! full acceleration:
 //!
 //! ```text
 //! speed   ____        ____
@@ -41,7 +42,7 @@ pub(super) trait Lattice<S: Scalar> {
     }
 }
 
-/// The fastest motion over a cell between two speeds that does not exceed the higher one.
+/// A motion over a cell from one speed to another, nowhere faster than the higher one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge<S> {
     phases: [Phase<S>; 2],
@@ -112,6 +113,19 @@ impl<S: Scalar> Edge<S> {
             let [_, after] = phase.speed();
             (phase.time().length(), phase.length().length(), after, phase.acceleration())
         })
+    }
+}
+
+/// The speed with this index where the top speed is `top` \[m/s\]: squares are evenly spaced.
+pub(super) fn level<S: Scalar>(top: S, index: usize) -> S {
+    let square = top.times(top);
+    let (half, quarter) = (square.half(), square.half().half());
+    match index {
+        0 => S::ZERO,
+        1 => quarter.sqrt(),
+        2 => half.sqrt(),
+        3 => (half + quarter).sqrt(),
+        _ => top,
     }
 }
 

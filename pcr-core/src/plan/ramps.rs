@@ -7,7 +7,7 @@
 
 use crate::error::{Invalid, not_negative, positive};
 use crate::plan::drive::Drive;
-use crate::plan::lattice::{Edge, LEVELS, Lattice};
+use crate::plan::lattice::{Edge, LEVELS, Lattice, level};
 use crate::profile::Limits;
 use crate::scalar::{Scalar, Wide};
 use core::borrow::Borrow;
@@ -46,11 +46,8 @@ impl<S: Scalar> Ramps<S> {
         let square = |v: S| v.times(v);
         let peak = acceleration.times(length) + (square(drive.start) + square(drive.goal)).half();
         let peak = if peak < square(speed) { peak.sqrt() } else { speed };
-        let top = square(peak);
-        let quarter = top.half().half();
-        let levels = [S::Wide::ZERO, quarter, top.half(), top.half() + quarter].map(Wide::sqrt);
-        let [rest, first, second, third] = levels;
-        let speeds = [rest, first, second, third, peak, drive.start, drive.goal];
+        let [rest, first, second, third, top] = [0, 1, 2, 3, 4].map(|index| level(peak, index));
+        let speeds = [rest, first, second, third, top, drive.start, drive.goal];
         let ramp = peak.times(peak.quotient(acceleration)).narrow().half();
         // Cells are shorter on a path that is only a part of a ramp.
         let mut cell = ramp.half().half().min(length.half().half());

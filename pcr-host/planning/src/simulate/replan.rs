@@ -84,8 +84,8 @@ impl Problem<'_> {
         }
         let alone: Vec<Vec<usize>> = (0..going.len()).map(|robot| vec![robot]).collect();
         let mut found = start_delays(&going, &alone)?.into_iter();
-        let delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
-        let delays = motions.iter().map(delay).map(|delay| Some(Some(delay?))).collect::<Option<Vec<_>>>()?;
+        let mut delay = |motion: &Motion<'_, f64>| if goes(&motion) { found.next().flatten() } else { Some(0.0) };
+        let delays = motions.iter().map(|motion| delay(motion).map(Some)).collect::<Option<Vec<_>>>()?;
         self.later(&motions, &delays)
     }
 
