@@ -88,7 +88,7 @@ impl Verdict {
         let (fleet, discs) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
-        let count = pairs.agents.len();
+        let count = pairs.ids.len();
         if closest {
             let all = count as u64 * count.saturating_sub(1) as u64 / 2;
             let what = || format!("how near all {all} pairs come");
@@ -104,8 +104,8 @@ impl Verdict {
             }
             told(stretch.end, count);
         }
-        // Stable: those that begin together stay in the order of the agents.
-        conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
+        // Those of two agents do not begin together.
+        conflicts.sort_unstable_by(|a, b| a.t[0].total_cmp(&b.t[0]).then((a.i, a.j).cmp(&(b.i, b.j))));
         Ok(Self {
             name: scenario.name.clone(),
             labels: Labels::of(scenario),
@@ -148,11 +148,15 @@ const STRETCH: usize = 1024;
 
 /// The agents by their numbers, and who may come near whom.
 struct Pairs<'a, S: Format> {
-    agents: Vec<(u64, Vec<Body<'a, S>>)>,
-    /// Their places in the scenario.
+    /// Numbers of the agents.
+    ids: Vec<u64>,
+    /// The discs of all agents, one agent after the other.
+    bodies: Vec<Body<'a, S>>,
+    /// Where the discs of each agent begin, and where those of the last one end.
+    begins: Vec<usize>,
+    /// Rank of each disc's agent, by the place of the disc.
     ranks: Vec<usize>,
     grid: Grid,
-    discs: &'a [Disced],
     /// From the first start to the last arrival \[s\].
     time: Interval<S>,
 }
@@ -162,23 +166,31 @@ impl<'a, S: Format> Pairs<'a, S> {
         let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
         let mut order: Vec<usize> = (0..scenario.agents.len()).collect();
         order.sort_by_key(|&agent| scenario.agents[agent].id);
-        let mut ranks = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);
-        let mut agents: Vec<(u64, Vec<Body<'a, S>>)> =
-            order.iter().map(|&agent| (scenario.agents[agent].id, Vec::new())).collect();
-        for body in discs.iter().zip(motions) {
-            agents[ranks[body.0.agent]].1.push(body);
-        }
+        let ids = order.iter().map(|&agent| scenario.agents[agent].id).collect();
+        let mut rank_of = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(rank, &agent)| rank_of[agent] = rank);
+        let ranks: Vec<usize> = discs.iter().map(|disc| rank_of[disc.agent]).collect();
+        let mut places: Vec<usize> = (0..discs.len()).collect();
+        places.sort_by_key(|&disc| ranks[disc]);
+        let mut begins = vec![0; order.len() + 1];
+        ranks.iter().for_each(|rank| begins[rank + 1] += 1);
+        (1..begins.len()).for_each(|rank| begins[rank] += begins[rank - 1]);
+        let bodies = places.iter().map(|&disc| (&discs[disc], &motions[disc])).collect();
         let grid = Grid::new(motions.iter().map(area).collect());
-        Self { agents, ranks, grid, discs, time }
+        Self { ids, bodies, begins, ranks, grid, time }
+    }
+
+    /// The number of an agent, and its discs.
+    fn agent(&self, rank: usize) -> (u64, &[Body<'a, S>]) {
+        (self.ids[rank], &self.bodies[self.begins[rank]..self.begins[rank + 1]])
     }
 
     /// The agents after one that may come near it.
     fn after(&self, agent: usize) -> Vec<usize> {
         let (mut near, mut after) = (Vec::new(), Vec::new());
-        for (_, motion) in &self.agents[agent].1 {
+        for (_, motion) in self.agent(agent).1 {
             self.grid.meeting(&area(motion), &mut near);
-            after.extend(near.iter().map(|&disc| self.ranks[self.discs[disc as usize].agent]));
+            after.extend(near.iter().map(|&disc| self.ranks[disc as usize]));
         }
         after.retain(|&other| other > agent);
         after.sort_unstable();
@@ -188,10 +200,10 @@ impl<'a, S: Format> Pairs<'a, S> {
 
     /// The conflicts of an agent with those after it; with `closest` how near each of them comes.
     fn of(&self, agent: usize, closest: bool) -> (Vec<Conflict>, Vec<Closest>) {
-        let others = if closest { (agent + 1..self.agents.len()).collect() } else { self.after(agent) };
+        let others = if closest { (agent + 1..self.ids.len()).collect() } else { self.after(agent) };
         let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
         for other in others {
-            let (found, near) = encounters(&self.agents[agent], &self.agents[other], self.time, closest);
+            let (found, near) = encounters(self.agent(agent), self.agent(other), self.time, closest);
             conflicts.extend(found);
             nearest.extend(near);
         }
@@ -207,8 +219,8 @@ fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
 
 /// The conflicts of two agents, and how near they come if asked for.
 fn encounters<S: Format>(
-    (i, first): &(u64, Vec<Body<'_, S>>),
-    (j, second): &(u64, Vec<Body<'_, S>>),
+    (i, first): (u64, &[Body<'_, S>]),
+    (j, second): (u64, &[Body<'_, S>]),
     time: Interval<S>,
     closest: bool,
 ) -> (Vec<Conflict>, Option<Closest>) {
@@ -222,8 +234,8 @@ fn encounters<S: Format>(
         }
         let encounter = Encounter::new(own.1, other.1);
         found.extend(encounter.conflicts(time).map(|conflict| Conflict {
-            i: *i,
-            j: *j,
+            i,
+            j,
             t: ends(conflict.time),
             depth: conflict.depth.to_f64(),
             l_i: own.0.on_agent(ends(conflict.length)),
@@ -235,7 +247,7 @@ fn encounters<S: Format>(
             let clearance = (approach.separation - encounter.radius()).to_f64();
             if closest_of.is_none_or(|closest| clearance < closest.clearance) {
                 let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
-                closest_of = Some(Closest { i: *i, j: *j, t, separation, clearance });
+                closest_of = Some(Closest { i, j, t, separation, clearance });
             }
         }
     }
