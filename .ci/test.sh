@@ -21,7 +21,7 @@ profile=checked
 checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile checked)
 # Whatever is run of it is asked for with all of these targets. Without one of them, cbindgen's parser of Rust is needed by macros only, which
 # cargo then builds in another way, and with them, once more, everything that uses them.
-targets=(--lib --bins --tests)
+targets=(--lib --tests)
 
 # Tests that need something from outside, by their names. None of that name is a failure.
 ignored() {

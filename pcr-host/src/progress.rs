@@ -84,7 +84,7 @@ fn show(what: &str, counts: &Counts, elapsed: Duration) {
 }
 
 /// Seconds that the rest takes if it takes as long as what is done; nothing before a hundredth is.
-fn remaining(done: usize, total: usize, elapsed: Duration) -> Option<u64> {
+pub(crate) fn remaining(done: usize, total: usize, elapsed: Duration) -> Option<u64> {
     let left = total.saturating_sub(done) as f64;
     (done >= total / 100 && done > 0).then(|| (elapsed.as_secs_f64() * left / done as f64).ceil() as u64)
 }
@@ -95,16 +95,5 @@ impl Drop for Progress {
             drop(stop);
             let _ = watch.join();
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_left_takes_as_long_as_what_is_done() {
-        let after = |done| remaining(done, 1000, Duration::from_secs(10));
-        assert_eq!([after(9), after(10), after(250), after(1000)], [None, Some(990), Some(30), Some(0)]);
     }
 }

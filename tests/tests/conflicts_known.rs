@@ -1,7 +1,8 @@
 //! Conflicts of given motions whose answers are known.
 
 use pcr_core::{Conflict, Encounter, Interval, Motion, first_conflict};
-use pcr_planning::fleet::build_ecm;
+use pcr_fixed::Q16;
+use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -108,6 +109,29 @@ fn discs_that_follow_each_other_in_contact_on_a_circle_cost_the_stated_steps() {
     let smallest = (2.0 * encounter.tolerance()).sqrt();
     let bound = 4.0 * encounter.time().length() / smallest + 1.0;
     assert!(contacts.steps() > 0 && f64::from(contacts.steps()) < bound, "{} of {bound}", contacts.steps());
+}
+
+/// Side by side at the distance of a contact, nothing of the geometry decides; that they go alike does.
+#[test]
+fn discs_that_go_alike_cost_a_few_steps() {
+    fn steps<S: Format>(legs: &[Leg]) -> u32 {
+        let beside = |y: f64| {
+            let disc = Disc { radius: 0.25, start: [0.0, y, 0.0], legs: legs.to_vec() };
+            Course::<S>::driven(&disc, &Drive::Limits(1.0, 0.5), 0.0).expect("a valid disc")
+        };
+        let (ego, other) = (beside(0.0), beside(0.5));
+        let (ego, other) = (ego.motion(), other.motion());
+        let encounter = Encounter::new(&ego, &other);
+        let mut contacts = encounter.contacts(encounter.time());
+        let all: Vec<_> = contacts.by_ref().collect();
+        assert_eq!(all, [encounter.time()], "{}", S::NAME);
+        contacts.steps()
+    }
+    let legs = [Leg::Line(8.0), Leg::arc(2.0, 1.0), Leg::Line(2.0)];
+    for legs in [&legs[..1], &legs] {
+        let steps = [steps::<f64>(legs), steps::<f32>(legs), steps::<Q16>(legs)];
+        assert!(steps.iter().all(|&steps| steps < 40), "{steps:?}");
+    }
 }
 
 #[test]

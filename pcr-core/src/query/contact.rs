@@ -13,7 +13,8 @@
 //! falls with the square of the step, and the part in doubt with e. On lines at constant speeds e is 0 and one step is
 //! exact; elsewhere an end of a contact takes about four. The worst case is discs that stay at a distance of R within
 //! the tolerance for a time T. Since e <= ε / 4 always decides, every step there is at least h = √(2 ε / c) long, with
-//! c = Σ |a| + v²/ϱ; hence a leg takes at most a few T / h + 1 steps. `Contacts::steps` counts them.
+//! c = Σ |a| + v²/ϱ; hence a leg takes at most a few T / h + 1 steps. `Contacts::steps` counts them. Agents that go alike
+//! (`Leg::goes_like`) move uniformly as seen from each other, and e is 0.
 
 use crate::error::Invalid;
 use crate::geometry::Interval;
@@ -231,6 +232,8 @@ impl<'a, S: Scalar> Contacts<'a, S> {
             Next { from: to, step: duration.double(), event: None }
         } else {
             let chord = Chord::between(now.apart, ahead.apart);
+            // Without this, agents that go alike at a distance of R would take as many steps as there are.
+            let error = if window.is_uniform(&now, &ahead) { S::ZERO } else { error };
             let stretch = Stretch { now, ahead, chord, error, duration, radius: self.radius, tolerance, pad };
             if inside { stretch.follow() } else { stretch.search() }
         };

@@ -7,7 +7,7 @@ use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
 use crate::profile::Phase;
 use crate::scalar::{Scalar, Wide};
-use crate::segment::Segment;
+use crate::segment::{Curve, Segment};
 
 /// A part of a motion at constant acceleration on one segment, or a stand.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,17 @@ impl<S: Scalar> Leg<'_, S> {
         };
         let gain = phase.acceleration().abs().times(duration).narrow();
         if gain <= S::ZERO { bend } else { bend.double() + eighth(gain.times(duration).narrow()) }
+    }
+
+    /// Whether both have the same acceleration along segments of the same shape and direction, on which they are at the same place at
+    /// these lengths \[m\]; the place makes no difference on lines.
+    pub(crate) fn goes_like(&self, other: &Self, [at, there]: [S; 2]) -> bool {
+        let (Some(own), Some(their)) = (self.phase, other.phase) else { return false };
+        let [here, yonder] = [self.segment, other.segment];
+        own.acceleration() == their.acceleration()
+            && here.direction == yonder.direction
+            && here.curve == yonder.curve
+            && (here.curve == Curve::Line || at - here.from == there - yonder.from)
     }
 }
 

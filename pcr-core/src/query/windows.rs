@@ -47,6 +47,12 @@ impl<S: Scalar> Window<'_, S> {
         let [ego, other] = &self.legs;
         ego.deviation(c - a, duration) + other.deviation(d - b, duration)
     }
+
+    /// Whether the relative position moves uniformly between two instants, along the chord: both agents go alike.
+    pub(crate) fn is_uniform(&self, from: &Instant<S>, to: &Instant<S>) -> bool {
+        let [ego, other] = &self.legs;
+        [from, to].into_iter().all(|instant| ego.goes_like(other, instant.lengths))
+    }
 }
 
 /// The windows in which two agents may be near each other, in increasing order of time.
@@ -117,5 +123,45 @@ impl<'a, S: Scalar> Windows<'a, S> {
     /// Continues with stage `place` of the ego, and all stages of the other agent.
     fn go_on(&mut self, place: usize) {
         (self.left[0][0], self.left[1][0]) = (place, self.first_of_other);
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+    use crate::{Limits, Path, Point, Pose, Profile, Radians, Turn};
+
+    /// Whether two agents go alike: on lines or arcs, with these headings, accelerations and times at which they set off.
+    fn alike(arcs: [Option<Turn>; 2], headings: [f64; 2], accelerations: [f64; 2], starts: [f64; 2]) -> bool {
+        let paths = [0, 1].map(|k| {
+            let pose = Pose { position: Point::new(0.0, k as f64), heading: Radians(headings[k]) };
+            let path = Path::<f64, 1>::starting_at(pose).expect("a pose");
+            let path = match arcs[k] {
+                None => path.line(4.0),
+                Some(turn) => path.arc(2.0, turn, 4.0),
+            };
+            path.expect("a path")
+        });
+        let profiles = accelerations
+            .map(|acceleration| Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration }).expect("a profile"));
+        let motions = [0, 1]
+            .map(|k| Motion::new(paths[k].as_path(), profiles[k].as_profile(), 0.1, starts[k]).expect("a motion"));
+        let during = Interval::new(0.125, 0.875);
+        let mut windows = Windows::new([&motions[0], &motions[1]], during, 1e-9);
+        let window = windows.next(9.0).expect("they are near");
+        window.is_uniform(&window.at(window.time.lo), &window.at(window.time.hi))
+    }
+
+    #[test]
+    fn only_agents_that_go_alike_move_uniformly_as_seen_from_each_other() {
+        let (lines, [left, right]) = ([None; 2], [Some(Turn::Left), Some(Turn::Right)]);
+        assert!(alike(lines, [0.5; 2], [1.0; 2], [0.0; 2]));
+        assert!(alike(lines, [0.5; 2], [1.0; 2], [0.0, 0.0625]), "on lines one may be ahead");
+        assert!(alike([left; 2], [0.5; 2], [1.0; 2], [0.0; 2]));
+        assert!(!alike([left; 2], [0.5; 2], [1.0; 2], [0.0, 0.0625]), "ahead on an arc, it goes in another direction");
+        assert!(!alike([left, right], [0.5; 2], [1.0; 2], [0.0; 2]));
+        assert!(!alike([left, None], [0.5; 2], [1.0; 2], [0.0; 2]));
+        assert!(!alike(lines, [0.5, 0.25], [1.0; 2], [0.0; 2]));
+        assert!(!alike(lines, [0.5; 2], [1.0, 0.5], [0.0; 2]));
     }
 }

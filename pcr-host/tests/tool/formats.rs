@@ -97,6 +97,8 @@ fn every_real_file_is_read_or_refused_by_name() {
     for path in files(std::path::Path::new(&real(""))) {
         let name = path.to_str().unwrap();
         let pictures = file("formats", "pictures", "");
+        // All regions of 240 robots that share most of their way take a minute here, and show no more than those of 190.
+        let long = |arguments: &[&str]| name.contains("Paris") && matches!(arguments[0], "regions" | "plan");
         for arguments in [
             &["locks", name, "--radius", "0.3"][..],
             &["regions", name],
@@ -105,7 +107,10 @@ fn every_real_file_is_read_or_refused_by_name() {
             &["traffic", name, "--agents", "3"],
             // A file where a directory has to be: what can be drawn is refused for that, status 3.
             &["map", name, "-o", &pictures],
-        ] {
+        ]
+        .into_iter()
+        .filter(|arguments| !long(arguments))
+        {
             let run = run(arguments);
             assert!((0..=3).contains(&run.status), "{arguments:?}: {}", run.err);
             assert!(!run.err.contains("panicked"), "{arguments:?}: {}", run.err);
@@ -117,8 +122,8 @@ fn every_real_file_is_read_or_refused_by_name() {
             read += usize::from(run.status <= 1);
         }
     }
-    // Locks and traffic of 22 layouts; regions, conflicts and a plan of 9 logs, an order and 5 plans on grids.
-    assert_eq!(read, 2 * 22 + 3 * 15);
+    // Locks and traffic of 22 layouts; regions, conflicts and a plan of 9 logs, an order and 4 plans on grids; conflicts of a fifth one.
+    assert_eq!(read, 2 * 22 + 3 * 14 + 1);
 }
 
 #[test]

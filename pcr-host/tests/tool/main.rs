@@ -19,6 +19,7 @@ mod locks;
 mod margins;
 mod output;
 mod plan;
+mod progress;
 mod refusals;
 mod schema;
 #[cfg(feature = "serve")]
