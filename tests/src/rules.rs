@@ -94,10 +94,7 @@ pub fn run(imported: &Imported, rules: &Rules, missions: usize, seed: u64) -> Ru
         let ends = edge.curve.first().zip(edge.curve.last()).map_or(at, |(first, last)| [first.at, last.end()]);
         let reaches = (0..2).all(|k| (ends[k][0] - at[k][0]).hypot(ends[k][1] - at[k][1]) <= OFF);
         if reaches && layout.nodes[edge.ends[0]].level == layout.nodes[edge.ends[1]].level {
-            leaving[edge.ends[0]].push((k, false));
-            if edge.two_way {
-                leaving[edge.ends[1]].push((k, true));
-            }
+            edge.steps().for_each(|step| leaving[step.origin()].push((k, step.backward)));
         }
     }
     let count = (layout.nodes.len() / 6).clamp(2, 10);

@@ -1,7 +1,7 @@
 //! Unsafe delays of arcs and of accelerations against sampled motions.
 
 use pcr_core::{Interval, Motion};
-use pcr_formats::import::{Format, ImportError, Imported, Options, Step, Warnings, layout, ride};
+use pcr_formats::import::{Format, ImportError, Imported, Options, Warnings, layout, ride};
 use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
 use pcr_planning::fleet::Fleet;
 use pcr_planning::locks::{Delays, Driving, Unsafe};
@@ -58,12 +58,9 @@ fn fleet(imported: &Imported, driving: Driving) -> Fleet<f64> {
     order.sort_by(|a, b| a.id.cmp(&b.id));
     let mut agents: Vec<Agent> = Vec::new();
     for edge in order {
-        for backward in [false, true] {
-            if backward && !edge.two_way {
-                continue;
-            }
-            let agent = ride(&vehicle, Step { edge, backward });
-            let speed = edge.speed.map_or(driving.speed, |limit| limit.min(driving.speed));
+        for step in edge.steps() {
+            let agent = ride(&vehicle, step);
+            let speed = step.speed().map_or(driving.speed, |limit| limit.min(driving.speed));
             let even = MotionSpec::Profile { v0: speed, pieces: vec![(agent.length() / speed, 0.0)] };
             let motion = if driving.acceleration.is_some() { agent.motion.clone() } else { even };
             agents.push(Agent { id: agents.len() as u64, motion, ..agent });

@@ -218,7 +218,7 @@ fn navigation_graphs_are_read_and_written() {
     let there = imported(Format::Rmf, GRAPH, 0.4).layout;
     assert_eq!((there.name.as_str(), there.nodes.len(), there.edges.len()), ("site", 5, 4));
     assert_eq!((there.nodes[0].at, there.nodes[0].name.as_deref()), ([1.0, -2.0], Some("home")));
-    assert!(there.edges.iter().all(|edge| !edge.two_way));
+    assert!(there.edges.iter().all(|edge| !edge.is_two_way()));
     let (text, _) = written(Format::Rmf, GRAPH, 0.4, Target::Rmf, None);
     let plain: String = text
         .replace(", mutex: \"pcr/L1/0\"", "")
@@ -251,7 +251,7 @@ fn navigation_graphs_are_read_and_written() {
     let mut warnings = Warnings::default();
     let there = layout(Format::Rmf, &both, &options(0.4), &mut warnings).unwrap().layout;
     assert!(
-        !there.edges[1].two_way && warnings.lines().iter().any(|said| said.contains("taken one way")),
+        !there.edges[1].is_two_way() && warnings.lines().iter().any(|said| said.contains("taken one way")),
         "{warnings:?}"
     );
 }

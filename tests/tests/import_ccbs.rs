@@ -213,7 +213,7 @@ fn a_roadmap_is_read_whole_or_refused() {
     // Directions as GraphML has them.
     let ways = |attributes: &str, edge: &str| {
         let text = graph(attributes, &[square.concat(), edge.to_owned()]);
-        read(&text, false).unwrap().layout.edges[0].two_way
+        read(&text, false).unwrap().layout.edges[0].is_two_way()
     };
     assert!(
         !ways("edgedefault=\"directed\"", &edge("e", "a", "b"))

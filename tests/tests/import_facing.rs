@@ -56,7 +56,7 @@ fn paths_of_opentcs_are_driven_backward_in_their_other_direction() {
     let partial = Options { fleet, partial: true, ..Options::default() };
     let text = plant("maxReverseVelocity=\"500\"");
     let read = layout(Format::OpenTcs, &text, &partial, &mut Warnings::default()).unwrap().layout;
-    assert_eq!(read.edges.iter().map(|edge| edge.two_way).collect::<Vec<_>>(), [false]);
+    assert_eq!(read.edges.iter().map(|edge| edge.is_two_way()).collect::<Vec<_>>(), [false]);
 }
 
 #[test]

@@ -289,7 +289,7 @@ fn edges_have_the_limits_and_the_gaps_of_the_file() {
         edge("none", "c", json!([])),
     ] }] });
     let (layout, warnings) = read(&lif.to_string(), &options());
-    let limits: Vec<_> = layout.edges.iter().map(|edge| (edge.id.to_string(), edge.speed, edge.rotation)).collect();
+    let limits: Vec<_> = layout.edges.iter().map(|edge| (edge.id.to_string(), edge.speed[0], edge.rotation)).collect();
     let expected = [
         ("plain", None, None),
         ("slow", Some(0.7), Some(0.3)),
@@ -298,7 +298,7 @@ fn edges_have_the_limits_and_the_gaps_of_the_file() {
         ("none", None, None),
     ];
     assert_eq!(limits, expected.map(|(id, speed, rotation)| (id.to_owned(), speed, rotation)));
-    assert!(layout.edges.iter().all(|edge| !edge.two_way));
+    assert!(layout.edges.iter().all(|edge| !edge.is_two_way()));
     assert!((layout.edges[0].length() - 5.0).abs() < 1e-12 && layout.edges[4].curve.is_empty());
     assert_eq!(
         warnings,

@@ -58,7 +58,7 @@ fn the_published_graphs_are_read_whole() {
     assert_eq!(warnings, ["edge 112: its length is 0"]);
     let (sample, warnings) = read(SAMPLE);
     assert_eq!((sample.nodes.len(), sample.edges.len(), warnings.len()), (9, 24, 0));
-    assert_eq!(sample.edges.iter().filter_map(|edge| edge.speed).collect::<Vec<_>>(), [0.85]);
+    assert_eq!(sample.edges.iter().filter_map(|edge| edge.speed[0]).collect::<Vec<_>>(), [0.85]);
 }
 
 /// Lengths of the shortest ways by the algorithm of Floyd and Warshall.
@@ -303,7 +303,7 @@ fn speed_limits_end_at_100_percent() {
         let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
         graph["features"][7]["properties"]["metadata"] = json!({ "speed_limit": limit });
         let (layout, warnings) = read(&graph.to_string());
-        let edge = layout.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap().speed;
+        let edge = layout.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap().speed[0];
         (edge, warnings.iter().any(|line| line.starts_with("edge 100: its speed_limit is not above 0 and up to 100")))
     };
     for (limit, expected) in [(json!(1), 1.0), (json!(0.5), 0.5), (json!(2), 0.02), (json!(100), 1.0)] {
@@ -340,9 +340,9 @@ fn ids_speeds_and_directions_are_those_of_the_file() {
     graph["features"][8]["properties"]["metadata"] = json!({ "speed_limit": 50 });
     let fast = Options { speed: Some(3.0), ..options(&[], 1.0) };
     let whole = layout(Format::Nav2, &graph.to_string(), &fast, &mut Warnings::default()).unwrap().layout;
-    let speeds: Vec<Option<f64>> = whole.edges.iter().map(|edge| edge.speed).collect();
+    let speeds: Vec<Option<f64>> = whole.edges.iter().map(|edge| edge.speed[0]).collect();
     assert_eq!(speeds, [None, Some(1.5), Some(1.5)]);
-    assert!(whole.edges.iter().all(|edge| !edge.two_way && edge.curve.len() == 1));
+    assert!(whole.edges.iter().all(|edge| !edge.is_two_way() && edge.curve.len() == 1));
     graph["features"][1]["properties"]["id"] = json!(1.5);
     assert!(failed(&graph).starts_with("feature 2, properties, id: not a whole number from 0; "));
 }

@@ -162,13 +162,13 @@ fn roads_have_the_least_of_their_speed_limits() {
         format!("<OpenDRIVE><road id=\"1\">{limits}<planView>{line}</planView></road></OpenDRIVE>")
     };
     // 25 mph are 25 miles of 1609.344 m in 3600 s.
-    let speed = |limits: &str| read(&road(limits)).0.edges[0].speed;
+    let speed = |limits: &str| read(&road(limits)).0.edges[0].speed[0];
     assert!((speed(&limit("25", "mph")).unwrap() - 25.0 * 1609.344 / 3600.0).abs() < 1e-12);
     assert!((speed(&limit("36", "km/h")).unwrap() - 10.0).abs() < 1e-12);
     assert_eq!((speed(&limit("7", "m/s")), speed(&limit("no limit", "mph")), speed("")), (Some(7.0), None, None));
     assert_eq!((speed(&limit("0", "m/s")), speed(&limit("2e6", "m/s"))), (None, None), "no limits");
     let (layout, warnings) = read(&road(&[limit("7", "m/s"), limit("5", "m/s"), limit("6", "m/s")].concat()));
-    assert_eq!(layout.edges[0].speed, Some(5.0));
+    assert_eq!(layout.edges[0].speed[0], Some(5.0));
     assert_eq!(warnings, ["road 1: its speed limit changes on the way; the least one is taken for all of it"]);
     let unknown = layout_error(&road(&limit("7", "knots")));
     assert!(unknown.starts_with("road 1, speed, unit: knots is not known"), "{unknown}");
@@ -395,7 +395,7 @@ fn records_without_length_windings_and_open_joints() {
     };
     let road = |records: &str| format!("<OpenDRIVE><road id=\"1\"><planView>{records}</planView></road></OpenDRIVE>");
     let (layout, warnings) = read(&road(&[line(0.0, 0.0, 4.0), line(4.0, 0.0, 0.0), line(4.0, 0.0, 1.0)].concat()));
-    assert_eq!((layout.edges[0].curve.len(), layout.edges[0].two_way, warnings.len()), (2, true, 0));
+    assert_eq!((layout.edges[0].curve.len(), layout.edges[0].is_two_way(), warnings.len()), (2, true, 0));
     // The widest of three joints, angles to either side.
     let joints = [line(0.0, 0.0, 4.0), line(4.01, 1e-3, 4.0), line(8.01, -2e-3, 4.0), line(12.03, -2e-3, 1.0)];
     let (_, warnings) = read(&road(&joints.concat()));

@@ -114,7 +114,7 @@ fn a_plant_is_read_whole_or_refused() {
     let warnings = read(&format!("{way}{outline}"), false).unwrap().layout.warnings;
     assert!(warnings.iter().any(|line| line.starts_with("point e: its vehicleEnvelope is not read")), "{warnings:?}");
     let reversed = read(&path("p", "a", "b", "maxReverseVelocity=\"500\" maxVelocity=\"1500\""), false).unwrap().layout;
-    assert_eq!((reversed.edges[0].two_way, reversed.edges[0].speed), (true, Some(1.5)));
+    assert_eq!((reversed.edges[0].ways, reversed.edges[0].speed), ([true; 2], [Some(1.5), Some(0.5)]));
 }
 
 #[test]
@@ -130,7 +130,8 @@ fn paths_have_the_limits_and_the_shape_of_the_file() {
         imported.map(|imported| imported.layout).map_err(|error| error.to_string())
     };
     let stands = read("length=\"4000\" maxVelocity=\"0\" maxReverseVelocity=\"0\"", &[], "DIRECT").unwrap();
-    assert_eq!((stands.edges[0].two_way, stands.edges[0].speed), (false, None));
+    assert_eq!((stands.edges[0].ways, stands.edges[0].speed, stands.edges[0].closed), ([true, false], [None; 2], true));
+    assert!(stands.warnings.iter().any(|line| line.contains("its speeds are 0 in both directions")));
     assert!(!stands.warnings.iter().any(|line| line.contains("vehicleEnvelope")), "{:?}", stands.warnings);
     // One per cent is not warned about.
     for (length, warned) in [(4000, false), (4030, false), (3970, false), (4050, true), (3950, true)] {

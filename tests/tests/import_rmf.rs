@@ -45,7 +45,7 @@ fn scales_are_the_mean_of_the_measurements() {
         let (imported, _) = read(text, &tiny(&[]));
         let layout = &imported.layout;
         assert_eq!(layout.edges.len(), lanes);
-        assert!(layout.edges.iter().all(|edge| edge.two_way && edge.speed.is_none()));
+        assert!(layout.edges.iter().all(|edge| edge.is_two_way() && edge.speed == [None; 2]));
         if vertex.is_empty() {
             // The scale by the first lane of the file and its vertices.
             let lane = text.lines().skip_while(|line| !line.contains("lanes:")).nth(1).unwrap();
@@ -176,7 +176,8 @@ fn lanes_have_the_parameters_of_the_file() {
     ];
     let text = building(measured, &lanes, "lifts: {one: {}}\n");
     let (imported, warnings) = read(&text, &tiny(&[]));
-    let edges: Vec<_> = imported.layout.edges.iter().map(|edge| (edge.two_way, edge.speed, edge.curve.len())).collect();
+    let edges: Vec<_> =
+        imported.layout.edges.iter().map(|edge| (edge.is_two_way(), edge.speed[0], edge.curve.len())).collect();
     assert_eq!(edges, [(true, Some(0.5), 1), (false, None, 1), (false, None, 1), (false, None, 0)]);
     assert!((imported.layout.edges[1].length() - 10.0).abs() < 1e-12);
     // A lift of one level leads nowhere.

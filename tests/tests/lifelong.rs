@@ -103,7 +103,7 @@ fn large_fleets_never_touch_and_all_arrive() {
 #[test]
 fn robots_drive_together_where_no_end_is_safe() {
     let mut imported = streets(32);
-    imported.layout.edges.retain(|edge| !edge.two_way);
+    imported.layout.edges.retain(|edge| !edge.is_two_way());
     let form = well_formedness(&imported, 3).expect("a layout");
     assert!(form.safe_ends.is_empty() && form.dead_ends_only, "{form:?}");
     let outcome = driven(&imported, 12, 2.0, 0.02, Method::Orders);

@@ -61,7 +61,7 @@ fn on(edge: &Edge, length: f64) -> Pose {
 fn ways(edge: &Edge) -> Vec<([usize; 2], [f64; 2])> {
     let [start, end] = [on(edge, 0.0).2, on(edge, edge.length()).2];
     let [from, to] = edge.ends;
-    let back = edge.two_way.then_some(([to, from], [end + PI, start + PI]));
+    let back = edge.is_two_way().then_some(([to, from], [end + PI, start + PI]));
     [([from, to], [start, end])].into_iter().chain(back).collect()
 }
 

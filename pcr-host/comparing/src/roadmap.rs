@@ -39,8 +39,9 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
             id: Id::Number(number as u64),
             ends,
             curve: vec![Placed::line(from, to)],
-            two_way: false,
-            speed: None,
+            ways: [true, false],
+            closed: false,
+            speed: [None; 2],
             rotation: None,
             deviation: 0.0,
         });

@@ -191,8 +191,8 @@ impl<'a> Auditor<'a> {
 
     /// An edge in the directions in which it may be travelled.
     fn ways(&self, edge: usize) -> impl Iterator<Item = &'a Way> {
-        let both = self.layout().edges[edge].two_way;
-        self.rules.edges.get(edge).into_iter().flatten().take(if both { 2 } else { 1 })
+        let ways = self.rules.edges.get(edge);
+        self.layout().edges[edge].steps().filter_map(move |step| ways?.get(usize::from(step.backward)))
     }
 
     /// Both edges in all such directions.

@@ -1,7 +1,7 @@
 //! The nodes and edges of a layout: the answer of `pcr nodes`. The types match the JSON output, field by field in this
 //! order.
 
-use pcr_formats::import::{Edge, Id, Layout, Node};
+use pcr_formats::import::{Edge, Id, Layout, Node, Step};
 use serde::Serialize;
 
 /// The nodes and edges of a layout.
@@ -41,9 +41,9 @@ pub struct Place<'a> {
 pub struct Way<'a> {
     /// As in the file.
     pub id: &'a Id,
-    /// Node where it begins.
+    /// Node from which it is travelled.
     pub from: &'a Id,
-    /// Node where it ends.
+    /// Node to which it is.
     pub to: &'a Id,
     /// \[m\]
     pub length: f64,
@@ -51,6 +51,12 @@ pub struct Way<'a> {
     pub two_way: bool,
     /// Largest speed \[m/s\], where it is limited.
     pub speed: Option<f64>,
+    /// The same backward, where it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_back: Option<f64>,
+    /// Whether nobody may travel on it as the file is.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub closed: bool,
 }
 
 impl<'a> Listing<'a> {
@@ -84,7 +90,11 @@ impl<'a> Place<'a> {
 impl<'a> Way<'a> {
     fn of(edge: &'a Edge, layout: &'a Layout) -> Option<Self> {
         let id = |place: usize| layout.nodes.get(place).map(|node| &node.id);
-        let [from, to] = [id(edge.ends[0])?, id(edge.ends[1])?];
-        Some(Self { id: &edge.id, from, to, length: edge.length(), two_way: edge.two_way, speed: edge.speed })
+        let there = Step { edge, backward: !edge.ways[0] && edge.ways[1] };
+        let back = Step { edge, backward: true };
+        let [from, to] = [id(there.origin())?, id(there.target())?];
+        let (two_way, speed, closed) = (edge.is_two_way(), there.speed(), edge.closed);
+        let speed_back = back.speed().filter(|_| two_way && back.speed() != speed);
+        Some(Self { id: &edge.id, from, to, length: edge.length(), two_way, speed, speed_back, closed })
     }
 }

@@ -31,7 +31,7 @@ pub(crate) fn prepare(
                 notes.said.push(format!("lane {} is left whole: {reason}", edge.id));
                 parts = 1;
             }
-            if parts == 1 && !edge.two_way {
+            if parts == 1 && !edge.is_two_way() {
                 continue;
             }
             own(lane, "lanes", &edge.id)?;
@@ -39,7 +39,7 @@ pub(crate) fn prepare(
                 [0, 1].map(|k| lane.list().get(k).and_then(Spanned::text).and_then(|text| text.parse::<usize>().ok()));
             let [Some(from), Some(to)] = ends else { continue };
             let chain = cutter.chain([from, to], parts);
-            let ways: &[bool] = if edge.two_way { &[false, true] } else { &[false] };
+            let ways: &[bool] = if edge.is_two_way() { &[false, true] } else { &[false] };
             let mut copies = Vec::new();
             for &back in ways {
                 let mut chain = chain.clone();

@@ -70,8 +70,9 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
             id: Id::Text(id),
             ends,
             curve: if straight { vec![line] } else { Vec::new() },
-            two_way: edge.attribute("directed").map_or(undirected, |directed| directed == "false"),
-            speed: None,
+            ways: [true, edge.attribute("directed").map_or(undirected, |directed| directed == "false")],
+            closed: false,
+            speed: [None; 2],
             rotation: None,
             deviation: 0.0,
         };

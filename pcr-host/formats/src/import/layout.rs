@@ -63,10 +63,12 @@ pub struct Edge {
     pub ends: [usize; 2],
     /// Its lines and arcs, each beginning where the one before it ends.
     pub curve: Vec<Placed>,
-    /// Whether it may be travelled backward as well.
-    pub two_way: bool,
-    /// Largest speed \[m/s\], where it is limited.
-    pub speed: Option<f64>,
+    /// Whether it may be travelled from its first end to the other one, and back.
+    pub ways: [bool; 2],
+    /// Whether nobody may travel on it as the file is. Routes avoid it; locks count it, as whoever has closed it may open it.
+    pub closed: bool,
+    /// Largest speed in either direction \[m/s\], where it is limited.
+    pub speed: [Option<f64>; 2],
     /// Largest speed of rotation \[rad/s\], where it is limited.
     pub rotation: Option<f64>,
     /// Largest distance of the curve in the file from `curve` \[m\]: 0 where the file has lines and arcs.
@@ -74,6 +76,11 @@ pub struct Edge {
 }
 
 impl Edge {
+    /// Whether it may be travelled in both directions.
+    pub fn is_two_way(&self) -> bool {
+        self.ways == [true; 2]
+    }
+
     /// Length \[m\].
     pub fn length(&self) -> f64 {
         // A sum of nothing is -0.

@@ -191,13 +191,14 @@ impl Reader<'_> {
             id: Id::Text(id.to_owned()),
             ends,
             curve: if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() },
-            two_way: false,
-            speed: None,
+            ways: [true, false],
+            closed: false,
+            speed: [None; 2],
             rotation: None,
             deviation: 0.0,
         };
         if let Some(property) = property {
-            edge.speed = property.positive("maxSpeed")?;
+            edge.speed = [property.positive("maxSpeed")?; 2];
             edge.rotation = property.positive("maxRotationSpeed")?;
             if let Some(outline) = self.outline {
                 let ahead = straight.heading;

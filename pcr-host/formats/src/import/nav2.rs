@@ -168,7 +168,16 @@ impl Graph<'_> {
         }
         let speed = self.speed_limit(&named, properties, speed)?;
         let curve = if straight { vec![line] } else { Vec::new() };
-        let edge = Edge { id: Id::Number(id), ends, curve, two_way: false, speed, rotation: None, deviation: 0.0 };
+        let edge = Edge {
+            id: Id::Number(id),
+            ends,
+            curve,
+            ways: [true, false],
+            closed: false,
+            speed: [speed; 2],
+            rotation: None,
+            deviation: 0.0,
+        };
         self.edges.add(edge, self.warnings);
         Ok(())
     }

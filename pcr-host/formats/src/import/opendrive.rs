@@ -79,8 +79,9 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
                     id: named(&id),
                     ends: [0; 2],
                     curve: pieces,
-                    two_way: true,
-                    speed,
+                    ways: [true; 2],
+                    closed: false,
+                    speed: [speed; 2],
                     rotation: None,
                     deviation,
                 };

@@ -63,8 +63,9 @@ pub(super) fn read(
         match edge(path, id, &nodes, units, options.tolerance(), warnings) {
             Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
-                if edge.two_way && facing::is_other_backward(outline) {
-                    edge.two_way = false;
+                if edge.ways[1] && facing::is_other_backward(outline) {
+                    edge.ways[1] = false;
+                    edge.closed |= !edge.ways[0];
                     warnings.lose(format_args!("path {}, maxReverseVelocity: {}", edge.id, facing::BACKWARD));
                 }
                 edges.add(edge, warnings);
@@ -110,12 +111,22 @@ fn edge(
     let ends = [end("sourcePoint")?, end("destinationPoint")?];
     let fit = curve(path, &name, ends.map(|node| nodes.list()[node].at), units, tolerance)?;
     let limit = |attribute: &str| Ok(optional(path, &name, attribute)?.map(|speed| speed * MILLI));
+    // openTCS takes a speed of 0 for "not in this direction", and uses no path that is locked.
+    let speed = [limit("maxVelocity")?, limit("maxReverseVelocity")?];
+    let ways = [speed[0].is_none_or(|speed| speed > 0.0), speed[1].is_some_and(|speed| speed > 0.0)];
+    let locked = path.attribute("locked").is_some_and(|locked| matches!(locked.trim(), "true" | "1"));
+    let closed = locked || ways == [false; 2];
+    if closed {
+        let why = if locked { "it is locked" } else { "its speeds are 0 in both directions" };
+        warnings.add(name.as_str(), format!("{why}: no routes lead over it, and locks count it all the same"));
+    }
     let edge = Edge {
         id: Id::Text(id),
         ends,
         curve: fit.pieces,
-        two_way: limit("maxReverseVelocity")?.is_some_and(|speed| speed > 0.0),
-        speed: limit("maxVelocity")?.filter(|speed| *speed > 0.0),
+        ways: [ways[0] || closed && !ways[1], ways[1]],
+        closed,
+        speed: speed.map(|speed| speed.filter(|speed| *speed > 0.0)),
         rotation: None,
         deviation: fit.deviation,
     };

@@ -254,8 +254,9 @@ impl Level<'_> {
             id: Id::Text(format!("{}/{k}", self.name)),
             ends: [from.0, to.0],
             curve: if straight { vec![line] } else { Vec::new() },
-            two_way: both_ways && !self.graph,
-            speed: speed.filter(|speed| *speed < 1e6),
+            ways: [true, both_ways && !self.graph],
+            closed: false,
+            speed: [speed.filter(|speed| *speed < 1e6); 2],
             rotation: None,
             deviation: 0.0,
         });

@@ -30,6 +30,14 @@ pub struct Step<'a> {
     pub backward: bool,
 }
 
+impl Edge {
+    /// The directions in which it may be travelled, also if it is closed.
+    pub fn steps(&self) -> impl Iterator<Item = Step<'_>> {
+        let ways = [false, true].into_iter().filter(|&backward| self.ways[usize::from(backward)]);
+        ways.map(|backward| Step { edge: self, backward })
+    }
+}
+
 impl Step<'_> {
     /// The node from which it goes.
     pub fn origin(self) -> usize {
@@ -39,6 +47,11 @@ impl Step<'_> {
     /// The node to which it goes.
     pub fn target(self) -> usize {
         self.edge.ends[usize::from(!self.backward)]
+    }
+
+    /// Largest speed \[m/s\], where it is limited.
+    pub fn speed(self) -> Option<f64> {
+        self.edge.speed[usize::from(self.backward)]
     }
 
     /// Its lines and arcs in the direction of travel.
@@ -83,14 +96,9 @@ pub fn cheapest<'a>(
     cost: impl Fn(Step<'a>) -> f64,
 ) -> Option<Vec<Step<'a>>> {
     let mut leaving = vec![Vec::new(); layout.nodes.len()];
-    for edge in &layout.edges {
-        for backward in [false, true] {
-            let origin = edge.ends[usize::from(backward)];
-            if (!backward || edge.two_way)
-                && let Some(steps) = leaving.get_mut(origin)
-            {
-                steps.push((origin, Step { edge, backward }));
-            }
+    for step in layout.edges.iter().filter(|edge| !edge.closed).flat_map(Edge::steps) {
+        if let Some(steps) = leaving.get_mut(step.origin()) {
+            steps.push((step.origin(), step));
         }
     }
     let mut best = vec![(f64::INFINITY, None); layout.nodes.len()];
@@ -131,7 +139,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
     let mut deviation = 0.0_f64;
     for (k, step) in steps.iter().enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
-        tracer.limit(edge.speed, edge.rotation);
+        tracer.limit(step.speed(), edge.rotation);
         deviation = deviation.max(edge.deviation);
         let curve = step.curve();
         if !edge.is_straight() {
@@ -341,8 +349,9 @@ mod tests {
             id: Id::Number(id),
             ends,
             curve,
-            two_way: false,
-            speed: None,
+            ways: [true, false],
+            closed: false,
+            speed: [None; 2],
             rotation: None,
             deviation: 0.0,
         };

@@ -22,7 +22,7 @@ pub struct WellFormedness {
     /// Nodes from which not all others can be reached, or that cannot be reached from all others: no missions go there.
     pub cut_off: Vec<Id>,
     /// Safe ends: robots may stand at all of them for good, and all other nodes, and each of them, can be reached from one another.
-    /// Up to as many robots, no mission is refused for ever, and idle robots wait there.
+    /// With fewer robots no mission is refused for ever, and idle robots wait there.
     pub safe_ends: Vec<Id>,
     /// Nodes where a single robot that stands for good already cuts others off.
     pub never_ends: Vec<Id>,
@@ -50,7 +50,8 @@ pub(super) struct Ends {
 impl Ends {
     pub(super) fn of(site: &Site, seed: u64) -> Self {
         let nodes = strongest(site);
-        let found = [dead_ends(site, &nodes), drawn(site, &nodes, seed)];
+        let dead = Some(dead_ends(site, &nodes)).filter(|ends| is_open(site, &nodes, ends));
+        let found = [dead.unwrap_or_default(), drawn(site, &nodes, seed)];
         let safe = found.into_iter().max_by_key(Vec::len).unwrap_or_default();
         let mut is_safe = vec![false; site.points.len()];
         safe.iter().for_each(|&end| is_safe[end] = true);
@@ -354,7 +355,7 @@ mod tests {
             let mut imported = streets(count);
             imported.vehicle.radius = radius;
             // A street for both directions, so that some bridge is none.
-            imported.layout.edges[0].two_way = true;
+            imported.layout.edges[0].ways = [true; 2];
             let site = Site::new(&imported).expect("a site");
             let nodes = strongest(&site);
             assert_eq!(nodes.len(), count * count + 6 * count * (count - 1));
@@ -383,7 +384,8 @@ mod tests {
                     nodes.iter().any(|&node| !found[node])
                 })
             };
-            let edges = imported.layout.edges.iter().enumerate().filter(|(place, edge)| edge.two_way && cuts(*place));
+            let edges =
+                imported.layout.edges.iter().enumerate().filter(|(place, edge)| edge.is_two_way() && cuts(*place));
             let edges: Vec<usize> = edges.map(|edge| edge.0).collect();
             assert_eq!(bridges(&site, &is_inside), edges);
             assert!(!edges.is_empty());

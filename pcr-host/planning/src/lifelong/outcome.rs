@@ -39,7 +39,7 @@ pub struct Outcome {
     pub waiting: f64,
     /// How many do so for longer than ten minutes.
     pub starved: usize,
-    /// Why nobody reached a goal, where nobody did.
+    /// Why nobody reached a goal, where nobody did, or nobody did any more in the last ten minutes although missions waited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub idle_because: Option<String>,
     /// Where the time of the robots went, while missions came.

@@ -19,6 +19,9 @@ const REST: f64 = 300.0;
 /// The first part of the time, in which robots start from their ends, is not steady.
 const START: f64 = 0.1;
 
+/// Who has waited for a way for longer than this has waited for long \[s\].
+const LONG: f64 = 600.0;
+
 /// Runs a fleet on a layout.
 ///
 /// # Errors
@@ -131,10 +134,17 @@ impl Run {
         let mut outcome = self.outcome.clone();
         outcome.time.norm();
         outcome.waiting = waits.iter().copied().fold(0.0, f64::max);
-        outcome.starved = waits.iter().filter(|wait| **wait > 600.0).count();
+        outcome.starved = waits.iter().filter(|wait| **wait > LONG).count();
         outcome.stuck = self.robots.iter().filter(|robot| !robot.has_arrived()).count();
         outcome.missions_per_hour = self.steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
-        outcome.idle_because = (outcome.missions == 0 && !waits.is_empty()).then(|| self.why_idle(outcome.stuck));
+        let idle = request.duration - self.last_arrival;
+        outcome.idle_because = if outcome.missions == 0 && !waits.is_empty() {
+            Some(self.why_idle(outcome.stuck))
+        } else if outcome.starved > 0 && idle > LONG {
+            Some(format!("nobody has reached a goal for {idle:.0} s: {}", self.why_idle(outcome.stuck)))
+        } else {
+            None
+        };
         outcome.travel_over_unimpeded = (self.travel.1 > 0.0).then(|| self.travel.0 / self.travel.1);
         outcome
     }
@@ -158,10 +168,10 @@ impl Run {
         };
         let refused = self.outcome.refused;
         match scene.wanted(robot, mission.goal).map(|route| scene.standing_on(robot, &route).len()) {
-            None => format!("all {refused} tries were refused; no route leads to the goal of the oldest mission"),
-            Some(0) => format!("all {refused} tries were refused; the route to the goal of the oldest mission is free"),
+            None => format!("{refused} tries were refused; no route leads to the goal of the oldest mission"),
+            Some(0) => format!("{refused} tries were refused; the route to the goal of the oldest mission is free"),
             Some(others) => format!(
-                "all {refused} tries were refused; on the route to the goal of the oldest mission stand {others} other robots, \
+                "{refused} tries were refused; on the route to the goal of the oldest mission stand {others} other robots, \
                  which were sent nowhere else"
             ),
         }

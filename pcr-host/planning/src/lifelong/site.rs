@@ -83,11 +83,10 @@ impl Site {
         let nodes: Vec<usize> = (0..points.len()).filter(|&node| layout.nodes[node].level == level).collect();
         let mut atoms = Vec::new();
         let mut off = 0.0_f64;
-        for (place, edge) in layout.edges.iter().enumerate() {
-            for backward in [false, true] {
-                let step = Step { edge, backward };
+        for (place, edge) in layout.edges.iter().enumerate().filter(|(_, edge)| !edge.closed) {
+            for step in edge.steps() {
                 let there = [step.origin(), step.target()].iter().all(|&node| layout.nodes[node].level == level);
-                if there && (!backward || edge.two_way) {
+                if there {
                     let atom = Atom::along(layout, step, place, vehicle.speed);
                     let atom = atom.map_err(|invalid| format!("edge {}: {invalid}", edge.id))?;
                     off = off.max(edge.deviation + atom.gap(&points));
@@ -194,7 +193,7 @@ impl Atom {
         Ok(Self {
             ends: [step.origin(), step.target()],
             length,
-            speed: step.edge.speed.map_or(fastest, |speed| speed.min(fastest)),
+            speed: step.speed().map_or(fastest, |speed| speed.min(fastest)),
             headings,
             phases: if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() },
             bounds: bounds(&shapes, from),

@@ -41,7 +41,7 @@ pub(super) struct Run {
     pub(super) site: Site,
     pub(super) ends: Ends,
     pub(super) layout: WellFormedness,
-    /// Whether there are more robots than safe ends.
+    /// Whether there are as many robots as safe ends or more: with fewer, there is always an end to which one of them can make way.
     pub(super) crowded: bool,
     /// Whether only the mission that has waited longest is served.
     pub(super) is_urgent: bool,
@@ -82,7 +82,7 @@ impl Run {
             Some(tasks) => tasks.starts(&site)?,
             None => starts(&site, &ends, request.agents, request.seed),
         };
-        let crowded = starts.len() > ends.safe.len();
+        let crowded = starts.len() >= ends.safe.len();
         if crowded {
             let (queued, lanes) = queued(imported, &site);
             site = Site::new(&queued)?;
@@ -174,10 +174,9 @@ impl Run {
             self.given[robot] += 1;
             let begin = Instant::now();
             let way = self.network.quickest(&self.site, from, |_| 0.0, |node| node == goal, Some(goal), 1);
-            let alone = way.first().map_or(0.0, |atoms| {
-                let way = Way::new(&self.site, from, atoms, &[], &self.abilities);
-                way.time(way.length()) + self.abilities.stop()
-            });
+            let alone = way
+                .first()
+                .map_or(0.0, |atoms| Way::new(&self.site, from, atoms, &[], &self.abilities).alone(&self.abilities));
             let admitted = !it.way.goals.is_empty();
             let prepared = begin.elapsed();
             self.missions[robot] =

@@ -89,6 +89,37 @@ impl Way {
         self.offsets[self.atoms.len()]
     }
 
+    /// Time of a robot alone, from rest to rest, with stops at the corners only \[s\]. It speeds up and brakes so that it is nowhere
+    /// faster than an atom allows.
+    pub(super) fn alone(&self, abilities: &Abilities) -> f64 {
+        let acceleration = abilities.acceleration;
+        let mut borders: Vec<f64> = self.offsets.iter().copied().chain(self.corners.iter().map(|it| it.at)).collect();
+        borders.sort_unstable_by(f64::total_cmp);
+        borders.dedup();
+        let pieces: Vec<(f64, f64)> = borders
+            .windows(2)
+            .map(|ends| (ends[1] - ends[0], self.speeds[self.atom(0.5 * (ends[0] + ends[1]))]))
+            .collect();
+        // The largest speed at each border: where both pieces allow it and where it can be braked from, then where it can be reached.
+        let stops = |border: usize| self.corners.iter().any(|corner| corner.at == borders[border]);
+        let mut speeds = vec![0.0; borders.len()];
+        for k in (1..pieces.len()).rev() {
+            let allowed = if stops(k) { 0.0 } else { f64::min(pieces[k - 1].1, pieces[k].1) };
+            speeds[k] = f64::min(allowed, (speeds[k + 1] * speeds[k + 1] + 2.0 * acceleration * pieces[k].0).sqrt());
+        }
+        let mut time: f64 = self.corners.iter().map(|corner| corner.turn).sum();
+        for (k, &(length, fastest)) in pieces.iter().enumerate() {
+            let before: f64 = speeds[k];
+            let after = f64::min(speeds[k + 1], (before * before + 2.0 * acceleration * length).sqrt());
+            speeds[k + 1] = after;
+            let squares = 0.5 * (before * before + after * after);
+            let peak = f64::min(fastest, (squares + acceleration * length).sqrt());
+            time += (2.0 * peak - before - after) / acceleration;
+            time += f64::max(0.0, length - (peak * peak - squares) / acceleration) / peak;
+        }
+        time
+    }
+
     /// When it would be at a length, from its start \[s\].
     pub(super) fn time(&self, length: f64) -> f64 {
         // At its start a robot has still to turn.
@@ -174,4 +205,66 @@ pub(super) struct Kept {
     pub(super) before: f64,
     /// Where it ends.
     pub(super) on: From,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lifelong::streets;
+
+    #[test]
+    fn a_robot_alone_takes_the_time_of_its_ramps() {
+        let mut imported = streets(2);
+        (imported.vehicle.speed, imported.vehicle.acceleration) = (2.0, 0.5);
+        imported.layout.edges.iter_mut().for_each(|edge| edge.speed = [Some(1.0); 2]);
+        let site = Site::new(&imported).expect("a site");
+        let abilities = Abilities::of(&imported.vehicle);
+        let long = (0..site.atoms.len()).max_by(|&a, &b| site.atoms[a].length.total_cmp(&site.atoms[b].length));
+        let long = long.expect("an atom");
+        let length = site.atoms[long].length;
+        let from = From { node: site.atoms[long].ends[0], heading: None };
+        let alone = |acceleration: f64| {
+            Way::new(&site, from, &[long], &[], &abilities).alone(&Abilities { acceleration, ..abilities })
+        };
+        // v = 1 m/s: L / v + v / a where that speed is reached, else 2 √(L / a).
+        let long_enough = 1.0 / length;
+        assert!((alone(4.0 * long_enough) - (length + 0.25 * length)).abs() < 1e-12);
+        assert!((alone(0.25 * long_enough) - 2.0 * (length / (0.25 * long_enough)).sqrt()).abs() < 1e-9);
+        assert!((alone(f64::INFINITY) - length).abs() < 1e-12);
+    }
+
+    /// Steps of a millisecond at the largest speed from which all limits ahead can be kept.
+    #[test]
+    fn nobody_is_quicker_alone() {
+        let mut imported = streets(3);
+        let edges = imported.layout.edges.iter_mut().enumerate();
+        edges.for_each(|(k, edge)| edge.speed = [Some([0.3, 1.0, 0.6][k % 3]); 2]);
+        let site = Site::new(&imported).expect("a site");
+        let abilities = Abilities::of(&imported.vehicle);
+        for start in 0..20 {
+            let mut atoms = vec![start];
+            while atoms.len() < 6 {
+                let end = site.atoms[atoms[atoms.len() - 1]].ends[1];
+                let Some(&next) = site.leaving[end].iter().find(|&&next| !atoms.contains(&next)) else { break };
+                atoms.push(next);
+            }
+            let way = Way::new(&site, From { node: site.atoms[start].ends[0], heading: None }, &atoms, &[], &abilities);
+            let (mut at, mut speed, mut time) = (0.0, 0.0, way.corners.iter().map(|corner| corner.turn).sum::<f64>());
+            const STEP: f64 = 1e-3;
+            while at < way.length() - 1e-4 {
+                let limits = (way.atom(at + 1e-9)..atoms.len()).map(|k| (way.offsets[k], way.speeds[k]));
+                let stops = way.corners.iter().map(|corner| corner.at).chain([way.length()]).filter(|&stop| stop > at);
+                let ahead = limits.chain(stops.map(|stop| (stop, 0.0)));
+                let most = ahead.map(|(place, limit)| {
+                    let way: f64 = f64::max(0.0, place - at - speed * STEP);
+                    (limit * limit + 2.0 * abilities.acceleration * way).sqrt()
+                });
+                speed = f64::min(speed + abilities.acceleration * STEP, most.fold(f64::INFINITY, f64::min)).max(1e-3);
+                at += speed * STEP;
+                time += STEP;
+            }
+            let alone = way.alone(&abilities);
+            assert!((alone - time).abs() < 0.02 * time, "{start}: {alone} and {time}");
+        }
+    }
 }

@@ -83,9 +83,7 @@ impl Delays {
         }
         let mut order: Vec<&Edge> = layout.edges.iter().collect();
         order.sort_by(|a, b| a.id.cmp(&b.id));
-        let directions = |edge| [false, true].map(|backward| Step { edge, backward });
-        let steps = order.into_iter().flat_map(directions).filter(|step| step.edge.two_way || !step.backward);
-        let steps: Vec<Step<'_>> = steps.collect();
+        let steps: Vec<Step<'_>> = order.into_iter().flat_map(Edge::steps).collect();
         let mut places: Vec<usize> = (0..if nodes { layout.nodes.len() } else { 0 }).collect();
         places.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
         let level = |node: usize| layout.nodes.get(node).map_or(0, |node| node.level);
@@ -100,13 +98,13 @@ impl Delays {
             fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
             areas: Vec::new(),
         };
-        let speed = |edge: &Edge| edge.speed.map_or(driving.speed, |limit| limit.min(driving.speed));
+        let speed = |step: Step<'_>| step.speed().map_or(driving.speed, |limit| limit.min(driving.speed));
         all.straight = steps
             .iter()
             .map(|step| {
                 let [from, to] = straight_ends(layout, step.edge).filter(|_| driving.acceleration.is_none())?;
                 let [from, to] = if step.backward { [to, from] } else { [from, to] };
-                Straight::new(from, to, speed(step.edge))
+                Straight::new(from, to, speed(*step))
             })
             .collect();
         if all.straight.iter().all(Option::is_some) {
@@ -122,7 +120,7 @@ impl Delays {
             ..rides.vehicle().clone()
         };
         let agent = |place: usize| match steps.get(place) {
-            Some(&step) => driven(rides.along_with(&vehicle, step), step.edge, driving, speed(step.edge)),
+            Some(&step) => driven(rides.along_with(&vehicle, step), step.edge, driving, speed(step)),
             None => rides.at(places[place - steps.len()]).agent,
         };
         let units: Vec<usize> = (0..all.levels.len()).collect();

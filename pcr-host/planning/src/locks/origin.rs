@@ -13,6 +13,6 @@ pub fn origin(imported: &Imported) -> u32 {
     add(&(vehicle.radius, vehicle.margin, &vehicle.footprint, layout.nodes.len(), layout.edges.len()));
     layout.nodes.iter().for_each(|node| add(&(&node.id, node.level, node.at)));
     let edges = layout.edges.iter();
-    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.two_way, edge.deviation)));
+    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.is_two_way(), edge.deviation)));
     sum
 }

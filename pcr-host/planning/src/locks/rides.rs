@@ -64,7 +64,7 @@ impl<'a> Rides<'a> {
         // A disc is the same in every heading.
         let turning = if vehicle.footprint.is_some() { &layout.edges[..] } else { &[] };
         let mut headings = vec![<[Vec<f64>; 2]>::default(); if turning.is_empty() { 0 } else { layout.nodes.len() }];
-        for step in turning.iter().flat_map(ways) {
+        for step in turning.iter().flat_map(|edge| edge.steps()) {
             let Some([start, end]) = ends(step) else { continue };
             for (node, side, end) in [(step.target(), 0, end), (step.origin(), 1, start)] {
                 if let Some(sides) = headings.get_mut(node) {
@@ -93,7 +93,7 @@ impl<'a> Rides<'a> {
         if self.vehicle.footprint.is_none() {
             return vec![self.along(Step { edge, backward: false })];
         }
-        ways(edge).flat_map(|step| self.turning(step)).collect()
+        edge.steps().flat_map(|step| self.turning(step)).collect()
     }
 
     /// The rides of an outline in one direction.
@@ -159,12 +159,6 @@ impl<'a> Rides<'a> {
 fn grown(vehicle: &Vehicle, by: f64) -> Vehicle {
     let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(by));
     Vehicle { radius: vehicle.radius + by, footprint, ..vehicle.clone() }
-}
-
-/// The directions in which an edge may be travelled.
-fn ways(edge: &Edge) -> impl Iterator<Item = Step<'_>> {
-    let backward = edge.two_way.then_some(true);
-    std::iter::once(false).chain(backward).map(move |backward| Step { edge, backward })
 }
 
 /// Where the vehicle is.

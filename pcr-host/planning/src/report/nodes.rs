@@ -11,16 +11,18 @@ use std::io::{self, Write};
 /// # Errors
 /// Those of the writer.
 pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed")?;
+    writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed,speed_back,closed")?;
     let text = |text: &dyn ToString| quoted(&text.to_string()).into_owned();
     for node in &listing.nodes {
         let ([x, y], names) = (node.at, text(&node.names.join(" ")));
-        writeln!(out, "node,{},{names},{},{x},{y},,,,,", text(node.id), text(&node.level))?;
+        writeln!(out, "node,{},{names},{},{x},{y},,,,,,,", text(node.id), text(&node.level))?;
     }
     for edge in &listing.edges {
-        let speed = edge.speed.map(|speed| speed.to_string()).unwrap_or_default();
-        let (two_way, length) = (u8::from(edge.two_way), edge.length);
-        writeln!(out, "edge,{},,,,,{},{},{length},{two_way},{speed}", text(edge.id), text(edge.from), text(edge.to))?;
+        let [speed, back] =
+            [edge.speed, edge.speed_back].map(|speed| speed.map_or_else(String::new, |it| it.to_string()));
+        let ([id, from, to], length) = ([edge.id, edge.from, edge.to].map(|id| text(id)), edge.length);
+        let [two_way, closed] = [edge.two_way, edge.closed].map(u8::from);
+        writeln!(out, "edge,{id},,,,,{from},{to},{length},{two_way},{speed},{back},{closed}")?;
     }
     Ok(())
 }
@@ -50,8 +52,15 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()
     let mut columns = Columns::new(&["<edge", "<from", "<to", "length [m]", "<ways", "speed [m/s]"]);
     for edge in &listing.edges {
         let [id, from, to] = [edge.id, edge.from, edge.to].map(|id| printable(&id.to_string()));
-        let speed = edge.speed.map_or_else(|| "-".to_owned(), thousandths);
-        let ways = if edge.two_way { "both" } else { "one" };
+        let mut speed = edge.speed.map_or_else(|| "-".to_owned(), thousandths);
+        if let Some(back) = edge.speed_back {
+            speed = format!("{speed}, back {}", thousandths(back));
+        }
+        let ways = match (edge.closed, edge.two_way) {
+            (true, _) => "none",
+            (_, true) => "both",
+            _ => "one",
+        };
         columns.row(vec![id, from, to, thousandths(edge.length), ways.to_owned(), speed]);
     }
     columns.write(out)
