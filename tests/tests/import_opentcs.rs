@@ -133,6 +133,20 @@ fn paths_have_the_limits_and_the_shape_of_the_file() {
     assert_eq!((stands.edges[0].ways, stands.edges[0].speed, stands.edges[0].closed), ([true, false], [None; 2], true));
     assert!(stands.warnings.iter().any(|line| line.contains("its speeds are 0 in both directions")));
     assert!(!stands.warnings.iter().any(|line| line.contains("vehicleEnvelope")), "{:?}", stands.warnings);
+    // A speed of 0 closes one direction, the other one has its own; a path that is locked is closed, and locks know both directions.
+    let back =
+        read("length=\"4000\" maxVelocity=\"0\" maxReverseVelocity=\"500\" locked=\"false\"", &[], "DIRECT").unwrap();
+    assert_eq!(
+        (back.edges[0].ways, back.edges[0].speed, back.edges[0].closed),
+        ([false, true], [None, Some(0.5)], false)
+    );
+    let locked =
+        read("length=\"4000\" maxVelocity=\"1000\" maxReverseVelocity=\"250\" locked=\"true\"", &[], "DIRECT").unwrap();
+    assert_eq!(
+        (locked.edges[0].ways, locked.edges[0].speed, locked.edges[0].closed),
+        ([true; 2], [Some(1.0), Some(0.25)], true)
+    );
+    assert!(locked.warnings.iter().any(|line| line.contains("it is locked: no routes lead over it")));
     // One per cent is not warned about.
     for (length, warned) in [(4000, false), (4030, false), (3970, false), (4050, true), (3950, true)] {
         let plant = read(&format!("length=\"{length}\""), &[], "DIRECT").unwrap();
@@ -175,4 +189,42 @@ fn xml_is_known_by_its_first_element_and_not_nested_without_end() {
     for many in ["<a></a>", "<a/>", "<a b=\"c\"/>", "<!-- a -->", "<?a b?>"] {
         assert!(read(&many.repeat(300)).is_ok(), "{many}");
     }
+}
+
+/// Routes, traffic and locks of a triangle of which one path is locked, one leads back only, and one is slow backward.
+#[test]
+fn routes_go_where_the_plant_model_lets_vehicles_go() {
+    let point = |name: &str, x: u32, y: u32| format!("<point name=\"{name}\" positionX=\"{x}\" positionY=\"{y}\"/>");
+    let path = |ends: [&str; 2], length: u32, speeds: [u32; 2], locked: bool| {
+        let [a, b] = ends;
+        format!(
+            "<path name=\"{a}{b}\" sourcePoint=\"{a}\" destinationPoint=\"{b}\" length=\"{length}\" maxVelocity=\"{}\" \
+            maxReverseVelocity=\"{}\" locked=\"{locked}\"/>",
+            speeds[0], speeds[1]
+        )
+    };
+    let text = [
+        "<model>".to_owned(),
+        point("a", 0, 0) + &point("b", 4000, 0) + &point("c", 0, 3000),
+        path(["a", "b"], 4000, [1000, 1000], true) + &path(["b", "c"], 5000, [0, 400], false),
+        path(["c", "a"], 3000, [1000, 250], false) + "</model>",
+    ]
+    .concat();
+    let route = |ends: &str| {
+        let read = scenario(Format::OpenTcs, &text, &options(&[ends]), &mut Warnings::default());
+        read.map(|scenario| (scenario.agents[0].length(), scenario.agents[0].duration()))
+            .map_err(|error| error.to_string())
+    };
+    let (length, duration) = route("a:b").expect("over c");
+    assert!(
+        (length - 8.0).abs() < 1e-9 && duration > 3.0 / 0.25 + 5.0 / 0.4 && duration < 32.0,
+        "{length} m, {duration} s"
+    );
+    let (length, duration) = route("c:a").expect("straight");
+    assert!((length - 3.0).abs() < 1e-9 && duration < 6.0, "{length} m, {duration} s");
+    assert!(route("b:a").is_err_and(|error| error.contains("no way") || error.contains("no route")));
+    let imported = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).expect("a layout");
+    // The path that is locked has locks all the same.
+    let steps: Vec<usize> = imported.layout.edges.iter().map(|edge| edge.steps().count()).collect();
+    assert_eq!(steps, [2, 1, 2]);
 }

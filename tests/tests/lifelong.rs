@@ -145,6 +145,67 @@ fn a_fleet_in_which_nobody_can_do_anything_says_why() {
     assert_eq!(why(4), (4, None, true));
 }
 
+/// A layout of nav2 with these points, and a two-way edge between each of these pairs of them.
+fn graph(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
+    let feature = |properties: String, kind: &str, at: String| {
+        let geometry = format!(r#"{{"type":"{kind}","coordinates":{at}}}"#);
+        format!(r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{geometry}}}"#)
+    };
+    let node =
+        |(k, [x, y]): (usize, &[f64; 2])| feature(format!(r#""id":{k},"frame":"map""#), "Point", format!("[{x},{y}]"));
+    let there_and_back = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]);
+    let edge = |(k, [a, b]): (usize, [usize; 2])| {
+        let [[x, y], [u, v]] = [points[a], points[b]];
+        let properties = format!(r#""id":{},"startid":{a},"endid":{b}"#, 1000 + k);
+        feature(properties, "MultiLineString", format!("[[[{x},{y}],[{u},{v}]]]"))
+    };
+    let features: Vec<String> =
+        points.iter().enumerate().map(node).chain(there_and_back.enumerate().map(edge)).collect();
+    format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","))
+}
+
+/// Robots at all safe ends: they can change places where there is room in front of the ends. On a line there is none past each other,
+/// and the answer is no success.
+#[test]
+fn as_many_robots_as_safe_ends_go_on_or_say_why_not() {
+    let star: Vec<[f64; 2]> =
+        (0..6).map(|k| f64::from(k).to_radians() * 60.0).map(|a| [5.0 * a.cos(), 5.0 * a.sin()]).collect();
+    let points: Vec<[f64; 2]> = std::iter::once([0.0; 2]).chain(star).collect();
+    let edges: Vec<[usize; 2]> = (1..7).map(|leaf| [0, leaf]).collect();
+    let answer = |text: &str, agents: usize, hours: f64| {
+        let imported = layout(Format::Nav2, text, 0.4);
+        let request =
+            Request { agents, duration: 3600.0 * hours, delays: Delays::default(), seed: 1, method: Method::Orders };
+        Lifelong::of(&imported, request, &[Method::Orders]).expect("a run")
+    };
+    let star = answer(&graph(&points, &edges), 6, 0.25);
+    assert_eq!((star.well_formedness.safe_ends.len(), star.runs[0].outcome.starved), (6, 0));
+    assert!(star.is_sound() && star.runs[0].outcome.missions > 40, "{star:?}");
+    let points: Vec<[f64; 2]> = (0..4).map(|k| [4.0 * f64::from(k), 0.0]).collect();
+    let line = answer(&graph(&points, &[[0, 1], [1, 2], [2, 3]]), 2, 0.5);
+    let outcome = &line.runs[0].outcome;
+    assert!(!line.is_sound() && outcome.starved == 2 && outcome.missions > 0, "{line:?}");
+    assert!(
+        outcome.idle_because.as_ref().is_some_and(|why| why.starts_with("nobody has reached a goal for ")),
+        "{line:?}"
+    );
+    // A robot at one of two nodes leaves none that could be reached.
+    let two = layout(Format::Nav2, &graph(&points[..2], &[[0, 1]]), 0.4);
+    assert_eq!(well_formedness(&two, 1).expect("a site").safe_ends.len(), 1);
+}
+
+/// Short edges, on which the largest speed is not reached.
+#[test]
+fn nobody_is_quicker_than_alone() {
+    let points: Vec<[f64; 2]> = (0..5).map(|k| [0.3 * f64::from(k), 0.0]).collect();
+    let imported = layout(Format::Nav2, &graph(&points, &[[0, 1], [1, 2], [2, 3], [3, 4]]), 0.1);
+    let delays = Delays { stopped: 0.0, stop: 5.0, slip: 0.0 };
+    let request = Request { agents: 1, duration: 600.0, delays, seed: 1, method: Method::Orders };
+    let outcome = run(&imported, request).expect("a run").outcome;
+    let travel = outcome.travel_over_unimpeded.expect("missions");
+    assert!((1.0..1.2).contains(&travel), "{outcome:?}");
+}
+
 /// The edges begin and end far from the two nodes, so that robots count as larger than the nodes are apart. A goal where a robot would not
 /// touch one at the other node was drawn again and again, without end. Neither node is a safe end; one robot drives all the same.
 #[test]

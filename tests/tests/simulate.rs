@@ -225,6 +225,18 @@ fn who_cannot_get_past_stays_where_it_is() {
     assert!(!simulation.is_as_promised());
 }
 
+/// A full circle, of which the end is the start to the last digit, and a robot that stands on it.
+#[test]
+fn who_never_sets_off_has_not_gone_round() {
+    let text = r#"{ "agents": [
+        { "id": 1, "radius": 0.5, "v_max": 0.5, "a_max": 1, "start": { "x": 996, "y": 997, "heading": -1.5707963267948966 },
+          "path": [ { "kind": "arc", "radius": 2, "sweep": 6.283185307179586 } ] },
+        { "id": 2, "radius": 0.00001, "v_max": 0.5, "a_max": 1, "start": { "x": 1000, "y": 998, "heading": 0 }, "path": [] } ] }"#;
+    let task = Task::of(&Scenario::from_json(text).expect("a scenario")).expect("a task");
+    let outcome = run(&task, Controller::Pcr, settings(1, USUAL)).expect("a run");
+    assert_eq!((outcome.run.done, outcome.run.not_done), (0, 1), "{:?}", outcome.run);
+}
+
 #[test]
 fn the_same_seed_gives_the_same_run() {
     let once = |seed, controller| run(&forage::task(3, 1), controller, settings(seed, USUAL)).expect("a run");

@@ -40,7 +40,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     }
     let _ = writeln!(
         text,
-        "\nThe graph has {safe} safe ends. With more robots, some robot is always in the way of another one, and missions may wait \
+        "\nThe graph has {safe} safe ends. With as many robots or more, some robot may always be in the way of another one, and missions may wait \
         for ever. If no robot was in another one's way, robots with these missions and delays would do this many missions an hour: {}.",
         alone.join(", ")
     );

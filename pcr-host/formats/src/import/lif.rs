@@ -200,6 +200,13 @@ impl Reader<'_> {
         if let Some(property) = property {
             edge.speed = [property.positive("maxSpeed")?; 2];
             edge.rotation = property.positive("maxRotationSpeed")?;
+            for field in ["rotationAtStartNodeAllowed", "rotationAtEndNodeAllowed"] {
+                if property.text(field).ok().flatten().is_some_and(|allowed| allowed != "BOTH") {
+                    let problem =
+                        format!("its {field} is not read; a vehicle turns in place where its path has a corner");
+                    self.warnings.add(format_args!("edge {id}"), problem);
+                }
+            }
             if let Some(outline) = self.outline {
                 let ahead = straight.heading;
                 let ahead = Some(ahead).filter(|_| property.get("trajectory").is_none());

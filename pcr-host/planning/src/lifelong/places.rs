@@ -1,4 +1,4 @@
-//! Places to stand one behind the other on dead ends, for fleets that have more robots than safe ends. They are between
+//! Places to stand one behind the other on dead ends, for fleets that have no safe end left. They are between
 //! nodes, where no robot has a goal and none passes.
 
 use super::site::Site;

@@ -41,7 +41,7 @@ pub(super) struct Run {
     pub(super) site: Site,
     pub(super) ends: Ends,
     pub(super) layout: WellFormedness,
-    /// Whether there are as many robots as safe ends or more: with fewer, there is always an end to which one of them can make way.
+    /// Whether there are more robots than safe ends, or as many and further places where they can make way for one another.
     pub(super) crowded: bool,
     /// Whether only the mission that has waited longest is served.
     pub(super) is_urgent: bool,
@@ -82,9 +82,12 @@ impl Run {
             Some(tasks) => tasks.starts(&site)?,
             None => starts(&site, &ends, request.agents, request.seed),
         };
-        let crowded = starts.len() >= ends.safe.len();
-        if crowded {
-            let (queued, lanes) = queued(imported, &site);
+        // With fewer robots than safe ends there is always an end to which one of them can make way.
+        let places = (starts.len() >= ends.safe.len()).then(|| queued(imported, &site));
+        let is_full = |lanes: &[Vec<usize>]| starts.len() > ends.safe.len() || lanes.iter().any(|lane| lane.len() > 1);
+        let places = places.filter(|(_, lanes)| is_full(lanes));
+        let crowded = places.is_some();
+        if let Some((queued, lanes)) = places {
             site = Site::new(&queued)?;
             ends = ends.queued(&site, lanes);
         }

@@ -65,8 +65,12 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
     )?;
     well_formed(well_formedness, out)?;
     let safe = well_formedness.safe_ends.len();
-    if *asked > safe {
-        writeln!(out, "more robots than safe ends: somebody always stands in the way, and missions may wait for ever")?;
+    match well_formedness.dead_ends_only {
+        _ if *asked < safe => {}
+        false => {
+            writeln!(out, "no safe end is left free: somebody may always stand in the way, and missions wait for ever")?
+        }
+        true => writeln!(out, "whether missions may wait for ever is not known: only dead ends were looked at")?,
     }
     if let Some(run) = runs.iter().find(|run| run.outcome.robots < *asked) {
         writeln!(out, "{} without a place to start", asked - run.outcome.robots)?;
@@ -115,7 +119,8 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
     )?;
     for run in runs {
         if let Some(why) = &run.outcome.idle_because {
-            writeln!(out, "{}: nobody reached a goal, as {why}", run.outcome.method.name())?;
+            let what = if run.outcome.missions == 0 { "nobody reached a goal, as " } else { "" };
+            writeln!(out, "{}: {what}{why}", run.outcome.method.name())?;
         }
     }
     for run in runs {

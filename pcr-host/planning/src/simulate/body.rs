@@ -118,7 +118,8 @@ impl Body {
             self.speed = 0.0;
             return true;
         }
-        norm(sub(self.position, course.point_at(end))) <= reach
+        // Whoever keeps to its path has a reach of 0: at the end of a circle it is only once it has gone round.
+        norm(sub(self.position, course.point_at(end))) < reach
     }
 
     /// One frame, from a time \[s\] on.
