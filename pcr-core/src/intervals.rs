@@ -41,8 +41,10 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
     type Item = Interval<S>;
 
     fn next(&mut self) -> Option<Interval<S>> {
+        // Ends in the wrong order are put right, and NaN is unlimited: nothing is taken for free, and every step goes on.
+        let whole = |interval: Interval<S>| if interval.lo <= interval.hi { interval } else { interval.limited() };
         let mut lowest: Option<Interval<S>> = None;
-        for interval in self.intervals.clone() {
+        for interval in self.intervals.clone().map(whole) {
             let beyond = self.after.is_none_or(|after| interval.lo > after);
             if beyond && lowest.is_none_or(|lowest| interval.lo < lowest.lo) {
                 lowest = Some(interval);
@@ -50,7 +52,7 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
         }
         let mut next = lowest?;
         loop {
-            let grown = self.intervals.clone().filter(|other| other.meets(next)).fold(next, Interval::hull);
+            let grown = self.intervals.clone().map(whole).filter(|other| other.meets(next)).fold(next, Interval::hull);
             if grown == next {
                 break;
             }

@@ -2,9 +2,9 @@
 
 use pcr_core::scalar::Micro;
 use pcr_core::{
-    Bounds, BroadPhase, Encounter, Hold, Interval, Limits, Motion, Order, Orders, Pass, Path, Piece, Point, Pose,
-    Profile, Progress, Reach, Region, Tolerances, earliest_departure, earliest_start, first_conflict, first_overlap,
-    least_duration, safe_intervals, safe_lengths,
+    Bounds, Brakes, BroadPhase, Encounter, Hold, Interval, Limits, Motion, Order, Orders, Pass, Path, Piece, Point,
+    Pose, Profile, Progress, Reach, Region, Tolerances, earliest_departure, earliest_start, first_conflict,
+    first_overlap, gaps, least_duration, safe_intervals, safe_lengths, union,
 };
 use pcr_planning::fleet::{Format, build_ecm};
 use std::f64::consts::FRAC_PI_2;
@@ -43,7 +43,14 @@ fn none_is_free<S: Format>() {
     // Intervals of time.
     let pair = Encounter::new(&fleet[0], &fleet[1]);
     let met = pair.contacts(pair.time()).next().expect("a contact").middle();
-    let unclear = [(nan, nan), (nan, number(3.0)), (number(1.0), nan), (number(3.0), number(1.0)), (-endless, endless)];
+    let unclear = [
+        (nan, nan),
+        (nan, number(3.0)),
+        (number(1.0), nan),
+        (number(3.0), number(1.0)),
+        (number(2.25), number(1.75)),
+        (-endless, endless),
+    ];
     for (lo, hi) in unclear.into_iter().chain([(endless, -endless)]) {
         let during = Interval::new(lo, hi);
         assert!(pair.contacts(during).any(|contact| contact.contains(met)), "{during:?}");
@@ -108,6 +115,59 @@ fn holds<S: Format>(fleet: &[Motion<'_, S>; 2], nan: S) {
     assert!(matches!(known, Hold::At(hold) if hold < number(2.0)), "{known:?}");
     assert_eq!(orders.hold(fleet, 0, &[unknown; 2]), Ok(known));
     assert_eq!(orders.check(fleet, &[unknown; 2], tolerances, &mut reaches), Ok(()));
+}
+
+/// A robot that parks on the crossing: no place frees the other one, and no tolerance lets a check go on for ever.
+fn parked<S: Format>() {
+    let (paths, _) = crossing::<S>();
+    let number = S::from_f64;
+    let limits = Limits { speed: number(1.0), acceleration: number(1.0) };
+    let profiles = [2.0, 4.0].map(|length| Profile::rest_to_rest(number(length), limits).expect("small"));
+    let short = Path::<S, 1>::starting_at(Pose { position: Point::new(number(-2.0), S::ZERO), heading: S::angle(0.0) });
+    let short = short.and_then(|path| path.line(number(2.0))).expect("small");
+    let fleet = [(&short, &profiles[0]), (&paths[1], &profiles[1])].map(|(path, profile)| {
+        Motion::new(path.as_path(), profile.as_profile(), number(0.25), S::ZERO).expect("small")
+    });
+    let mut orders = Orders::build([Region::EMPTY; 2], [Piece::EMPTY; 8], [Order::EMPTY; 4], &fleet).expect("room");
+    orders.decide(&fleet, 0, 1, Pass::First, S::ZERO).expect("the fleet");
+    for place in [number(f64::INFINITY), number(1e9), S::LIMIT, number(2.0)] {
+        let progress = [Progress::at_rest(place), Progress::at_rest(S::ZERO)];
+        assert!(matches!(orders.hold(&fleet, 1, &progress), Ok(Hold::At(_))), "{place:?}");
+        for width in [number(f64::NEG_INFINITY), number(-1e9), S::ZERO] {
+            for gain in [number(-1.0), S::ZERO, number(f64::NAN), number(0.001)] {
+                let found = orders.check(&fleet, &progress, Tolerances { width, gain }, &mut [Reach::EMPTY; 2]);
+                assert!(found.is_err(), "{place:?}, {width:?}, {gain:?}");
+            }
+        }
+        orders.passed(&progress);
+        assert!(matches!(orders.hold(&fleet, 1, &progress), Ok(Hold::At(_))), "{place:?}");
+    }
+    let brakes = Brakes::new(number(0.5), number(0.125)).expect("brakes");
+    if S::NAME == f64::NAME {
+        assert_eq!(brakes.speed(number(f64::NAN)), S::ZERO);
+    }
+    assert!(brakes.speed(number(f64::INFINITY)).is_finite());
+}
+
+#[test]
+fn who_parks_on_a_crossing_frees_nobody_and_checks_end() {
+    parked::<f64>();
+    parked::<f32>();
+    parked::<pcr_fixed::Q16>();
+}
+
+#[test]
+fn unions_of_unclear_intervals_end_and_leave_nothing_free() {
+    let (nan, wrong) = (Interval::new(1.0, f64::NAN), Interval::new(5.0, -3.0));
+    for unclear in [nan, wrong, Interval::new(f64::NAN, f64::NAN), Interval::new(f64::NAN, 7.0)] {
+        let intervals = [Interval::new(1.0, 2.0), unclear, Interval::new(4.0, 4.5)];
+        let found: Vec<_> = union(intervals.into_iter()).take(9).collect();
+        assert!(found.len() < 3 && found.windows(2).all(|pair| pair[0].hi < pair[1].lo), "{unclear:?}: {found:?}");
+        let free: Vec<_> = gaps(union(intervals.into_iter()), Interval::new(0.0, 5.0)).take(9).collect();
+        assert!(free.iter().all(|gap| !gap.contains(1.5) && !gap.contains(4.25)), "{unclear:?}: {free:?}");
+        let (lo, hi) = (unclear.lo.min(unclear.hi), unclear.lo.max(unclear.hi));
+        assert!(free.iter().all(|gap| gap.hi <= lo || gap.lo >= hi), "{unclear:?}: {free:?}");
+    }
 }
 
 #[test]

@@ -45,8 +45,10 @@ impl<S: Scalar> Brakes<S> {
     }
 
     /// The largest speed \[m/s\] from which this distance \[m\] is enough to stop, rounded down: its
-    /// [`Brakes::distance`] is at most that distance, except for rounding. 0 if the distance is not above 0.
+    /// [`Brakes::distance`] is at most that distance, except for rounding. 0 if the distance is not above 0, as NaN is
+    /// not.
     pub fn speed(&self, distance: S) -> S {
+        let distance = S::ZERO.max(distance).min(S::LIMIT);
         if distance <= S::ZERO {
             return S::ZERO;
         }

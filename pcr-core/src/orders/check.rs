@@ -20,10 +20,12 @@ use crate::scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tolerances<S> {
     /// Uncertainty of places \[m\]: when an agent stands, the known lower end of its place may be behind it by up to
-    /// this. It is known to have left a region only when it is further than this beyond the end of the region.
+    /// this. It is known to have left a region only when it is further than this beyond the end of the region. Less than
+    /// 0 is taken as 0.
     pub width: S,
     /// A gain below this \[m\] does not count as progress, because agents that follow one another around a circle may
-    /// gain less and less. The number of sweeps of a check is at most the length of all paths divided by this.
+    /// gain less and less. The number of sweeps of a check is at most the length of all paths divided by this. With 0
+    /// only a gain of 0 is none.
     pub gain: S,
 }
 
@@ -86,17 +88,19 @@ where
     ) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
+        let limited = |length: S| S::ZERO.max(length).min(S::LIMIT);
+        let tolerances = Tolerances { width: limited(tolerances.width), gain: limited(tolerances.gain) };
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();
             // A place that is NaN is taken as the start.
-            let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().at.lo).min(end);
+            let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().known()).min(end);
             *reach = Reach { at, next: end, end, moved: true };
         }
         while self.sweep(fleet, progress, tolerances, reaches)? {
             let mut gained = false;
             for reach in reaches.iter_mut() {
                 let gain = reach.next - reach.at;
-                reach.moved = gain >= tolerances.gain || (gain > S::ZERO && reach.next >= reach.end);
+                reach.moved = gain > S::ZERO && (gain >= tolerances.gain || reach.next >= reach.end);
                 if reach.moved {
                     (reach.at, gained) = (reach.next, true);
                 }
@@ -138,7 +142,7 @@ where
             };
             let Some(reach) = reaches.get(first).copied() else { continue };
             if reach.moved {
-                let known = progress.get(first).copied().unwrap_or_default().at.lo;
+                let known = progress.get(first).copied().unwrap_or_default().known();
                 let left = (reach.at - tolerances.width).max(known);
                 let region = if left > order.exit { None } else { self.ecm.at(fleet, place, second) };
                 order.hold = length(region.map_or(Hold::Free, |region| region.hold(order.since, left)));

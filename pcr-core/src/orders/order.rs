@@ -57,9 +57,14 @@ impl<S: Scalar> Progress<S> {
         Self { at: Interval::new(length, length), stop: length }
     }
 
+    /// The lower end of the place \[m\], not beyond what [`exit`] calls never. NaN stays NaN, which is beyond nothing.
+    pub(super) fn known(&self) -> S {
+        self.at.lo.min(S::LIMIT)
+    }
+
     /// Whether the agent has certainly left a region with these lengths of its path.
     pub(super) fn is_beyond(&self, lengths: Interval<S>, motion: &Motion<'_, S>) -> bool {
-        self.at.lo > exit(lengths, motion)
+        self.known() > exit(lengths, motion)
     }
 }
 

@@ -151,7 +151,7 @@ where
         let (mut hold, mut nearest) = (other, None);
         for (place, agents, order) in self.places(agent) {
             let other = if agents[0] == agent { agents[1] } else { agents[0] };
-            let first = progress.get(other).copied().unwrap_or_default().at.lo;
+            let first = progress.get(other).copied().unwrap_or_default().known();
             let held = match order.pass_of(agent, agents) {
                 Pass::First | Pass::Over => continue,
                 Pass::Second if first > order.exit => continue,
@@ -339,7 +339,7 @@ where
                 Pass::Second => agents[1],
                 Pass::Undecided | Pass::Over => continue,
             };
-            if progress.get(first).is_some_and(|first| first.at.lo > order.exit) {
+            if progress.get(first).is_some_and(|first| first.known() > order.exit) {
                 order.pass = Pass::Over;
             }
         }

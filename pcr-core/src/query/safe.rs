@@ -34,7 +34,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         length: Interval<S>,
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let (ego, other) = (self.ego, self.other);
+        let (ego, other, during) = (self.ego, self.other, during.limited());
         union(self.covered(ego, length, other).filter_map(move |covered| kept_from(ego, other, covered, during)))
     }
 
@@ -85,7 +85,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
-        let length = on_path(ego, length);
+        let (length, during) = (on_path(ego, length), during.limited());
         // Cutting a segment adds rounding errors of its own.
         let radius = ego.radius() + other.radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
