@@ -75,9 +75,10 @@ pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_f
                 break delays;
             }
             best.conflicts.extend(found.conflicts.iter().cloned());
+            let mut frequency = vec![0_usize; problem.len()];
+            best.conflicts.iter().flatten().for_each(|&agent| frequency[agent] += 1);
             for conflict in &found.conflicts {
-                let frequency = |agent: &usize| best.conflicts.iter().filter(|other| other.contains(agent)).count();
-                let gone = conflict.iter().copied().max_by_key(frequency);
+                let gone = conflict.iter().copied().max_by_key(|&agent| frequency[agent]);
                 gone.into_iter().flat_map(|agent| &with[agent]).for_each(|&agent| out[agent] = true);
             }
         };
