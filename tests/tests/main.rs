@@ -71,6 +71,7 @@ mod paper_misprint;
 mod paper_tables;
 mod plans;
 mod plans_bounds;
+mod plans_claims;
 mod plans_footprints;
 mod plans_proved;
 mod profiles;

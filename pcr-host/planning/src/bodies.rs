@@ -91,6 +91,11 @@ impl Disced {
         self.stretch.ends[1]
     }
 
+    /// Whether it is there before the agent sets off, and after its arrival.
+    pub(crate) fn stands(&self) -> [bool; 2] {
+        self.stretch.ends
+    }
+
     /// When it is there, in a time that holds all motions \[s\].
     pub fn time<S: Format>(&self, motion: &Motion<'_, S>, all: Interval<S>) -> Interval<S> {
         let own = motion.time();

@@ -86,8 +86,27 @@ impl Verdict {
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
         let (fleet, discs) = Bodies::<S>::moving(scenario)?;
-        let motions = fleet.motions();
-        let pairs = Pairs::new(scenario, &discs, &motions);
+        Self::between(scenario, &discs, &fleet.motions(), closest, told)
+    }
+
+    /// Where margins overlap: the conflicts of discs that are larger by them.
+    ///
+    /// # Errors
+    /// As [`Verdict::of`].
+    pub(crate) fn of_margins<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
+        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
+        let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
+        Self::between(scenario, &discs, &motions, false, &|_, _| {})
+    }
+
+    fn between<S: Format>(
+        scenario: &Scenario,
+        discs: &[Disced],
+        motions: &[Motion<'_, S>],
+        closest: bool,
+        told: Told<'_>,
+    ) -> Result<Self, Failure> {
+        let pairs = Pairs::new(scenario, discs, motions);
         let count = pairs.ids.len();
         if closest {
             let all = count as u64 * count.saturating_sub(1) as u64 / 2;

@@ -2,7 +2,7 @@
 //!
 //! Start delays: the best ones by branch and bound, or one agent after the other in an order of priority. Speeds: each
 //! agent arrives as early as the agents before it in an order allow, and the start delays are also tried. Start delays
-//! use the discs of footprints, speeds use one disc around them, because a disc beside the reference point does not
+//! use the discs of footprints and loads, speeds use one disc around them, because a disc beside the reference point does not
 //! have the same speed. Every plan is checked like `pcr check` does, and proved by the independent checker, before it
 //! is returned.
 
@@ -21,7 +21,7 @@ mod tests;
 use crate::certify::Proof;
 use crate::fleet::Fleet;
 use crate::regions::Failure;
-pub(crate) use circle::sides;
+pub(crate) use circle::{sides, sides_of};
 pub use delays::{Effort, Objective};
 pub use forbidden::{Forbidden, Out, Schedule};
 use pcr_core::{Encounter, Motion};
@@ -108,7 +108,7 @@ pub struct Plan {
     /// Those that the plan is not for, as if they were not there.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<u64>,
-    /// From the earliest start in the file to the last arrival \[s\].
+    /// From the earliest start in the file to the last arrival, of the agents of the plan \[s\].
     pub makespan: f64,
     /// Sum over the agents from their start in the file to their arrival \[s\].
     pub sum_of_costs: f64,
@@ -179,12 +179,15 @@ impl Plan {
         let planner = Planner { scenario, request, motions: &motions };
         let starts = Starts::of(&planner)?;
         let everybody = starts.of_all();
-        let (plan, solved) = match request.method {
+        let (mut plan, solved) = match request.method {
             Method::Delay if everybody.is_none() => {
                 (Self { unsolved: starts.unsolved(&planner), ..planner.none() }, None)
             }
             _ => planner.plan(everybody)?,
         };
+        if request.method == Method::Speed && solved.is_none() {
+            plan.unsolved = starts.added(&planner, plan.unsolved);
+        }
         let staying = if request.leave_out && solved.is_none() { starts.staying() } else { Vec::new() };
         if staying.is_empty() {
             return Ok((plan, solved));

@@ -58,9 +58,15 @@ fn is_second(region: &RegionRef<'_, f64>) -> bool {
 /// Whether the ego has to pass a region after the other agent, and whether before it, whenever they start and however they move:
 /// the region holds the end of its path or the start of the other's, or the start of its own or the end of the other's.
 pub(crate) fn sides(region: &RegionRef<'_, f64>) -> [bool; 2] {
+    sides_of(region, [true; 2], [true; 2])
+}
+
+/// The same for discs of which it is known whether they are there before the start of their path, and after its end.
+pub(crate) fn sides_of(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> [bool; 2] {
     let length = region.length();
-    let after = length.hi >= region.ego_motion().path().length() || region.is_open_at_start();
-    let before = length.lo <= 0.0 || region.is_open_at_end();
+    let at_end = length.hi >= region.ego_motion().path().length();
+    let after = (own[1] && at_end) || (other[0] && region.is_open_at_start());
+    let before = (own[0] && length.lo <= 0.0) || (other[1] && region.is_open_at_end());
     [after, before]
 }
 

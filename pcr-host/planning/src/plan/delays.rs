@@ -133,17 +133,19 @@ struct Solved {
 /// The parts that forbid one another nothing, each for itself, from delays that are known.
 fn solved(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, clock: &dyn Fn() -> bool) -> Solved {
     let mut delays = vec![0; problem.len()];
-    let (mut bound, mut proved) = (0_i128, true);
+    // The last arrival may be before 0.
+    let (mut bound, mut proved): (Option<i128>, _) = (None, true);
     for (agents, part) in problem.apart() {
         let known = known.iter().filter_map(|known| agents.iter().map(|&agent| known[agent]).collect());
         let found = connected(&part, known, effort, clock);
         agents.iter().zip(found.delays).for_each(|(&agent, delay)| delays[agent] = delay);
-        bound = match problem.objective {
+        bound = Some(bound.map_or(found.bound, |bound| match problem.objective {
             Objective::Sum => bound + found.bound,
             Objective::Makespan => bound.max(found.bound),
-        };
+        }));
         proved &= found.proved;
     }
+    let bound = bound.unwrap_or(0);
     // A part that is not proved does not matter if the last arrival is in another one.
     proved |= problem.objective == Objective::Makespan && problem.cost(&delays) <= bound;
     Solved { delays, bound: bound - slack(problem), proved }

@@ -3,7 +3,7 @@
 //! The forbidden delays of a region depend only on the difference of two delays: T_other(s) + τ_other = T_ego(l) +
 //! τ_ego. The intervals are computed once for all pairs; a schedule for any order of priority then only compares
 //! numbers. The discs of a footprint are delayed together, so the forbidden delays of two agents are the union of those
-//! of any two of their discs. With loads, which exist on some segments only, the disc around all outlines is used.
+//! of any two of their discs. A disc of a load is there on some segments only: before its first and after its last it meets nobody.
 //!
 //! An interval without a lower end means that the other agent goes first, one without an upper end that it goes last.
 //! If no cycle of agents have to go before one another, an order that respects this has a schedule for all of them:
@@ -14,13 +14,13 @@
 //! take the forbidden delays of a region from the core (`RegionRef::forbidden_delays`).
 
 use super::delays::{self, NEVER, Objective, Pair, Problem, Ticks, earliest};
-use super::grown;
-use crate::bodies::Bodies;
+use super::{grown, sides_of as sides};
+use crate::bodies::{Bodies, Disced};
 use crate::memory;
 use crate::regions::Failure;
 use crate::rows;
-use pcr_core::{Motion, Scalar};
-use pcr_formats::scenario::{Agent, Scenario};
+use pcr_core::{Interval, Motion, RegionRef, Scalar};
+use pcr_formats::scenario::Scenario;
 
 /// What an agent and another one forbid: differences of their delays, own less other, at which they meet \[ticks\], outward.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +42,35 @@ pub struct Forbidden {
     ends: Vec<f64>,
     /// For each agent those that have to start before it.
     first: Vec<Vec<usize>>,
+}
+
+/// Whose a disc is, and whether it is there before that agent sets off, and after it has arrived.
+#[derive(Clone, Copy, Debug)]
+struct Owner {
+    agent: usize,
+    stands: [bool; 2],
+}
+
+impl Owner {
+    fn of(disc: &Disced) -> Self {
+        Self { agent: disc.agent, stands: disc.stands() }
+    }
+}
+
+/// The delays with which two discs meet, each of which stands only where it is there then.
+fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> Interval<f64> {
+    let delays = region.forbidden_delays();
+    let [after, before] = sides(region, own, other);
+    let (early, late) = (delays.lo <= -<f64 as Scalar>::LIMIT, delays.hi >= <f64 as Scalar>::LIMIT);
+    if (after || !early) && (before || !late) {
+        return delays;
+    }
+    // A side without an end is of a disc that would stand, but is not there.
+    let passing = region.passing_delays();
+    Interval {
+        lo: if early && !after { passing.lo } else { delays.lo },
+        hi: if late && !before { passing.hi } else { delays.hi },
+    }
 }
 
 /// Why an agent cannot start: because of another one, with any delay of either or with late ones only.
@@ -78,9 +107,9 @@ impl Forbidden {
     /// # Errors
     /// [`Failure`] where a value does not fit, or the table cannot hold the fleet.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
-        let bodies = Bodies::<f64>::new(&without_loads(scenario))?;
+        let bodies = Bodies::<f64>::new(scenario)?;
         let motions = grown(&bodies.fleet);
-        let owners: Vec<usize> = bodies.discs.iter().map(|disc| disc.agent).collect();
+        let owners: Vec<Owner> = bodies.discs.iter().map(Owner::of).collect();
         Self::between(&motions, &owners, scenario.agents.len()).map_err(|failure| failure.named(&bodies.scenario))
     }
 
@@ -89,21 +118,24 @@ impl Forbidden {
     /// # Errors
     /// [`Failure`] where the table cannot hold them.
     pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
-        let owners: Vec<usize> = (0..motions.len()).collect();
+        let owners: Vec<Owner> = (0..motions.len()).map(|agent| Owner { agent, stands: [true; 2] }).collect();
         Self::between(motions, &owners, motions.len())
     }
 
     /// The discs of so many agents, and whose they are.
-    fn between(motions: &[Motion<'_, f64>], owners: &[usize], count: usize) -> Result<Self, Failure> {
+    fn between(motions: &[Motion<'_, f64>], owners: &[Owner], count: usize) -> Result<Self, Failure> {
         // A row holds those after its disc: the other direction of a pair is the same, with the sign turned round.
         let found = rows::gathered(motions, "start delays that regions forbid", |row| {
             let discs = row.agents();
             let owner = |place: usize| discs.get(place).and_then(|&disc| owners.get(disc as usize)).copied();
             let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
             let forbidden = regions.filter_map(|region| {
-                let (agent, other) = (owner(row.place())?, owner(region.other())?);
-                let delays = region.forbidden_delays();
-                (agent != other).then_some(([agent, other], [delays.lo, delays.hi]))
+                let (own, other) = (owner(row.place())?, owner(region.other())?);
+                if own.agent == other.agent {
+                    return None;
+                }
+                let delays = met_with(&region, own.stands, other.stands);
+                Some(([own.agent, other.agent], [delays.lo, delays.hi]))
             });
             forbidden.collect()
         })?;
@@ -112,7 +144,7 @@ impl Forbidden {
         let limit = <f64 as Scalar>::LIMIT;
         let mut ends = vec![f64::NEG_INFINITY; count];
         for (disc, motion) in motions.iter().enumerate() {
-            if let Some(end) = owners.get(disc).and_then(|&agent| ends.get_mut(agent)) {
+            if let Some(end) = owners.get(disc).and_then(|owner| ends.get_mut(owner.agent)) {
                 *end = end.max(motion.time().hi);
             }
         }
@@ -220,13 +252,4 @@ impl Forbidden {
         let first = first_of(&|[_, hi]| hi >= NEVER);
         Err(Blocked { by: worst.or(first).unwrap_or(agent), always: worst.is_some() })
     }
-}
-
-/// The scenario, each agent that has loads as the disc around all its outlines.
-fn without_loads(scenario: &Scenario) -> Scenario {
-    let agents = scenario.agents.iter().map(|agent| match agent.loads.is_empty() {
-        true => agent.clone(),
-        false => Agent { radius: agent.reach(), footprint: None, loads: Vec::new(), ..agent.clone() },
-    });
-    Scenario::new(scenario.name.clone(), agents.collect())
 }

@@ -10,6 +10,9 @@ use crate::regions::Failure;
 use pcr_core::{Drive, Motion, Unsolved as Never};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
 
+/// Costs that are the same in print \[s\].
+const NEAR: f64 = 1e-4;
+
 impl<'m> Planner<'_, 'm> {
     /// A plan without agents.
     pub(super) fn none(&self) -> Plan {
@@ -66,8 +69,15 @@ impl<'m> Planner<'_, 'm> {
             }
             Method::Speed => {
                 let mut pool = speeds::pool(self.motions.len());
-                match speeds::plan(self, later, &mut pool)? {
-                    Ok(planned) => self.answer(&planned, None),
+                match speeds::plan(self, later.clone(), &mut pool)? {
+                    Ok(planned) => {
+                        let answer = self.answer(&planned, None)?;
+                        // The delays are a plan by speeds as well, if other speeds are refused.
+                        match later.filter(|_| answer.1.is_none()) {
+                            Some(later) => self.answer(&later, None),
+                            None => Ok(answer),
+                        }
+                    }
                     Err(never) => Ok((Plan { unsolved: self.unsolved(never), ..self.none() }, None)),
                 }
             }
@@ -109,6 +119,14 @@ impl<'m> Planner<'_, 'm> {
             plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
             return Ok((plan, None));
         }
+        // What only touches is as far away as it has to be.
+        if self.scenario.agents.iter().any(|agent| agent.margin > 0.0)
+            && let Some(conflict) = Verdict::of_margins::<f64>(&solved)?.conflicts.iter().find(|found| !found.touching)
+        {
+            let why = format!("margins of the plan overlap at {} s", conflict.t[0]);
+            plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
+            return Ok((plan, None));
+        }
         let proof = Proof::of::<f64>(&solved)?;
         if let Some(contact) = proof.contacts.first() {
             let why = format!("the plan has a contact at {} s", contact.t);
@@ -131,10 +149,14 @@ impl<'m> Planner<'_, 'm> {
         }
         plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
         let cost = self.cost(planned);
+        let bound = self.bound(known.as_ref());
+        debug_assert!(bound <= cost + NEAR + bound::ROUNDING * cost, "a bound of {bound} for a plan of {cost}");
         // Sums are rounded.
-        plan.lower_bound = self.bound(known.as_ref()).min(cost);
-        plan.gap = if cost > 0.0 { (cost - plan.lower_bound) / cost } else { 0.0 };
-        plan.proved = known.is_some_and(|known| known.proved) || plan.gap <= 2.0 * bound::ROUNDING;
+        plan.lower_bound = bound.min(cost);
+        let gap = cost - plan.lower_bound;
+        plan.gap = if cost > 0.0 { gap / cost } else { 0.0 };
+        // Of a long plan a small part may be seconds.
+        plan.proved = known.is_some_and(|known| known.proved) || gap <= NEAR.min(2.0 * bound::ROUNDING * cost);
         Ok((plan, Some(solved)))
     }
 

@@ -1,11 +1,12 @@
 //! Why and where two agents cannot be planned: which of their starts and ends are in the way of the other agent, and on
 //! what lengths.
 
-use super::{grown, sides};
+use super::{grown, sides_of};
+use crate::bodies::{Bodies, Disced};
 use crate::fleet::Fleet;
-use crate::regions;
+use crate::rows::Row;
 use pcr_core::{Interval, Motion, RegionRef};
-use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::scenario::Scenario;
 use serde::Serialize;
 
 /// Where two agents are in one another's way.
@@ -42,48 +43,79 @@ impl Obstacle {
 }
 
 /// Why two agents of a scenario meet whenever they start, or (not `always`) why the first does not find a start; and where.
-/// By the discs around their outlines; without a place where they have no region.
+/// By their discs; without a place where they have no region.
 pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (String, Option<Spot>) {
     let general = match always {
         true => "they meet whenever they start",
         false => "the first cannot start because of the second in any order that was tried",
     };
-    let found = pair(scenario, ids).and_then(|pair| {
-        let fleet = Fleet::<f64>::new(&pair).ok()?;
-        let motions = grown(&fleet);
-        let ecm = regions::table(&pair, &motions).ok()?;
-        let regions: Vec<_> = ecm.row(&motions, 0).expect("the table of the fleet").collect();
-        let last = regions.iter().find(|region| sides(region)[0]);
-        let first = regions.iter().find(|region| sides(region)[1]);
-        let longest = || regions.iter().max_by(|a, b| a.length().length().total_cmp(&b.length().length()));
-        let overlap = |at_end: bool| {
-            let at =
-                |motion: &Motion<'_, f64>| motion.path().point_at(if at_end { motion.path().length() } else { 0.0 });
-            let [a, b] = [motions.first()?, motions.get(1)?];
-            let apart = [at(a).x - at(b).x, at(a).y - at(b).y];
-            Some(apart[0].hypot(apart[1]) < a.radius() + b.radius())
-        };
-        let standing = |at_end: bool| Some(Spot::standing([motions.first()?, motions.get(1)?], at_end));
-        Some(match (always, first, last) {
-            (true, ..) if overlap(false)? => ("they overlap at their starts".to_owned(), standing(false)?),
-            (true, ..) if overlap(true)? => ("they overlap at the ends of their paths".to_owned(), standing(true)?),
-            (true, Some(first), Some(last)) => (contradiction(last, first), Spot::of(last)),
-            _ => (general.to_owned(), Spot::of(last.or_else(longest)?)),
-        })
-    });
-    match found {
+    match found(scenario, ids, always, general) {
         Some((why, spot)) => (format!("{why}, {}", spot.words()), Some(spot)),
         None => (general.to_owned(), None),
     }
 }
 
-/// Two agents alone, each the disc around its outlines.
-fn pair(scenario: &Scenario, ids: [u64; 2]) -> Option<Scenario> {
-    let disc = |id: u64| {
-        let agent = scenario.agents.iter().find(|agent| agent.id == id)?;
-        Some(Agent { radius: agent.reach(), footprint: None, loads: Vec::new(), ..agent.clone() })
+fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Option<(String, Spot)> {
+    let agent = |id: u64| scenario.agents.iter().find(|agent| agent.id == id).cloned();
+    let pair = Scenario { agents: ids.into_iter().map(agent).collect::<Option<_>>()?, ..Scenario::default() };
+    let fleet = Fleet::<f64>::new(&pair).ok()?;
+    let references = fleet.motions();
+    let references = [references.first()?, references.get(1)?];
+    let bodies = Bodies::<f64>::new(&pair).ok()?;
+    let (motions, discs) = (grown(&bodies.fleet), &bodies.discs);
+    let of = |agent: usize| (0..discs.len()).filter(move |&disc| discs[disc].agent == agent);
+    let others: Vec<u32> = of(1).map(|disc| disc as u32).collect();
+    let rows: Vec<Row<'_, f64>> = of(0).map(|disc| Row::new(&motions, disc, &others)).collect::<Result<_, _>>().ok()?;
+    let met = |row| {
+        let row: &Row<'_, f64> = row;
+        let disc = |place: usize| &discs[row.agents()[place] as usize];
+        let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
+        regions.map(move |region| Met { own: disc(region.ego()), other: disc(region.other()), region })
     };
-    Some(Scenario { agents: ids.into_iter().map(disc).collect::<Option<_>>()?, ..Scenario::default() })
+    let all: Vec<Met<'_>> = rows.iter().flat_map(met).collect();
+    let last = all.iter().find(|met| met.sides()[0]);
+    let first = all.iter().find(|met| met.sides()[1]);
+    let longest = || all.iter().max_by(|a, b| a.region.length().length().total_cmp(&b.region.length().length()));
+    let overlap = |at_end: bool| {
+        let there = |&disc: &usize| discs[disc].stands()[usize::from(at_end)];
+        let at = |disc: usize| motions[disc].path().point_at(if at_end { motions[disc].path().length() } else { 0.0 });
+        of(0).filter(there).any(|a| {
+            of(1).filter(there).any(|b| {
+                let apart = [at(a).x - at(b).x, at(a).y - at(b).y];
+                apart[0].hypot(apart[1]) < motions[a].radius() + motions[b].radius()
+            })
+        })
+    };
+    Some(match (always, first, last) {
+        (true, ..) if overlap(false) => ("they overlap at their starts".to_owned(), Spot::standing(references, false)),
+        (true, ..) if overlap(true) => {
+            ("they overlap at the ends of their paths".to_owned(), Spot::standing(references, true))
+        }
+        (true, Some(first), Some(last)) => (contradiction(last, first), last.spot(references[0])),
+        _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
+    })
+}
+
+/// A region of two discs.
+struct Met<'a> {
+    region: RegionRef<'a, f64>,
+    own: &'a Disced,
+    other: &'a Disced,
+}
+
+impl Met<'_> {
+    /// Whether the first disc has to pass it after the second, and whether before.
+    fn sides(&self) -> [bool; 2] {
+        sides_of(&self.region, self.own.stands(), self.other.stands())
+    }
+
+    /// Where it is on the paths of the agents, of which the first has this motion.
+    fn spot(&self, first: &Motion<'_, f64>) -> Spot {
+        let ends = |interval: Interval<f64>| [interval.lo, interval.hi];
+        let lengths =
+            [self.own.on_agent(ends(self.region.length())), self.other.on_agent(ends(self.region.other_length()))];
+        Spot::at(first, lengths)
+    }
 }
 
 /// Each starts on the way of the other, or each ends there.
@@ -92,10 +124,12 @@ const HEAD_ON: &str = "head-on without a passing place";
 const NO_ORDER: &str = "no order is possible";
 
 /// In words: a region that has to be passed second, and one that has to be passed first.
-fn contradiction(second: &RegionRef<'_, f64>, first: &RegionRef<'_, f64>) -> String {
-    let (other_start, other_end) = (second.is_open_at_start(), first.is_open_at_end());
-    let own_start = first.length().lo <= 0.0;
-    let own_end = second.length().hi >= second.ego_motion().path().length();
+fn contradiction(second: &Met<'_>, first: &Met<'_>) -> String {
+    let other_start = second.other.is_at_start() && second.region.is_open_at_start();
+    let other_end = first.other.is_at_end() && first.region.is_open_at_end();
+    let own_start = first.own.is_at_start() && first.region.length().lo <= 0.0;
+    let path = second.region.ego_motion().path();
+    let own_end = second.own.is_at_end() && second.region.length().hi >= path.length();
     let (kind, not_first, not_second) = match () {
         () if other_start && own_start => (HEAD_ON, Obstacle::OtherStart, Obstacle::OwnStart),
         () if own_end && other_end => (HEAD_ON, Obstacle::OwnEnd, Obstacle::OtherEnd),
@@ -106,13 +140,6 @@ fn contradiction(second: &RegionRef<'_, f64>, first: &RegionRef<'_, f64>) -> Str
 }
 
 impl Spot {
-    /// Where a region is.
-    pub(super) fn of(region: &RegionRef<'_, f64>) -> Self {
-        let ends = |interval: Interval<f64>| [interval.lo, interval.hi];
-        let (own, other) = (ends(region.length()), ends(region.other_length()));
-        Self::at(region.ego_motion(), [own, other])
-    }
-
     /// At these lengths of two paths.
     fn at(first: &Motion<'_, f64>, lengths: [[f64; 2]; 2]) -> Self {
         let point = first.path().point_at((lengths[0][0] + lengths[0][1]) / 2.0);

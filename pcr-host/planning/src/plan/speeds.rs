@@ -92,6 +92,7 @@ enum Found<'m> {
 }
 
 impl<'m> Found<'m> {
+    /// In the regions of the row of this very motion: a delay is one of that row's.
     fn of<'a>(
         motion: &Motion<'m, f64>,
         regions: impl Iterator<Item = RegionRef<'a, f64>> + Clone,
@@ -169,15 +170,14 @@ fn again<'m>(
         let mut sooner = false;
         for agent in order {
             let motion = planner.motions[agent];
+            // Delays count from the motion that the row is of: that of the file.
+            let before = std::mem::replace(&mut plan[agent], motion);
             let regions = ecm.row(plan, agent).expect("the table of the fleet");
-            let Some(found) = Found::of(&motion, regions, stations) else { continue };
-            if found.end() >= plan[agent].time().hi - SOONER {
-                continue;
-            }
-            if let Some(motion) = found.motion(motion, room) {
-                plan[agent] = motion;
-                sooner = true;
-            }
+            let found = Found::of(&motion, regions, stations);
+            let found = found.filter(|found| found.end() < before.time().hi - SOONER);
+            let better = found.and_then(|found| found.motion(motion, room));
+            sooner |= better.is_some();
+            plan[agent] = better.unwrap_or(before);
         }
         if !sooner {
             return;

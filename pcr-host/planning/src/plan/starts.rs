@@ -6,6 +6,7 @@ use super::task::Planner;
 use super::{Priority, Unsolved};
 use crate::regions::Failure;
 use pcr_core::Motion;
+use rayon::prelude::*;
 
 /// Delays of some agents of a fleet, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +15,7 @@ pub(super) struct Known {
     pub(super) delays: Vec<f64>,
     /// The agents by priority, or by their starts where none was asked for.
     pub(super) order: Vec<usize>,
-    /// No delays sum up to less, or none has an earlier last arrival \[s\].
+    /// No delays sum up to less, or none has an earlier last arrival \[s\]; no bound is infinitely less.
     pub(super) bound: f64,
     /// Whether that is reached but for rounding.
     pub(super) proved: bool,
@@ -41,8 +42,8 @@ pub(super) struct Starts {
     fewest: bool,
     /// Who cannot start in the order that was asked for.
     out: Vec<Out>,
-    /// Whether discs of footprints were planned with.
-    outlined: bool,
+    /// Whether discs of footprints or loads were planned with.
+    pub(super) outlined: bool,
 }
 
 impl Starts {
@@ -61,7 +62,7 @@ impl Starts {
         let Outcome { delays, bound, proved, conflicts, fewest } =
             delays::best(&problem, &known, request.effort, request.leave_out);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
-        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some());
+        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
         let found = Self {
             delays: delays.map(|delays| delays.iter().map(seconds).collect()),
             order: Vec::new(),
@@ -80,7 +81,7 @@ impl Starts {
         let first: Option<Vec<i64>> = known.first().and_then(|known| known.iter().copied().collect());
         let reached = first.is_some_and(|known| problem.cost(&known) <= bound + delays::slack(&problem));
         // A bound for other agents is none for these.
-        let bound = if whole { found.bound } else { 0.0 };
+        let bound = if whole { found.bound } else { f64::NEG_INFINITY };
         Ok(Self { delays: Some(delays), order, out, bound, proved: found.proved && whole && reached, ..found })
     }
 
@@ -109,6 +110,24 @@ impl Starts {
         }
     }
 
+    /// Why there is no plan by speeds, from why none was found: that is of the discs around outlines, and no reason where others than
+    /// these can do without; and with `leave_out` it is for all that are left out.
+    pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<Unsolved>) -> Vec<Unsolved> {
+        if self.of_all().is_some() || !(self.outlined || planner.request.leave_out) {
+            return found;
+        }
+        let mut all = if self.outlined { Vec::new() } else { found };
+        for unsolved in self.unsolved(planner) {
+            let known = |other: &Unsolved| {
+                other.ids.len() == unsolved.ids.len() && unsolved.ids.iter().all(|id| other.ids.contains(id))
+            };
+            if !all.iter().any(known) {
+                all.push(unsolved);
+            }
+        }
+        all
+    }
+
     /// Why not all have delays.
     pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<Unsolved> {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
@@ -119,19 +138,18 @@ impl Starts {
             let why = "each has to let the next one pass first, the last one the first, however they move";
             unsolved.push(Unsolved::nowhere(ids(circle), why));
         }
-        for conflict in &self.conflicts {
+        let of_conflict = |conflict: &Vec<usize>| {
             let is_circle = circle.as_ref().is_some_and(|circle| {
                 circle.len() == conflict.len() && circle.iter().all(|agent| conflict.contains(agent))
             });
             match conflict.as_slice() {
-                _ if is_circle => {}
-                &[i, j] => unsolved.push(Unsolved::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
-                agents => {
-                    let why = "two of them meet whenever they start";
-                    unsolved.push(Unsolved::nowhere(ids(agents), why));
-                }
+                _ if is_circle => None,
+                &[i, j] => Some(Unsolved::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
+                agents => Some(Unsolved::nowhere(ids(agents), "two of them meet whenever they start")),
             }
-        }
+        };
+        // Large fleets have thousands.
+        unsolved.par_extend(self.conflicts.par_iter().filter_map(of_conflict));
         if !self.fewest && planner.request.leave_out {
             let delays = self.delays.as_deref().unwrap_or_default();
             let explained = |agent: &usize| self.conflicts.iter().any(|conflict| conflict.contains(agent));

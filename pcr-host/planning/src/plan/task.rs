@@ -82,12 +82,13 @@ impl Planner<'_, '_> {
                 self.motions.iter().zip(planned).map(|(given, planned)| planned.time().hi - given.time().lo).sum()
             }
             Objective::Makespan => {
-                planned.iter().map(|planned| planned.time().hi).fold(0.0, f64::max).max(self.begin()) - self.begin()
+                let begin = self.begin();
+                planned.iter().map(|planned| planned.time().hi).fold(begin, f64::max) - begin
             }
         }
     }
 
-    /// The earliest start in the file \[s\].
+    /// The earliest start in the file, without agents that are left out \[s\].
     pub(super) fn begin(&self) -> f64 {
         self.motions.iter().map(|motion| motion.time().lo).reduce(f64::min).unwrap_or(0.0)
     }

@@ -26,7 +26,7 @@ pub(super) enum Feasible {
 }
 
 /// Agents up to which the paths between any two are known: that takes their square.
-const MOST: usize = 2_000;
+pub(super) const MOST: usize = 2_000;
 
 /// Delays of all agents, any; and how many nodes that took.
 pub(super) fn feasible(problem: &Problem, stop: Stop<'_>) -> (Feasible, u64) {
@@ -35,7 +35,7 @@ pub(super) fn feasible(problem: &Problem, stop: Stop<'_>) -> (Feasible, u64) {
         return (if root.is_none() { Feasible::Never } else { Feasible::Stopped }, 1);
     }
     let mut paths = Paths::new(problem);
-    if !paths.settle() {
+    if !paths.settle(stop) {
         return (Feasible::Never, 1);
     }
     let (mut nodes, mut dead_ends) = (0, FIRST);
@@ -112,8 +112,8 @@ impl<'a> Paths<'a> {
         }
     }
 
-    /// Takes all sides that are the only ones left; false if an interval has none.
-    fn settle(&mut self) -> bool {
+    /// Takes all sides that are the only ones left, until there is no more time; false if an interval has none.
+    fn settle(&mut self, stop: Stop<'_>) -> bool {
         loop {
             let mark = self.changes.len();
             for (place, pair) in self.problem.pairs.iter().enumerate() {
@@ -135,6 +135,9 @@ impl<'a> Paths<'a> {
                     };
                     if !self.impose(only) {
                         return false;
+                    }
+                    if (stop.clock)() {
+                        return true;
                     }
                 }
             }
@@ -164,7 +167,7 @@ impl<'a> Paths<'a> {
             }
             later.push((self.changes.len(), second));
             let mut next = first;
-            while !(self.impose(next) && self.settle()) {
+            while !(self.impose(next) && self.settle(stop)) {
                 dead_ends = dead_ends.saturating_sub(1);
                 let Some((mark, other)) = later.pop() else {
                     self.take_back(begin);

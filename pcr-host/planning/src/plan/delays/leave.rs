@@ -8,10 +8,10 @@
 //! On the way there, one more agent of each new conflict is left out until the others have delays. These are an answer
 //! too: if the search is stopped, the best of them is kept.
 
-use super::feasible::{Feasible, feasible};
+use super::feasible::{Feasible, MOST, feasible};
 use super::insert;
 use super::problem::Problem;
-use super::search::Stop;
+use super::search::{Search, Stop};
 
 /// Conflicts, and whom to leave out because of them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,6 +40,9 @@ impl Left {
 const SEARCHES: u64 = 10;
 /// Nodes of a search whether a conflict is one without an agent.
 const SHORT: u64 = 200;
+/// Agents from which on no search begins once there is no time or no node left: it would take seconds before its first node. And those of a
+/// conflict from which on many are taken out at once.
+const LARGE: usize = 200;
 
 /// The pairs that meet whatever their delays are.
 pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
@@ -54,13 +57,16 @@ pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
 pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_fewest: bool) -> Left {
     let mut best = Left { conflicts: impossible(problem), delays: insert::inserted(problem), fewest: true };
     close(&mut best.delays, with);
-    let mut budget = Budget { stop, left: stop.nodes.saturating_mul(SEARCHES) };
+    let large = problem.len() > LARGE;
+    let mut budget = Budget { stop, left: stop.nodes.saturating_mul(SEARCHES), large };
     loop {
-        let mut out = hitting(&best.conflicts, with, stop, &mut best.fewest);
-        let (least, before) = (out.len(), best.conflicts.len());
+        let hit = hitting(&best.conflicts, with, stop, &mut best.fewest);
+        let (least, before) = (hit.len(), best.conflicts.len());
+        let mut out = vec![false; problem.len()];
+        hit.into_iter().for_each(|agent| out[agent] = true);
         // Until all that stay have delays, one more of each further conflict goes as well.
         let found = loop {
-            let staying: Vec<usize> = (0..problem.len()).filter(|agent| !out.contains(agent)).collect();
+            let staying: Vec<usize> = (0..problem.len()).filter(|&agent| !out[agent]).collect();
             let found = together(problem, &staying, &mut budget);
             best.fewest &= !found.stopped;
             if found.conflicts.is_empty() {
@@ -69,9 +75,11 @@ pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_f
                 break delays;
             }
             best.conflicts.extend(found.conflicts.iter().cloned());
+            let mut frequency = vec![0_usize; problem.len()];
+            best.conflicts.iter().flatten().for_each(|&agent| frequency[agent] += 1);
             for conflict in &found.conflicts {
-                let frequency = |agent: &usize| best.conflicts.iter().filter(|other| other.contains(agent)).count();
-                out.extend(conflict.iter().copied().max_by_key(frequency).into_iter().flat_map(|agent| &with[agent]));
+                let gone = conflict.iter().copied().max_by_key(|&agent| frequency[agent]);
+                gone.into_iter().flat_map(|agent| &with[agent]).for_each(|&agent| out[agent] = true);
             }
         };
         if Left::count(&found) <= Left::count(&best.delays) {
@@ -99,10 +107,20 @@ fn close(delays: &mut [Option<i64>], with: &[Vec<usize>]) {
 struct Budget<'a> {
     stop: Stop<'a>,
     left: u64,
+    /// Whether the fleet is.
+    large: bool,
 }
 
 impl Budget<'_> {
+    /// Whether no search shall begin any more.
+    fn is_over(&self) -> bool {
+        self.large && (self.left == 0 || (self.stop.clock)())
+    }
+
     fn feasible(&mut self, problem: &Problem, nodes: u64) -> Feasible {
+        if self.is_over() {
+            return Feasible::Stopped;
+        }
         let (found, taken) = feasible(problem, Stop { nodes: nodes.min(self.left), ..self.stop });
         self.left = self.left.saturating_sub(taken);
         found
@@ -121,9 +139,8 @@ struct Together {
 fn together(problem: &Problem, staying: &[usize], budget: &mut Budget<'_>) -> Together {
     let mut found = Together { delays: vec![None; problem.len()], conflicts: Vec::new(), stopped: false };
     // Parts that forbid one another nothing have conflicts of their own.
-    for part in problem.of(staying).parts() {
+    for (part, own) in problem.of(staying).apart() {
         let part: Vec<usize> = part.into_iter().map(|place| staying[place]).collect();
-        let own = problem.of(&part);
         let mut delays = insert::inserted(&own);
         if delays.contains(&None) {
             match budget.feasible(&own, budget.stop.nodes) {
@@ -142,18 +159,45 @@ fn together(problem: &Problem, staying: &[usize], budget: &mut Budget<'_>) -> To
 
 /// Those of a conflict that are left if everybody is taken out without whom it is one, as far as short searches tell.
 fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, budget: &mut Budget<'_>) -> Vec<usize> {
-    for agent in conflict.clone() {
-        let others: Vec<usize> = conflict.iter().copied().filter(|&other| other != agent).collect();
-        if budget.feasible(&problem.of(&others), SHORT) == Feasible::Never {
-            conflict = others;
+    let is_forced = |agents: &[usize], budget: &Budget<'_>| {
+        Search::new(&problem.of(agents), Stop { nodes: 0, ..budget.stop }).root().is_none()
+    };
+    // What is forced upon all plans is soon known.
+    let forced = conflict.len() > LARGE && is_forced(&conflict, budget);
+    let mut chunk = if conflict.len() > LARGE { conflict.len() / 2 } else { 1 };
+    loop {
+        let mut begin = 0;
+        while begin < conflict.len() {
+            if budget.is_over() {
+                return conflict;
+            }
+            let end = conflict.len().min(begin + chunk);
+            let others = [&conflict[..begin], &conflict[end..]].concat();
+            let is_one = match forced {
+                true => {
+                    budget.left = budget.left.saturating_sub(1);
+                    is_forced(&others, budget)
+                }
+                false => budget.feasible(&problem.of(&others), SHORT) == Feasible::Never,
+            };
+            match is_one {
+                true => conflict = others,
+                false => begin = end,
+            }
         }
+        if chunk == 1 {
+            return conflict;
+        }
+        chunk = (chunk / 2).min(conflict.len() / 2).max(1);
     }
-    conflict
 }
 
 /// Gives delays to those that have none where a short search finds some for them and all that have.
 fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_>) {
     for agent in 0..delays.len() {
+        if budget.is_over() {
+            return;
+        }
         let impossible = |pair: &super::Pair| {
             let other = pair.agents[usize::from(pair.agents[0] == agent)];
             pair.agents.contains(&agent) && pair.is_impossible() && delays[other].is_some()
@@ -162,6 +206,10 @@ fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_
             continue;
         }
         let together: Vec<usize> = (0..delays.len()).filter(|&it| it == agent || delays[it].is_some()).collect();
+        // Of more no search finds delays.
+        if together.len() > MOST {
+            return;
+        }
         if let Feasible::Delays(found) = budget.feasible(&problem.of(&together), SHORT) {
             together.iter().zip(found).for_each(|(&agent, delay)| delays[agent] = Some(delay));
         }
@@ -227,6 +275,11 @@ struct Hitting<'a> {
 impl Hitting<'_> {
     fn node(&mut self, count: usize) {
         self.nodes += 1;
+        let stopped = self.nodes > self.stop.nodes || (self.stop.clock)();
+        self.cut |= stopped && self.best.is_some();
+        if self.cut {
+            return;
+        }
         let is_open = |conflict: &&Vec<usize>| !conflict.iter().any(|&agent| self.out[agent]);
         let open: Vec<&Vec<usize>> = self.conflicts.iter().copied().filter(is_open).collect();
         // Conflicts that have no agent in common need one each.
@@ -239,9 +292,7 @@ impl Hitting<'_> {
             }
         }
         let most = self.best.as_ref().map_or(usize::MAX, Vec::len);
-        let stopped = self.nodes > self.stop.nodes || (self.stop.clock)();
-        self.cut |= stopped && self.best.is_some();
-        if count + needed >= most || self.cut {
+        if count + needed >= most {
             return;
         }
         let frequency = |agent: usize| open.iter().filter(|conflict| conflict.contains(&agent)).count();

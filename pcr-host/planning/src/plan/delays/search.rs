@@ -13,8 +13,9 @@ use super::problem::{Constraint, Objective, Problem};
 const TRIED: usize = 16;
 /// Agents that have to wait, or let wait, up to which cliques of them are looked for: a bound that takes their square.
 const MOST_WAITING: usize = 2_000;
-/// Nodes after which the clock is looked at.
+/// Nodes after which the clock is looked at, where each of them looks at fewer pairs than this.
 const TICK: u64 = 32;
+const LONG: usize = 2_000;
 
 /// When a search stops: what it found until then is what it answers.
 #[derive(Clone, Copy)]
@@ -152,7 +153,8 @@ impl<'a> Search<'a> {
     /// Whether the search ends here, at one node more.
     pub(super) fn is_over(&mut self) -> bool {
         self.nodes += 1;
-        self.stopped |= self.nodes > self.stop.nodes || (self.nodes.is_multiple_of(TICK) && (self.stop.clock)());
+        let look = self.nodes.is_multiple_of(TICK) || self.pairs.len() > LONG;
+        self.stopped |= self.nodes > self.stop.nodes || (look && (self.stop.clock)());
         self.stopped
     }
 

@@ -120,6 +120,8 @@ fn plan_again<'m>(
 ) -> Option<()> {
     let above = superiors(&node.above, agent);
     let motion = planner.motions[agent];
+    // Delays count from the motion that the row is of: that of the file.
+    node.plan[agent] = motion;
     let regions = ecm.row(&node.plan, agent).expect("the table of the fleet");
     let regions = regions.filter(|region| above.contains(&region.other()));
     node.plan[agent] = Found::of(&motion, regions, stations)?.motion(motion, room)?;

@@ -1,0 +1,178 @@
+//! What a plan says of itself is so: margins are kept, bounds hold, what is proved was, and reasons are true.
+
+use pcr_formats::scenario::Scenario;
+use pcr_planning::check::Verdict;
+use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
+use serde_json::{Value, json};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::time::{Duration, Instant};
+
+fn line(length: f64) -> Value {
+    json!({ "kind": "line", "length": length })
+}
+
+fn agent(id: u64, start: [f64; 3], path: &Value, more: &Value) -> Value {
+    let mut agent = json!({ "id": id, "radius": 0.3, "v_max": 1.0, "a_max": 1.0, "path": path,
+        "start": { "x": start[0], "y": start[1], "heading": start[2] } });
+    let fields = more.as_object().unwrap().clone();
+    agent.as_object_mut().unwrap().extend(fields);
+    agent
+}
+
+fn read(agents: &[Value]) -> Scenario {
+    Scenario::from_json(&json!({ "name": "claims", "agents": agents }).to_string()).unwrap()
+}
+
+fn clearance(scenario: &Scenario) -> f64 {
+    let closest = Verdict::of::<f64>(scenario, true).unwrap().closest.unwrap();
+    closest.iter().map(|pair| pair.clearance).fold(f64::INFINITY, f64::min)
+}
+
+/// One that turns in place keeps its own motion: its delay counts from that, and not from a delay that it has.
+#[test]
+fn who_keeps_its_own_motion_keeps_its_margin() {
+    let turns = json!({ "margin": 0.2, "turn_v_max": 1.0, "turn_a_max": 1.0 });
+    let path = json!([{ "kind": "turn", "sweep": FRAC_PI_2 }, line(6.0)]);
+    for x in [-2.3, -2.1] {
+        let slow = agent(2, [x, 3.0, 0.0], &json!([line(8.0)]), &json!({ "v_max": 0.5 }));
+        let scenario = read(&[agent(1, [0.0; 3], &path, &turns), slow]);
+        let [later, faster] =
+            [Method::Delay, Method::Speed].map(|method| Plan::of(&scenario, &Request::of(method)).unwrap());
+        let solved = faster.1.unwrap_or_else(|| panic!("{x}: {:?}", faster.0.unsolved));
+        assert!(faster.0.sum_of_costs <= later.0.sum_of_costs + 1e-9, "{x}: {:?}", faster.0);
+        assert!(clearance(&solved) > 0.2, "{x}: {}", clearance(&solved));
+    }
+}
+
+/// Times before 0 are times as all others.
+#[test]
+fn a_last_arrival_before_0_has_its_bound() {
+    let starts = |t: f64| {
+        let early = json!({ "t_start": t });
+        read(&[
+            agent(1, [-4.0, 0.0, 0.0], &json!([line(8.0)]), &early),
+            agent(2, [0.0, -4.0, FRAC_PI_2], &json!([line(8.0)]), &early),
+        ])
+    };
+    for priority in [Priority::Best, Priority::Longest] {
+        let request = Request { objective: Objective::Makespan, priority, ..Request::default() };
+        let [late, early] = [0.0, -100.0].map(|t| Plan::of(&starts(t), &request).unwrap().0);
+        assert!((late.makespan - early.makespan).abs() < 1e-6, "{early:?}");
+        assert!((late.lower_bound - early.lower_bound).abs() < 1e-6 && late.proved == early.proved, "{early:?}");
+        assert!(early.lower_bound <= early.makespan, "{early:?}");
+    }
+}
+
+/// A load that is far from the crossing does not make anybody wait there.
+#[test]
+fn a_load_counts_where_it_is_carried() {
+    let load = |radius: f64| json!({ "loads": [{ "segments": [2, 2], "radius": radius }] });
+    let crossing = read(&[
+        agent(1, [-4.0, 0.0, 0.0], &json!([line(8.0), line(20.0)]), &load(1.5)),
+        agent(2, [0.0, -4.0, FRAC_PI_2], &json!([line(8.0)]), &json!({})),
+    ]);
+    let (plan, solved) = Plan::of(&crossing, &Request::default()).unwrap();
+    assert!(plan.proved && plan.sum_of_costs < 38.9 && plan.lower_bound <= plan.sum_of_costs, "{plan:?}");
+    // A little less of a delay, and they meet.
+    let mut sooner = solved.unwrap();
+    let delayed = plan.agents.iter().position(|agent| agent.delay > 0.0).unwrap();
+    sooner.agents[delayed].t_start -= 1e-4;
+    assert_ne!(Verdict::of::<f64>(&sooner, false).unwrap().conflicts, []);
+    // Back to back, and the load is as far away as that.
+    let apart = read(&[
+        agent(1, [0.0; 3], &json!([line(5.0), line(5.0)]), &load(2.0)),
+        agent(2, [-1.0, 0.0, PI], &json!([line(5.0)]), &json!({})),
+    ]);
+    for method in [Method::Delay, Method::Speed] {
+        let (plan, solved) = Plan::of(&apart, &Request::of(method)).unwrap();
+        assert!(solved.is_some() && plan.agents.iter().all(|agent| agent.delay == 0.0), "{plan:?}");
+    }
+    // In the way of the load for good.
+    let blocked = read(&[
+        agent(1, [0.0; 3], &json!([line(5.0), line(5.0)]), &load(2.0)),
+        agent(2, [7.0, 1.0, 0.0], &json!([]), &json!({})),
+    ]);
+    let (plan, solved) = Plan::of(&blocked, &Request::default()).unwrap();
+    assert!(solved.is_none() && plan.unsolved.len() == 1 && !plan.unsolved[0].why.contains("starts,"), "{plan:?}");
+}
+
+/// Long vehicles side by side are none of the reasons why two others, head-on, have no plan.
+#[test]
+fn reasons_for_no_speeds_are_those_of_outlines() {
+    let corners = [[2.0, 0.2], [-2.0, 0.2], [-2.0, -0.2], [2.0, -0.2]];
+    let polygon = json!({ "polygon": corners.map(|[ahead, left]| json!({ "ahead": ahead, "left": left })) });
+    let long = |id: u64, y: f64| {
+        let mut long = agent(id, [0.0, y, 0.0], &json!([line(10.0)]), &json!({ "footprint": polygon }));
+        long.as_object_mut().unwrap().remove("radius");
+        long
+    };
+    let scenario = read(&[
+        long(1, 0.0),
+        long(2, 1.0),
+        agent(3, [5.0, -5.0, FRAC_PI_2], &json!([line(10.0)]), &json!({})),
+        agent(4, [5.0, 6.0, -FRAC_PI_2], &json!([line(10.0)]), &json!({})),
+    ]);
+    for leave_out in [false, true] {
+        let request = Request { leave_out, ..Request::of(Method::Speed) };
+        let (plan, solved) = Plan::of(&scenario, &request).unwrap();
+        assert_eq!(solved.is_some(), leave_out, "{plan:?}");
+        let mut named: Vec<u64> = plan.unsolved.iter().flat_map(|unsolved| unsolved.ids.clone()).collect();
+        named.sort_unstable();
+        assert_eq!(named, [3, 4], "{plan:?}");
+        assert!(plan.left_out.iter().all(|id| named.contains(id)), "{plan:?}");
+    }
+}
+
+/// Half a second is not nothing, however long others take.
+#[test]
+fn a_long_plan_is_not_proved_by_its_length() {
+    let turns = json!([line(3.0), { "kind": "arc", "radius": 2, "sweep": -1.5 }]);
+    let waits = json!(
+        [[5e8, 0.0], [1.0, 1.0], [1.0, -1.0]].map(|[duration, accel]| json!({ "duration": duration, "accel": accel }))
+    );
+    let slow = json!({ "id": 3, "radius": 0.3, "start": { "x": 100, "y": 100, "heading": 0 }, "path": [line(1.0)],
+        "profile": { "v0": 0.0, "pieces": waits } });
+    let scenario = read(&[
+        agent(1, [-4.0, 0.0, 0.0], &json!([line(8.0)]), &json!({})),
+        agent(2, [0.0, -4.0, FRAC_PI_2], &turns, &json!({})),
+        slow,
+    ]);
+    let best = Plan::of(&scenario, &Request::default()).unwrap().0;
+    let worst = [vec![1, 2], vec![2, 1]].map(|order| {
+        let plan = Plan::of(&scenario, &Request { priority: Priority::Given(order), ..Request::default() }).unwrap().0;
+        assert!(!plan.proved || plan.sum_of_costs < best.sum_of_costs + 1e-3, "{plan:?}");
+        plan.sum_of_costs
+    });
+    assert!(worst.iter().any(|cost| *cost > best.sum_of_costs + 0.1), "{worst:?}");
+}
+
+/// Of a makespan an agent that is left out is no part.
+#[test]
+fn who_is_left_out_does_not_begin_the_makespan() {
+    let early = json!({ "t_start": -50 });
+    let scenario = read(&[
+        agent(1, [0.0; 3], &json!([line(5.0)]), &early),
+        agent(2, [0.0, 0.4, 0.0], &json!([]), &json!({})),
+        agent(3, [0.0, -0.4, 0.0], &json!([]), &json!({})),
+        agent(4, [20.0, 0.0, 0.0], &json!([line(5.0)]), &json!({})),
+    ]);
+    let request = Request { leave_out: true, ..Request::default() };
+    let plan = Plan::of(&scenario, &request).unwrap().0;
+    assert!(plan.left_out == [1] && (plan.makespan - 6.0).abs() < 1e-9, "{plan:?}");
+}
+
+/// However many agents have no plan together, the answer comes when it has to.
+#[test]
+fn a_limit_of_time_holds_for_large_fleets() {
+    const SIDE: usize = 60;
+    let place = |k: usize| [(k % SIDE) as f64 * 3.0, (k / SIDE) as f64 * 3.0, (k as f64 * 0.7) % 6.28];
+    let agents: Vec<Value> =
+        (0..SIDE * SIDE).map(|k| agent(k as u64 + 1, place(k), &json!([line(8.0)]), &json!({}))).collect();
+    let scenario = read(&agents);
+    let effort = Effort { time: Some(Duration::from_millis(500)), ..Effort::default() };
+    let begin = Instant::now();
+    let (plan, solved) = Plan::of(&scenario, &Request { effort, ..Request::default() }).unwrap();
+    assert!(solved.is_none() && !plan.unsolved.is_empty());
+    println!("{:?}, {} reasons", begin.elapsed(), plan.unsolved.len());
+    assert!(begin.elapsed() < Duration::from_secs(120), "{:?}", begin.elapsed());
+}
