@@ -3,7 +3,7 @@
 use super::map::draw;
 use super::printed::notes;
 use super::sources::{Source, gathered};
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, write_over};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
@@ -216,7 +216,7 @@ impl Arguments {
         drop(progress);
         let (plan, solved) = planned.map_err(wrong)?;
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
-            write_to(output, &solved.to_json())?;
+            write_over(output, &solved.to_json(), || source.is_scenario(&self.import))?;
         }
         match self.printed.form() {
             Form::Table => report::plan_table(&plan, out)?,

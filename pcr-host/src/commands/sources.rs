@@ -2,9 +2,9 @@
 
 use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, say, warn};
-use pcr_formats::import::{Imported, Options};
-use pcr_formats::input;
+use pcr_formats::import::{Imported, Kind, Options};
 use pcr_formats::scenario::Scenario;
+use pcr_formats::{input, output};
 use pcr_planning::locks::rounded;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -25,11 +25,14 @@ fn named(files: Vec<PathBuf>, hint: &str) -> Result<Vec<PathBuf>, Stop> {
         return Err(Stop::arguments("FILE: - is given twice; standard input can be read once"));
     }
     if !files.is_empty() {
+        // All of them before the first is answered: an answer may be a file.
+        files.iter().for_each(|file| output::keep(file));
         return Ok(files);
     }
     if io::stdin().is_terminal() {
         return Err(Stop::arguments(format!("no FILE, and nothing comes in by a pipe; {hint}")));
     }
+    output::keep(Path::new("-"));
     Ok(vec![PathBuf::from("-")])
 }
 
@@ -47,8 +50,14 @@ pub(super) fn layout_source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
     Ok(files.pop().unwrap_or_default())
 }
 
+/// What is read beside the files themselves is not written over, either.
+fn keep(import: &Options) {
+    import.fleet.iter().for_each(|fleet| output::keep(fleet));
+}
+
 /// The scenario in a file, in whatever format; warnings about it are told.
 pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> {
+    keep(import);
     let (mut scenario, warnings) = input::read(file, import)?;
     warn(file, &warnings);
     scenario.give_margin(import.margin.unwrap_or(0.0));
@@ -99,6 +108,14 @@ impl Source {
         matches!(self, Self::File(file) if file == Path::new("-")) && import.from.is_none()
     }
 
+    /// Whether it is a scenario file, which a plan may replace.
+    pub(super) fn is_scenario(&self, import: &Options) -> Result<bool, Stop> {
+        match self {
+            Self::File(file) => Ok(input::kind(file, import)? == Kind::Scenario),
+            Self::Together(_) => Ok(false),
+        }
+    }
+
     pub(super) fn scenario(&self, import: &Options) -> Result<Scenario, Stop> {
         match self {
             Self::File(file) => scenario(file, import),
@@ -109,6 +126,7 @@ impl Source {
 
 /// The scenario in several files of orders, states or paths.
 pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, Stop> {
+    keep(import);
     let (mut scenario, warnings) = input::read_all(files, import)?;
     warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
     scenario.give_margin(import.margin.unwrap_or(0.0));
@@ -131,6 +149,7 @@ pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) 
         "nodes" => Options { radius: Some(1.0), ..import.clone() },
         _ => import.clone(),
     };
+    keep(import);
     let (imported, warnings) = input::read_layout(file, import, moves)?;
     warn(file, &warnings);
     if matches!(command, "locks" | DRIVING | STANDING) {

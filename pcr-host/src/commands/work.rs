@@ -1,7 +1,8 @@
 //! Shared code of commands that process one scenario after the other.
 
+use super::printed::is_alone;
 use super::sources::{Source, gathered};
-use super::{Form, Printed, Stop, WRONG_INPUT, complain};
+use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain};
 use crate::progress::Progress;
 use pcr_formats::import::Options;
 use pcr_formats::input::Lines;
@@ -91,6 +92,14 @@ fn lines<W: Work>(
     let before = tally.read;
     for line in Lines::new(BufReader::new(io::stdin().lock())) {
         let line = line?;
+        if is_alone() {
+            // Nobody waits for the answers, and whoever writes the scenarios may never end. What is not looked at is not free.
+            if !tally.found && tally.refused == 0 {
+                let rest = format!("standard output: closed; nothing is said of line {} and what follows", line.number);
+                return Err(Stop::Error(rest, NOT_WRITTEN));
+            }
+            break;
+        }
         let outcome = match line.scenario {
             Ok(mut scenario) => {
                 scenario.give_margin(margin.unwrap_or(0.0));

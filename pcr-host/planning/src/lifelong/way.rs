@@ -224,7 +224,9 @@ mod tests {
         let length = site.atoms[long].length;
         let from = From { node: site.atoms[long].ends[0], heading: None };
         let alone = |acceleration: f64| {
-            Way::new(&site, from, &[long], &[], &abilities).alone(&Abilities { acceleration, ..abilities })
+            let mut other = abilities;
+            other.acceleration = acceleration;
+            Way::new(&site, from, &[long], &[], &abilities).alone(&other)
         };
         // v = 1 m/s: L / v + v / a where that speed is reached, else 2 √(L / a).
         let long_enough = 1.0 / length;
