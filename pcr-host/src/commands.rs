@@ -32,7 +32,7 @@ use pcr_formats::output::{self, Kept};
 use pcr_planning::regions::Failure;
 pub(crate) use printed::complain;
 use printed::{Form, Printed, quiet};
-use sources::{scenario, sources};
+use sources::scenario;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

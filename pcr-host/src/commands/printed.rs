@@ -1,6 +1,7 @@
 //! The format of printed answers, and where they are printed.
 
 use clap::{Args, ValueEnum};
+use pcr_formats::scenario::printable;
 use std::io::{self, BufWriter, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -82,9 +83,9 @@ fn stderr() -> impl Write {
     Read::of(io::stderr().lock())
 }
 
-/// A message on standard error. Where that is closed, the exit status has to do.
+/// A message on standard error, a line whatever is in it. Where that is closed, the exit status has to do.
 pub(crate) fn complain(message: &str) {
-    let _ = writeln!(io::stderr(), "pcr: {message}");
+    let _ = writeln!(io::stderr(), "pcr: {}", printable(message));
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]

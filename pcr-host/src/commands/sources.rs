@@ -2,7 +2,7 @@
 
 use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, say, warn};
-use pcr_formats::import::{Imported, Kind, Options};
+use pcr_formats::import::{Imported, Kind, Options, shortened};
 use pcr_formats::scenario::Scenario;
 use pcr_formats::{input, output};
 use pcr_planning::locks::rounded;
@@ -60,6 +60,10 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
     keep(import);
     let (mut scenario, warnings) = input::read(file, import)?;
     warn(file, &warnings);
+    if warnings.is_empty() {
+        // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
+        say(file, scenario.warnings.iter().map(|line| shortened(line)));
+    }
     scenario.give_margin(import.margin.unwrap_or(0.0));
     Ok(scenario)
 }
@@ -77,6 +81,8 @@ pub(super) fn without_margin(import: &Options) -> Result<(), Stop> {
 /// What one answer is about.
 pub(super) enum Source {
     File(PathBuf),
+    /// One of several files of the same name in other folders; answers are named by the path.
+    Twin(PathBuf),
     /// Orders and states, or paths, of one fleet.
     Together(Vec<PathBuf>),
 }
@@ -87,20 +93,33 @@ pub(super) fn gathered(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Sour
     if files.len() > 1 && input::are_of_one_fleet(&files, import) {
         return Ok(vec![Source::Together(files)]);
     }
-    Ok(files.into_iter().map(Source::File).collect())
+    Ok(apart(files))
+}
+
+/// Files that are answered one after the other, so that their answers can be told apart.
+pub(super) fn apart(files: Vec<PathBuf>) -> Vec<Source> {
+    let stems: Vec<String> = files.iter().map(|file| input::stem(file)).collect();
+    let is_twin = |stem: &String| !stem.is_empty() && stems.iter().filter(|other| *other == stem).count() > 1;
+    let twins: Vec<bool> = stems.iter().map(is_twin).collect();
+    let source = |(file, twin): (PathBuf, bool)| if twin { Source::Twin(file) } else { Source::File(file) };
+    files.into_iter().zip(twins).map(source).collect()
 }
 
 impl Source {
     /// The file, or the first of them, for messages.
     pub(super) fn file(&self) -> &Path {
         match self {
-            Self::File(file) => file,
+            Self::File(file) | Self::Twin(file) => file,
             Self::Together(files) => files.first().map_or(Path::new("-"), |first| first),
         }
     }
 
-    pub(super) fn stem(&self) -> String {
-        input::stem(self.file())
+    /// What an answer is called where the scenario has no name.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Twin(file) => file.to_string_lossy().into_owned(),
+            Self::File(_) | Self::Together(_) => input::stem(self.file()),
+        }
     }
 
     /// Whether it is scenarios one after the other on standard input.
@@ -111,7 +130,7 @@ impl Source {
     /// Whether it is a scenario file, which a plan may replace.
     pub(super) fn is_scenario(&self, import: &Options) -> Result<bool, Stop> {
         match self {
-            Self::File(file) => Ok(input::kind(file, import)? == Kind::Scenario),
+            Self::File(file) | Self::Twin(file) => Ok(input::kind(file, import)? == Kind::Scenario),
             Self::Together(_) => Ok(false),
         }
     }
@@ -119,6 +138,13 @@ impl Source {
     pub(super) fn scenario(&self, import: &Options) -> Result<Scenario, Stop> {
         match self {
             Self::File(file) => scenario(file, import),
+            Self::Twin(file) => {
+                let mut scenario = scenario(file, import)?;
+                if scenario.name == input::stem(file) {
+                    scenario.name = self.name();
+                }
+                Ok(scenario)
+            }
             Self::Together(files) => together(files, import),
         }
     }

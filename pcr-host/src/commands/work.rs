@@ -2,15 +2,15 @@
 
 use super::printed::is_alone;
 use super::sources::{Source, gathered};
-use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain};
+use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
 use crate::progress::Progress;
-use pcr_formats::import::Options;
+use pcr_formats::import::{Options, shortened};
 use pcr_formats::input::Lines;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::regions::Told;
 use pcr_planning::report::Unprinted;
 use std::io::{self, BufReader, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a command makes of each scenario that comes in.
 pub(super) trait Work {
@@ -54,7 +54,7 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
             Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                 tally.refused += 1;
                 if form == Form::Json {
-                    work.refuse(&source.stem(), message.clone(), &mut out)?;
+                    work.refuse(&source.name(), message.clone(), &mut out)?;
                 }
                 complain(&message);
             }
@@ -102,6 +102,9 @@ fn lines<W: Work>(
         }
         let outcome = match line.scenario {
             Ok(mut scenario) => {
+                let number = line.number;
+                let warnings = scenario.warnings.iter().map(|warning| format!("line {number}: {}", shortened(warning)));
+                say(Path::new("-"), warnings);
                 scenario.give_margin(margin.unwrap_or(0.0));
                 match work.print(&scenario, &|_, _| {}, out) {
                     Ok(found) => Ok(found),
