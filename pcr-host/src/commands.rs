@@ -24,15 +24,15 @@ mod traffic;
 mod work;
 
 use crate::progress;
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use pcr_formats::import::Warnings;
 use pcr_formats::input::InputError;
-use pcr_formats::output;
+use pcr_formats::output::{self, Kept};
 use pcr_planning::regions::Failure;
 pub(crate) use printed::complain;
 use printed::{Form, Printed, quiet};
-use sources::{scenario, sources};
+use sources::scenario;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -97,6 +97,18 @@ enum Command {
     Man(completions::Manual),
 }
 
+impl Command {
+    /// Whether the exit status answers what is asked, so that it has to be right even if nobody reads the rest.
+    fn is_answered_by_status(&self) -> bool {
+        match self {
+            Self::Certify(_) | Self::Check(_) | Self::Plan(_) => true,
+            Self::Simulate(_) | Self::Traffic(_) | Self::Fleet(_) => true,
+            Self::Locks(arguments) => arguments.is_audit(),
+            _ => false,
+        }
+    }
+}
+
 /// Does what the words of the command line ask for.
 pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     survive_limits();
@@ -105,6 +117,9 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     if arguments.quiet {
         printed::be_quiet();
         progress::silence();
+    }
+    if arguments.command.as_ref().is_some_and(Command::is_answered_by_status) {
+        printed::go_to_the_end();
     }
     match arguments.command {
         None => demo::Arguments::default().run(),
@@ -180,7 +195,7 @@ pub(crate) enum Stop {
     Error(String, u8),
     /// The arguments are wrong.
     Usage(Box<clap::Error>),
-    /// The reader of the output has seen enough.
+    /// The reader of the output has seen enough, and the exit status tells nothing.
     Closed,
 }
 
@@ -200,7 +215,8 @@ impl From<Failure> for Stop {
 impl From<io::Error> for Stop {
     fn from(error: io::Error) -> Self {
         match error.kind() {
-            io::ErrorKind::BrokenPipe => Self::Closed,
+            // Where the status is an answer, a reader of the output who goes is no error: this is of something else.
+            io::ErrorKind::BrokenPipe if !printed::goes_to_the_end() => Self::Closed,
             _ => Self::Error(format!("standard output: cannot be written: {error}"), NOT_WRITTEN),
         }
     }
@@ -220,6 +236,9 @@ impl Stop {
 
     /// A file or directory that could not be written.
     fn not_written(output: &Path, error: &io::Error) -> Self {
+        if let Some(kept) = Kept::of(error) {
+            return Self::Error(kept.to_string(), WRONG_INPUT);
+        }
         Self::Error(format!("{}: cannot be written: {error}", output.display()), NOT_WRITTEN)
     }
 }
@@ -245,10 +264,8 @@ fn is_standard(output: Option<&PathBuf>) -> bool {
 
 /// The name of a folder to be written.
 fn folder() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|name| match name == "-" {
-        true => Err(NO_FOLDER),
-        false => Ok(PathBuf::from(name)),
-    })
+    // An empty name, as of a variable that is not set, is refused by it.
+    PathBufValueParser::new().try_map(|name| if name == Path::new("-") { Err(NO_FOLDER) } else { Ok(name) })
 }
 
 /// Why `-` is refused where a folder is written.
@@ -257,10 +274,18 @@ const NO_FOLDER: &str = "a folder is written, which standard output is not; one 
 /// Why `-` is refused where a file is written that is not for standard output.
 const NO_STREAM: &str = "this is written to a file, not to standard output; one of this name is ./-";
 
-/// Writes a file, or standard output for `-`.
+/// The same where what is written may replace a file that was read, if that is of the same kind.
+fn write_over(output: &Path, content: &str, is_alike: impl FnOnce() -> Result<bool, Stop>) -> Result<(), Stop> {
+    if output != Path::new("-") && output::is_kept(output) && is_alike()? {
+        return output::write_over(output, content).map_err(|error| Stop::not_written(output, &error));
+    }
+    write_to(output, content)
+}
+
+/// Writes a file, or standard output for `-`; none that was read.
 fn write_to(output: &Path, content: &str) -> Result<(), Stop> {
     if output == Path::new("-") {
-        let mut out = io::stdout().lock();
+        let mut out = printed::stdout();
         out.write_all(content.as_bytes())?;
         return Ok(out.flush()?);
     }

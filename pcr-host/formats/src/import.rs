@@ -66,7 +66,7 @@ pub use timed::{seconds, sectioned};
 pub use useful::Kind;
 pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
-pub use warnings::Warnings;
+pub use warnings::{Warnings, shortened};
 
 use crate::scenario::{Agent, Scenario};
 use serde_json::Value;

@@ -55,7 +55,7 @@ pub(crate) fn parse_listing(text: &str, list: &str, take: &mut dyn FnMut(Json)) 
     let value = parser.value(0)?;
     match parser.peek() {
         None => Ok(value),
-        Some(_) => Err(parser.error("more text after the end of the scenario (JSON Lines: on standard input, with -)")),
+        Some(_) => Err(parser.error("more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)")),
     }
 }
 

@@ -3,19 +3,92 @@
 //! The contents are written to a temporary file in the same folder and flushed to the disk; only then it takes the name
 //! of the file that it replaces. If a full disk, a limit or a signal stops the program, the old file is still
 //! untouched.
+//!
+//! A program that names the files that it reads with [`keep()`] cannot lose them to a picture or a table.
 
+use std::fmt;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Files that are read.
+static KEPT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Why a file that is read is not written to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept(PathBuf);
+
+impl fmt::Display for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = self.0.display();
+        write!(f, "{file}: this is read, and something of another kind would be written over it; give another name")
+    }
+}
+
+impl std::error::Error for Kept {}
+
+impl Kept {
+    /// That an error of an output is of this kind.
+    pub fn of(error: &io::Error) -> Option<&Self> {
+        error.get_ref()?.downcast_ref()
+    }
+}
+
+/// From now on this file, or standard input for `-`, is not written to, whatever its name: it is read.
+pub fn keep(file: &Path) {
+    // Where that is no file of the system, it cannot be written over either.
+    let file = if file == Path::new("-") { Path::new("/dev/stdin") } else { file };
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if !kept.iter().any(|other| other == file) {
+        kept.push(file.to_owned());
+    }
+}
+
+/// Whether a file is one of those that are kept: the same one on the disk, behind all links.
+pub fn is_kept(file: &Path) -> bool {
+    let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    kept.iter().any(|other| is_same(file, other))
+}
+
+/// Refuses a file that is kept.
+///
+/// # Errors
+/// One that [`Kept::of`] knows.
+pub fn refuse_kept(file: &Path) -> io::Result<()> {
+    if is_kept(file) { Err(io::Error::other(Kept(file.to_owned()))) } else { Ok(()) }
+}
+
+/// Devices and pipes may be read and written.
+#[cfg(unix)]
+fn is_same(a: &Path, b: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |file: &Path| fs::metadata(file).ok().filter(Metadata::is_file).map(|file| (file.dev(), file.ino()));
+    identity(a).is_some_and(|one| identity(b) == Some(one))
+}
+
+#[cfg(not(unix))]
+fn is_same(a: &Path, b: &Path) -> bool {
+    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}
 
 /// Writes a file. One that is there is replaced and keeps its mode; a link is followed. What is no regular file (a terminal, a
 /// pipe, a device) is written to as it is.
 ///
 /// # Errors
-/// Those of the file system; then the file is as it was before. One that is there and must not be written to stays, too.
+/// Those of the file system; then the file is as it was before. One that is there and must not be written to stays, too, and so does
+/// one that is kept ([`keep()`]).
 pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     stream(file, |out| out.write_all(content.as_ref()))
+}
+
+/// The same for content of the kind that is in the file already, which may be one that is kept.
+///
+/// # Errors
+/// Those of the file system.
+pub fn write_over(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    stream_over(file, |out| out.write_all(content.as_ref()))
 }
 
 /// The same with what is written bit by bit.
@@ -23,6 +96,11 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
 /// # Errors
 /// As [`write()`], and what `fill` refuses.
 pub fn stream<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -> Result<T, E>) -> Result<T, E> {
+    refuse_kept(file)?;
+    stream_over(file, fill)
+}
+
+fn stream_over<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -> Result<T, E>) -> Result<T, E> {
     // Before links are followed: what a shell calls /dev/fd/63 is a link to no name.
     if fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
         return fill(&mut OpenOptions::new().write(true).open(file)?);
@@ -164,6 +242,28 @@ mod tests {
         assert_eq!(super::folder(&file).unwrap_err().kind(), io::ErrorKind::NotADirectory);
         super::folder(&folder.join("a/b")).unwrap();
         super::folder(&folder.join("a/b")).unwrap();
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_read_is_not_written_to_under_any_name() {
+        let folder = scratch("read");
+        let [file, link, other] = ["file", "link", "other"].map(|name| folder.join(name));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink("file", &link).unwrap();
+        fs::hard_link(&file, folder.join("hard")).unwrap();
+        keep(&file);
+        for name in [&file, &link, &folder.join("hard"), &folder.join("./file")] {
+            let error = write(name, "new").unwrap_err();
+            assert_eq!(Kept::of(&error), Some(&Kept(name.clone())));
+        }
+        write(&other, "new").unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "old");
+        write_over(&link, "new").unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        // It is another file on the disk now, and kept as well.
+        assert!(write(&file, "newer").is_err());
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -112,6 +112,16 @@ impl Method {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Orders, Self::RouteLocks, Self::EdgeLocks, Self::StartDelays];
 
+    /// What it is called where programs read it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Orders => "orders",
+            Self::RouteLocks => "route-locks",
+            Self::EdgeLocks => "edge-locks",
+            Self::StartDelays => "start-delays",
+        }
+    }
+
     /// What it is called in tables.
     pub fn name(self) -> &'static str {
         match self {

@@ -122,6 +122,9 @@ pub struct Plan {
     pub proved: bool,
     /// Who cannot be planned; each is a set of agents of which at least one has to be left out.
     pub unsolved: Vec<Unsolved>,
+    /// Why the scenario was refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
     /// What was read otherwise than it was written.
     pub warnings: Vec<String>,
     /// What an independent checker has proved of the plan.
@@ -169,6 +172,33 @@ impl Unsolved {
 type Answer = (Plan, Option<Scenario>);
 
 impl Plan {
+    /// One without agents.
+    fn none(name: &str, method: Method, objective: Objective) -> Self {
+        Self {
+            name: name.to_owned(),
+            labels: Labels::default(),
+            method: method.name(),
+            order: Vec::new(),
+            agents: Vec::new(),
+            left_out: Vec::new(),
+            makespan: 0.0,
+            sum_of_costs: 0.0,
+            objective: objective.name(),
+            lower_bound: 0.0,
+            gap: 0.0,
+            proved: false,
+            unsolved: Vec::new(),
+            error: None,
+            warnings: Vec::new(),
+            certificate: None,
+        }
+    }
+
+    /// No plan, as there is no scenario, and why.
+    pub fn refused(name: &str, method: Method, objective: Objective, error: String) -> Self {
+        Self { error: Some(error), ..Self::none(name, method, objective) }
+    }
+
     /// Starts or speeds for the agents of a scenario, and the scenario with them where there are.
     ///
     /// # Errors

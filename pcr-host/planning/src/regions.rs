@@ -101,6 +101,8 @@ pub enum Failure {
     NoSuchLabel(String, Vec<String>),
     /// Several agents have the label asked for.
     Ambiguous(String, Vec<u64>),
+    /// A number that is that of an agent and the label of others.
+    Twofold(u64, String, Vec<u64>),
     /// The memory does not hold what was asked for.
     TooLarge(TooLarge),
     /// Something is done for fewer agents only: it would take too long.
@@ -144,6 +146,13 @@ impl fmt::Display for Failure {
                     1..=LISTED => write!(f, "there are {listed}"),
                     all => write!(f, "there are {all}: {listed}, ..."),
                 }
+            }
+            Self::Twofold(number, asked, ids) => {
+                let ids = ids.iter().take(LISTED).map(u64::to_string).collect::<Vec<_>>().join(", ");
+                write!(
+                    f,
+                    "{asked} is the number of agent {number}, and the label of another one, {ids}; give that another label"
+                )
             }
             Self::Ambiguous(asked, ids) => {
                 let ids = ids.iter().take(LISTED).map(u64::to_string).collect::<Vec<_>>().join(", ");
@@ -203,15 +212,17 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
 /// The number of the agent that is asked for by its number or, where there is no such number, by its label.
 ///
 /// # Errors
-/// [`Failure::NoSuchAgent`] and, for texts, [`Failure::NoSuchLabel`] or, where several have it, [`Failure::Ambiguous`].
+/// [`Failure::NoSuchAgent`], [`Failure::Twofold`] for a number that is a label, too, and, for texts, [`Failure::NoSuchLabel`] or,
+/// where several have it, [`Failure::Ambiguous`].
 pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, Failure> {
     let number = asked.parse::<u64>().ok();
     let ids = || scenario.agents.iter().map(|agent| agent.id);
-    if let Some(id) = number.filter(|number| ids().any(|id| id == *number)) {
-        return Ok(id);
-    }
     let labelled: Vec<u64> =
         scenario.agents.iter().filter(|agent| agent.label == asked).map(|agent| agent.id).collect();
+    if let Some(id) = number.filter(|number| ids().any(|id| id == *number)) {
+        let others: Vec<u64> = labelled.into_iter().filter(|other| *other != id).collect();
+        return if others.is_empty() { Ok(id) } else { Err(Failure::Twofold(id, asked.to_owned(), others)) };
+    }
     match (labelled.as_slice(), number) {
         ([id], _) => Ok(*id),
         ([], Some(number)) => Err(Failure::NoSuchAgent(number, ids().collect())),

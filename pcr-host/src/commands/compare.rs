@@ -1,7 +1,7 @@
 //! `pcr compare`.
 
-use super::sources::without_margin;
-use super::{STATUSES, Stop, folder, quiet, scenario, sources};
+use super::sources::{apart, sources, without_margin};
+use super::{STATUSES, Stop, folder, quiet};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_comparing::compare::{self, Comparison, Effort, Question};
@@ -69,7 +69,7 @@ impl Arguments {
             let names = names.join(", ");
             return Err(Stop::arguments(format!("--method {word}: no method has a name with that; there are {names}")));
         }
-        let files = sources(self.files)?;
+        let sources = apart(sources(self.files)?);
         let format = if self.json { Output::Json } else { self.format };
         let mut out: Box<dyn Write> = match format {
             Output::Table if quiet() => Box::new(io::sink()),
@@ -79,10 +79,10 @@ impl Arguments {
             out.write_all(report::COMPARISON_CSV_HEADER.as_bytes())?;
         }
         let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
-        for (place, file) in files.iter().enumerate() {
-            let scenario = scenario(file, &self.import)?;
+        for (place, source) in sources.iter().enumerate() {
+            let scenario = source.scenario(&self.import)?;
             let progress = Progress::new("methods");
-            let refused = |refused| Stop::wrong(file, Failure::Refused(refused));
+            let refused = |refused| Stop::wrong(source.file(), Failure::Refused(refused));
             let comparison =
                 Comparison::new(&scenario, effort, &self.methods, &mut |done, total| progress.set(done, total))
                     .map_err(refused)?;

@@ -2,12 +2,12 @@
 
 use super::help::STANDING;
 use super::sources::layout;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, write_over};
 use clap::Args;
 use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Settings, Target, report};
 use pcr_formats::import::{Format, Imported, Options};
-use pcr_formats::input;
+use pcr_formats::{input, output};
 use pcr_planning::report::json;
 use std::fs;
 use std::io::{Read, Write};
@@ -39,6 +39,7 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 fn text(file: &Path) -> Result<String, Stop> {
+    output::keep(file);
     let mut text = String::new();
     let read = if file == Path::new("-") {
         std::io::stdin().read_to_string(&mut text).map(|_| text)
@@ -52,6 +53,11 @@ impl Asked {
     /// Whether the output is a layout, not a folder.
     pub(super) fn is_to_be_written(&self) -> bool {
         self.write.is_some()
+    }
+
+    /// Whether the exit status tells what is asked for.
+    pub(super) fn is_audit(&self) -> bool {
+        self.audit.is_some()
     }
 
     /// Does what is asked for, if anything is.
@@ -90,7 +96,8 @@ impl Asked {
             // Otherwise they have been said when the layout was read.
             say(file, report.warnings.iter().take(report.of_layout).cloned());
         }
-        write_to(output, &written)?;
+        // A layout may get what keeps its vehicles apart; a table of that is no layout.
+        write_over(output, &written, || Ok(target.layout() == Some(format)))?;
         let mut out = printed.out(standard);
         match printed.form() {
             Form::Json => json(&report, &mut out)?,

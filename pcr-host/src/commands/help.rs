@@ -15,6 +15,17 @@ pub(super) const LAYOUTS: &str = pcr_formats::import::HEADING;
 pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop> {
     if words.get(1).is_some_and(|word| word == "help") {
         words.remove(1);
+        // There is no more about it than what it shows.
+        if words.get(1).is_some_and(|word| word == "help") {
+            words.remove(1);
+        }
+        let mut named = words.iter().skip(1).filter(|word| !word.to_string_lossy().starts_with('-'));
+        if let (Some(command), Some(more)) = (named.next(), named.next()) {
+            let (command, more) = (command.to_string_lossy(), more.to_string_lossy());
+            return Err(Stop::arguments(format!(
+                "{more}: help is of one command at a time, such as pcr help {command}"
+            )));
+        }
         words.push("--help".into());
     }
     let end = words.iter().position(|word| word == "--").unwrap_or(words.len());

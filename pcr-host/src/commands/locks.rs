@@ -67,6 +67,11 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
+    /// Whether the exit status tells what is asked for.
+    pub(super) fn is_audit(&self) -> bool {
+        self.asked.is_audit()
+    }
+
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         if is_standard(self.output.as_ref()) && !self.asked.is_to_be_written() {
             return Err(Stop::arguments(format!("--output -: {NO_FOLDER}")));

@@ -3,11 +3,11 @@
 use super::map::draw;
 use super::printed::notes;
 use super::sources::{Source, gathered};
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, write_over};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
-use pcr_formats::scenario::Scenario;
+use pcr_formats::scenario::{Agent, Scenario};
 use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
 use pcr_planning::regions::{Failure, find};
 use pcr_planning::report;
@@ -49,9 +49,9 @@ pub(super) struct Arguments {
     /// Later starts, or other speeds on the way as well
     #[arg(long, value_enum, default_value_t = Means::Delay)]
     method: Means,
-    /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best`
-    #[arg(long, value_name = "ORDER", default_value = "best", value_parser = asked)]
-    priority: Asked,
+    /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best` [default: best]
+    #[arg(long, value_name = "ORDER", value_parser = asked)]
+    priority: Option<Asked>,
     /// The least sum of times to the arrivals, or the earliest last one
     #[arg(long, value_enum, default_value_t = Least::Sum)]
     objective: Least,
@@ -101,23 +101,23 @@ impl From<Least> for Objective {
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse::<f64>().map_err(|error| error.to_string())?;
-    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
+    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    seconds.ok_or_else(|| "a number of seconds from 0 is expected".to_owned())
 }
 
 /// An order of priority from the command line.
 #[derive(Clone)]
 enum Asked {
-    Known(Priority),
+    Known(&'static str, Priority),
     /// Agents by number or label.
     Agents(Vec<String>),
 }
 
 fn asked(text: &str) -> Result<Asked, String> {
     match text {
-        "longest" => return Ok(Asked::Known(Priority::Longest)),
-        "crowded" => return Ok(Asked::Known(Priority::Crowded)),
-        "best" => return Ok(Asked::Known(Priority::Best)),
+        "longest" => return Ok(Asked::Known("longest", Priority::Longest)),
+        "crowded" => return Ok(Asked::Known("crowded", Priority::Crowded)),
+        "best" => return Ok(Asked::Known("best", Priority::Best)),
         _ => {}
     }
     let agents: Vec<String> = text.split(',').map(|agent| agent.trim().to_owned()).collect();
@@ -133,13 +133,18 @@ fn asked(text: &str) -> Result<Asked, String> {
 }
 
 impl Asked {
-    fn of(&self, scenario: &Scenario) -> Result<Priority, Failure> {
+    fn of(&self, scenario: &Scenario) -> Result<Priority, String> {
         match self {
-            Self::Known(priority) => Ok(priority.clone()),
+            Self::Known(word, priority) => match scenario.agents.iter().find(|agent| agent.label == *word) {
+                Some(Agent { id, .. }) => Err(format!(
+                    "--priority {word} is an order, and the label of agent {id}; name that by its number, or give it another label"
+                )),
+                None => Ok(priority.clone()),
+            },
             Self::Agents(agents) => {
                 let mut ids = Vec::new();
                 for agent in agents {
-                    let id = find(scenario, agent)?;
+                    let id = find(scenario, agent).map_err(|failure| failure.to_string())?;
                     if !ids.contains(&id) {
                         ids.push(id);
                     }
@@ -158,7 +163,9 @@ impl Arguments {
                 "{option} is of no use: only start delays are searched for that long"
             )));
         }
-        if !matches!(self.priority, Asked::Known(Priority::Best)) && (self.prove || self.time_limit.is_some()) {
+        if !matches!(self.priority, None | Some(Asked::Known(_, Priority::Best)))
+            && (self.prove || self.time_limit.is_some())
+        {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
                 "{option} is of no use: --priority gives the order, and no better one is searched for"
@@ -186,6 +193,11 @@ impl Arguments {
                 Ok(solved) => unsolved |= !solved,
                 Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                     refused += 1;
+                    if self.printed.form() == Form::Json {
+                        let (method, objective) = (self.method.into(), self.objective.into());
+                        report::json(&Plan::refused(&source.name(), method, objective, message.clone()), &mut out)?;
+                        out.flush()?;
+                    }
                     complain(&message);
                 }
                 Err(stop) => return Err(stop),
@@ -201,7 +213,10 @@ impl Arguments {
     fn plan(&self, source: &Source, out: &mut impl Write) -> Result<bool, Stop> {
         let scenario = source.scenario(&self.import)?;
         let wrong = |failure: Failure| Stop::wrong(source.file(), failure);
-        let priority = self.priority.of(&scenario).map_err(wrong)?;
+        let priority = match &self.priority {
+            Some(asked) => asked.of(&scenario).map_err(|problem| Stop::wrong(source.file(), problem))?,
+            None => Priority::Best,
+        };
         let request = Request {
             method: self.method.into(),
             priority,
@@ -216,7 +231,7 @@ impl Arguments {
         drop(progress);
         let (plan, solved) = planned.map_err(wrong)?;
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
-            write_to(output, &solved.to_json())?;
+            write_over(output, &solved.to_json(), || source.is_scenario(&self.import))?;
         }
         match self.printed.form() {
             Form::Table => report::plan_table(&plan, out)?,

@@ -1,10 +1,13 @@
 //! The format of printed answers, and where they are printed.
 
 use clap::{Args, ValueEnum};
+use pcr_formats::scenario::printable;
 use std::io::{self, BufWriter, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static QUIET: AtomicBool = AtomicBool::new(false);
+static TO_THE_END: AtomicBool = AtomicBool::new(false);
+static GONE: AtomicBool = AtomicBool::new(false);
 
 /// From now on nothing is said to people but errors.
 pub(super) fn be_quiet() {
@@ -15,9 +18,74 @@ pub(super) fn quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// A message on standard error. Where that is closed, the exit status has to do.
+/// From now on the work goes on where nobody reads its output any more: its exit status is an answer, too.
+pub(super) fn go_to_the_end() {
+    TO_THE_END.store(true, Ordering::Relaxed);
+}
+
+/// Whether the end of the output is not the end of the work.
+pub(super) fn goes_to_the_end() -> bool {
+    TO_THE_END.load(Ordering::Relaxed)
+}
+
+/// Whether somebody who read the output has gone before its end.
+pub(super) fn is_alone() -> bool {
+    GONE.load(Ordering::Relaxed)
+}
+
+/// An output whose reader may go; what comes after that is dropped where the work goes to its end.
+struct Read<W> {
+    out: W,
+    gone: bool,
+}
+
+impl<W: Write> Read<W> {
+    fn of(out: W) -> Self {
+        Self { out, gone: false }
+    }
+
+    fn or_gone<T>(&mut self, done: io::Result<T>, otherwise: T) -> io::Result<T> {
+        match done {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe && goes_to_the_end() => {
+                self.gone = true;
+                GONE.store(true, Ordering::Relaxed);
+                Ok(otherwise)
+            }
+            done => done,
+        }
+    }
+}
+
+impl<W: Write> Write for Read<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.gone {
+            return Ok(bytes.len());
+        }
+        let written = self.out.write(bytes);
+        self.or_gone(written, bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.gone {
+            return Ok(());
+        }
+        let flushed = self.out.flush();
+        self.or_gone(flushed, ())
+    }
+}
+
+/// Standard output.
+pub(super) fn stdout() -> impl Write {
+    Read::of(io::stdout().lock())
+}
+
+fn stderr() -> impl Write {
+    Read::of(io::stderr().lock())
+}
+
+/// A message on standard error, a line whatever is in it. Where that is closed, the exit status has to do.
 pub(crate) fn complain(message: &str) {
-    let _ = writeln!(io::stderr(), "pcr: {message}");
+    let _ = writeln!(io::stderr(), "pcr: {}", printable(message));
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -46,8 +114,8 @@ impl Printed {
     pub(super) fn out(&self, taken: bool) -> Box<dyn Write> {
         match () {
             () if quiet() && self.form() == Form::Table => Box::new(io::sink()),
-            () if taken => Box::new(BufWriter::new(io::stderr().lock())),
-            () => Box::new(BufWriter::new(io::stdout().lock())),
+            () if taken => Box::new(BufWriter::new(stderr())),
+            () => Box::new(BufWriter::new(stdout())),
         }
     }
 }
@@ -55,10 +123,10 @@ impl Printed {
 /// Where tables go that have no other form: those of `pcr fleet`.
 #[cfg(feature = "serve")]
 pub(super) fn tables() -> Box<dyn Write> {
-    if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) }
+    if quiet() { Box::new(io::sink()) } else { Box::new(stdout()) }
 }
 
 /// Where notes go that are for people only.
 pub(super) fn notes() -> Box<dyn Write> {
-    if quiet() { Box::new(io::sink()) } else { Box::new(io::stderr().lock()) }
+    if quiet() { Box::new(io::sink()) } else { Box::new(stderr()) }
 }

@@ -2,9 +2,9 @@
 
 use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, say, warn};
-use pcr_formats::import::{Imported, Options};
-use pcr_formats::input;
+use pcr_formats::import::{Imported, Kind, Options, shortened};
 use pcr_formats::scenario::Scenario;
+use pcr_formats::{input, output};
 use pcr_planning::locks::rounded;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -25,11 +25,14 @@ fn named(files: Vec<PathBuf>, hint: &str) -> Result<Vec<PathBuf>, Stop> {
         return Err(Stop::arguments("FILE: - is given twice; standard input can be read once"));
     }
     if !files.is_empty() {
+        // All of them before the first is answered: an answer may be a file.
+        files.iter().for_each(|file| output::keep(file));
         return Ok(files);
     }
     if io::stdin().is_terminal() {
         return Err(Stop::arguments(format!("no FILE, and nothing comes in by a pipe; {hint}")));
     }
+    output::keep(Path::new("-"));
     Ok(vec![PathBuf::from("-")])
 }
 
@@ -47,10 +50,20 @@ pub(super) fn layout_source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
     Ok(files.pop().unwrap_or_default())
 }
 
+/// What is read beside the files themselves is not written over, either.
+fn keep(import: &Options) {
+    import.fleet.iter().for_each(|fleet| output::keep(fleet));
+}
+
 /// The scenario in a file, in whatever format; warnings about it are told.
 pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> {
+    keep(import);
     let (mut scenario, warnings) = input::read(file, import)?;
     warn(file, &warnings);
+    if warnings.is_empty() {
+        // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
+        say(file, scenario.warnings.iter().map(|line| shortened(line)));
+    }
     scenario.give_margin(import.margin.unwrap_or(0.0));
     Ok(scenario)
 }
@@ -68,6 +81,8 @@ pub(super) fn without_margin(import: &Options) -> Result<(), Stop> {
 /// What one answer is about.
 pub(super) enum Source {
     File(PathBuf),
+    /// One of several files of the same name in other folders; answers are named by the path.
+    Twin(PathBuf),
     /// Orders and states, or paths, of one fleet.
     Together(Vec<PathBuf>),
 }
@@ -78,20 +93,33 @@ pub(super) fn gathered(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Sour
     if files.len() > 1 && input::are_of_one_fleet(&files, import) {
         return Ok(vec![Source::Together(files)]);
     }
-    Ok(files.into_iter().map(Source::File).collect())
+    Ok(apart(files))
+}
+
+/// Files that are answered one after the other, so that their answers can be told apart.
+pub(super) fn apart(files: Vec<PathBuf>) -> Vec<Source> {
+    let stems: Vec<String> = files.iter().map(|file| input::stem(file)).collect();
+    let is_twin = |stem: &String| !stem.is_empty() && stems.iter().filter(|other| *other == stem).count() > 1;
+    let twins: Vec<bool> = stems.iter().map(is_twin).collect();
+    let source = |(file, twin): (PathBuf, bool)| if twin { Source::Twin(file) } else { Source::File(file) };
+    files.into_iter().zip(twins).map(source).collect()
 }
 
 impl Source {
     /// The file, or the first of them, for messages.
     pub(super) fn file(&self) -> &Path {
         match self {
-            Self::File(file) => file,
+            Self::File(file) | Self::Twin(file) => file,
             Self::Together(files) => files.first().map_or(Path::new("-"), |first| first),
         }
     }
 
-    pub(super) fn stem(&self) -> String {
-        input::stem(self.file())
+    /// What an answer is called where the scenario has no name.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Twin(file) => file.to_string_lossy().into_owned(),
+            Self::File(_) | Self::Together(_) => input::stem(self.file()),
+        }
     }
 
     /// Whether it is scenarios one after the other on standard input.
@@ -99,9 +127,24 @@ impl Source {
         matches!(self, Self::File(file) if file == Path::new("-")) && import.from.is_none()
     }
 
+    /// Whether it is a scenario file, which a plan may replace.
+    pub(super) fn is_scenario(&self, import: &Options) -> Result<bool, Stop> {
+        match self {
+            Self::File(file) | Self::Twin(file) => Ok(input::kind(file, import)? == Kind::Scenario),
+            Self::Together(_) => Ok(false),
+        }
+    }
+
     pub(super) fn scenario(&self, import: &Options) -> Result<Scenario, Stop> {
         match self {
             Self::File(file) => scenario(file, import),
+            Self::Twin(file) => {
+                let mut scenario = scenario(file, import)?;
+                if scenario.name == input::stem(file) {
+                    scenario.name = self.name();
+                }
+                Ok(scenario)
+            }
             Self::Together(files) => together(files, import),
         }
     }
@@ -109,6 +152,7 @@ impl Source {
 
 /// The scenario in several files of orders, states or paths.
 pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, Stop> {
+    keep(import);
     let (mut scenario, warnings) = input::read_all(files, import)?;
     warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
     scenario.give_margin(import.margin.unwrap_or(0.0));
@@ -131,6 +175,7 @@ pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) 
         "nodes" => Options { radius: Some(1.0), ..import.clone() },
         _ => import.clone(),
     };
+    keep(import);
     let (imported, warnings) = input::read_layout(file, import, moves)?;
     warn(file, &warnings);
     if matches!(command, "locks" | DRIVING | STANDING) {

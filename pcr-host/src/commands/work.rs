@@ -1,15 +1,16 @@
 //! Shared code of commands that process one scenario after the other.
 
+use super::printed::is_alone;
 use super::sources::{Source, gathered};
-use super::{Form, Printed, Stop, WRONG_INPUT, complain};
+use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
 use crate::progress::Progress;
-use pcr_formats::import::Options;
+use pcr_formats::import::{Options, shortened};
 use pcr_formats::input::Lines;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::regions::Told;
 use pcr_planning::report::Unprinted;
 use std::io::{self, BufReader, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a command makes of each scenario that comes in.
 pub(super) trait Work {
@@ -53,7 +54,7 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
             Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                 tally.refused += 1;
                 if form == Form::Json {
-                    work.refuse(&source.stem(), message.clone(), &mut out)?;
+                    work.refuse(&source.name(), message.clone(), &mut out)?;
                 }
                 complain(&message);
             }
@@ -91,8 +92,19 @@ fn lines<W: Work>(
     let before = tally.read;
     for line in Lines::new(BufReader::new(io::stdin().lock())) {
         let line = line?;
+        if is_alone() {
+            // Nobody waits for the answers, and whoever writes the scenarios may never end. What is not looked at is not free.
+            if !tally.found && tally.refused == 0 {
+                let rest = format!("standard output: closed; nothing is said of line {} and what follows", line.number);
+                return Err(Stop::Error(rest, NOT_WRITTEN));
+            }
+            break;
+        }
         let outcome = match line.scenario {
             Ok(mut scenario) => {
+                let number = line.number;
+                let warnings = scenario.warnings.iter().map(|warning| format!("line {number}: {}", shortened(warning)));
+                say(Path::new("-"), warnings);
                 scenario.give_margin(margin.unwrap_or(0.0));
                 match work.print(&scenario, &|_, _| {}, out) {
                     Ok(found) => Ok(found),

@@ -159,3 +159,71 @@ fn files_where_folders_have_to_be_are_named() {
     assert!(message.ends_with(": cannot be written: a folder\n"), "{message}");
     assert_eq!(fs::read_to_string(&file).unwrap(), "keep");
 }
+
+#[test]
+fn what_is_read_is_not_lost_to_something_of_another_kind() {
+    let folder = folder("inputs");
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let [scenario, graph, link] = ["s.json", "g.geojson", "link"].map(path);
+    let [page, chart, plan] = ["index.html", "regions-1.svg", "plan.json"].map(path);
+    let out = folder.to_str().unwrap();
+    for name in [&scenario, &page, &chart] {
+        fs::write(name, crossing().to_string()).unwrap();
+    }
+    for name in [&graph, &plan] {
+        fs::copy(layout, name).unwrap();
+    }
+    symlink("s.json", &link).unwrap();
+    let vehicle = ["--radius", "0.4", "-q"];
+    for (arguments, file) in [
+        (vec!["simulate", &scenario, "--controller", "pcr", "-o", &scenario], &scenario),
+        (vec!["simulate", &scenario, "--controller", "pcr", "-o", &link], &link),
+        (vec!["simulate", &link, "--controller", "pcr", "-o", &scenario], &scenario),
+        ([&["locks", &graph, "--index", &graph], &vehicle[..]].concat(), &graph),
+        ([&["locks", &graph, "--write", "pcr", "-o", &graph], &vehicle[..]].concat(), &graph),
+        (vec!["import", "nav2", &graph, "--route", "0:50", "-o", &graph], &graph),
+        (vec!["plan", &graph, "--route", "0:50", "-o", &graph], &graph),
+        (vec!["map", &page, "-o", out], &page),
+        (vec!["compare", &chart, "--method", "polyline", "--rounds", "1", "-o", out], &chart),
+        (vec!["compare", &scenario, &chart, "--method", "polyline", "--rounds", "1", "-o", out], &chart),
+        ([&["traffic", &plan, "--from", "nav2", "--agents", "3", "-o", out], &vehicle[..]].concat(), &plan),
+        #[cfg(feature = "serve")]
+        (vec!["fleet", &graph, "--vehicles", "2", "--alone", "supervisor", "--time", "5", "--record", &graph], &graph),
+    ] {
+        let before = fs::read(file).unwrap();
+        let run = run(&arguments);
+        let expected = "this is read, and something of another kind would be written over it; give another name";
+        assert!(run.err.contains(&format!("{file}: {expected}\n")), "{arguments:?}: {}", run.err);
+        assert_eq!((run.status, fs::read(file).unwrap() == before), (2, true), "{arguments:?}: {}", run.err);
+    }
+    // What is of the same kind may take its place.
+    let run = run(&[&["locks", &graph, "--write", "nav2", "-o", &graph], &vehicle[..]].concat());
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert_ne!(fs::read(&graph).unwrap(), fs::read(layout).unwrap());
+    let mut through = pcr();
+    through.args(["plan", "-q", "-o", &scenario]).stdin(fs::File::open(&scenario).unwrap());
+    assert!(through.status().unwrap().success());
+    let mut through = pcr();
+    through.args(["simulate", "--controller", "pcr", "-q", "-o", &scenario]);
+    let refused = through.stdin(fs::File::open(&scenario).unwrap()).output().unwrap();
+    assert_eq!(refused.status.code(), Some(if cfg!(target_os = "linux") { 2 } else { 0 }));
+}
+
+#[test]
+fn folders_have_names() {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+    let layout = format!("{data}/real/nav2/warehouse_graph.geojson");
+    for arguments in [
+        &["map", PAPER, "-o", ""][..],
+        &["compare", PAPER, "-o", ""],
+        &["traffic", &layout, "--radius", "0.4", "-o", ""],
+        &["demo", "-o", ""],
+        &["evaluate", "--quick", "--data", data, "-o", ""],
+        &["plan", PAPER, "--pictures", ""],
+    ] {
+        let run = run(arguments);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.err.starts_with("error: a value is required for '"), "{arguments:?}: {}", run.err);
+    }
+}

@@ -71,7 +71,11 @@ fn what_is_something_else_is_said_to_be() {
     for (command, name, expected) in [
         ("regions", "opentcs/Demo-01.xml", "a layout has no agents; ask for routes with --route FROM:TO"),
         ("regions", "ccbs/example_grid_map.xml", "root: there is no log in it, hence no plan (read as ccbs)"),
-        ("locks", "ccbs/example_grid_task_log.xml", "root: there is no graph in it, which a roadmap is (read as ccbs)"),
+        (
+            "locks",
+            "ccbs/example_grid_task_log.xml",
+            "a plan of Continuous-CBS, with paths of its own; a layout is expected (read as ccbs)",
+        ),
         ("locks", "vda5050/order_v2_flywei.json", "an order or a state is not a layout (read as vda5050)"),
         ("regions", "vda5050/order_v2_nulls_opentcs.json", "startNodeId: source-node, but by sequenceId it is"),
         ("locks", "rmf/config/office_tinyRobot_config.yaml", "it is the configuration of a fleet"),

@@ -41,6 +41,25 @@ fn help_is_short() {
 }
 
 #[test]
+fn help_is_of_one_command() {
+    assert_eq!(run(&["help", "help"]).ok(), run(&["help"]).ok());
+    let message = run(&["help", "plan", "extra"]).failed(2);
+    assert_eq!(message, "pcr: extra: help is of one command at a time, such as pcr help plan\n");
+}
+
+#[test]
+fn methods_have_one_name_for_programs() {
+    let layout = real("nav2/warehouse_graph.geojson");
+    let hours = ["traffic", &layout, "--radius", "0.3", "--agents", "3", "--hours", "0.01", "--compare"];
+    let answer: Value = serde_json::from_str(&run(&[&hours[..], &["--json", "-q"]].concat()).out).unwrap();
+    let csv = run(&[&hours[..], &["--format", "csv", "-q"]].concat()).out;
+    let named = csv.lines().skip(1).map(|line| line.split(',').next().unwrap());
+    let runs = answer["runs"].as_array().unwrap();
+    assert!(named.eq(runs.iter().map(|run| run["method"].as_str().unwrap())), "{csv}");
+    assert!(csv.contains("\nroute-locks,"), "{csv}");
+}
+
+#[test]
 fn options_are_listed_where_they_do_something() {
     let help = |command: &str| run(&[command, "--help"]).ok();
     assert!(help("regions").contains("Layouts and other formats:\n") && help("plan").contains("--route <"));

@@ -180,3 +180,61 @@ fn shallow_conflicts_are_not_zero() {
         "{touching}"
     );
 }
+
+#[test]
+fn numbers_and_words_that_are_labels_of_others_are_not_guessed() {
+    let mut scenario = crossing();
+    scenario["agents"][0]["label"] = json!("2");
+    scenario["agents"][1]["label"] = json!("longest");
+    let name = file("identity", "swapped.json", scenario.to_string());
+    let expected =
+        "swapped.json: 2 is the number of agent 2, and the label of another one, 1; give that another label\n";
+    for arguments in [&["regions", &name, "--agent", "2"][..], &["plan", &name, "--priority", "2,1"]] {
+        let message = run(arguments).failed(2);
+        assert!(message.ends_with(expected), "{message}");
+    }
+    run(&["regions", &name, "--agent", "1", "-q"]).ok();
+    let message = run(&["plan", &name, "--priority", "longest"]).failed(2);
+    assert!(
+        message.contains("--priority longest is an order, and the label of agent 2; name that by its"),
+        "{message}"
+    );
+    // Nobody who asks for no order has to know.
+    scenario["agents"][1]["label"] = json!("best");
+    let name = file("identity", "best.json", scenario.to_string());
+    run(&["plan", &name, "-q"]).ok();
+    // An agent may have its own number as its label.
+    scenario["agents"][0]["label"] = json!("1");
+    let name = file("identity", "own.json", scenario.to_string());
+    run(&["regions", &name, "--agent", "1", "-q"]).ok();
+}
+
+#[test]
+fn files_of_one_name_are_told_apart() {
+    let mut nameless = crossing();
+    nameless.as_object_mut().unwrap().remove("name");
+    let [a, b] = ["a", "b"].map(|folder| {
+        let folder = directory("identity").join(folder);
+        fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("f.json");
+        fs::write(&file, nameless.to_string()).unwrap();
+        file.to_str().unwrap().to_owned()
+    });
+    let names = |arguments: &[&str]| -> Vec<Value> {
+        let run = run(&[arguments, &["--json"]].concat());
+        run.out.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["name"].clone()).collect()
+    };
+    for command in ["check", "regions", "plan"] {
+        assert_eq!(names(&[command, &a, &b]), [json!(a), json!(b)], "{command}");
+    }
+    assert_eq!(names(&["check", &a]), [json!("f")]);
+    fs::write(&b, "{}").unwrap();
+    assert_eq!(names(&["check", &a, &b]), [json!(a), json!(b)], "what is refused is named as well");
+}
+
+#[cfg(unix)]
+#[test]
+fn names_of_files_are_printed_as_one_line() {
+    let message = run(&["check", "no\u{1b}[31m\nfile.json"]).failed(2);
+    assert!(message.starts_with("pcr: no\\u{1b}[31m\\nfile.json: cannot be read: "), "{message}");
+}

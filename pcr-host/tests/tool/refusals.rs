@@ -1,6 +1,6 @@
 //! Bad arguments and bad files: one message that says where and what, the exit status, and nothing else.
 
-use crate::fixture::{PAPER, crossing, directory, file, run};
+use crate::fixture::{PAPER, crossing, directory, file, run, run_with};
 use serde_json::{Value, json};
 
 /// The message about a file, without its name.
@@ -89,7 +89,7 @@ fn texts_that_are_no_scenario() {
     assert_eq!(message(b"{\"agents\": \xff}", &[]), "not text in UTF-8");
     assert_eq!(message("\0\u{1}\u{2}", &[]), "1: column 1: \\0\\u{1}\\u{2} where a value is expected");
     let lines = format!("{}\n{}\n", crossing(), crossing());
-    let expected = "2: column 1: more text after the end of the scenario (JSON Lines: on standard input, with -)";
+    let expected = "2: column 1: more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)";
     assert_eq!(message(lines, &[]), expected);
 }
 
@@ -216,4 +216,25 @@ fn help_has_examples_and_exit_statuses() {
         assert!(help.contains("Exit status:\n  0  done\n  2  ") && help.contains("\n  3  "), "{help}");
     }
     assert_eq!(run(&["--version"]).ok(), format!("pcr {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn more_scenarios_than_one_say_who_reads_them() {
+    let expected = "more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line";
+    for command in ["check", "plan"] {
+        let message = run_with(&[command], b"{\"agents\":[]} {\"agents\":[]}");
+        assert!(message.status == 2 && message.err.contains(expected), "{command}: {}", message.err);
+    }
+}
+
+#[test]
+fn times_that_are_none_are_refused_in_plain_words() {
+    for time in ["nan", "-1", "soon"] {
+        let refused = run(&["plan", PAPER, "--prove", "--time-limit", time]);
+        assert!(
+            refused.status == 2 && refused.err.contains("a number of seconds from 0 is expected"),
+            "{}",
+            refused.err
+        );
+    }
 }

@@ -139,3 +139,42 @@ fn orders_of_a_fleet_are_checked_against_one_another() {
     let check = run(&["check", &a, &b, "--radius", "0.3", "--json", "-q"]);
     assert_eq!((check.status, check.out.lines().count(), check.err.as_str()), (1, 1, ""), "{}", check.out);
 }
+
+#[test]
+fn plans_of_several_files_have_an_answer_each() {
+    let good = file("several-plans", "good.json", crossing().to_string());
+    let run = run(&["plan", "nowhere.json", &good, "--json"]);
+    assert_eq!(run.status, 2);
+    let answers: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((&answers[0]["format"], &answers[0]["name"]), (&json!("pcr-plan"), &json!("nowhere")));
+    assert!(answers[0]["error"].as_str().unwrap().contains("nowhere.json: cannot be read"), "{}", run.out);
+    assert_eq!((&answers[1]["name"], &answers[1]["error"]), (&json!("crossing"), &Value::Null));
+}
+
+#[test]
+fn what_was_left_out_is_told_by_all_that_is_made_of_it() {
+    let mut scenario = free();
+    let many = format!("{}: left out", vec!["edge"; 1000].join(", "));
+    scenario["warnings"] = json!(["edge 7 was dropped", many]);
+    let name = file("told-again", "imported.json", scenario.to_string());
+    let pictures = directory("told-again").join("pictures");
+    let pictures = pictures.to_str().unwrap();
+    for (arguments, status) in [
+        (&["check", &name][..], 0),
+        (&["regions", &name], 0),
+        (&["plan", &name], 0),
+        (&["map", &name, "-o", pictures], 0),
+        (&["simulate", &name, "--controller", "pcr"], 0),
+        (&["certify", &name], 0),
+    ] {
+        let told = run(arguments);
+        assert_eq!(told.status, status, "{arguments:?}: {}", told.err);
+        let lines: Vec<&str> = told.err.lines().collect();
+        assert_eq!(lines[0], format!("pcr: warning: {name}: edge 7 was dropped"), "{arguments:?}");
+        assert!(lines[1].len() < 500 && lines[1].ends_with(", edge: left out"), "{arguments:?}: {}", lines[1]);
+        assert_eq!(lines.len(), 2, "{arguments:?}: {}", told.err);
+        assert_eq!(run(&[arguments, &["-q"]].concat()).err, "", "{arguments:?}");
+    }
+    let piped = run_with(&["check"], scenario.to_string().as_bytes());
+    assert_eq!(piped.err.lines().next(), Some("pcr: warning: standard input: line 1: edge 7 was dropped"));
+}

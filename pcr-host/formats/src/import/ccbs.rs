@@ -25,6 +25,9 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
         if is_task(root) {
             return task();
         }
+        if child(root, "log").is_some() {
+            return ImportError::new("a plan of Continuous-CBS, with paths of its own; a layout is expected");
+        }
         ImportError::new(format!("{}: there is no graph in it, which a roadmap is", root.tag_name().name()))
     })?;
     let undirected = graph.attribute("edgedefault") == Some("undirected");

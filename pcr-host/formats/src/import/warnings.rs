@@ -63,6 +63,19 @@ impl Warnings {
     }
 }
 
+/// A warning of a scenario file as it is told to people, who do not read hundreds of names.
+pub fn shortened(line: &str) -> String {
+    /// Characters that are left at each end: names are at the begin, what is wrong with them at the end.
+    const ENDS: usize = 150;
+    let count = line.chars().count();
+    if count <= 2 * ENDS {
+        return line.to_owned();
+    }
+    let begin: String = line.chars().take(ENDS).collect();
+    let end: String = line.chars().skip(count - ENDS).collect();
+    format!("{begin} ... {end}")
+}
+
 /// The first names of a list, and how many more there are.
 pub(super) fn listed(names: &[String], separator: &str) -> String {
     let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(separator);
@@ -85,6 +98,9 @@ mod tests {
         warnings.add("node 3", "given twice");
         let edges = (0..8).map(|k| format!("edge {k}")).collect::<Vec<_>>().join(", ");
         assert_eq!(warnings.lines(), [format!("{edges} and 2 more: too short"), "node 3: given twice".to_owned()]);
+        let long = format!("{}: too short", vec!["edge"; 1000].join(", "));
+        assert!(shortened(&long).len() < 320 && shortened(&long).ends_with(": too short"));
+        assert_eq!(shortened("edge 1: too short"), "edge 1: too short");
         assert_eq!(warnings.all()[0], format!("{edges}, edge 8, edge 9: too short"));
     }
 }

@@ -53,6 +53,12 @@ fn controls(c: char) -> bool {
     c.is_control() || lines_and_directions.iter().any(|range| range.contains(&c))
 }
 
+/// Text from elsewhere, such as the name of a file, as it may be printed: what ends a line or moves the cursor is escaped.
+pub fn printable(text: &str) -> String {
+    let escaped = |c: char| if controls(c) { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(escaped).collect()
+}
+
 /// What a label may not be.
 pub(super) fn fault(label: &str) -> Option<String> {
     if let Some(c) = label.chars().find(|&c| controls(c)) {

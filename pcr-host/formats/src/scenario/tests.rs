@@ -197,7 +197,7 @@ fn faults_of_the_text_come_with_line_and_column() {
     refused_text(
         "{\"agents\": []}\n{}",
         2,
-        "column 1: more text after the end of the scenario (JSON Lines: on standard input, with -)",
+        "column 1: more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)",
     );
     refused_text(&"[".repeat(100_000), 1, "column 65: arrays and objects nested more than 64 deep");
 }

@@ -17,21 +17,9 @@ impl<'m> Planner<'_, 'm> {
     /// A plan without agents.
     pub(super) fn none(&self) -> Plan {
         Plan {
-            name: self.scenario.name.clone(),
             labels: Labels::of(self.scenario),
-            method: self.request.method.name(),
-            order: Vec::new(),
-            agents: Vec::new(),
-            left_out: Vec::new(),
-            makespan: 0.0,
-            sum_of_costs: 0.0,
-            objective: self.request.objective.name(),
-            lower_bound: 0.0,
-            gap: 0.0,
-            proved: false,
-            unsolved: Vec::new(),
             warnings: self.warnings(),
-            certificate: None,
+            ..Plan::none(&self.scenario.name, self.request.method, self.request.objective)
         }
     }
 

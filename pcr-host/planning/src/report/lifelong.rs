@@ -23,7 +23,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
         writeln!(
             out,
             "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99},{because}",
-            it.method.name(),
+            it.method.key(),
             it.robots,
             it.missions,
             it.missions_per_hour,

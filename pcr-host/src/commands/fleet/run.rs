@@ -1,10 +1,11 @@
 //! Vehicles and their manager at a broker.
 
-use super::super::printed::{notes, tables};
+use super::super::printed::{notes, stdout, tables};
 use super::super::serve::{AT_BROKERS, VEHICLES, broker, interfaces};
 use super::super::{CONFLICTS, NO_STREAM, Stop, is_standard};
 use super::Arguments;
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_formats::output;
 use pcr_planning::lifelong::{streets, well_formedness};
 use pcr_serve::entry::Nowhere;
 use pcr_serve::fault::Fault;
@@ -52,6 +53,7 @@ impl Default for Crew {
 
 /// Vehicles at the safe ends of a layout, of all editions, and two kinds.
 pub(in super::super) fn world(file: &Path, crew: &Crew) -> Result<World, Stop> {
+    output::keep(file);
     let text = std::fs::read_to_string(file).map_err(|error| Stop::wrong(file, error))?;
     let format = Format::of(file, &text).ok_or_else(|| Stop::wrong(file, "not a layout"))?;
     let options = Options { radius: Some(profile_radius(&Abilities::default())), ..Options::default() };
@@ -177,7 +179,10 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         super::super::write_to(file, &text)?;
     }
     let record: Box<dyn Write> = match &arguments.record {
-        Some(file) => Box::new(BufWriter::new(File::create(file).map_err(|error| Stop::not_written(file, &error))?)),
+        Some(file) => {
+            let created = output::refuse_kept(file).and_then(|()| File::create(file));
+            Box::new(BufWriter::new(created.map_err(|error| Stop::not_written(file, &error))?))
+        }
         None => Box::new(io::sink()),
     };
     if let (Some(method), Some(time)) = (&arguments.alone, arguments.time) {
@@ -297,7 +302,7 @@ fn profiles(world: &World) -> String {
 fn certified(file: &Path) -> Result<ExitCode, Stop> {
     let text = File::open(file).map_err(|error| Stop::wrong(file, error))?;
     let found = certify(BufReader::new(text)).map_err(|error| Stop::wrong(file, error))?;
-    let mut out = io::stdout().lock();
+    let mut out = stdout();
     writeln!(out, "{}", serde_json::to_string(&found).unwrap_or_default())?;
     Ok(match found.verdict {
         "proved" => ExitCode::SUCCESS,
