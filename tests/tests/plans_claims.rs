@@ -165,7 +165,7 @@ fn who_is_left_out_does_not_begin_the_makespan() {
 #[test]
 fn a_limit_of_time_holds_for_large_fleets() {
     const SIDE: usize = 60;
-    let place = |k: usize| [(k % SIDE) as f64 * 3.0, (k / SIDE) as f64 * 3.0, (k as f64 * 0.7) % 6.28];
+    let place = |k: usize| [(k % SIDE) as f64 * 3.0, (k / SIDE) as f64 * 3.0, (k as f64 * 0.7) % 6.25];
     let agents: Vec<Value> =
         (0..SIDE * SIDE).map(|k| agent(k as u64 + 1, place(k), &json!([line(8.0)]), &json!({}))).collect();
     let scenario = read(&agents);
