@@ -18,7 +18,7 @@ fn every_command_reads_a_layout_with_routes() {
     let imported = run(&[&["import", "nav2", WAREHOUSE], &routes[..], &VEHICLE].concat());
     assert_eq!(imported.status, 0, "{}", imported.err);
     let scenario = file("import", "scenario.json", &imported.out);
-    let again: Value = run(&["regions", &scenario, "--format", "json"]).json();
+    let again: Value = run(&["regions", &scenario, "--format", "json", "-q"]).json();
     let direct: Value = serde_json::from_str(&regions.out).unwrap();
     let (direct, again) = (direct["regions"].as_array().unwrap(), again["regions"].as_array().unwrap());
     assert!(direct.len() == again.len() && !direct.is_empty(), "they meet");
@@ -114,7 +114,7 @@ fn warnings_are_in_every_answer() {
     // Also those of a file that was imported before, which says so itself.
     let imported = run(&[&["import", "nav2", ONE_ID], &routes[..], &VEHICLE].concat());
     let scenario = file("import", "one-id.json", &imported.out);
-    assert!(warned(&run(&["check", &scenario, "--format", "json"]).json_of(1)));
+    assert!(warned(&run(&["check", &scenario, "--format", "json", "-q"]).json_of(1)));
     // And nothing where there is nothing to warn about.
     let plain = run(&["regions", crate::fixture::PAPER, "--format", "json"]).json();
     assert_eq!(plain["warnings"], json!([]));
