@@ -34,7 +34,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         length: Interval<S>,
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let (ego, other, during) = (self.ego, self.other, during.limited());
+        let (ego, other, during) = (self.ego, self.other, in_order(during));
         union(self.covered(ego, length, other).filter_map(move |covered| kept_from(ego, other, covered, during)))
     }
 
@@ -85,7 +85,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
         let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
-        let (length, during) = (on_path(ego, length), during.limited());
+        let (length, during) = (on_path(ego, length), in_order(during));
         // Cutting a segment adds rounding errors of its own.
         let radius = ego.radius() + other.radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
@@ -97,6 +97,11 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
             along.filter_map(move |part| kept_from(ego, other, part.widen(slack, all), during))
         })
     }
+}
+
+/// A window of time whose ends are the wrong way round is meant to be the time between them.
+fn in_order<S: Scalar>(during: Interval<S>) -> Interval<S> {
+    if during.hi < during.lo { Interval::new(during.hi, during.lo) } else { during }
 }
 
 /// The safe intervals of a part of an agent's path: the times in an interval \[s\] at which no other agent of the fleet
