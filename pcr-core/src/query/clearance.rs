@@ -57,7 +57,7 @@ impl<S: Scalar> Encounter<'_, S> {
             let (duration, to) = if step < left { (step, now.time + step) } else { (left, window.time.hi) };
             let ahead = window.at(to);
             let chord = Chord::between(now.apart, ahead.apart);
-            // Of agents that go alike, all times are as near as the nearest: nothing else would end the search early.
+            // The distance of agents that go alike often stays the same: then no lower bound would end the search early.
             let uniform = window.is_uniform(&now, &ahead);
             let error = if uniform { S::ZERO } else { window.deviation(&now, &ahead) };
             let (x, distance) = chord.nearest();

@@ -232,7 +232,7 @@ impl<'a, S: Scalar> Contacts<'a, S> {
             Next { from: to, step: duration.double(), event: None }
         } else {
             let chord = Chord::between(now.apart, ahead.apart);
-            // Without this, agents that go alike at a distance of R would take as many steps as there are.
+            // The distance of agents that go alike may stay at R: steps would then be as short as they can be.
             let error = if window.is_uniform(&now, &ahead) { S::ZERO } else { error };
             let stretch = Stretch { now, ahead, chord, error, duration, radius: self.radius, tolerance, pad };
             if inside { stretch.follow() } else { stretch.search() }

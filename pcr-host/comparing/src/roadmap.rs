@@ -35,16 +35,7 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
     for (number, link) in list(graph, "links")?.iter().enumerate() {
         let ends = [place(&link["source"])?, place(&link["target"])?];
         let [from, to] = ends.map(|node: usize| nodes[node].at);
-        edges.push(Edge {
-            id: Id::Number(number as u64),
-            ends,
-            curve: vec![Placed::line(from, to)],
-            ways: [true, false],
-            closed: false,
-            speed: [None; 2],
-            rotation: None,
-            deviation: 0.0,
-        });
+        edges.push(Edge::new(Id::Number(number as u64), ends, vec![Placed::line(from, to)]));
     }
     let layout = Layout { levels: vec![String::new()], nodes, edges, ..Layout::default() };
     let vehicle = Vehicle {

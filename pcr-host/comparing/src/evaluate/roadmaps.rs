@@ -131,16 +131,7 @@ fn roadmap(count: usize, seed: u64, is_curved: bool) -> Imported {
             _ => PathSegment::Arc { radius: length / (2.0 * (sweep.abs() / 2.0).sin()), sweep },
         };
         let curve = vec![Placed { at: [x, y], heading, shape }];
-        Edge {
-            id: Id::Number(id as u64),
-            ends,
-            curve,
-            ways: [true, false],
-            closed: false,
-            speed: [None; 2],
-            rotation: None,
-            deviation: 0.0,
-        }
+        Edge::new(Id::Number(id as u64), ends, curve)
     });
     let node = |(id, &at): (usize, &[f64; 2])| Node { id: Id::Number(id as u64), name: None, level: 0, at };
     let vehicle = Vehicle {

@@ -76,6 +76,11 @@ pub struct Edge {
 }
 
 impl Edge {
+    /// One way along these lines and arcs, open and without limits.
+    pub fn new(id: Id, ends: [usize; 2], curve: Vec<Placed>) -> Self {
+        Self { id, ends, curve, ways: [true, false], closed: false, speed: [None; 2], rotation: None, deviation: 0.0 }
+    }
+
     /// Whether it may be travelled in both directions.
     pub fn is_two_way(&self) -> bool {
         self.ways == [true; 2]

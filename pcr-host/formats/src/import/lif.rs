@@ -187,16 +187,8 @@ impl Reader<'_> {
     fn along(&mut self, id: &str, ends: [usize; 2], property: Option<&Object<'_>>) -> Result<Edge, ImportError> {
         let at = ends.map(|node| self.nodes.list()[node].at);
         let straight = Placed::line(at[0], at[1]);
-        let mut edge = Edge {
-            id: Id::Text(id.to_owned()),
-            ends,
-            curve: if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() },
-            ways: [true, false],
-            closed: false,
-            speed: [None; 2],
-            rotation: None,
-            deviation: 0.0,
-        };
+        let curve = if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() };
+        let mut edge = Edge::new(Id::Text(id.to_owned()), ends, curve);
         if let Some(property) = property {
             edge.speed = [property.positive("maxSpeed")?; 2];
             edge.rotation = property.positive("maxRotationSpeed")?;

@@ -168,16 +168,7 @@ impl Graph<'_> {
         }
         let speed = self.speed_limit(&named, properties, speed)?;
         let curve = if straight { vec![line] } else { Vec::new() };
-        let edge = Edge {
-            id: Id::Number(id),
-            ends,
-            curve,
-            ways: [true, false],
-            closed: false,
-            speed: [speed; 2],
-            rotation: None,
-            deviation: 0.0,
-        };
+        let edge = Edge { speed: [speed; 2], ..Edge::new(Id::Number(id), ends, curve) };
         self.edges.add(edge, self.warnings);
         Ok(())
     }

@@ -345,16 +345,7 @@ mod tests {
     /// A quarter of a circle and two lines beyond it; the last node on this level.
     fn bend(level: usize) -> Layout {
         let node = |id: u64, at: [f64; 2], level: usize| Node { id: Id::Number(id), name: None, level, at };
-        let edge = |id: u64, ends: [usize; 2], curve: Vec<Placed>| Edge {
-            id: Id::Number(id),
-            ends,
-            curve,
-            ways: [true, false],
-            closed: false,
-            speed: [None; 2],
-            rotation: None,
-            deviation: 0.0,
-        };
+        let edge = |id: u64, ends: [usize; 2], curve: Vec<Placed>| Edge::new(Id::Number(id), ends, curve);
         let arc = PathSegment::Arc { radius: 1.0, sweep: FRAC_PI_2 };
         let curve = vec![Placed { at: [0.0, 0.0], heading: 0.0, shape: arc }];
         let nodes = [([0.0, 0.0], 0), ([1.0, 1.0], 0), ([1.0, 3.0], 0), ([4.0, 3.0], level), ([5.0, 3.0], level)];

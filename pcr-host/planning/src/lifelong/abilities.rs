@@ -7,8 +7,8 @@ use pcr_formats::import::Vehicle;
 pub(super) struct Abilities {
     pub(super) speed: f64,
     pub(super) acceleration: f64,
-    pub(super) rotation: f64,
-    pub(super) rotation_acceleration: f64,
+    rotation: f64,
+    rotation_acceleration: f64,
 }
 
 impl Abilities {

@@ -64,16 +64,7 @@ impl Plan {
         let shape = PathSegment::Line { length: (u - x).hypot(v - y) };
         let curve = vec![Placed { at: [x, y], heading: (v - y).atan2(u - x), shape }];
         let id = Id::Number(self.edges.len() as u64);
-        self.edges.push(Edge {
-            id,
-            ends,
-            curve,
-            ways: [true, two_way],
-            closed: false,
-            speed: [None; 2],
-            rotation: None,
-            deviation: 0.0,
-        });
+        self.edges.push(Edge { ways: [true, two_way], ..Edge::new(id, ends, curve) });
     }
 
     /// From crossing to crossing, with its bays.
