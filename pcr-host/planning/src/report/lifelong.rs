@@ -65,12 +65,12 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
     )?;
     well_formed(well_formedness, out)?;
     let safe = well_formedness.safe_ends.len();
-    match well_formedness.dead_ends_only {
-        _ if *asked < safe => {}
-        false => {
-            writeln!(out, "no safe end is left free: somebody may always stand in the way, and missions wait for ever")?
-        }
-        true => writeln!(out, "whether missions may wait for ever is not known: only dead ends were looked at")?,
+    if *asked >= safe {
+        let why = match well_formedness.dead_ends_only {
+            true => "whether missions may wait for ever is not known: only dead ends were looked at",
+            false => "no safe end is left free: somebody may always stand in the way, and missions wait for ever",
+        };
+        writeln!(out, "{why}")?;
     }
     if let Some(run) = runs.iter().find(|run| run.outcome.robots < *asked) {
         writeln!(out, "{} without a place to start", asked - run.outcome.robots)?;
