@@ -29,6 +29,7 @@ fn agents(c: &mut Criterion) {
                 rows()
                     .filter_map(|(k, motion)| {
                         first_conflict(motion, ecm.row(&motions, k).expect("the table of the fleet"), time)
+                            .expect("its own row")
                     })
                     .count()
             });

@@ -89,7 +89,7 @@ impl Server {
         // A delay does not change the table. The plan is checked before it is used.
         let late = motion.delayed(delay)?;
         let whole = pcr_core::Interval::new(0.0, Motion::span(&fleet).hi + delay);
-        assert!(first_overlap(&late, self.table.row(&fleet, number)?, whole).is_none());
+        assert!(first_overlap(&late, self.table.row(&fleet, number)?, whole)?.is_none());
         drop(fleet);
         mission.start += delay;
         self.robots[number] = mission;

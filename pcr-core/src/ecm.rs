@@ -262,7 +262,11 @@ where
     ///
     /// # Errors
     /// [`Full`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
-    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+    /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+        if agent >= fleet.len() {
+            return Err(Mismatch::NoSuchAgent(agent).into());
+        }
         self.compute(fleet, |ecm| ecm.add_row(fleet, agent))?;
         self.only = Some(agent);
         Ok(())

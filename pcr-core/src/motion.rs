@@ -185,6 +185,11 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds
     }
 
+    /// Whether it has the path of the other motion, and a disc that is not larger.
+    pub(crate) fn is_within(&self, other: &Self) -> bool {
+        self.digest == other.digest && self.radius <= other.radius
+    }
+
     /// A checksum of all that the regions of this agent depend on: path, radius, and its index in the fleet.
     pub(crate) fn digest(&self, place: usize) -> u32 {
         digest(digest(self.digest, place as u32), self.radius.digest())

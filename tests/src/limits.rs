@@ -209,8 +209,9 @@ fn together<S: Format>(fleet: &[Motion<'_, S>], ecm: &Ecm<S, Vec<Region>, Vec<Pi
             earliest_departure(row.clone(), interval.lo, from);
             let _ = least_duration::<S, PHASES>(row.clone(), from);
         }
-        let met = first_conflict(ego, row.clone(), always);
-        assert!(first_overlap(ego, row.clone(), interval).is_none_or(|met| !met.conflict.touching));
+        let met = first_conflict(ego, row.clone(), always).expect("its own row");
+        let overlap = first_overlap(ego, row.clone(), interval).expect("its own row");
+        assert!(overlap.is_none_or(|met| !met.conflict.touching));
         assert!(met.is_none_or(|met| met.other != k));
         let mut stations = vec![Station::EMPTY; 24];
         let limits = Limits { speed: ego.profile().top_speed(), acceleration: interval.hi };

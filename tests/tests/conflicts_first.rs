@@ -29,7 +29,7 @@ fn first_of_rows<S: Format>(cases: u64) {
         let ego = fleet[0].delayed(S::from_f64(1.0)).expect("a valid delay");
         let all = fleet.iter().map(Motion::time).fold(ego.time(), Interval::hull);
         let during = [all.lo.to_f64(), all.hi.to_f64()];
-        let first = first_conflict(&ego, ecm.row(&fleet, 0).expect("the table of the fleet"), all);
+        let first = first_conflict(&ego, ecm.row(&fleet, 0).expect("the table of the fleet"), all).expect("its path");
         let tolerance = (1..5).map(|k| Encounter::new(&ego, &fleet[k]).tolerance().to_f64()).fold(0.0, f64::max);
         let own = (courses[0].1.0.clone(), courses[0].1.1.clone(), ego.time().lo.to_f64());
         match first {

@@ -1,6 +1,6 @@
 //! Conflicts of given motions whose answers are known.
 
-use pcr_core::{Conflict, Encounter, Interval, Motion, first_conflict};
+use pcr_core::{Conflict, Encounter, Interval, Mismatch, Motion, first_conflict, first_overlap};
 use pcr_fixed::Q16;
 use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
@@ -156,6 +156,7 @@ fn the_first_conflict_with_a_row_has_known_answers() {
         let fleet: Vec<Motion<'_, f64>> = courses.iter().map(Course::motion).collect();
         let ecm = build_ecm(&fleet).expect("a small table");
         first_conflict(&fleet[0], ecm.row(&fleet, 0).expect("the table of the fleet"), Interval::new(-1.0, 20.0))
+            .expect("its own row")
             .map(|met| (met.other, met.conflict))
     };
     let ego = || line(0.25, [-4.0, 0.0, 0.0], 8.0, 0.0);
@@ -175,4 +176,26 @@ fn the_first_conflict_with_a_row_has_known_answers() {
     // Passing at the distance of a contact.
     let (_, conflict) = first(&[ego(), line(0.25, [4.0, 0.5, PI], 8.0, 0.0)]).expect("touching");
     assert!(conflict.touching, "{conflict:?}");
+}
+
+/// The regions say nothing about a larger disc or another path.
+#[test]
+fn a_row_answers_for_its_own_path_and_no_larger_disc() {
+    let near = [line(0.25, [-4.0, 0.0, 0.0], 8.0, 0.0), line(0.25, [4.0, 0.4, PI], 8.0, 0.0)];
+    let near = near.each_ref().map(Course::motion);
+    let ecm = build_ecm(&near).expect("a small table");
+    let during = Interval::new(0.0, 8.0);
+    let ask = |ego: &Motion<'_, f64>| {
+        let row = || ecm.row(&near, 0).expect("the table of the fleet");
+        let answers = [first_conflict(ego, row(), during), first_overlap(ego, row(), during)];
+        assert_eq!(answers[0].map(|met| met.is_some()), answers[1].map(|met| met.is_some()));
+        answers[0].map(|met| met.is_some())
+    };
+    let [smaller, larger] = [0.2, 0.3].map(|radius| line(radius, [-4.0, 0.0, 0.0], 8.0, 0.0));
+    let elsewhere = line(0.25, [-4.0, -0.05, 0.0], 8.0, 0.0);
+    assert_eq!(ask(&near[0]), Ok(true));
+    assert_eq!(ask(&near[0].delayed(1.0).expect("a delay")), Ok(true));
+    assert_eq!(ask(&smaller.motion()), Ok(true));
+    assert_eq!(ask(&larger.motion()), Err(Mismatch::OtherFleet));
+    assert_eq!(ask(&elsewhere.motion()), Err(Mismatch::OtherFleet));
 }

@@ -243,6 +243,7 @@ fn searches_from_beyond_the_format_find_nothing() {
             "{refused:?}"
         );
     }
+    assert_eq!(least_duration::<f64, 1>(row(), 0.0), Err(Invalid::NonPositive("duration")));
     // A wait beyond the end of the path is one at the end; one at no length is none.
     assert_eq!(earliest_departure(row(), 5.0, 0.0), earliest_departure(row(), 4.0, 0.0));
     assert!(earliest_departure(row(), 4.0, 0.0).is_some());

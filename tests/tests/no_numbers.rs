@@ -55,8 +55,8 @@ fn none_is_free<S: Format>() {
         let during = Interval::new(lo, hi);
         assert!(pair.contacts(during).any(|contact| contact.contains(met)), "{during:?}");
         assert!(pair.conflicts(during).next().is_some() && pair.closest(during).separation < number(0.1), "{during:?}");
-        assert!(first_conflict(&fleet[0], row(), during).is_some(), "{during:?}");
-        assert!(first_overlap(&fleet[0], row(), during).is_some(), "{during:?}");
+        assert!(first_conflict(&fleet[0], row(), during).expect("its row").is_some(), "{during:?}");
+        assert!(first_overlap(&fleet[0], row(), during).expect("its row").is_some(), "{during:?}");
         assert!(pair.blocked_lengths(during).any(|part| part.contains(number(2.0))), "{during:?}");
         let middle = Interval::new(number(2.0), number(2.0));
         assert!(pair.blocked(middle, during).any(|window| !(window.hi < met || window.lo > met)), "{during:?}");

@@ -2,7 +2,7 @@
 //! ever, and what stays where nothing fits.
 
 use pcr_core::{
-    Ecm, Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
+    Ecm, Full, Hold, Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
     Tolerances, Unchanged,
 };
 use pcr_tests::disc::{Course, Disc, Leg};
@@ -109,7 +109,7 @@ impl Scene<'_> {
     }
 }
 
-const REST: Progress<f64> = Progress { at: pcr_core::Interval { lo: 0.0, hi: 0.0 }, stop: 0.0 };
+const REST: Progress<f64> = Progress { at: Interval { lo: 0.0, hi: 0.0 }, stop: 0.0 };
 
 #[test]
 fn the_caller_is_asked_where_both_ways_are_possible() {
@@ -137,7 +137,10 @@ fn who_cannot_stop_before_a_region_goes_first_and_nobody_is_asked() {
         (REST, moving(4.7, 4.7), Ok(Pass::Over)),
         (moving(4.7, 4.7), REST, Ok(Pass::Over)),
     ];
-    for (own, their, expected) in cases {
+    // A place in the region counts, also where the furthest place was given less than it.
+    let late = |lo: f64| Progress { at: Interval::new(lo, 3.5), stop: lo };
+    let late = [(late(3.0), REST, Ok(Pass::First)), (REST, late(3.0), Ok(Pass::Second))];
+    for (own, their, expected) in cases.into_iter().chain(late) {
         let scene = Scene { agents: &[(&east, own), (&north, their)], first: &[], wanted: &[] };
         let (found, passes) = scene.admitted();
         let pass = passes[0].1;

@@ -130,9 +130,12 @@ fn a_row_answers_for_its_agent_only() {
     let refused = refusals(&mut orders, &mut fleet, motion, [2, 3]);
     assert_eq!(refused, [Some(Mismatch::OnlyRow(1)); 8]);
     assert_eq!(orders.hold(&fleet, 1, &after), Ok(Hold::Free));
+    // An agent that is not there has no row; the table stays as it is.
+    assert_eq!(orders.fill_row(&fleet, 4), Err(Mismatch::NoSuchAgent(4).into()));
+    assert_eq!(orders.hold(&fleet, 1, &after), Ok(Hold::Free));
     // Where there is no room for its orders the table is that of nobody.
     let mut small = empty(1);
-    assert_eq!(small.fill_row(&fleet, 1), Err(Full::Orders));
+    assert_eq!(small.fill_row(&fleet, 1), Err(Full::Orders.into()));
     assert_eq!(small.hold(&fleet, 1, &before), Err(Mismatch::OtherFleet));
 }
 

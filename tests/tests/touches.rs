@@ -52,6 +52,7 @@ fn rows<S: Format>(cases: u64) {
             let Ok(ego) = fleet[0].delayed(delay - S::from_f64(less * resolution)) else { continue };
             let all = fleet.iter().map(Motion::time).fold(ego.time(), Interval::hull);
             let (first, overlap) = (first_conflict(&ego, row(), all), first_overlap(&ego, row(), all));
+            let (first, overlap) = (first.expect("its path"), overlap.expect("its path"));
             let (any, deep) = (earliest(&fleet, &ego, all, 0.0), earliest(&fleet, &ego, all, 2.0));
             touching += u32::from(any.is_some_and(|any| any.touching));
             hidden += u32::from(any.is_some_and(|any| any.touching) && deep.is_some());
@@ -103,9 +104,9 @@ fn a_touch_does_not_hide_a_collision() {
     let delay = with.map(|region| region.forbidden_delays().hi).fold(0.0, f64::max);
     let ego = motions[0].delayed(delay).expect("a delay");
     let all = motions.iter().map(Motion::time).fold(ego.time(), Interval::hull);
-    let first = first_conflict(&ego, row(), all).expect("a touch at least");
+    let first = first_conflict(&ego, row(), all).expect("its path").expect("a touch at least");
     assert!(first.other == 3 && first.conflict.touching && (first.conflict.time.lo - 17.036).abs() < 1e-2, "{first:?}");
-    let overlap = first_overlap(&ego, row(), all).expect("a collision");
+    let overlap = first_overlap(&ego, row(), all).expect("its path").expect("a collision");
     assert_eq!(overlap.other, 2);
     let conflict = overlap.conflict;
     assert!((conflict.depth - 0.118).abs() < 1e-3 && (conflict.time.lo - 29.604).abs() < 1e-3, "{conflict:?}");

@@ -8,7 +8,7 @@ mod layout;
 
 use layout::{Choices, Layout};
 use pcr_core::{
-    Encounter, Hold, Interval, Motion, Order, Orders, Pass, Piece, Progress, Refused, Region, safe_intervals,
+    Encounter, Hold, Interval, Motion, Order, Orders, Pass, Piece, Progress, Refused, Region, Unchanged, safe_intervals,
 };
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
@@ -220,8 +220,11 @@ impl Fleet {
         let rows = py.detach(|| -> PyResult<Vec<u8>> {
             let motions = self.parts.motions();
             let mut ecm: HostEcm<f64> = pcr_core::Ecm::new(Vec::new(), Vec::new());
-            while let Err(full) = ecm.fill_row(&motions, ego) {
-                ecm.grow(full).map_err(refused)?;
+            while let Err(unchanged) = ecm.fill_row(&motions, ego) {
+                match unchanged {
+                    Unchanged::Full(full) => ecm.grow(full).map_err(refused)?,
+                    Unchanged::Mismatch(mismatch) => return Err(refused(mismatch)),
+                }
             }
             let mut rows = Vec::new();
             for region in ecm.row(&motions, ego).map_err(refused)? {

@@ -20,7 +20,7 @@ use crate::fleet::{Motions, Store};
 use crate::message::{Answer, Edition};
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region};
+use pcr_core::{Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged};
 
 /// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
 /// in total, and at most `R` regions that it has with the others.
@@ -117,9 +117,12 @@ impl From<Invalid> for Unclear {
     }
 }
 
-impl From<Full> for Unclear {
-    fn from(full: Full) -> Self {
-        Self::Full(full)
+impl From<Unchanged> for Unclear {
+    fn from(unchanged: Unchanged) -> Self {
+        match unchanged {
+            Unchanged::Full(full) => Self::Full(full),
+            Unchanged::Mismatch(mismatch) => Self::Mismatch(mismatch),
+        }
     }
 }
 

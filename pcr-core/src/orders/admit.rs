@@ -282,7 +282,7 @@ fn with_room<S: Scalar>(
 /// Whether the ego of a region can let the other agent go first: it can stop before the part that the other one has
 /// still to pass, and its path does not lead into a part that the other one never leaves.
 fn can_wait<S: Scalar>(region: &RegionRef<'_, S>, own: &Progress<S>, their: &Progress<S>, width: S) -> bool {
-    if !region.hold(own.at.lo, their.at.lo).allows(own.stop) {
+    if !region.hold(own.at.lo, their.at.lo).allows(own.furthest()) {
         return false;
     }
     let other_end = region.other_motion().path().length();

@@ -57,6 +57,11 @@ impl<S: Scalar> Progress<S> {
         Self { at: Interval::new(length, length), stop: length }
     }
 
+    /// The furthest length at which the agent can come to rest \[m\], also if `stop` was given less than its place.
+    pub(super) fn furthest(&self) -> S {
+        self.stop.max(self.at.hi)
+    }
+
     /// The lower end of the place \[m\], not beyond what [`exit`] calls never. NaN stays NaN, which is beyond nothing.
     pub(super) fn known(&self) -> S {
         self.at.lo.min(S::LIMIT)

@@ -16,7 +16,7 @@ use crate::scalar::Scalar;
 ///
 /// Agents that keep their [`Orders::hold`] never touch one another, however late they are. If [`Orders::check`] passes,
 /// all of them arrive (`docs/theory.md` has the proofs). Paths and radii matter; the times of the motions are used by
-/// [`Orders::as_planned`] only. As with [`Ecm`], every method takes the fleet, and refuses another one.
+/// [`Orders::as_planned`] only. As with [`Ecm`], every method that reads paths takes the fleet, and refuses another one.
 ///
 /// The caller provides the storage, as for [`Ecm`]. One [`Order`] is needed for each region; [`Orders::admit`] needs as
 /// many more as its agent has regions.
@@ -199,9 +199,10 @@ where
     ///
     /// # Errors
     /// [`Full`] if the storage is too small; the table is then empty, as after [`Orders::clear`].
-    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+    /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
         self.ecm.fill_row(fleet, agent)?;
-        self.undecide()
+        Ok(self.undecide()?)
     }
 
     /// Removes all regions and orders; the table is then that of a fleet without agents.
@@ -256,8 +257,9 @@ where
     }
 
     /// Decides the order of all undecided regions of `ego` and `other`: whether the ego passes them first or second.
-    /// `since` is the least length at which the agent that goes second is now \[m\]; parts of a region behind it count
-    /// as passed.
+    /// `since` is the least length at which the agent that goes second is now \[m\], from 0 to the length of its path;
+    /// parts of a region behind it count as passed. [`Pass::Over`] frees both agents: the caller knows that one of them
+    /// has left the regions. O(agents + regions).
     ///
     /// # Errors
     /// [`Mismatch`].
@@ -320,7 +322,7 @@ where
             let Some([lower, higher]) = self.ecm.agents_at(place) else { continue };
             let Some(region) = self.ecm.at(fleet, place, lower) else { continue };
             let always = Interval::new(-S::LIMIT, S::LIMIT);
-            let met = first_overlap(region.ego_motion(), core::iter::once(region.clone()), always).is_some();
+            let met = first_overlap(region.ego_motion(), core::iter::once(region.clone()), always)?.is_some();
             let pass = planned(&region).filter(|_| !met).ok_or(Refused::Meeting([lower, higher]))?;
             let order = Order::new(&region, pass, S::ZERO);
             if let Some(room) = self.orders.as_mut().get_mut(place) {

@@ -20,7 +20,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     fn is_free<const N: usize>(&self, ego: &Motion<'_, S>, plan: &SpeedPlan<S, N>, from: S) -> Result<bool, Invalid> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         Ok(self.broken(&motion, ego.time().lo).is_none()
-            && first_conflict(&motion, self.regions.clone(), self.during(&motion, from)).is_none())
+            && matches!(first_conflict(&motion, self.regions.clone(), self.during(&motion, from)), Ok(None)))
     }
 
     /// A constraint that a motion breaks if the agent stands at its start from a time on \[s\].

@@ -1,5 +1,6 @@
 //! Conflicts: contacts with their place and depth.
 
+use crate::error::Mismatch;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::query::clearance::Approach;
@@ -62,11 +63,14 @@ pub struct Met<S> {
 
 /// The earliest conflict of a motion with the agents of some regions during an interval of time \[s\]. Pass the regions
 /// of the agent's row in the table. Of two conflicts at the same time, the one whose region comes first is returned.
-/// The motion needs the path and radius of the regions' ego, but may differ in start time or profile. The conflict may
-/// be a mere touch ([`Conflict::touching`]), which plans make on purpose; [`first_overlap`] skips touches.
+/// The motion needs the path of the regions' ego and a disc that is not larger, but may differ in start time or
+/// profile. The conflict may be a mere touch ([`Conflict::touching`]), which plans make on purpose; [`first_overlap`] skips touches.
 ///
 /// Cost: four inversions of a profile for each region; and that of [`Encounter::contacts`], up to the earliest contact
 /// known so far, for regions in which both agents are at the same time.
+///
+/// # Errors
+/// [`Mismatch::OtherFleet`] for another path or a larger disc than that of the regions' ego.
 ///
 /// ```
 /// use pcr_core::{Ecm, Interval, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, first_conflict};
@@ -78,28 +82,31 @@ pub struct Met<S> {
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
 /// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
-/// let met = first_conflict(&fleet[0], ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0)).unwrap();
+/// let met = first_conflict(&fleet[0], ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0))?.unwrap();
 /// assert!(met.other == 1 && (met.conflict.depth - 0.5).abs() < 1e-9);
 /// let later = fleet[0].delayed(1.0)?;
-/// assert_eq!(first_conflict(&later, ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0)), None);
+/// assert_eq!(first_conflict(&later, ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0))?, None);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn first_conflict<'a, S: Scalar>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
-) -> Option<Met<S>> {
+) -> Result<Option<Met<S>>, Mismatch> {
     first(ego, regions, during, |_, _| true)
 }
 
 /// Like [`first_conflict`], but returns the earliest conflict that is deeper than a touch.
 ///
 /// Cost: that of [`first_conflict`], and that of [`Encounter::closest`] for each touch before the conflict.
+///
+/// # Errors
+/// As [`first_conflict`].
 pub fn first_overlap<'a, S: Scalar>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
-) -> Option<Met<S>> {
+) -> Result<Option<Met<S>>, Mismatch> {
     first(ego, regions, during, |encounter, contact| !encounter.conflict(encounter.whole(contact, during)).touching)
 }
 
@@ -109,10 +116,13 @@ fn first<'a, S: Scalar>(
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
     counts: impl Fn(&Encounter<'_, S>, Interval<S>) -> bool,
-) -> Option<Met<S>> {
+) -> Result<Option<Met<S>>, Mismatch> {
     let during = during.limited();
     let (mut first, mut until) = (None, during.hi);
     for region in regions {
+        if !ego.is_within(region.ego_motion()) {
+            return Err(Mismatch::OtherFleet);
+        }
         let Some(window) = region.window(ego, Interval::new(during.lo, until)) else { continue };
         let encounter = Encounter::new(ego, region.other_motion());
         let mut earlier = encounter.contacts(window).take_while(|contact| first.is_none() || contact.lo < until);
@@ -121,8 +131,10 @@ fn first<'a, S: Scalar>(
             first = Some((region.other(), encounter, contact));
         }
     }
-    let (other, encounter, contact) = first?;
-    Some(Met { other, conflict: encounter.conflict(encounter.whole(contact, during)) })
+    Ok(first.map(|(other, encounter, contact)| {
+        let conflict = encounter.conflict(encounter.whole(contact, during));
+        Met { other, conflict }
+    }))
 }
 
 impl<S: Scalar> RegionRef<'_, S> {

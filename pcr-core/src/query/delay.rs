@@ -159,7 +159,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 
 /// The least delay of the ego's start, from `from` \[s\] on, with which it meets none of the regions. Pass the regions
 /// of its row in the table, or those with some of the other agents. `None` if no delay that the format can represent
-/// helps; then [`RegionRef::forbidden_delays`] of each region shows which ones forbid all late starts.
+/// helps, or if `from` is no such number; then [`RegionRef::forbidden_delays`] of each region shows which ones forbid all late starts.
 ///
 /// Cost: a comparison of ranges for each region, and 10 to 30 searches for contacts for each region that is met.
 ///

@@ -8,7 +8,7 @@
 //! extends down to 0 if the region contains the ego's end, or if the other agent stands in it at its start. Finite ends
 //! are found like those of delays.
 
-use crate::error::{Invalid, not_negative};
+use crate::error::{Invalid, not_negative, positive};
 use crate::geometry::Interval;
 use crate::profile::Profile;
 use crate::query::bracket::Bracket;
@@ -123,7 +123,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 ///
 /// # Errors
 /// [`Invalid::Full`] if the motion has more than `N` phases; [`Invalid::NonFinite`], [`Invalid::OutOfRange`] and
-/// [`Invalid::Negative`] for `from`.
+/// [`Invalid::Negative`] for `from`, and [`Invalid::NonPositive`] if `from` is 0 and the motion takes time.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, least_duration};
@@ -146,8 +146,12 @@ pub fn least_duration<'a, S: Scalar, const N: usize>(
 ) -> Result<Option<S>, Invalid> {
     not_negative(from, "duration")?;
     for region in regions.clone() {
-        if region.ego_motion().profile().phases().len() > N {
+        let profile = region.ego_motion().profile();
+        if profile.phases().len() > N {
             return Err(Invalid::Full("phase"));
+        }
+        if profile.duration() > S::ZERO {
+            positive(from, "duration")?;
         }
     }
     Ok(settle(regions, from, |region, duration| {

@@ -12,7 +12,7 @@ use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
-    Radians, Region, Scalar, Segment, Turn,
+    Radians, Region, Scalar, Segment, Turn, Unchanged,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
@@ -388,8 +388,10 @@ pub(crate) fn table_of<S: Scalar>(
     memory::for_list(regions, region).map_err(room(Full::Regions))?;
     memory::for_list(pieces, piece).map_err(room(Full::Pieces))?;
     let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
-    while let Err(full) = ecm.fill_row(motions, agent) {
-        ecm.grow(full)?;
+    loop {
+        match ecm.fill_row(motions, agent) {
+            Err(Unchanged::Full(full)) => ecm.grow(full)?,
+            done => return Ok(done.map(|()| ecm).expect("an agent of the fleet")),
+        }
     }
-    Ok(ecm)
 }

@@ -12,7 +12,7 @@ pub use grid::Grid;
 use crate::fleet::{Format, HostEcm, table_of};
 use crate::memory::Held;
 use crate::regions::Failure;
-use pcr_core::{Full, Mismatch, Motion, RegionRef, excess};
+use pcr_core::{Full, Mismatch, Motion, RegionRef, Unchanged, excess};
 use rayon::prelude::*;
 
 /// The regions of an agent with others, those after it or all.
@@ -58,11 +58,13 @@ impl<'a, S: Format> Row<'a, S> {
         self.motions.clear();
         self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
         let filled = match self.table.fill_row(&self.motions, self.place) {
-            Err(Full::Regions | Full::Pieces) => {
+            Err(Unchanged::Full(Full::Regions | Full::Pieces)) => {
                 let agents = self.agents.len();
                 table_of(&self.motions, self.place, [2 * agents, 3 * agents]).map(|table| self.table = table)
             }
-            done => done,
+            Err(Unchanged::Full(full)) => Err(full),
+            Err(Unchanged::Mismatch(mismatch)) => unreachable!("{mismatch}: it was added above"),
+            Ok(()) => Ok(()),
         };
         filled.map_err(|full| match full {
             Full::Pair(places) => Full::Pair(places.map(|place| self.agents.get(place).map_or(0, |&it| it as usize))),

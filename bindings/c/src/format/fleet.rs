@@ -30,7 +30,7 @@ impl Table {
         }
     }
 
-    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), Full> {
+    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), Unchanged> {
         match self {
             Self::Regions(table) => table.fill_row(fleet, agent),
             Self::Ordered(table) => table.fill_row(fleet, agent),
@@ -243,7 +243,6 @@ impl Fleet {
 
     /// Computes the row of one agent only.
     pub(super) fn build_row(&mut self, agent: usize) -> Result<(), PcrStatus> {
-        self.motion(agent)?;
         Ok(self.table.fill_row(self.motions.values(), agent)?)
     }
 

@@ -50,7 +50,7 @@ pub extern "C" fn pcr_fleet_first_conflict(
         let (out, found) = (given(out)?, given(found)?);
         let (motion, during) = (fleet.motion(ego)?, fleet.duration());
         let row = fleet.table().row(fleet.motions(), ego)?;
-        let met = if touches { first_conflict(motion, row, during) } else { first_overlap(motion, row, during) };
+        let met = if touches { first_conflict(motion, row, during)? } else { first_overlap(motion, row, during)? };
         *found = met.is_some();
         if let Some(met) = met {
             *out = PcrMet { other: met.other, conflict: record(&met.conflict) };

@@ -274,8 +274,8 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
 fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_, S>], agent: usize) {
     let Ok(row) = Ecm::row(ecm, fleet, agent) else { return };
     let Some(motion) = any(fleet.first()) else { return };
-    any(first_conflict(motion, row.clone(), interval()));
-    any(first_overlap(motion, row.clone(), interval()));
+    any(first_conflict(motion, row.clone(), interval()).is_ok());
+    any(first_overlap(motion, row.clone(), interval()).is_ok());
     let limits = Limits { speed: number(), acceleration: number() };
     let drive = Drive { start: number(), goal: number(), ..Drive::rest_to_rest(limits) };
     any((drive, Drive::of(motion)));

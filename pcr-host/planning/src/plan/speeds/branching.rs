@@ -61,7 +61,7 @@ fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]>
     (0..plan.len()).find_map(|agent| {
         let regions = ecm.row(plan, agent).expect("the table of the fleet");
         let after = regions.filter(|region| region.other() > agent);
-        first_overlap(&plan[agent], after, all).map(|met| [agent, met.other])
+        first_overlap(&plan[agent], after, all).expect("its own row").map(|met| [agent, met.other])
     })
 }
 
