@@ -88,6 +88,7 @@ mod shadow;
 mod shapes;
 mod simulate;
 mod speed;
+mod speed_below;
 mod table;
 mod touches;
 mod traffic;

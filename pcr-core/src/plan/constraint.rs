@@ -18,7 +18,7 @@ use crate::scalar::Scalar;
 pub struct Constraint<S> {
     /// Lengths along the path \[m\].
     pub length: Interval<S>,
-    /// Times \[s\].
+    /// Times \[s\]; ends beyond [`Scalar::LIMIT`] stand for no end.
     pub time: Interval<S>,
 }
 
@@ -42,11 +42,17 @@ impl<S: Scalar> Constraint<S> {
         if is_one(self.length) && is_one(self.time) { Ok(()) } else { Err(Invalid::OutOfRange("constraint")) }
     }
 
+    /// The times, within those that motions have.
+    pub(super) fn during(&self) -> Interval<S> {
+        self.time.limited()
+    }
+
     /// Whether an agent that stands at its start from the time `from` \[s\] and then moves by `motion` is on these
     /// lengths at these times, by more than two [`Scalar::tolerance`] of time.
     pub(super) fn is_broken_by(&self, motion: &Motion<'_, S>, from: S) -> bool {
         let rounding = S::tolerance(from.abs().max(motion.time().hi.abs())).double();
-        let during = Interval::new(self.time.lo.max(from) + rounding, self.time.hi - rounding);
+        let time = self.during();
+        let during = Interval::new(time.lo.max(from) + rounding, time.hi - rounding);
         during.lo <= during.hi && times(motion, self.length, during).is_some()
     }
 }

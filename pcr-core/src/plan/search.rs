@@ -69,7 +69,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
 
     /// The times at which constraints forbid a part of the path.
     fn constrained(&self, part: Interval<S>) -> impl Iterator<Item = Interval<S>> {
-        self.constraints.iter().filter(move |it| it.length.meets(part)).map(|it| it.time)
+        self.constraints.iter().filter(move |it| it.length.meets(part)).map(Constraint::during)
     }
 
     /// The regions on a part of the path.
