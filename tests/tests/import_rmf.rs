@@ -131,6 +131,76 @@ fn levels_are_apart_and_lifts_are_not_read() {
     assert!(!table.locks.is_empty() && table.locks.iter().all(|lock| level(&lock.a) == level(&lock.b)));
 }
 
+/// Two levels that are drawn at other scales: L2 is that of L1, twice as large in pixels, rotated by a quarter turn and moved.
+fn two_levels(more: &str, fiducials: [&str; 2], measurements: [&str; 2]) -> String {
+    let level = |name: &str, vertices: &str, fiducials: &str, measurements: &str| {
+        format!(
+            "  {name}:\n    vertices: {vertices}\n    fiducials: {fiducials}\n    measurements: {measurements}\n    lanes: [[0, 1, {{}}]]\n"
+        )
+    };
+    let [below, above] = ["[[0, 0, 0, a], [100, 0, 0, b]]", "[[10, 30, 0, a], [10, -170, 0, b]]"];
+    format!(
+        "levels:\n{}{}{more}",
+        level("upper", below, fiducials[0], measurements[0]),
+        level("lower", above, fiducials[1], measurements[1])
+    )
+}
+
+/// As the building tools of Open-RMF do, whose formulas the expected figures are by.
+#[test]
+fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
+    let (own, none) = ("[[0, 1, {distance: [3, 5.0]}]]", "[]");
+    // The level rotated by +90 degrees (y up) and twice as large: (x, y) is at (10 - 2 y, 30 - 2 x) there, y down.
+    let fiducials = ["[[0, 0, p], [40, 0, q], [0, 30, r], [7, 7, only]]", "[[10, 30, p], [10, -50, q], [70, 30, r]]"];
+    for (more, measurements) in [("", [own, none]), ("reference_level_name: upper\n", [own, own])] {
+        let (imported, warnings) = read(&two_levels(more, fiducials, measurements), &tiny(&[]));
+        for (name, at) in
+            [("upper/0", [0.0, 0.0]), ("upper/1", [5.0, 0.0]), ("lower/0", [0.0; 2]), ("lower/1", [5.0, 0.0])]
+        {
+            let found = node(&imported.layout, name);
+            assert!((found[0] - at[0]).hypot(found[1] - at[1]) < 1e-12, "{name}: {found:?}");
+        }
+        assert_eq!(warnings, [""; 0], "{more}");
+    }
+    // By name the other level is the reference, and its own measurement gives both scales.
+    let half = "[[0, 1, {distance: [3, 40.0]}]]";
+    let (imported, warnings) = read(&two_levels("reference_level_name: lower\n", fiducials, [own, half]), &tiny(&[]));
+    let lengths: Vec<f64> = imported.layout.edges.iter().map(|edge| edge.length()).collect();
+    assert!(lengths.iter().all(|length| (length - 40.0).abs() < 1e-9), "{lengths:?}");
+    assert_eq!(
+        warnings,
+        [
+            "level upper: its measurements give a scale that differs by -87.5 %; that of its fiducials counts, as for Open-RMF"
+        ]
+    );
+    // One fiducial gives no scale.
+    let one = [fiducials[0], "[[10, 30, p]]"];
+    let (imported, warnings) = read(&two_levels("", one, [own, own]), &tiny(&[]));
+    assert!((imported.layout.edges[0].length() - 5.0).abs() < 1e-9);
+    assert_eq!(
+        warnings,
+        ["level lower: no two fiducials place it upon level upper; it has the scale of its own measurements"]
+    );
+    let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let unscaled = |name: &str| format!("level {name}, measurements: none that gives the scale of its pixels");
+    assert_eq!(failed(&two_levels("", one, [own, none])), unscaled("lower"));
+    assert_eq!(failed(&two_levels("", fiducials, [none, none])), unscaled("lower"));
+    assert_eq!(
+        failed(&two_levels("reference_level_name: L9\n", fiducials, [own, own])),
+        "building, reference_level_name: there is no level L9"
+    );
+    // A real one: by its fiducials L2 has 0.056199 m a pixel, by its own measurements 0.055452 m.
+    let upper = |text: &str| {
+        let (Imported { layout, .. }, _) = read(text, &tiny(&[]));
+        let of_level = layout.edges.iter().filter(|edge| layout.levels[layout.level(edge)] == "L2");
+        of_level.map(|edge| edge.length()).sum::<f64>()
+    };
+    let place = HOTEL.find("\n  L2:").unwrap();
+    let alone = format!("{}{}", &HOTEL[..place], HOTEL[place..].replace(", ref", ", other"));
+    let ratio = upper(HOTEL) / upper(&alone);
+    assert!((ratio - 0.056199 / 0.055452).abs() < 1e-4, "{ratio}");
+}
+
 #[test]
 fn what_is_wrong_is_named() {
     let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();

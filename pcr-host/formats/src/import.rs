@@ -8,6 +8,7 @@
 //! facing      which way vehicles face on their paths
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
+//! levels      where the levels of such a building are
 //! opendrive   reference lines of roads (XML)
 //! opentcs     plant models (XML)
 //! ccbs        roadmaps and plans of Continuous-CBS (XML)
@@ -37,6 +38,7 @@ mod facing;
 mod factsheet;
 mod grid;
 mod layout;
+mod levels;
 mod lif;
 mod loads;
 mod names;

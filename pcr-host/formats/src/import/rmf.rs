@@ -1,12 +1,13 @@
 //! Buildings of Open-RMF (`*.building.yaml`), navigation graphs (`nav_graphs/*.yaml`) and the configuration of a fleet.
 //!
-//! Vertices of a building are pixels of a floor plan, y down; the scale of a level is the mean of its measurements,
-//! metres divided by the distance of two vertices. Vertices of a navigation graph, which the building tools generate
+//! Vertices of a building are pixels of a floor plan, y down (`levels` tells where they are in metres). Vertices of a
+//! navigation graph, which the building tools generate
 //! and fleet adapters load, are in metres, y up, and each lane leads in one direction. A lane is straight; the vehicle
 //! stops and turns where two lanes meet at an angle. Lanes and vertices have no names of their own; they are named by
 //! their level and their index in its list, from 0, as in `L1/12`.
 
 use super::layout::{Edge, Id, Layout, Node};
+use super::levels::{Placing, Reference, SPREAD};
 use super::value::Object;
 use super::vehicle::Given;
 use super::{ImportError, Options, Warnings, facing};
@@ -14,9 +15,6 @@ use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
-
-/// Relative spread of the scales of a level that goes without a warning.
-const SPREAD: f64 = 0.01;
 
 pub(super) fn yaml(text: &str) -> Result<Value, ImportError> {
     serde_saphyr::from_str(text).map_err(|error| {
@@ -77,10 +75,10 @@ pub(super) fn read(
     }
     let levels = root.object("levels")?.ok_or_else(|| root.missing("levels"))?;
     let graph = is_navigation_graph(&value);
-    let flipped = match root.text("coordinate_system")? {
-        None if graph => 1.0,
-        None | Some("reference_image") => -1.0,
-        Some("cartesian_meters") => 1.0,
+    let reference = match root.text("coordinate_system")? {
+        None if graph => None,
+        None | Some("reference_image") => Some(Reference::of(text, &root, &levels, warnings)?),
+        Some("cartesian_meters") => None,
         Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
     };
     let mut layout = Layout {
@@ -91,13 +89,13 @@ pub(super) fn read(
     let mut graphs = BTreeSet::new();
     for (name, value) in levels.members() {
         let object = Object::new(format!("level {name}"), value)?;
-        let vertices = object.list("vertices")?.iter().map(|value| vertex(value, graph)).collect::<Vec<_>>();
+        let vertices = vertices(&object, graph)?;
         if object.list("lanes")?.is_empty() {
             continue;
         }
-        let scale = if flipped < 0.0 { scale(&object, &vertices, warnings)? } else { 1.0 };
-        let scale = [scale, scale * flipped];
-        let mut level = Level { name, graph, scale, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
+        let placing = reference.as_ref().map(|reference| reference.place(name, &object, &vertices, warnings));
+        let placing = placing.transpose()?.unwrap_or(Placing::METRES);
+        let mut level = Level { name, graph, placing, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in object.list("lanes")?.iter().enumerate() {
             match level.lane(k, lane, options, &mut graphs) {
                 Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
@@ -125,8 +123,15 @@ pub(super) fn read(
     Ok(layout)
 }
 
-/// Position as in the file, and name, if the vertex is one.
-fn vertex(value: &Value, graph: bool) -> Option<([f64; 2], Option<String>)> {
+/// Position as in the file, and name; `None` for what is no vertex.
+pub(super) type Vertex = Option<([f64; 2], Option<String>)>;
+
+/// The vertices of a level.
+pub(super) fn vertices(level: &Object<'_>, graph: bool) -> Result<Vec<Vertex>, ImportError> {
+    Ok(level.list("vertices")?.iter().map(|value| vertex(value, graph)).collect())
+}
+
+fn vertex(value: &Value, graph: bool) -> Vertex {
     let list = value.as_array()?;
     let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
     let name = if graph { list.get(2).and_then(|parameters| parameters.get("name")) } else { list.get(3) };
@@ -142,8 +147,6 @@ fn parameter<'j>(parameters: Option<&'j Value>, name: &str) -> Option<&'j Value>
     }
 }
 
-type Vertex = Option<([f64; 2], Option<String>)>;
-
 /// Ends of a lane, a wall or a measurement.
 fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 2]); 2], String> {
     let list = value.as_array().ok_or("not a list")?;
@@ -157,8 +160,12 @@ fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 2]); 2], St
     Ok(ends)
 }
 
-/// Metres of a pixel: the mean of the measurements.
-fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Result<f64, ImportError> {
+/// Metres of a pixel: the mean of the measurements of a level; `None` without any.
+pub(super) fn scale(
+    level: &Object<'_>,
+    vertices: &[Vertex],
+    warnings: &mut Warnings,
+) -> Result<Option<f64>, ImportError> {
     let mut scales = Vec::new();
     for (k, value) in level.list("measurements")?.iter().enumerate() {
         let metres = parameter(value.get(2), "distance").and_then(Value::as_f64);
@@ -172,7 +179,7 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
         }
     }
     if scales.is_empty() {
-        return Err(ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.name)));
+        return Ok(None);
     }
     let mean = scales.iter().sum::<f64>() / scales.len() as f64;
     let spread = scales.iter().map(|scale| (scale / mean - 1.0).abs()).fold(0.0, f64::max);
@@ -180,15 +187,15 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
         let percent = 100.0 * spread;
         warnings.add(&level.name, format!("its measurements differ from their mean by up to {percent:.1} %"));
     }
-    Ok(mean)
+    Ok(Some(mean))
 }
 
 struct Level<'a> {
     name: &'a str,
     /// Of a navigation graph.
     graph: bool,
-    /// Metres of a pixel to the right and down.
-    scale: [f64; 2],
+    /// From the coordinates of its vertices to metres.
+    placing: Placing,
     vertices: Vec<Vertex>,
     /// Of the vehicle, if it matters which way that faces.
     outline: Option<&'a Footprint>,
@@ -199,7 +206,7 @@ struct Level<'a> {
 
 impl Level<'_> {
     fn node(&mut self, vertex: usize, pixels: [f64; 2]) -> (usize, [f64; 2]) {
-        let at = [0, 1].map(|k| pixels[k] * self.scale[k]);
+        let at = self.placing.apply(pixels);
         let place = *self.nodes.entry(vertex).or_insert_with(|| {
             let name = self.vertices.get(vertex).and_then(|vertex| vertex.as_ref()?.1.clone());
             let level = self.layout.levels.len();

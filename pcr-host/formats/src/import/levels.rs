@@ -1,0 +1,198 @@
+//! Where the levels of an Open-RMF building are: from pixels of their floor plans to metres, as its building tools do.
+//!
+//! Measurements give the scale of the reference level, which is the first one unless the building names another. The
+//! other levels are laid upon it by the fiducials that both have: their bearings and distances to one another give the
+//! rotation and the scale, and their places the translation, each as a mean.
+
+use super::rmf::{Vertex, scale, vertices};
+use super::value::Object;
+use super::{ImportError, Warnings};
+use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
+use serde_json::Value;
+use std::fmt;
+
+/// Relative difference of two scales of a level that goes without a warning.
+pub(super) const SPREAD: f64 = 0.01;
+
+/// From a floor plan, y down, to metres, y up: scaled, rotated and moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placing {
+    /// Metres of a unit of the plan, to the right and down.
+    scale: [f64; 2],
+    /// Cosine and sine of the rotation.
+    turn: [f64; 2],
+    /// \[m\]
+    shift: [f64; 2],
+}
+
+impl Placing {
+    /// Coordinates in metres, y up.
+    pub(super) const METRES: Self = Self { scale: [1.0; 2], turn: [1.0, 0.0], shift: [0.0; 2] };
+
+    /// Scaled only.
+    fn scaled(scale: f64) -> Self {
+        Self { scale: [scale, -scale], ..Self::METRES }
+    }
+
+    /// A point of the plan in metres.
+    pub(super) fn apply(&self, at: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [0, 1].map(|k| at[k] * self.scale[k]);
+        let [cos, sin] = self.turn;
+        [cos * x - sin * y + self.shift[0], sin * x + cos * y + self.shift[1]]
+    }
+}
+
+/// The level that all others are laid upon.
+#[derive(Default)]
+pub(super) struct Reference<'j> {
+    name: String,
+    /// Metres of a pixel; `None` without measurements.
+    scale: Option<f64>,
+    fiducials: Vec<(&'j str, [f64; 2])>,
+}
+
+impl<'j> Reference<'j> {
+    /// That of the building in a file.
+    pub(super) fn of(
+        text: &str,
+        building: &Object<'j>,
+        levels: &Object<'j>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ImportError> {
+        let name = building.text("reference_level_name")?.map(str::to_owned).or_else(|| first(text));
+        let Some((name, value)) = levels.members().find(|(level, _)| name.as_ref().is_none_or(|name| *level == name))
+        else {
+            return match name {
+                Some(name) => {
+                    Err(ImportError::new(format!("building, reference_level_name: there is no level {name}")))
+                }
+                None => Ok(Self::default()),
+            };
+        };
+        let level = Object::new(format!("level {name}"), value)?;
+        let vertices = vertices(&level, false)?;
+        let scale = scale(&level, &vertices, warnings)?;
+        Ok(Self { name: name.clone(), scale, fiducials: fiducials(&level, warnings)? })
+    }
+
+    /// Where a level is.
+    pub(super) fn place(
+        &self,
+        name: &str,
+        level: &Object<'_>,
+        vertices: &[Vertex],
+        warnings: &mut Warnings,
+    ) -> Result<Placing, ImportError> {
+        if name == self.name {
+            return self.scale.map(Placing::scaled).ok_or_else(|| no_scale(level));
+        }
+        let own = fiducials(level, warnings)?;
+        let pairs: Vec<_> = own
+            .iter()
+            .filter_map(|(name, at)| Some([self.fiducials.iter().find(|known| known.0 == *name)?.1, *at]))
+            .collect();
+        let measured = scale(level, vertices, warnings)?;
+        match (self.laid_upon(&pairs), measured) {
+            (Some((scale, placing)), measured) => {
+                if let Some(measured) = measured
+                    && (measured / scale - 1.0).abs() > SPREAD
+                {
+                    let more = 100.0 * (measured / scale - 1.0);
+                    let problem = format!("its measurements give a scale that differs by {more:+.1} %");
+                    warnings.add(&level.name, format!("{problem}; that of its fiducials counts, as for Open-RMF"));
+                }
+                Ok(placing)
+            }
+            (None, Some(measured)) => {
+                let problem = format!("no two fiducials place it upon level {}", self.name);
+                warnings.add(&level.name, format!("{problem}; it has the scale of its own measurements"));
+                Ok(Placing::scaled(measured))
+            }
+            (None, None) => Err(no_scale(level)),
+        }
+    }
+
+    /// The scale \[m\] and place of a level by pairs of fiducials, that of the reference level first.
+    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, Placing)> {
+        // Bearings of plans with y down are mirrored.
+        let between = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], a[1] - b[1]];
+        let (mut ratio, mut turn, mut count) = (0.0, [0.0; 2], 0.0);
+        for (k, a) in pairs.iter().enumerate() {
+            for b in &pairs[k + 1..] {
+                let [reference, own] = [between(a[0], b[0]), between(a[1], b[1])];
+                ratio += own[0].hypot(own[1]) / reference[0].hypot(reference[1]);
+                let angle = reference[1].atan2(reference[0]) - own[1].atan2(own[0]);
+                turn = [turn[0] + angle.cos(), turn[1] + angle.sin()];
+                count += 1.0;
+            }
+        }
+        let ratio = Some(ratio / count).filter(|ratio| ratio.is_finite() && *ratio > 0.0)?;
+        let of_reference = self.scale?;
+        let scale = of_reference / ratio;
+        let angle = turn[1].atan2(turn[0]);
+        let turned = Placing { turn: [angle.cos(), angle.sin()], ..Placing::scaled(scale) };
+        let reference = Placing::scaled(of_reference);
+        let mut shift = [0.0; 2];
+        for pair in pairs {
+            let [there, here] = [reference.apply(pair[0]), turned.apply(pair[1])];
+            shift = [0, 1].map(|k| shift[k] + (there[k] - here[k]) / pairs.len() as f64);
+        }
+        Some((scale, Placing { shift, ..turned }))
+    }
+}
+
+fn no_scale(level: &Object<'_>) -> ImportError {
+    ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.name))
+}
+
+/// Names and places of the fiducials of a level; of several with one name the first one.
+fn fiducials<'j>(level: &Object<'j>, warnings: &mut Warnings) -> Result<Vec<(&'j str, [f64; 2])>, ImportError> {
+    let mut all: Vec<(&str, [f64; 2])> = Vec::new();
+    for (k, value) in level.list("fiducials")?.iter().enumerate() {
+        let number = |place: usize| value.get(place).and_then(Value::as_f64);
+        let name = value.get(2).and_then(Value::as_str);
+        match (number(0), number(1), name) {
+            (Some(x), Some(y), Some(name)) if all.iter().all(|known| known.0 != name) => all.push((name, [x, y])),
+            (Some(_), Some(_), Some(name)) => {
+                warnings.add(format_args!("{}, fiducial {k}", level.name), format!("left out: another one is {name}"));
+            }
+            _ => warnings.add(format_args!("{}, fiducial {k}", level.name), "left out: no place and name"),
+        }
+    }
+    Ok(all)
+}
+
+/// The first level of a building, in the order of the file.
+fn first(text: &str) -> Option<String> {
+    #[derive(serde::Deserialize)]
+    struct Building {
+        levels: First,
+    }
+    let building: Building = serde_saphyr::from_str(text).ok()?;
+    building.levels.0
+}
+
+/// The first key of a map.
+struct First(Option<String>);
+
+impl<'de> Deserialize<'de> for First {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Keys;
+        impl<'de> Visitor<'de> for Keys {
+            type Value = First;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a map")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<First, A::Error> {
+                let mut first = None;
+                while let Some((key, _)) = map.next_entry::<String, IgnoredAny>()? {
+                    first = first.or(Some(key));
+                }
+                Ok(First(first))
+            }
+        }
+        deserializer.deserialize_map(Keys)
+    }
+}
