@@ -4,6 +4,7 @@
 //! nav2        route graphs of the nav2 route server (GeoJSON)
 //! lif         layouts of the VDMA (JSON)
 //! vda5050     orders and states (JSON)
+//! updates     orders and their updates
 //! loads       the load that a vehicle of VDA 5050 carries
 //! facing      which way vehicles face on their paths
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
@@ -53,6 +54,7 @@ mod speed;
 mod timed;
 mod trace;
 mod trajectory;
+mod updates;
 mod useful;
 mod value;
 mod vda5050;
@@ -244,7 +246,10 @@ fn imported(
     if is_empty(text) {
         return Err(ImportError::new("empty"));
     }
-    let given = given(options, warnings)?;
+    let mut given = given(options, warnings)?;
+    if format == Format::OpenTcs {
+        opentcs::vehicles(text, options, &mut given, warnings)?;
+    }
     let vehicle = options.vehicle(&given, moves, warnings);
     let outline = vehicle.footprint.as_ref();
     let mut layout = whole(options, warnings, |warnings| match format {
@@ -261,6 +266,9 @@ fn imported(
     // Of what was left out on request it is said.
     if layout.edges.is_empty() && !options.partial {
         return Err(ImportError::new("there is no edge in it, on which anything could drive"));
+    }
+    if moves {
+        layout.one_speed()?;
     }
     let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
     report(&off, warnings);
@@ -351,11 +359,13 @@ pub fn scenario(
     }
     let mut scenario = match format {
         Format::Ccbs if xml::root_of(text) != Some("graphml") => {
-            ccbs::log(text, &of_plan(options, "the default of the program", warnings)?)?
+            let vehicle = of_plan(options, "the default of the program", warnings)?;
+            with_margin(ccbs::log(text, &vehicle)?, &vehicle)
         }
         Format::Grid => {
             let largest = "the largest with which no plan on a grid has a contact";
-            GridPlan::read(text)?.scenario(of_plan(options, largest, warnings)?.radius)?
+            let vehicle = of_plan(options, largest, warnings)?;
+            with_margin(GridPlan::read(text)?.scenario(vehicle.radius)?, &vehicle)
         }
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
@@ -376,6 +386,12 @@ pub fn scenario(
     };
     scenario.warnings = warnings.all();
     checked(&scenario)
+}
+
+/// A plan whose agents have the margin of a vehicle.
+fn with_margin(mut scenario: Scenario, vehicle: &Vehicle) -> Scenario {
+    scenario.agents.iter_mut().for_each(|agent| agent.margin = vehicle.margin);
+    scenario
 }
 
 /// The vehicle of a plan, which gives no radius.

@@ -10,6 +10,10 @@
 //!
 //! and on a rational Bézier curve w² g is a polynomial, which the largest of its Bernstein coefficients bounds. The
 //! hull of the control points shows that every point lies between the ends of the arc.
+//!
+//! A vehicle on the curve is not where it would be on the arcs after the same length. [`Along`] bounds how far these two
+//! places are apart: the curve is cut into parts whose lengths are between those of their chords and their control
+//! polygons.
 
 use super::ImportError;
 use super::nurbs::Bezier;
@@ -23,6 +27,9 @@ const MOST: usize = 5_000;
 /// How often a piece may be halved.
 const HALVINGS: u32 = 40;
 
+/// How often the curve that a piece stands for is halved to bound its length.
+const PARTS: u32 = 14;
+
 /// Sweep of an arc up to which the bound holds, with some room for rounding \[rad\].
 const SWEEP: f64 = FRAC_PI_2 + 1e-6;
 
@@ -33,8 +40,117 @@ pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Fit {
     pub(super) pieces: Vec<Placed>,
-    /// Bound of the distance of every point of the curve from the lines and arcs \[m\].
+    /// Bound of the distance of every point of the curve from the point of the lines and arcs at the same length \[m\].
     pub(super) deviation: f64,
+    /// Bound of the difference of both lengths \[m\].
+    pub(super) longer: f64,
+}
+
+impl Fit {
+    /// Lines and arcs that are the curve itself.
+    pub(super) fn exact(pieces: Vec<Placed>) -> Self {
+        Self { pieces, deviation: 0.0, longer: 0.0 }
+    }
+}
+
+/// A part of a curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// Where it ends \[m\].
+    pub(super) end: [f64; 2],
+    /// Its least and its largest length \[m\].
+    pub(super) length: [f64; 2],
+    /// How far it may be from the line through its ends \[m\].
+    pub(super) aside: f64,
+}
+
+/// How far a curve is from its lines and arcs at the same length, followed piece by piece.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Along {
+    /// By how much the curve is longer up to here, at least and at most \[m\].
+    longer: [f64; 2],
+    /// Largest distance so far \[m\].
+    pub(super) deviation: f64,
+}
+
+impl Along {
+    /// Largest difference of the lengths up to here \[m\].
+    pub(super) fn longer(&self) -> f64 {
+        self.longer[0].abs().max(self.longer[1].abs())
+    }
+
+    /// Goes on along lines and arcs, and along the parts of the curve that these stand for.
+    ///
+    /// A part of length l, with a chord of length c, is aside of its chord by so much, and along the chord within l - c of
+    /// the same fraction of its length. So are lines and arcs; their chord is the shortest, and they are furthest aside, if
+    /// they are bent most all the way.
+    pub(super) fn follow(&mut self, pieces: &[Placed], parts: &[Part]) {
+        let Some(mut from) = pieces.first().map(|first| first.at) else { return };
+        let whole: f64 = pieces.iter().map(|piece| piece.shape.length()).sum();
+        let radius = pieces.iter().filter_map(Placed::radius).fold(f64::INFINITY, f64::min);
+        let (mut travelled, mut apart, mut off) = ([0.0; 2], 0.0_f64, 0.0);
+        for part in parts {
+            let [least, most] = part.length;
+            travelled = [travelled[0] + least, travelled[1] + most];
+            let middle = 0.5 * (travelled[0] + travelled[1]);
+            let unsure = 0.5 * (travelled[1] - travelled[0]) + (middle - whole).max(0.0);
+            let before = std::mem::replace(&mut off, apart_by(part.end, point_at(pieces, middle)) + unsure);
+            let own = part.aside + (most - apart_by(from, part.end)).max(0.0);
+            apart = apart.max(before.max(off) + own + bend(most, radius));
+            from = part.end;
+        }
+        self.deviation = self.deviation.max(self.longer() + apart);
+        self.longer = [0, 1].map(|k| self.longer[k] + travelled[k] - whole);
+    }
+}
+
+/// How far an arc of this length and radius is from the point of its chord at the same fraction.
+fn bend(length: f64, radius: f64) -> f64 {
+    if radius.is_infinite() {
+        return 0.0;
+    }
+    let quarter = (0.25 * length / radius).min(0.5 * FRAC_PI_2);
+    let sagitta = 2.0 * radius * quarter.sin().powi(2);
+    sagitta + (length - 2.0 * radius * (2.0 * quarter).sin()).max(0.0)
+}
+
+fn apart_by(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The point of lines and arcs at a length, the end of them beyond that.
+fn point_at(pieces: &[Placed], length: f64) -> [f64; 2] {
+    let mut rest = length;
+    for piece in pieces {
+        let own = piece.shape.length();
+        if rest < own {
+            let shape = match piece.shape {
+                PathSegment::Line { .. } => PathSegment::Line { length: rest.max(0.0) },
+                PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * rest.max(0.0) / own },
+            };
+            return Placed { shape, ..*piece }.end();
+        }
+        rest -= own;
+    }
+    pieces.last().map_or([0.0; 2], Placed::end)
+}
+
+/// Cuts a curve into parts that are nearly straight.
+fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Part>) {
+    let [from, end] = curve.ends();
+    let (chord, polygon) = (apart_by(from, end), curve.polygon());
+    let side =
+        |[x, y]: [f64; 2]| ((x - from[0]) * (end[1] - from[1]) - (y - from[1]) * (end[0] - from[0])).abs() / chord;
+    let aside = curve.points().map(side).fold(0.0, f64::max);
+    // Where both ends are one point there is no line through them.
+    let aside = if chord > 0.0 { aside } else { polygon };
+    if halvings == 0 || aside + polygon - chord <= most {
+        into.push(Part { end, length: [chord, polygon.max(chord)], aside });
+        return;
+    }
+    for half in curve.split(0.5) {
+        parts(&half, most, halvings - 1, into);
+    }
 }
 
 /// The lines and arcs for a chain of curves, within `tolerance` \[m\] of it.
@@ -46,11 +162,14 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
             "coordinates up to {extent:e} m cannot be fitted within {tolerance:e} m"
         )));
     }
-    let mut fit = Fit::default();
+    let (mut fit, mut along, mut short) = (Fit::default(), Along::default(), Vec::new());
     let mut rest: Vec<(Bezier, u32)> = curves.iter().rev().map(|curve| (curve.clone(), HALVINGS)).collect();
     while let Some((curve, halvings)) = rest.pop() {
         match best(&curve, tolerance - rounding) {
             Some((pieces, deviation)) => {
+                short.clear();
+                parts(&curve, tolerance / 1024.0, PARTS, &mut short);
+                along.follow(&pieces, &short);
                 fit.deviation = fit.deviation.max(deviation + rounding);
                 fit.pieces.extend(pieces.into_iter().filter(|piece| piece.shape.length() > 0.0));
             }
@@ -65,6 +184,8 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
             }
         }
     }
+    fit.deviation = fit.deviation.max(along.deviation + rounding);
+    fit.longer = along.longer() + rounding;
     Ok(fit)
 }
 
@@ -245,15 +366,24 @@ mod tests {
         for curve in &curves {
             for tolerance in [1e-1, 1e-2, 1e-3, 1e-5, 1e-7] {
                 let fit = fit(curve, tolerance).unwrap();
-                assert!(fit.deviation <= tolerance);
                 let points = curve.iter().flat_map(|bezier| (0..=400).map(|k| bezier.at(f64::from(k) / 400.0)));
-                let worst = points.map(|point| from_pieces(&fit.pieces, point)).fold(0.0, f64::max);
-                assert!(worst <= fit.deviation, "{worst} {}", fit.deviation);
-                assert!(
-                    fit.deviation <= 12.0 * worst + 1e-12 || fit.deviation < tolerance / 16.0,
-                    "{worst} {}",
-                    fit.deviation
-                );
+                let aside = points.map(|point| from_pieces(&fit.pieces, point)).fold(0.0, f64::max);
+                assert!(aside <= fit.deviation.min(tolerance), "{aside} {}", fit.deviation);
+                // At the same length, which a fine polygon measures.
+                let fine: Vec<_> =
+                    curve.iter().flat_map(|bezier| (0..=20_000).map(|k| bezier.at(f64::from(k) / 2e4))).collect();
+                let (mut length, mut worst) = (0.0, 0.0_f64);
+                for pair in fine.windows(2) {
+                    length += apart_by(pair[0], pair[1]);
+                    worst = worst.max(apart_by(point_at(&fit.pieces, length), pair[1]));
+                }
+                let whole: f64 = fit.pieces.iter().map(|piece| piece.shape.length()).sum();
+                // The polygon is off by less than this itself.
+                let slack = 1e-7;
+                assert!(worst <= fit.deviation + slack, "{worst} {}", fit.deviation);
+                assert!((length - whole).abs() <= fit.longer + slack, "{length} {whole} {}", fit.longer);
+                assert!(fit.deviation <= 12.0 * worst + tolerance / 16.0, "{worst} {}", fit.deviation);
+                assert!(fit.longer <= 4.0 * (length - whole).abs() + tolerance / 16.0, "{} {whole}", fit.longer);
                 for pair in fit.pieces.windows(2) {
                     let (end, next) = (pair[0].end(), pair[1].at);
                     assert!((end[0] - next[0]).hypot(end[1] - next[1]) < 1e-12);
@@ -273,7 +403,7 @@ mod tests {
         for piece in &fit.pieces {
             assert!(matches!(piece.shape, PathSegment::Arc { radius, .. } if (radius - 2.0).abs() < 1e-12));
         }
-        assert!(fit.deviation < 1e-12);
+        assert!(fit.deviation < 1e-8 && fit.longer < 1e-8, "{} {}", fit.deviation, fit.longer);
     }
 
     #[test]

@@ -69,16 +69,9 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
         if !straight {
             warnings.add(format_args!("edge {id}"), "its length is 0");
         }
-        let edge = Edge {
-            id: Id::Text(id),
-            ends,
-            curve: if straight { vec![line] } else { Vec::new() },
-            ways: [true, edge.attribute("directed").map_or(undirected, |directed| directed == "false")],
-            closed: false,
-            speed: [None; 2],
-            rotation: None,
-            deviation: 0.0,
-        };
+        let back = edge.attribute("directed").map_or(undirected, |directed| directed == "false");
+        let edge = Edge::new(Id::Text(id), ends, if straight { vec![line] } else { Vec::new() });
+        let edge = Edge { ways: [true, back], ..edge };
         edges.add(edge, warnings);
     }
     Ok(Layout {

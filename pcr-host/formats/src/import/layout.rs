@@ -1,5 +1,6 @@
 //! A layout: nodes, and edges between them with their exact geometry; the common form of all layout files.
 
+use super::ImportError;
 use crate::scenario::Placed;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
@@ -71,14 +72,18 @@ pub struct Edge {
     pub speed: [Option<f64>; 2],
     /// Largest speed of rotation \[rad/s\], where it is limited.
     pub rotation: Option<f64>,
-    /// Largest distance of the curve in the file from `curve` \[m\]: 0 where the file has lines and arcs.
+    /// Largest distance of the curve in the file from `curve` at the same length \[m\]: 0 where the file has lines and
+    /// arcs.
     pub deviation: f64,
+    /// Largest difference of both lengths \[m\].
+    pub longer: f64,
 }
 
 impl Edge {
     /// One way along these lines and arcs, open and without limits.
     pub fn new(id: Id, ends: [usize; 2], curve: Vec<Placed>) -> Self {
-        Self { id, ends, curve, ways: [true, false], closed: false, speed: [None; 2], rotation: None, deviation: 0.0 }
+        let ways = [true, false];
+        Self { id, ends, curve, ways, closed: false, speed: [None; 2], rotation: None, deviation: 0.0, longer: 0.0 }
     }
 
     /// Whether it may be travelled in both directions.
@@ -108,6 +113,8 @@ pub struct Layout {
     pub aliases: Vec<(String, usize)>,
     /// Types of vehicles that the file tells apart.
     pub vehicle_types: Vec<String>,
+    /// An edge whose vehicle types have different speeds, of which one was taken.
+    pub of_speeds: Option<Id>,
     /// Vehicles that the file names.
     pub vehicles: Vec<String>,
     /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
@@ -117,6 +124,15 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Checks that each edge has one speed, on which all times depend.
+    ///
+    /// # Errors
+    /// [`ImportError`] with an edge whose vehicle types have different speeds.
+    pub fn one_speed(&self) -> Result<(), ImportError> {
+        let problem = "its vehicle types have different speeds; say which one drives, --vehicle TYPE";
+        self.of_speeds.as_ref().map_or(Ok(()), |edge| Err(ImportError::new(format!("edge {edge}: {problem}"))))
+    }
+
     /// Places of the node of this id or of this other id or, if there is none, of those of this name.
     pub fn nodes_called(&self, name: &str) -> Vec<usize> {
         let by_id = self.nodes.iter().position(|node| node.id.to_string() == name);

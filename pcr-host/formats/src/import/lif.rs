@@ -45,6 +45,7 @@ pub(super) fn read(
         types: BTreeSet::new(),
         options,
         outline,
+        of_speeds: None,
         warnings,
     };
     let mut edges = Vec::new();
@@ -63,7 +64,7 @@ pub(super) fn read(
             reader.warnings.lose(error);
         }
     }
-    let Reader { levels, nodes, edges, types, .. } = reader;
+    let Reader { levels, nodes, edges, types, of_speeds, .. } = reader;
     let vehicle_types = types.iter().filter(|name| !name.is_empty()).cloned().collect();
     if nodes.list().is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
@@ -75,14 +76,14 @@ pub(super) fn read(
         }
         None if types.len() > 1 => {
             let there = types.into_iter().collect::<Vec<_>>().join(", ");
-            warnings
-                .add(there, "several vehicle types; the ways of all of them are taken, each with the speed of the first type it is for (--vehicle TYPE)");
+            warnings.add(there, "several vehicle types; the ways of all of them are taken (--vehicle TYPE)");
         }
         _ => {}
     }
     Ok(Layout {
         name: name.to_owned(),
         vehicle_types,
+        of_speeds,
         levels,
         nodes: nodes.into_list(),
         edges: edges.into_list(),
@@ -99,6 +100,8 @@ struct Reader<'a> {
     options: &'a Options,
     /// Of the vehicle, if it matters which way that faces.
     outline: Option<&'a Footprint>,
+    /// The first edge whose vehicle types have different speeds.
+    of_speeds: Option<Id>,
     warnings: &'a mut Warnings,
 }
 
@@ -168,13 +171,17 @@ impl Reader<'_> {
             self.types.insert(vehicle);
             if asked {
                 let edge = self.along(&id, ends, Some(&property))?;
-                // The same way at the speed of another type is the same edge.
-                if edges.iter().all(|known| known.curve != edge.curve) {
-                    edges.push(edge);
+                // The same way at the speed of another type is the same edge, of which only one speed is kept.
+                match edges.iter().find(|known| known.curve == edge.curve) {
+                    None => edges.push(edge),
+                    Some(known) if (known.speed, known.rotation) != (edge.speed, edge.rotation) => {
+                        self.of_speeds.get_or_insert(edge.id);
+                    }
+                    Some(_) => {}
                 }
             }
         }
-        if properties.is_empty() && self.options.vehicle.is_none() {
+        if properties.is_empty() {
             edges.push(self.along(&id, ends, None)?);
         }
         for edge in edges {
@@ -209,7 +216,7 @@ impl Reader<'_> {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
                 let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
                 let gap = self.gap(id, &fit.pieces, at);
-                (edge.curve, edge.deviation) = (fit.pieces, fit.deviation + gap);
+                (edge.curve, edge.deviation, edge.longer) = (fit.pieces, fit.deviation + gap, fit.longer);
             }
         }
         if edge.curve.is_empty() {

@@ -16,6 +16,9 @@ use std::collections::BTreeSet;
 /// Largest distance between the drawn end of an edge and its node that goes without a warning \[m\].
 const DRAWN: f64 = 1e-3;
 
+/// Frame of nodes that name none.
+const FRAME: &str = "map";
+
 /// Whether a JSON value looks like a graph.
 pub(super) fn is_graph(root: &Value) -> bool {
     root.get("type").and_then(Value::as_str) == Some("FeatureCollection")
@@ -37,7 +40,11 @@ pub(super) fn read(
     let mut lines = Vec::new();
     for (k, feature) in root.list("features")?.iter().enumerate() {
         match Feature::read(k, feature) {
-            Ok(Some(Feature { id, properties, geometry: Geometry::Point(at) })) => graph.node(id, &properties, at),
+            Ok(Some(Feature { id, properties, geometry: Geometry::Point(at) })) => {
+                if let Err(problem) = graph.node(id, &properties, at) {
+                    graph.warnings.lose(problem);
+                }
+            }
             Ok(Some(line)) => lines.push(line),
             Ok(None) => graph
                 .warnings
@@ -73,7 +80,7 @@ pub(super) fn read(
 struct Graph<'a> {
     nodes: Names<Node>,
     edges: Names<Edge>,
-    /// Of the nodes that name theirs.
+    /// Of the nodes.
     frames: BTreeSet<String>,
     warnings: &'a mut Warnings,
 }
@@ -139,10 +146,13 @@ impl<'j> Feature<'j> {
 }
 
 impl Graph<'_> {
-    fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) {
+    /// Adds a node; one that names no frame is in that of the map, as for the route server.
+    fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) -> Result<(), ImportError> {
         let name = properties.text("name").ok().flatten().map(str::to_owned);
-        self.frames.extend(properties.text("frame").ok().flatten().map(str::to_owned));
+        let properties = properties.clone().called(format!("node {id}"));
+        self.frames.insert(properties.text("frame")?.unwrap_or(FRAME).to_owned());
         self.nodes.add(Node { id: Id::Number(id), name, level: 0, at }, self.warnings);
+        Ok(())
     }
 
     /// Adds an edge. Of nodes of one name it joins the last one, as the route server does.

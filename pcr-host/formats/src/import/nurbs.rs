@@ -31,6 +31,11 @@ impl Bezier {
         self.0.iter().map(|[x, y, w]| [x / w, y / w])
     }
 
+    /// Length of the control polygon \[m\]: the curve is not longer, as it crosses no line more often.
+    pub(super) fn polygon(&self) -> f64 {
+        self.points().zip(self.points().skip(1)).map(|(a, b)| (b[0] - a[0]).hypot(b[1] - a[1])).sum()
+    }
+
     /// First and last point.
     pub(super) fn ends(&self) -> [[f64; 2]; 2] {
         let first = self.points().next().unwrap_or_default();

@@ -43,8 +43,10 @@ fn windings(shape: &PathSegment) -> f64 {
 /// The reference line of a road.
 struct Curve {
     pieces: Vec<Placed>,
-    /// Distance of `pieces` from it \[m\].
+    /// Distance of `pieces` from it at the same length \[m\].
     deviation: f64,
+    /// Difference of both lengths \[m\].
+    longer: f64,
     /// Gap \[m\] and angle \[rad\] of its widest joint.
     joint: [f64; 2],
 }
@@ -69,22 +71,14 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
             Ok((Curve { pieces, .. }, _)) if pieces.is_empty() => {
                 warnings.lose(format_args!("{name}: it has no geometry"))
             }
-            Ok((Curve { pieces, deviation, joint }, speed)) => {
+            Ok((Curve { pieces, deviation, longer, joint }, speed)) => {
                 if joint.iter().any(|gap| *gap > CLOSED) {
                     widest = [widest[0].max(joint[0]), widest[1].max(joint[1])];
                     open.push(name);
                 }
                 // The nodes follow when all roads are known.
-                let edge = Edge {
-                    id: named(&id),
-                    ends: [0; 2],
-                    curve: pieces,
-                    ways: [true; 2],
-                    closed: false,
-                    speed: [speed; 2],
-                    rotation: None,
-                    deviation,
-                };
+                let edge = Edge::new(named(&id), [0; 2], pieces);
+                let edge = Edge { ways: [true; 2], speed: [speed; 2], deviation, longer, ..edge };
                 if names.add(edge, warnings) == links.len() {
                     links.push(child(road, "link"));
                 }
@@ -192,14 +186,14 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
     {
         return Err(ImportError::new(format!("{name}: its length is {length}, and its records have {along:.3} m")));
     }
-    let closed = close(&mut curve);
-    Ok(Curve { pieces: curve, deviation: deviation + closed, joint })
+    let [closed, longer] = close(&mut curve);
+    Ok(Curve { pieces: curve, deviation: deviation + closed, longer, joint })
 }
 
 /// Closes the joints that are open: a line goes from where the piece before ends to its own end, an arc is displaced as a whole.
-/// Returns how far a place may then be from that at the same length of the records \[m\].
-fn close(curve: &mut Vec<Placed>) -> f64 {
-    let Some(mut at) = curve.first().map(|first| first.at) else { return 0.0 };
+/// Returns how far a place may then be from that at the same length of the records, and by how much the lengths differ \[m\].
+fn close(curve: &mut Vec<Placed>) -> [f64; 2] {
+    let Some(mut at) = curve.first().map(|first| first.at) else { return [0.0; 2] };
     let (mut longer, mut deviation) = (0.0_f64, 0.0_f64);
     for piece in curve.iter_mut() {
         let asked = *piece;
@@ -218,7 +212,7 @@ fn close(curve: &mut Vec<Placed>) -> f64 {
         at = piece.end();
     }
     curve.retain(|piece| piece.shape.length() > 0.0);
-    deviation
+    [deviation, if longer.abs() > CLOSED { longer.abs() } else { 0.0 }]
 }
 
 /// The speed limit of a road, the least one where it changes on the way \[m/s\].

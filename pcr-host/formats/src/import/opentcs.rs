@@ -7,6 +7,7 @@ use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::nurbs::Bezier;
+use super::vehicle::Given;
 use super::xml::{children, number, only, optional, parse};
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
@@ -20,6 +21,50 @@ const UNIT: f64 = 50.0;
 
 /// Relative difference of a length from the geometry that goes without a warning.
 const DIFFERENCE: f64 = 0.01;
+
+/// What a model says about its vehicles, where nothing else does: the rectangle that covers the bounding boxes of all, and
+/// the least of their speeds.
+///
+/// The reference point of a box may be off its middle; the rectangle is as large to the other side.
+pub(super) fn vehicles(
+    text: &str,
+    options: &Options,
+    given: &mut Given,
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    let document = parse(text)?;
+    let (mut half, mut speeds) = ([0.0_f64; 2], Vec::new());
+    for vehicle in children(document.root_element(), "vehicle") {
+        let name = format!("vehicle {}", vehicle.attribute("name").unwrap_or_default());
+        let metres = |node, attribute: &str| Ok(optional(node, &name, attribute)?.map(|value| value * MILLI));
+        speeds.extend(metres(vehicle, "maxVelocity")?.filter(|speed| *speed > 0.0));
+        let Some(outline) = only(vehicle, "boundingBox")? else { continue };
+        for (half, [size, offset]) in
+            half.iter_mut().zip([["length", "referenceOffsetX"], ["width", "referenceOffsetY"]])
+        {
+            let size = metres(outline, size)?.unwrap_or(0.0);
+            *half = half.max(0.5 * size + metres(outline, offset)?.unwrap_or(0.0).abs());
+        }
+    }
+    if let Some(least) = speeds.iter().copied().reduce(f64::min).filter(|_| given.speed.is_none()) {
+        if options.speed.is_none() && speeds.iter().any(|speed| *speed != least) {
+            warnings.add("vehicles", format!("their maxVelocity differs; the least of {least} m/s is taken"));
+        }
+        given.speed = Some(least);
+    }
+    let [ahead, left] = half;
+    if ahead > 0.0 && left > 0.0 && given.radius.is_none() && given.footprint.is_none() {
+        let corners = vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]];
+        let outline = Footprint::new(corners, None);
+        let outline = outline.map_err(|problem| ImportError::new(format!("vehicle, boundingBox: {problem}")))?;
+        if let Some(radius) = options.radius.filter(|radius| *radius < ahead.hypot(left)) {
+            let reach = ahead.hypot(left);
+            warnings.add("radius", format!("{radius} m; the bounding boxes of the vehicles reach {reach:.3} m"));
+        }
+        given.footprint = Some(outline);
+    }
+    Ok(())
+}
 
 /// Reads a model.
 pub(super) fn read(
@@ -37,8 +82,12 @@ pub(super) fn read(
     for (k, point) in children(root, "point").enumerate() {
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         let name = format!("point {id}");
-        let at = |attribute: &str| number(point, &name, attribute).map(|x| x * MILLI);
-        match (at("positionX"), at("positionY")) {
+        // Models before version 7 have other names.
+        let at = |[attribute, old]: [&str; 2]| {
+            let attribute = if point.has_attribute(attribute) || !point.has_attribute(old) { attribute } else { old };
+            number(point, &name, attribute).map(|x| x * MILLI)
+        };
+        match (at(["positionX", "xPosition"]), at(["positionY", "yPosition"])) {
             (Err(error), _) | (_, Err(error)) => warnings.lose(error),
             (Ok(x), Ok(y)) => {
                 nodes.add(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] }, warnings);
@@ -121,14 +170,12 @@ fn edge(
         warnings.add(name.as_str(), format!("{why}: no routes lead over it, and locks count it all the same"));
     }
     let edge = Edge {
-        id: Id::Text(id),
-        ends,
-        curve: fit.pieces,
         ways: [ways[0] || closed && !ways[1], ways[1]],
         closed,
         speed: speed.map(|speed| speed.filter(|speed| *speed > 0.0)),
-        rotation: None,
         deviation: fit.deviation,
+        longer: fit.longer,
+        ..Edge::new(Id::Text(id), ends, fit.pieces)
     };
     let (typed, drawn) = (limit("length")?, edge.length());
     if typed.is_none_or(|typed| (typed - drawn).abs() > DIFFERENCE * drawn) {
@@ -162,7 +209,7 @@ fn curve(
         kind @ ("DIRECT" | "POLYPATH") if kind == "POLYPATH" || points.len() == 2 => {
             let lines = points.windows(2).map(|pair| Placed::line(pair[0], pair[1]));
             let pieces = lines.filter(|line| line.shape.length() > 0.0).collect();
-            Ok(Fit { pieces, deviation: 0.0 })
+            Ok(Fit::exact(pieces))
         }
         other => Err(ImportError::new(format!("{name}: {other} with {} control points is not read", points.len() - 2))),
     }

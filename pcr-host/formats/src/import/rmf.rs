@@ -257,15 +257,11 @@ impl Level<'_> {
             }
         }
         let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
+        let curve = if straight { vec![line] } else { Vec::new() };
         self.layout.edges.push(Edge {
-            id: Id::Text(format!("{}/{k}", self.name)),
-            ends: [from.0, to.0],
-            curve: if straight { vec![line] } else { Vec::new() },
             ways: [true, both_ways && !self.graph],
-            closed: false,
             speed: [speed.filter(|speed| *speed < 1e6); 2],
-            rotation: None,
-            deviation: 0.0,
+            ..Edge::new(Id::Text(format!("{}/{k}", self.name)), [from.0, to.0], curve)
         });
         let one_way =
             (both_ways && self.graph).then_some("it is taken one way, as fleet adapters do with navigation graphs");

@@ -136,11 +136,13 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
     let at = |node: usize| layout.nodes.get(node).map_or([0.0; 2], |node| node.at);
     let mut tracer = Tracer::default();
     let mut position = at(from);
-    let mut deviation = 0.0_f64;
+    // Where the lengths of curves are not those of their arcs, a vehicle is ahead of its path, or behind, from there on.
+    let (mut deviation, mut longer) = (0.0_f64, 0.0);
     for (k, step) in steps.iter().enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
-        deviation = deviation.max(edge.deviation);
+        deviation = deviation.max(edge.deviation + longer);
+        longer += edge.longer;
         let curve = step.curve();
         if !edge.is_straight() {
             let ends = curve.first().zip(curve.last()).map(|(first, last)| (first.at, last.end()));
@@ -242,10 +244,22 @@ pub(super) fn scenario(
         let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
         agents.push(Agent { label, t_start: asked.time, ..agent });
     }
+    let is_rounded = |agent: &Agent| agent.path.iter().any(|shape| is_corner(layout, shape));
+    if options.corner_radius.is_none() && agents.iter().any(is_rounded) {
+        let radius = layout.corner_radius.unwrap_or_default();
+        let problem =
+            format!("rounded with {radius} m, as by nav2 with smooth_corners; --corner-radius 0 if it does not");
+        warnings.add("corners", problem);
+    }
     if levels.windows(2).any(|pair| pair[0] != pair[1]) {
         warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
     }
     Ok(Scenario::new(layout.name.clone(), agents))
+}
+
+/// Whether an arc rounds a corner of the routes on a layout.
+fn is_corner(layout: &Layout, shape: &PathSegment) -> bool {
+    matches!(shape, PathSegment::Arc { radius, .. } if Some(*radius) == layout.corner_radius)
 }
 
 /// The agent that travels the shortest way between two nodes from the time 0, if there is one.
@@ -277,11 +291,12 @@ pub fn turn(vehicle: &Vehicle, at: [f64; 2], heading: f64, angle: f64) -> Agent 
     agent(0, &tracer.finish(at), vehicle, 0.0)
 }
 
-/// The agent that travels a path.
+/// The agent that travels a path. One that faces nobody knows where to is the disc around its outline.
 pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> Agent {
     let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
     let motion = speed::motion(&trace.stretches, vehicle);
-    let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(trace.deviation));
+    let footprint = vehicle.footprint.as_ref().filter(|_| trace.faces);
+    let footprint = footprint.map(|footprint| footprint.grown(trace.deviation));
     let disc = Agent::disc(id, vehicle.radius + trace.deviation, trace.start, path, motion);
     Agent { footprint, margin: vehicle.margin, t_start, ..disc }
 }

@@ -48,6 +48,8 @@ pub(super) struct Trace {
     pub(super) stretches: Vec<Stretch>,
     /// Largest distance from what was asked for \[m\].
     pub(super) deviation: f64,
+    /// Whether it is known which way the vehicle faces where it begins: not if it stands there and nothing more is said.
+    pub(super) faces: bool,
 }
 
 /// The same angle within half a turn to either side.
@@ -140,7 +142,7 @@ impl Tracer {
     pub(super) fn finish(self, at: [f64; 2]) -> Trace {
         let start = self.start.unwrap_or([at[0], at[1], 0.0]);
         let deviation = if self.deviation > ROUNDING { self.deviation } else { 0.0 };
-        Trace { start, stretches: self.stretches, deviation }
+        Trace { start, stretches: self.stretches, deviation, faces: self.start.is_some() }
     }
 }
 

@@ -1,4 +1,5 @@
-//! VDA 5050: orders (2.x and 3.0) and states (3.0); each message becomes an agent.
+//! VDA 5050: orders (2.x and 3.0) and states (3.0); each vehicle that is named becomes an agent, and each message that
+//! names none. `updates` joins an order with its updates.
 //!
 //! A file holds one message, a list of them, or several one after the other. `null` counts as missing.
 //! - An order is travelled from node to node by `sequenceId`, along its trajectories or straight, under its speed
@@ -14,15 +15,18 @@ use super::timed::{self, seconds};
 use super::trace::Tracer;
 use super::value::Object;
 use super::warnings::TOGETHER;
-use super::{ImportError, Options, Vehicle, Warnings, facing, loads, route, trajectory};
+use super::{ImportError, Options, Vehicle, Warnings, facing, loads, route, trajectory, updates};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use crate::scenario::{Agent, MotionSpec, Scenario, label};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Largest gap between the end of a trajectory and its node: it counts as deviation of the path \[m\].
+/// Largest gap between the end of a path and its node, or the vehicle: it counts as deviation of the path \[m\].
 const GAP: f64 = 0.05;
+
+/// Gap that is rounding and nothing else \[m\].
+const CLOSED: f64 = 1e-9;
 
 /// Whether a JSON value looks like an order or a state.
 pub(super) fn is_message(root: &Value) -> bool {
@@ -51,6 +55,7 @@ pub(super) fn read(
     if messages.is_empty() {
         return Err(ImportError::new("there is no order and no state in it"));
     }
+    let messages = updates::joined(messages)?;
     let mut reader = Reader { options, vehicle, warnings, begins: Vec::new(), maps: BTreeSet::new() };
     let mut scenario = Scenario::new("", Vec::new());
     let mut radii = Vec::new();
@@ -175,6 +180,13 @@ impl Reader<'_> {
             edges.truncate(base);
         }
         self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
+        for node in &nodes {
+            let position = node.object.object("nodePosition")?;
+            if position.is_some_and(|position| position.get("allowedDeviationXY").is_some_and(allows)) {
+                let problem = "its allowedDeviationXY is not read; the vehicle is taken to pass the node itself";
+                self.warnings.add(&node.object.name, problem);
+            }
+        }
         for edge in &edges {
             if edge.object.get("corridor").is_some() {
                 self.warnings
@@ -184,6 +196,8 @@ impl Reader<'_> {
         let mut tracer = Tracer::default();
         let mut ways: Vec<Option<[f64; 2]>> = Vec::new();
         let (mut position, mut deviation) = (position(nodes.first(), "nodePosition")?, 0.0_f64);
+        // By which the vehicle may be ahead of its path, or behind.
+        let mut longer = 0.0;
         if position.is_none() && edges.is_empty() {
             return Err(nodes
                 .first()
@@ -223,11 +237,14 @@ impl Reader<'_> {
             };
             let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
             let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
-            deviation = deviation.max(fit.deviation);
             let ends = fit.pieces.first().zip(fit.pieces.last());
             ways.push(ends.map(|(first, last)| [first.heading, last.heading_at_end()]));
-            position = Some(follow(&mut tracer, edge, &fit.pieces, position, target)?);
+            let (end, gap) = follow(&mut tracer, edge, &fit.pieces, position, target)?;
+            position = Some(end);
+            deviation = deviation.max(fit.deviation + longer + gap);
+            longer += fit.longer;
         }
+        deviation = deviation.max(longer);
         let stands = ways.iter().all(Option::is_none);
         if let Some(outline) = self.vehicle.footprint.as_ref().filter(|_| !stands) {
             self.thetas(&nodes, &ways, outline)?;
@@ -238,8 +255,11 @@ impl Reader<'_> {
         }
         let mut trace = tracer.finish(position.unwrap_or_default());
         trace.deviation += deviation;
-        if stands && let Some(place) = nodes.first().map_or(Ok(None), |node| node.object.object("nodePosition"))? {
-            trace.start[2] = place.number("theta")?.unwrap_or(0.0);
+        if stands
+            && let Some(place) = nodes.first().map_or(Ok(None), |node| node.object.object("nodePosition"))?
+            && let Some(theta) = place.number("theta")?
+        {
+            (trace.start[2], trace.faces) = (theta, true);
         }
         Ok(route::agent(id, &trace, self.vehicle, 0.0))
     }
@@ -288,7 +308,7 @@ impl Reader<'_> {
         let pose =
             state.object("mobileRobotPosition")?.map_or_else(|| state.object("agvPosition"), |pose| Ok(Some(pose)))?;
         self.maps(state, std::iter::once(Ok(pose.clone())))?;
-        let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?.unwrap_or(0.0);
+        let heading = pose.as_ref().map_or(Ok(None), |pose| pose.number("theta"))?;
         if let Some(pose) = &pose {
             for field in ["localized", "positionInitialized"] {
                 if pose.flag(field)? == Some(false) {
@@ -308,17 +328,16 @@ impl Reader<'_> {
             }
             let (agent, begin, end) = self.timed(id, state, &path, at, vehicle.radius)?;
             self.goes_on(state, end, &[])?;
-            return Ok((agent, Begin::At(begin)));
+            return Ok((Agent { margin: vehicle.margin, ..agent }, Begin::At(begin)));
         }
         if let Some(path) = state.object("plannedPath")? {
             let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
             let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
             let begin = fit.pieces.first().map(|piece| piece.at);
-            if let Some(gap) = at.zip(begin).map(|(at, begin)| (at[0] - begin[0]).hypot(at[1] - begin[1]))
-                && gap > GAP
-            {
-                self.warnings
-                    .add(&path.name, format!("it begins {gap:.3} m from where the vehicle is; it is taken as there"));
+            let gap = at.zip(begin).map_or(0.0, |(at, begin)| (at[0] - begin[0]).hypot(at[1] - begin[1]));
+            if gap > GAP {
+                let name = &path.name;
+                return Err(ImportError::new(format!("{name}: it begins {gap:.3} m from where the vehicle is")));
             }
             let mut tracer = Tracer::default();
             fit.pieces.iter().for_each(|piece| tracer.follow(piece));
@@ -328,7 +347,7 @@ impl Reader<'_> {
                 self.warnings.add(&state.name, "it moves already; its plannedPath is travelled from rest");
             }
             let mut trace = tracer.finish(begin);
-            trace.deviation += fit.deviation;
+            trace.deviation += fit.deviation + gap;
             let begin = match state.get("timestamp") {
                 None => Begin::Unsaid,
                 Some(_) => Begin::At(stamp(state, "timestamp")?),
@@ -344,8 +363,10 @@ impl Reader<'_> {
         }
         let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
         let Vehicle { radius, margin, .. } = *vehicle;
-        let stands = Agent::disc(id, radius, [x, y, heading], Vec::new(), motion);
-        Ok((Agent { footprint: vehicle.footprint.clone(), margin, ..stands }, Begin::Never))
+        let stands = Agent::disc(id, radius, [x, y, heading.unwrap_or(0.0)], Vec::new(), motion);
+        // Without a heading it is the disc around its outline.
+        let footprint = vehicle.footprint.clone().filter(|_| heading.is_some());
+        Ok((Agent { footprint, margin, ..stands }, Begin::Never))
     }
 
     /// A path has to end at the last node that is released: the vehicle does not stand where it ends else.
@@ -406,6 +427,12 @@ fn stamp(object: &Object<'_>, field: &str) -> Result<f64, ImportError> {
     }
 }
 
+/// Whether an allowed deviation, a number or the half axes of an ellipse, allows any.
+fn allows(deviation: &Value) -> bool {
+    let above = |value: &Value| value.as_f64().is_some_and(|allowed| allowed > 0.0);
+    above(deviation) || ["a", "b"].iter().any(|axis| deviation.get(axis).is_some_and(above))
+}
+
 /// Whether a vehicle says that it moves.
 fn moves(state: &Object<'_>) -> Result<bool, ImportError> {
     let mut moves = state.flag("driving")?.unwrap_or(false);
@@ -436,24 +463,26 @@ fn joins(edge: &Object<'_>, before: Option<&Part<'_>>, after: Option<&Part<'_>>)
     Ok(())
 }
 
-/// Follows a trajectory from node to node; returns where the path then is.
+/// Follows a trajectory from node to node; returns where the path then is, and the largest gap to a node \[m\].
 fn follow(
     tracer: &mut Tracer,
     edge: &Object<'_>,
     pieces: &[Placed],
     from: Option<[f64; 2]>,
     to: Option<[f64; 2]>,
-) -> Result<[f64; 2], ImportError> {
+) -> Result<([f64; 2], f64), ImportError> {
     let ends = pieces.first().zip(pieces.last()).map(|(first, last)| [first.at, last.end()]);
     let Some([begin, end]) = ends.or(from.map(|at| [at; 2])) else {
         return Err(ImportError::new(format!("{}: a trajectory of length 0, and no position", edge.name)));
     };
+    let mut widest = 0.0_f64;
     for (point, node, place) in [(begin, from, "begins"), (end, to, "ends")] {
         let gap = node.map_or(0.0, |node| (point[0] - node[0]).hypot(point[1] - node[1]));
         if gap > GAP {
             return Err(ImportError::new(format!("{}: its trajectory {place} {gap:.3} m from its node", edge.name)));
         }
+        widest = widest.max(gap);
     }
     pieces.iter().for_each(|piece| tracer.follow(piece));
-    Ok(end)
+    Ok((end, if widest > CLOSED { widest } else { 0.0 }))
 }

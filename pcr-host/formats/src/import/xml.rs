@@ -11,15 +11,45 @@ const DEPTH: usize = 200;
 pub(super) fn parse(text: &str) -> Result<Document<'_>, ImportError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut depth = 0_usize;
-    for tag in text.split('<').skip(1) {
-        let closes = tag.starts_with('/') || tag.starts_with('?') || tag.starts_with('!');
-        let empty = tag.split('>').next().is_some_and(|tag| tag.ends_with('/'));
-        depth = if tag.starts_with('/') { depth.saturating_sub(1) } else { depth + usize::from(!closes && !empty) };
+    for tag in tags(text) {
+        let closes = tag.starts_with("</");
+        depth = if closes { depth.saturating_sub(1) } else { depth + usize::from(!tag.ends_with("/>")) };
         if depth > DEPTH {
             return Err(ImportError::new(format!("not XML that is read: nested deeper than {DEPTH} elements")));
         }
     }
     Document::parse(text).map_err(|error| ImportError::new(format!("not XML: {error}")))
+}
+
+/// The tags of a text, without comments, instructions and what is quoted as text. Ends where a tag has no end.
+fn tags(text: &str) -> impl Iterator<Item = &str> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        loop {
+            rest = rest.get(rest.find('<')?..)?;
+            let other = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">")];
+            if let Some((begin, end)) = other.into_iter().find(|(begin, _)| rest.starts_with(begin)) {
+                let inner = rest.get(begin.len()..)?;
+                rest = inner.get(inner.find(end)? + end.len()..)?;
+                continue;
+            }
+            let mut quote = None;
+            let end = rest.char_indices().find(|&(_, c)| match quote {
+                Some(open) => {
+                    quote = Some(open).filter(|&open| open != c);
+                    false
+                }
+                None if matches!(c, '"' | '\'') => {
+                    quote = Some(c);
+                    false
+                }
+                None => c == '>',
+            });
+            let (tag, behind) = rest.split_at_checked(end?.0 + 1)?;
+            rest = behind;
+            return Some(tag);
+        }
+    })
 }
 
 /// The name of the first element of a text, where it begins like XML.

@@ -46,6 +46,14 @@ impl Placed {
         [self.at[0] + chord * direction.cos(), self.at[1] + chord * direction.sin()]
     }
 
+    /// Radius \[m\], if it is an arc.
+    pub(crate) fn radius(&self) -> Option<f64> {
+        match self.shape {
+            PathSegment::Line { .. } => None,
+            PathSegment::Arc { radius, .. } => Some(radius),
+        }
+    }
+
     /// The same, travelled the other way.
     pub fn reversed(&self) -> Self {
         let shape = match self.shape {

@@ -76,6 +76,7 @@ impl Delays {
     /// speeds and durations beyond what can be computed with.
     pub fn new(imported: &Imported, driving: Driving, nodes: bool) -> Result<Self, ImportError> {
         let (layout, rides) = (&imported.layout, Rides::new(imported));
+        layout.one_speed()?;
         if rides.vehicle().footprint.is_some() {
             let problem =
                 "delays are of discs: when an outline turns at a node is not known; --radius takes it as a disc";
