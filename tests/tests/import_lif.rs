@@ -332,3 +332,52 @@ fn outlines_face_along_edges_or_are_refused() {
         assert_eq!(read(&text, &options()).0.edges.len(), 1);
     }
 }
+
+/// Of the speeds of two types one was taken, and the table of delays was wrong for the other.
+#[test]
+fn times_are_of_one_speed() {
+    let with = |speeds: [Value; 2]| {
+        let mut value: Value = serde_json::from_str(TYPES).unwrap();
+        let [a, b] = speeds.map(|speed| json!({ "vehicleTypeId": speed["of"], "maxSpeed": speed["is"] }));
+        value["layouts"][0]["edges"][0]["vehicleTypeEdgeProperties"] = json!([a, b]);
+        value.to_string()
+    };
+    let of = |kind: &str, speed: f64| json!({ "of": kind, "is": speed });
+    let driving = pcr_planning::locks::Driving { speed: 2.0, acceleration: None };
+    let asked = |text: &str, vehicle: Option<&str>| {
+        let options = Options { vehicle: vehicle.map(str::to_owned), ..options() };
+        let imported = layout(Format::Lif, text, &options, &mut Warnings::default()).unwrap();
+        let delays = pcr_planning::locks::Delays::new(&imported, driving, false);
+        let roads = pcr_formats::import::roads(Format::Lif, text, &options, &mut Warnings::default());
+        assert_eq!(delays.is_ok(), roads.is_ok());
+        assert!(pcr_planning::locks::Locks::of(&imported, false).is_ok());
+        roads.map(drop).map_err(|error| error.to_string())
+    };
+    let (same, other) = (
+        with([of("Vehicle_Type_1", 1.0), of("Vehicle_Type_2", 1.0)]),
+        with([of("Vehicle_Type_1", 1.0), of("Vehicle_Type_2", 0.5)]),
+    );
+    assert_eq!(asked(&same, None), Ok(()));
+    assert_eq!(asked(&other, Some("Vehicle_Type_2")), Ok(()));
+    let error = asked(&other, None).unwrap_err();
+    assert!(
+        error.ends_with("its vehicle types have different speeds; say which one drives, --vehicle TYPE"),
+        "{error}"
+    );
+}
+
+/// With a vehicle they disappeared.
+#[test]
+fn edges_that_name_no_type_are_for_all() {
+    let mut value: Value = serde_json::from_str(TYPES).unwrap();
+    value["layouts"][0]["edges"][0]["vehicleTypeEdgeProperties"] = json!([]);
+    let count = |vehicle: Option<&str>| {
+        read(&value.to_string(), &Options { vehicle: vehicle.map(str::to_owned), ..options() }).0.edges.len()
+    };
+    let id = value["layouts"][0]["edges"][0]["edgeId"].as_str().unwrap().to_owned();
+    assert!(count(None) > 0);
+    for vehicle in ["Vehicle_Type_1", "Vehicle_Type_2", "Vehicle_Type_3"] {
+        let (layout, _) = read(&value.to_string(), &Options { vehicle: Some(vehicle.into()), ..options() });
+        assert!(layout.edges.iter().any(|edge| edge.id.to_string() == id), "{vehicle}");
+    }
+}

@@ -346,3 +346,44 @@ fn ids_speeds_and_directions_are_those_of_the_file() {
     graph["features"][1]["properties"]["id"] = json!(1.5);
     assert!(failed(&graph).starts_with("feature 2, properties, id: not a whole number from 0; "));
 }
+
+/// A node without a frame is in that of the map.
+#[test]
+fn nodes_are_in_one_frame() {
+    let node = |id: u32, x: f64, frame: Value| {
+        json!({ "type": "Feature", "properties": { "id": id, "frame": frame },
+            "geometry": { "type": "Point", "coordinates": [x, 0.0] } })
+    };
+    let edge = json!({ "type": "Feature", "properties": { "id": 9, "startid": 0, "endid": 1 },
+        "geometry": { "type": "MultiLineString", "coordinates": [[[0.0, 0.0], [5.0, 0.0]]] } });
+    let read = |frames: [Value; 2]| {
+        let [a, b] = frames;
+        let graph = json!({ "type": "FeatureCollection", "features": [node(0, 0.0, a), node(1, 5.0, b), edge] });
+        let read = layout(Format::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default());
+        read.map(|imported| imported.layout.edges.len()).map_err(|error| error.to_string())
+    };
+    for frames in [
+        [json!("map"), json!("map")],
+        [json!("map"), Value::Null],
+        [Value::Null, Value::Null],
+        [json!("odom"), json!("odom")],
+    ] {
+        assert_eq!(read(frames), Ok(1));
+    }
+    let several = "graph: its nodes are in several frames (map, odom); one has to be given";
+    assert_eq!(read([Value::Null, json!("odom")]), Err(several.to_owned()));
+    assert!(read([json!(7), json!("map")]).unwrap_err().starts_with("node 0, frame: "));
+}
+
+/// Whether the route server rounds corners is not in the graph.
+#[test]
+fn rounded_corners_are_told_unless_they_were_asked_for() {
+    let told = |corner_radius: Option<f64>, route: &str| {
+        let mut warnings = Warnings::default();
+        let options = Options { corner_radius, ..options(&[route], 1.0) };
+        scenario(Format::Nav2, WAREHOUSE, &options, &mut warnings).unwrap();
+        warnings.lines().iter().any(|line| line.starts_with("corners: rounded with 1 m"))
+    };
+    assert!(told(None, "0:50") && !told(Some(1.0), "0:50") && !told(Some(0.0), "0:50"));
+    assert!(!told(None, "3:3"));
+}

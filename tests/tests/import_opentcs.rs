@@ -228,3 +228,74 @@ fn routes_go_where_the_plant_model_lets_vehicles_go() {
     let steps: Vec<usize> = imported.layout.edges.iter().map(|edge| edge.steps().count()).collect();
     assert_eq!(steps, [2, 1, 2]);
 }
+
+/// A plant of two parallel paths 1.4 m apart, with these vehicles.
+fn plant(vehicles: &str) -> String {
+    let point = |name: &str, x: f64, y: f64| {
+        format!("<point name=\"{name}\" positionX=\"{x}\" positionY=\"{y}\" positionZ=\"0\"/>")
+    };
+    let path = |name: &str, from: &str, to: &str| {
+        let ends = format!("sourcePoint=\"{from}\" destinationPoint=\"{to}\"");
+        format!("<path name=\"{name}\" {ends} length=\"20000\" maxVelocity=\"0.0\" maxReverseVelocity=\"0\"/>")
+    };
+    let points = [point("A->", 0.0, 0.0), point("B", 2e4, 0.0), point("C", 0.0, 1400.0), point("D", 2e4, 1400.0)];
+    let paths = [path("A-B", "A->", "B"), path("C-D", "C", "D")].map(|path| path.replacen("0.0", "1000", 1));
+    format!("<model version=\"7.0.0\" name=\"m\">{}{}{vehicles}</model>", points.concat(), paths.concat())
+}
+
+/// They were said not to be in the file.
+#[test]
+fn vehicles_have_the_boxes_and_speeds_of_the_file() {
+    let vehicle = |name: &str, speed: u32, sizes: &str| {
+        format!("<vehicle name=\"{name}\" maxVelocity=\"{speed}\"><boundingBox {sizes}/></vehicle>")
+    };
+    let large = vehicle("large", 2000, "length=\"3000\" width=\"1600\" height=\"1000\"");
+    let aside =
+        vehicle("aside", 1500, "length=\"1000\" width=\"400\" referenceOffsetX=\"-300\" referenceOffsetY=\"650\"");
+    let read = |vehicles: &str, options: &Options| {
+        let mut warnings = Warnings::default();
+        let imported = layout(Format::OpenTcs, &plant(vehicles), options, &mut warnings).unwrap();
+        let locks = pcr_planning::locks::Locks::of(&imported, false).unwrap().locks.len();
+        (imported.vehicle, locks, warnings.lines())
+    };
+    let (vehicle, locks, warnings) = read(&large, &Options::default());
+    let corners = vehicle.footprint.as_ref().map(|outline| outline.polygon().to_vec());
+    assert_eq!(corners, Some(vec![[1.5, 0.8], [-1.5, 0.8], [-1.5, -0.8], [1.5, -0.8]]));
+    assert_eq!((vehicle.speed, locks), (2.0, 1));
+    assert!(warnings.iter().all(|line| !line.contains("radius")), "{warnings:?}");
+    // A reference point off the middle counts to both sides, and of speeds the least.
+    let (vehicle, _, warnings) = read(&format!("{large}{aside}"), &Options::default());
+    let corners = vehicle.footprint.as_ref().map(|outline| outline.polygon()[0]);
+    let [ahead, left] = corners.expect("an outline");
+    assert!((ahead, vehicle.speed) == (1.5, 1.5) && (left - 0.85).abs() < 1e-12, "{left}");
+    assert!(warnings.contains(&"vehicles: their maxVelocity differs; the least of 1.5 m/s is taken".to_owned()));
+    // What is asked for counts, and is told where the boxes reach further.
+    let asked = Options { radius: Some(0.5), speed: Some(1.0), ..Options::default() };
+    let (vehicle, locks, warnings) = read(&large, &asked);
+    assert_eq!((vehicle.radius, vehicle.speed, vehicle.footprint.is_none(), locks), (0.5, 1.0, true, 0));
+    assert!(
+        warnings.contains(&"radius: 0.5 m; the bounding boxes of the vehicles reach 1.700 m".to_owned()),
+        "{warnings:?}"
+    );
+    let (_, _, warnings) = read(&large, &Options { radius: Some(1.8), ..asked });
+    assert!(warnings.iter().all(|line| !line.contains("radius")), "{warnings:?}");
+    let (vehicle, ..) = read("", &Options::default());
+    assert_eq!((vehicle.radius, vehicle.speed), (0.5, 1.0));
+}
+
+#[test]
+fn names_with_angles_and_models_before_version_7_are_read() {
+    let names: String = (0..300).map(|k| format!("<location name=\"{k}->\"/><!-- <a> -->")).collect();
+    let deep =
+        plant(&format!("{names}<property name='a \">\"' value=\"<![CDATA[<b>]]&gt;\"/>").replace("<![CDATA[<b>]]", ""));
+    let old = deep.replace("positionX", "xPosition").replace("positionY", "yPosition");
+    for text in [deep, old] {
+        let plant = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap().layout;
+        let places = [[0.0, 0.0], [20.0, 0.0], [0.0, 1.4], [20.0, 1.4]];
+        let apart = |(node, at): (&pcr_formats::import::Node, [f64; 2])| (node.at[0] - at[0]).hypot(node.at[1] - at[1]);
+        assert!(plant.nodes.iter().zip(places).map(apart).all(|apart| apart < 1e-12), "{:?}", plant.nodes);
+    }
+    let nested = plant(&format!("{}{}", "<a b=\">\">".repeat(300), "</a>".repeat(300)));
+    let error = layout(Format::OpenTcs, &nested, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    assert!(error.contains("nested deeper than 200 elements"), "{error}");
+}

@@ -75,3 +75,18 @@ fn routes_have_times_of_a_size_that_is_one() {
     assert_eq!((starts("0:1"), starts("0:1@-7.5"), starts("0:1@999999")), (Ok(0.0), Ok(-7.5), Ok(999_999.0)));
     assert!(starts("0:1@1000001").is_err() && starts("0:1@nan").is_err());
 }
+
+/// The margin of the fleet, or of the command line, was dropped for plans with times.
+#[test]
+fn plans_with_times_have_the_margin_of_their_vehicle() {
+    let log = include_str!("../data/real/ccbs/example_grid_task_log.xml");
+    let grid = include_str!("../data/small/grid.path");
+    let state = include_str!("../data/small/state.json");
+    let points = include_str!("../data/small/points.path");
+    for (format, text) in [(Format::Ccbs, log), (Format::Grid, grid), (Format::Vda5050, state), (Format::Path, points)]
+    {
+        let options = Options { radius: Some(0.3), margin: Some(0.5), ..Options::default() };
+        let scenario = scenario(format, text, &options, &mut Warnings::default()).unwrap();
+        assert!(scenario.agents.iter().all(|agent| agent.margin == 0.5), "{format}");
+    }
+}

@@ -127,7 +127,7 @@ fn trajectories_are_followed_from_node_to_node() {
     let agent = &scenario.agents[0];
     assert_eq!(agent.structure(), "SAA");
     assert!((agent.length() - 4.0 - std::f64::consts::PI).abs() < 1e-9);
-    assert!((agent.radius - 0.4).abs() < 1e-12);
+    assert!((0.4..0.4 + 1e-6).contains(&agent.radius));
     order["nodes"][1]["nodePosition"]["y"] = json!(2.5);
     let error = read(&order.to_string(), &options()).unwrap_err();
     assert_eq!(error, "order square, edge e1: its trajectory ends 0.500 m from its node");
@@ -159,8 +159,8 @@ fn states_tell_paths_with_or_without_times() {
     let both = state(json!({ "plannedPath": {}, "intermediatePath": {} }));
     assert!(read(&both, &options()).unwrap_err().contains("its plannedPath, which goes on"));
     let elsewhere = json!({ "nodeStates": [], "plannedPath": { "trajectory": quarter() }, "mobileRobotPosition": { "x": 3.0, "y": 0.0 } });
-    let (_, warnings) = read(&state(elsewhere), &options()).unwrap();
-    assert!(warnings[0].ends_with("it begins 1.000 m from where the vehicle is; it is taken as there"), "{warnings:?}");
+    let error = read(&state(elsewhere), &options()).unwrap_err();
+    assert_eq!(error, "state of r7, plannedPath: it begins 1.000 m from where the vehicle is");
     let point = |x: f64, y: f64, eta: &str| json!({ "x": x, "y": y, "eta": eta });
     let polyline = [
         point(6.0, 0.0, "2026-11-21T08:00:02Z"),
@@ -168,8 +168,8 @@ fn states_tell_paths_with_or_without_times() {
         point(6.0, 3.0, "2026-11-21T08:00:05.500Z"),
     ];
     let text = state(json!({ "nodeStates": [], "intermediatePath": { "polyline": polyline } }));
-    // A second state that was sent a second later.
-    let later = text.replace("08:00:00.000Z", "08:00:01Z");
+    // A second state, of another vehicle, that was sent a second later.
+    let later = text.replace("08:00:00.000Z", "08:00:01Z").replace("\"r7\"", "\"r8\"");
     let (scenario, _) = read(&format!("{text}\n{later}"), &options()).unwrap();
     let fleet = Fleet::<f64>::new(&scenario).unwrap();
     let motions = fleet.motions();
@@ -248,7 +248,7 @@ fn a_vehicle_that_does_not_know_where_it_is_is_refused() {
 fn planned_paths_begin_at_the_time_stamps_of_their_states() {
     let planned = state(json!({ "plannedPath": { "trajectory": quarter() } }));
     let points = json!({ "polyline": [{ "x": 6.0, "y": 2.0, "eta": "2026-11-21T08:00:14Z" }] });
-    let timed = state(json!({ "timestamp": "2026-11-21T08:00:10Z", "intermediatePath": points }));
+    let timed = state(json!({ "serialNumber": "r8", "timestamp": "2026-11-21T08:00:10Z", "intermediatePath": points }));
     let starts = |text: &str| {
         let (scenario, _) = read(text, &options()).unwrap();
         scenario.agents.iter().map(|agent| agent.t_start).collect::<Vec<_>>()
@@ -256,13 +256,13 @@ fn planned_paths_begin_at_the_time_stamps_of_their_states() {
     assert_eq!(starts(&format!("{planned} {timed}")), [0.0, 10.0]);
     assert_eq!(starts(&format!("{timed} {planned}")), [0.0, -10.0]);
     // What stands does so at all times; what moves has to say from when on.
-    let stands = state(json!({ "timestamp": "2026-11-21T07:00:00Z" }));
+    let stands = state(json!({ "serialNumber": "r9", "timestamp": "2026-11-21T07:00:00Z" }));
     assert_eq!(starts(&format!("{stands} {timed} {planned}")), [0.0, 0.0, -10.0]);
     let unsaid = state(json!({ "timestamp": null, "plannedPath": { "trajectory": quarter() } }));
     assert_eq!(starts(&unsaid), [0.0]);
-    let why = "it does not say when it begins, and cannot be read together with what does: state of r7";
+    let why = "it does not say when it begins, and cannot be read together with what does: state of r8";
     assert_eq!(read(&format!("{timed} {unsaid}"), &options()).unwrap_err(), format!("state of r7: {why}"));
-    assert_eq!(read(&format!("{} {planned}", square()), &options()).unwrap_err(), format!("order square: {why}"));
+    assert_eq!(read(&format!("{} {timed}", square()), &options()).unwrap_err(), format!("order square: {why}"));
     assert_eq!(starts(&format!("{} {stands}", square())), [0.0, 0.0]);
 }
 
@@ -428,9 +428,10 @@ fn deviations_make_agents_larger_and_are_told() {
     assert!(warnings[0].starts_with("agent 1: its lines and arcs are up to"), "{warnings:?}");
     let beside = json!({ "serialNumber": "r", "nodeStates": [], "mobileRobotPosition": { "x": 0.0, "y": 2.5 },
         "plannedPath": { "trajectory": { "controlPoints": [{ "x": 0, "y": 3 }, { "x": 5, "y": 3 }] } } });
-    assert!(read(&beside.to_string(), &options()).unwrap().1[0].contains("it begins 0.500 m from where"));
-    let (_, warnings) = read(&state(-0.25), &options()).unwrap();
-    assert!(warnings[0].contains("it begins 0.250 m from where the vehicle is"), "{warnings:?}");
+    assert!(read(&beside.to_string(), &options()).unwrap_err().contains("it begins 0.500 m from where"));
+    // What is not refused makes it larger.
+    let (scenario, _) = read(&state(-0.04), &options()).unwrap();
+    assert!((scenario.agents[0].radius - radius - 0.04).abs() < 1e-6);
 }
 
 #[test]
@@ -453,9 +454,11 @@ fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
     let two = format!("{} {}", order(json!([node("a", 0.0, "m")]), 0), order(json!([node("a", 0.0, "n")]), 0));
     let (_, warnings) = read(&two, &options()).unwrap();
     assert_eq!(warnings, ["maps m, n: the agents are on several, which a scenario does not tell apart"]);
-    let state = |map: &str| {
+    let mut count = 0;
+    let mut state = |map: &str| {
+        count += 1;
         let pose = json!({ "x": 1.0, "y": 2.0, "theta": 0.5, "mapId": map });
-        json!({ "serialNumber": map, "nodeStates": [], "mobileRobotPosition": pose }).to_string()
+        json!({ "serialNumber": format!("{count}"), "nodeStates": [], "mobileRobotPosition": pose }).to_string()
     };
     assert!(read(&format!("{} {}", state("m"), state("m")), &options()).unwrap().1.is_empty());
     let (_, warnings) = read(&format!("{} {}", state("m"), state("n")), &options()).unwrap();

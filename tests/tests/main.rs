@@ -39,6 +39,7 @@ mod import_opentcs;
 mod import_options;
 mod import_paths;
 mod import_rmf;
+mod import_updates;
 mod import_vda5050;
 mod large;
 mod lateness;

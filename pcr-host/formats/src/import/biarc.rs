@@ -168,7 +168,7 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
         match best(&curve, tolerance - rounding) {
             Some((pieces, deviation)) => {
                 short.clear();
-                parts(&curve, tolerance / 1024.0, PARTS, &mut short);
+                parts(&curve, tolerance / 4096.0, PARTS, &mut short);
                 along.follow(&pieces, &short);
                 fit.deviation = fit.deviation.max(deviation + rounding);
                 fit.pieces.extend(pieces.into_iter().filter(|piece| piece.shape.length() > 0.0));
