@@ -247,6 +247,62 @@ fn an_order_is_turned_round_once() {
     }
 }
 
+/// A robot that was put in the way of another one made the table refuse everybody's paths.
+#[test]
+fn who_waits_for_ever_anyway_keeps_nobody_from_a_path() {
+    let (long, stands) = (way([-4.0, 0.0], [4.0, 0.0]), way([2.0, 0.0], [2.0, 0.0]));
+    let (waits, far, across) =
+        (way([9.0, 0.0], [9.0, 0.0]), way([9.0, 0.0], [9.0, 5.0]), way([-2.0, -3.0], [-2.0, 3.0]));
+    let mut progress = [REST; 3];
+    let fleet = [long.motion(), stands.motion(), waits.motion()];
+    let mut orders = table(&fleet);
+    let mut reaches = [Reach::EMPTY; 3];
+    let stuck = |found: Result<(), Refused>| matches!(found, Err(Refused::Stuck { agent: 0, by: 1, .. }));
+    assert!(stuck(orders.check(&fleet, &progress, TOLERANCES, &mut reaches)));
+    let mut admit = |orders: &mut Table<f64>, agent: usize, path: &Course<f64>, pass: Pass| {
+        let mission = Mission { agent, motion: path.motion(), progress: REST };
+        let mut fleet = fleet;
+        orders.clone().admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut reaches, |_| pass)
+    };
+    assert_eq!(admit(&mut orders, 2, &far, Pass::First), Ok(()));
+    // It goes before the one that waits, and never behind it, whatever is preferred.
+    for pass in [Pass::First, Pass::Second] {
+        assert_eq!(admit(&mut orders, 2, &across, pass), Ok(()));
+    }
+    // Where its path ends on the way of the one that waits, it can only be second, and would wait itself.
+    let parks = way([3.0, -3.0], [3.0, 0.0]);
+    let found = admit(&mut orders, 2, &parks, Pass::First);
+    assert!(matches!(found, Err(Refused::Stuck { agent: 2, by: 0, .. })), "{found:?}");
+    assert_eq!(admit(&mut orders, 0, &long, Pass::First), Err(Refused::Blocked { agent: 0, by: 1 }));
+    // A check excuses nobody.
+    assert!(stuck(orders.check(&fleet, &[REST; 3], TOLERANCES, &mut [Reach::EMPTY; 3])));
+}
+
+/// Nobody decides who goes first where a robot is put down; where one has been already, nothing is left to decide.
+#[test]
+fn an_undecided_region_that_one_has_left_holds_nobody() {
+    let (east, north) = (east(), north());
+    let fleet = [east.motion(), north.motion()];
+    let mut orders = table(&fleet);
+    let held = |hold: Result<Hold<f64>, Mismatch>| matches!(hold, Ok(Hold::At(at)) if (at - 3.4).abs() < 1e-9);
+    for (own, their, is_held) in
+        [(0.0, 0.0, true), (4.5, 0.0, true), (4.7, 0.0, false), (0.0, 4.7, false), (4.7, 4.7, false)]
+    {
+        let progress = [Progress::at_rest(own), Progress::at_rest(their)];
+        for agent in [0, 1] {
+            assert_eq!(held(orders.hold(&fleet, agent, &progress)), is_held, "{own} {their}");
+            let free = orders.hold(&fleet, agent, &progress) == Ok(Hold::Free);
+            assert_eq!(free, !is_held);
+        }
+        let found = orders.check(&fleet, &progress, TOLERANCES, &mut [Reach::EMPTY; 2]);
+        assert_eq!(found.is_ok(), !is_held, "{found:?}");
+    }
+    // A place that is not known exactly counts by its lower end; where nothing is known it is the start.
+    let unsure = Progress { at: Interval::new(4.5, 4.8), stop: 4.8 };
+    assert!(held(orders.hold(&fleet, 1, &[unsure, REST])));
+    assert!(held(orders.hold(&fleet, 1, &[])));
+}
+
 #[test]
 fn a_hold_counts_from_where_the_one_that_waits_is() {
     // North begins 2.5 m before east, at less than where that one is on its own path.

@@ -36,8 +36,9 @@ where
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
     O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
 {
-    /// Gives an agent a new path and orders for all its regions, with which every agent can finish. The orders between
-    /// the other agents stay as they are. The path in `fleet` and the entry in `progress` are replaced.
+    /// Gives an agent a new path and orders for all its regions, with which every agent can finish, but for those that
+    /// could not finish before either. The orders between the other agents stay as they are. The path in `fleet` and the
+    /// entry in `progress` are replaced.
     ///
     /// `prefer` is called for regions, whose ego is the agent, and says which one should go first: [`Pass::First`] or
     /// [`Pass::Second`]. Its answer is used if both orders are possible: the second agent must be able to stop before
@@ -47,7 +48,7 @@ where
     /// not to exceed.
     ///
     /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds for each region of the row, and at most
-    /// one check more than the row has regions.
+    /// one check more than the row has regions; twice that and one check more if some agent cannot finish before.
     ///
     /// # Errors
     /// [`Refused`], which names the agent in the way; everything is then unchanged. Another path, or the same path
@@ -90,7 +91,31 @@ where
         mission: Mission<'m, S>,
         tolerances: Tolerances<S>,
         reaches: &mut [Reach<S>],
-        prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
+        mut prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
+    ) -> Result<(), Refused> {
+        reaches.iter_mut().for_each(|reach| reach.excused = false);
+        let found = self.attempt(fleet, progress, mission, tolerances, reaches, &mut prefer);
+        if !matches!(found, Err(Refused::Stuck { agent, .. }) if agent != mission.agent) {
+            return found;
+        }
+        // Another agent may have to wait for ever without the mission, too.
+        if self.check(fleet, progress, tolerances, reaches).is_ok() {
+            return found;
+        }
+        for (reach, agent) in reaches.iter_mut().zip(0..) {
+            reach.excused = reach.is_stuck() && agent != mission.agent;
+        }
+        self.attempt(fleet, progress, mission, tolerances, reaches, &mut prefer)
+    }
+
+    fn attempt<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        progress: &mut [Progress<S>],
+        mission: Mission<'m, S>,
+        tolerances: Tolerances<S>,
+        reaches: &mut [Reach<S>],
+        prefer: &mut impl FnMut(&RegionRef<'_, S>) -> Pass,
     ) -> Result<(), Refused> {
         let Mission { agent, motion, progress: own } = mission;
         self.ecm.holds_all(fleet)?;
@@ -195,7 +220,7 @@ where
         progress: &[Progress<S>],
         agent: usize,
         width: S,
-        mut prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
+        prefer: &mut impl FnMut(&RegionRef<'_, S>) -> Pass,
     ) -> Result<(), Refused> {
         for (place, order) in (0..self.ecm.len()).zip(self.orders.as_mut()) {
             if !self.ecm.agents_at(place).is_some_and(|agents| agents.contains(&agent)) {
@@ -204,9 +229,7 @@ where
             let Some(region) = self.ecm.at(fleet, place, agent) else { continue };
             let by = region.other();
             let [own, their] = [agent, by].map(|agent| progress.get(agent).copied().unwrap_or_default());
-            if own.is_beyond(region.length(), region.ego_motion())
-                || their.is_beyond(region.other_length(), region.other_motion())
-            {
+            if region.is_over(progress) {
                 *order = Order::new(&region, Pass::Over, S::ZERO);
                 continue;
             }
@@ -234,7 +257,7 @@ where
         reaches: &mut [Reach<S>],
     ) -> Result<(), Refused> {
         loop {
-            let found = self.check(fleet, progress, tolerances, reaches);
+            let found = self.settle(fleet, progress, tolerances, reaches);
             if !matches!(found, Err(Refused::Stuck { .. })) {
                 return found;
             }
@@ -250,7 +273,7 @@ where
             self.places(agent).find_map(|(place, agents, order)| {
                 let other = if agents[0] == agent { agents[1] } else { agents[0] };
                 let held = if pass == Pass::First { other } else { agent };
-                let held = reaches.get(held).filter(|reach| reach.is_stuck())?;
+                let held = reaches.get(held).filter(|reach| reach.is_wronged())?;
                 let counts = order.open && order.pass_of(agent, agents) == pass && order.hold < held.at + gain;
                 counts.then_some(place)
             })

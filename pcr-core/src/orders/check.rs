@@ -41,15 +41,22 @@ pub struct Reach<S> {
     pub(super) end: S,
     /// Whether the agent has gained since its orders were last evaluated.
     pub(super) moved: bool,
+    /// Whether it may wait for ever, as it would have to without the change that is checked.
+    pub(super) excused: bool,
 }
 
 impl<S: Scalar> Reach<S> {
     /// An unused entry, to fill a storage with.
-    pub const EMPTY: Self = Self { at: S::ZERO, next: S::ZERO, end: S::ZERO, moved: false };
+    pub const EMPTY: Self = Self { at: S::ZERO, next: S::ZERO, end: S::ZERO, moved: false, excused: false };
 
     /// Whether the agent cannot reach the end of its path.
     pub(super) fn is_stuck(&self) -> bool {
         self.at < self.end
+    }
+
+    /// Whether it cannot, and has to.
+    pub(super) fn is_wronged(&self) -> bool {
+        self.is_stuck() && !self.excused
     }
 }
 
@@ -86,6 +93,18 @@ where
         tolerances: Tolerances<S>,
         reaches: &mut [Reach<S>],
     ) -> Result<(), Refused> {
+        reaches.iter_mut().for_each(|reach| reach.excused = false);
+        self.settle(fleet, progress, tolerances, reaches)
+    }
+
+    /// The same, where some agents are excused.
+    pub(super) fn settle(
+        &mut self,
+        fleet: &[Motion<'_, S>],
+        progress: &[Progress<S>],
+        tolerances: Tolerances<S>,
+        reaches: &mut [Reach<S>],
+    ) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
         let limited = |length: S| S::ZERO.max(length).min(S::LIMIT);
@@ -94,7 +113,7 @@ where
             let end = motion.path().length();
             // A place that is NaN is taken as the start.
             let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().known()).min(end);
-            *reach = Reach { at, next: end, end, moved: true };
+            *reach = Reach { at, next: end, end, moved: true, ..*reach };
         }
         while self.sweep(fleet, progress, tolerances, reaches)? {
             let mut gained = false;
@@ -110,7 +129,7 @@ where
                 break;
             }
         }
-        let Some(agent) = reaches.iter().position(Reach::is_stuck) else { return Ok(()) };
+        let Some(agent) = reaches.iter().position(Reach::is_wronged) else { return Ok(()) };
         Err(self.stuck(agent, reaches.get(agent).copied().unwrap_or_default()))
     }
 
@@ -130,9 +149,9 @@ where
                 Pass::Second => (agents[1], agents[0]),
                 Pass::Over => continue,
                 Pass::Undecided => {
-                    // The region is undecided: neither agent passes it.
+                    // Neither agent passes it, unless one has passed it already.
                     for agent in agents {
-                        let hold = self.ecm.at(fleet, place, agent).map(|region| region.hold(S::ZERO, S::ZERO));
+                        let hold = self.ecm.at(fleet, place, agent).map(|region| region.hold_undecided(progress));
                         if let Some(reach) = reaches.get_mut(agent) {
                             reach.next = reach.next.min(length(hold.unwrap_or(Hold::Inside)));
                         }

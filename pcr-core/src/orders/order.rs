@@ -2,6 +2,7 @@
 
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::orders::hold::Hold;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
@@ -10,7 +11,7 @@ use crate::scalar::Scalar;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Pass {
-    /// Not decided yet: both agents have to stay before the region.
+    /// Not decided yet: both agents have to stay before the region, unless one of them has left it.
     #[default]
     Undecided,
     /// The agent goes first, and the other one waits.
@@ -70,6 +71,20 @@ impl<S: Scalar> Progress<S> {
     /// Whether the agent has certainly left a region with these lengths of its path.
     pub(super) fn is_beyond(&self, lengths: Interval<S>, motion: &Motion<'_, S>) -> bool {
         self.known() > exit(lengths, motion)
+    }
+}
+
+impl<S: Scalar> RegionRef<'_, S> {
+    /// Whether one of the two agents has certainly left the region.
+    pub(super) fn is_over(&self, progress: &[Progress<S>]) -> bool {
+        let [own, their] = [self.ego(), self.other()].map(|agent| progress.get(agent).copied().unwrap_or_default());
+        own.is_beyond(self.length(), self.ego_motion()) || their.is_beyond(self.other_length(), self.other_motion())
+    }
+
+    /// How far the ego may go while nobody has decided who goes first: neither agent may enter the region, until one of
+    /// them has left it.
+    pub(super) fn hold_undecided(&self, progress: &[Progress<S>]) -> Hold<S> {
+        if self.is_over(progress) { Hold::Free } else { self.hold(S::ZERO, S::ZERO) }
     }
 }
 

@@ -158,7 +158,7 @@ where
                 // The hold at this region is at least the entry.
                 Pass::Second if order.bounds_from_entry() && !hold.allows_beyond(order.entry) => continue,
                 Pass::Second => self.ecm.at(fleet, place, agent).map(|region| region.hold(order.since, first)),
-                Pass::Undecided => self.ecm.at(fleet, place, agent).map(|region| region.hold(S::ZERO, S::ZERO)),
+                Pass::Undecided => self.ecm.at(fleet, place, agent).map(|region| region.hold_undecided(progress)),
             };
             let least = hold.min(held.unwrap_or(Hold::Inside));
             if least != hold {
