@@ -29,35 +29,40 @@ pub(super) fn joined(messages: Vec<Value>) -> Result<Vec<Value>, ImportError> {
 }
 
 /// The one message that several about one vehicle amount to.
-fn of_one(mut messages: Vec<Value>) -> Result<Value, ImportError> {
-    let update = |message: &Value| Object::new("order", message)?.number("orderUpdateId").map(|id| id.unwrap_or(0.0));
-    let mut numbered =
-        messages.drain(..).map(|message| Ok((update(&message)?, message))).collect::<Result<Vec<_>, _>>()?;
-    numbered.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut all = numbered.into_iter();
-    let Some((mut number, mut whole)) = all.next() else { return Err(ImportError::new("no message")) };
-    for (next, message) in all {
-        let [_, serial] = vehicle(&message).unwrap_or_default();
-        let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
-        if order(&whole).is_none() || order(&whole) != order(&message) {
-            let problem = "several messages are about it; one order with its updates, or one state is expected";
-            return Err(ImportError::new(format!("vehicle {serial}: {problem}")));
-        }
-        let name =
-            format!("order {}, update {next}", message.get("orderId").and_then(Value::as_str).unwrap_or_default());
-        if next > number {
-            extend(&mut whole, &message, &name)?;
-        } else if ["nodes", "edges"].iter().any(|list| last(&whole, list) != last(&message, list)) {
-            return Err(ImportError::new(format!("{name}: it is there twice, and not the same")));
-        }
-        number = next;
+fn of_one(messages: Vec<Value>) -> Result<Value, ImportError> {
+    let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
+    let all: Vec<_> = messages.iter().map(order).collect();
+    if all.len() > 1 && all.iter().any(|order| order.is_none() || *order != all[0]) {
+        let serial = messages.first().and_then(vehicle).unwrap_or_default()[1];
+        let problem = "several messages are about it; one order with its updates, or one state is expected";
+        return Err(ImportError::new(format!("vehicle {serial}: {problem}")));
     }
-    Ok(whole)
+    if all.len() > 1 { with_updates(messages) } else { messages.into_iter().next().ok_or_else(none) }
 }
 
-/// The last element of a list, in which a message that is sent again cannot differ from what it was joined with.
-fn last<'v>(message: &'v Value, list: &str) -> Option<&'v Value> {
-    message.get(list)?.as_array()?.last()
+fn none() -> ImportError {
+    ImportError::new("there is no message")
+}
+
+/// An order with its updates, in any order.
+fn with_updates(messages: Vec<Value>) -> Result<Value, ImportError> {
+    let number =
+        |message: &Value| Object::new("order", message)?.number("orderUpdateId").map(Option::unwrap_or_default);
+    let numbers = messages.iter().map(number).collect::<Result<Vec<_>, _>>()?;
+    let mut numbered: Vec<(f64, Value)> = numbers.into_iter().zip(messages).collect();
+    numbered.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut whole = numbered.first().map(|(_, first)| first.clone()).ok_or_else(none)?;
+    for pair in numbered.windows(2) {
+        let [(before, last), (number, update)] = pair else { continue };
+        let id = update.get("orderId").and_then(Value::as_str).unwrap_or_default();
+        let name = format!("order {id}, update {number}");
+        if number > before {
+            extend(&mut whole, update, &name)?;
+        } else if ["nodes", "edges"].iter().any(|list| last.get(list) != update.get(list)) {
+            return Err(ImportError::new(format!("{name}: it is there twice, and not the same")));
+        }
+    }
+    Ok(whole)
 }
 
 /// Replaces what follows from the first node of an update on.
