@@ -8,6 +8,7 @@ mod actions;
 mod job;
 mod mirror;
 mod orders;
+mod past;
 mod release;
 mod states;
 
@@ -21,6 +22,7 @@ use super::topics::{Key, Kind};
 use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::Supervisor;
+use past::{Noted, Past};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -79,6 +81,9 @@ pub struct Lane {
     /// When that came \[s\].
     heard_at: f64,
     job: Option<Job>,
+    /// The orders that it had, and the actions by which the manager has cancelled any.
+    orders: Past,
+    cancels: Past,
     /// What the manager is told is wrong with its orders, until one is taken.
     errors: Vec<StateError>,
     /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
@@ -97,7 +102,9 @@ impl Lane {
     /// Of a vehicle, with what the supervisor remembers of it.
     pub fn new(profile: Profile, supervisor: &Supervisor) -> Self {
         let name = profile.key.to_string();
-        let job = supervisor.robot(&name).ok().and_then(Job::remembered);
+        let robot = supervisor.robot(&name).ok();
+        let job = robot.and_then(Job::remembered);
+        let [orders, cancels] = ["orders", "cancels"].map(|key| Past::remembered(key, robot));
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
@@ -110,6 +117,8 @@ impl Lane {
             state,
             heard_at,
             job,
+            orders,
+            cancels,
             errors,
             astray,
             pause,
@@ -189,6 +198,21 @@ impl Lane {
     fn note_more(&self, supervisor: &mut Supervisor, key: &str, more: Vec<Value>) {
         // As above.
         let _ = supervisor.note_more(&self.name, key, more);
+    }
+
+    /// Remembers a name that was used.
+    fn note_past(&self, supervisor: &mut Supervisor, key: &str, noted: Noted) {
+        match noted {
+            Noted::More(more) => self.note_more(supervisor, key, more),
+            Noted::All(all) => self.note(supervisor, key, all),
+        }
+    }
+
+    /// Remembers for a robot that was added anew what outlives its order: its notes went with the one before.
+    fn note_anew(&self, supervisor: &mut Supervisor) {
+        for past in [&self.orders, &self.cancels] {
+            self.note(supervisor, past.key, past.all());
+        }
     }
 }
 

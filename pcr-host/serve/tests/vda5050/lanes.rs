@@ -215,6 +215,70 @@ fn what_cancels_an_order_is_sent_until_it_is_there() {
     }
 }
 
+/// A message that came again gave up the order that the vehicle had meanwhile: its state still said that the action is done. What had been
+/// sent and was on its way went to others, too.
+#[test]
+fn what_cancelled_an_order_before_cancels_nothing_when_it_comes_again() {
+    for is_restarted in [false, true] {
+        let mut own = Pair::new();
+        own.order("a", &TO);
+        own.lasts(2.0);
+        own.cancels("stop");
+        own.lasts(10.0);
+        let [x, y] = own.vehicle.place();
+        let places = [[x, y], [x + 4.0, y], [x + 8.0, y]];
+        own.says(Kind::Order, order("b", 0, 0, &places, 2));
+        own.lasts(30.0);
+        assert_eq!(own.state.as_ref().unwrap().action("stop"), Some("FINISHED"));
+        if is_restarted {
+            own.restart();
+        }
+        own.loses = Some(|kind, said| kind == Kind::Order && said["orderId"] == "b");
+        own.says(Kind::Order, order("b", 1, 2, &places[1..], 2));
+        own.cancels("stop");
+        let log = own.bridge.log();
+        assert_eq!(
+            log,
+            ["fleet/v2/sim/001/instantActions: actions[0].actionId: \"stop\" was there before: it cancels nothing"]
+        );
+        own.lasts(60.0);
+        assert!(own.is_done("b") && own.loses.is_none(), "{is_restarted}: {:?}", own.state);
+        // Another one does, from there.
+        own.order("c", &[places[2], places[1], places[0]]);
+        own.lasts(2.0);
+        own.cancels("stop again");
+        own.lasts(10.0);
+        assert!(own.bridge.lanes().all(|lane| lane.job().is_none()), "{:?}", own.state);
+    }
+}
+
+/// After 32 updates of the order after it nobody remembered an order: it was driven again.
+#[test]
+fn an_order_is_an_old_one_however_many_updates_came_since() {
+    let mut own = Pair::new();
+    own.order("a", &[[0.0, 0.0], [1.0, 0.0]]);
+    own.lasts(20.0);
+    assert!(own.is_done("a"));
+    let places: Vec<[f64; 2]> = (0..40).map(|k| [1.0 + 0.2 * f64::from(k), 0.0]).collect();
+    own.says(Kind::Order, order("b", 0, 0, &places[..1], 1));
+    for update in 1..40 {
+        own.lasts(1.5);
+        own.says(Kind::Order, order("b", update as u64, 2 * (update - 1) as u64, &places[update - 1..=update], 2));
+        own.lasts(0.1);
+        assert_eq!(own.errors(), [""; 0], "{update}");
+    }
+    own.lasts(20.0);
+    assert!(own.is_done("b"), "{:?}", own.state);
+    for _ in 0..2 {
+        own.order("a", &[[8.8, 0.0], [1.0, 0.0]]);
+        own.lasts(1.0);
+        assert!(own.errors()[0].contains("an order of this name before"), "{:?}", own.errors());
+        own.restart();
+        own.lasts(1.0);
+    }
+    assert!(own.is_done("b"));
+}
+
 /// The vehicle said that there was nothing to cancel, as the order was lost: neither was sent again.
 #[test]
 fn an_order_that_is_cancelled_before_it_is_there_is_over() {

@@ -91,6 +91,7 @@ impl Lane {
                 // Where it cannot stand, it is asked again with its next state. An order that it had is void.
                 if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
                     (self.job, self.astray) = (None, None);
+                    self.note_anew(supervisor);
                     self.note(supervisor, MAP, pose.map_id.clone().into());
                 }
             }
@@ -187,7 +188,10 @@ impl Lane {
         if let Some(action) = job.cancel.clone() {
             let status = state.action(&action);
             let has_nothing = job.sent.is_none() || job.lost.is_some();
-            if (has_it && status == Some("FINISHED") || has_nothing) && self.is_still(&state) {
+            // It has all that was sent, or has said so since it was told to cancel: nothing that it may still drive is on its way to it.
+            let is_told = job.is_acknowledged() || self.heard_at > job.sent_at.max(job.cancelled_at);
+            let is_cancelled = has_it && status == Some("FINISHED") && is_told;
+            if (is_cancelled || has_nothing) && self.is_still(&state) {
                 self.reseat(supervisor, &state);
             } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
                 // It came before the order.
@@ -227,6 +231,7 @@ impl Lane {
         // Where it cannot stand it stays what it was: nobody may drive through one that is forgotten.
         if supervisor.reseat(&self.name, start).is_ok() {
             (self.job, self.astray) = (None, None);
+            self.note_anew(supervisor);
             self.note(supervisor, MAP, map.into());
         }
     }
