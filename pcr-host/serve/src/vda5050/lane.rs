@@ -9,6 +9,7 @@ mod job;
 mod mirror;
 mod orders;
 mod past;
+mod pause;
 mod release;
 mod states;
 
@@ -23,6 +24,7 @@ use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::Supervisor;
 use past::{Noted, Past};
+use pause::Pauses;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -88,8 +90,7 @@ pub struct Lane {
     errors: Vec<StateError>,
     /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
     astray: Option<(u32, f64)>,
-    /// Whether it was asked to pause or to go on, and when \[s\], until it does.
-    pause: Option<(bool, f64)>,
+    pauses: Pauses,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
     /// What the manager was told of what is ahead.
@@ -108,7 +109,8 @@ impl Lane {
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        let (state, heard_at, astray, pause) = (None, 0.0, None, None);
+        let pauses = Pauses::remembered(robot);
+        let (state, heard_at, astray) = (None, 0.0, None);
         Self {
             profile,
             name,
@@ -121,7 +123,7 @@ impl Lane {
             cancels,
             errors,
             astray,
-            pause,
+            pauses,
             sent,
             posts,
             ahead: None,
@@ -213,6 +215,7 @@ impl Lane {
         for past in [&self.orders, &self.cancels] {
             self.note(supervisor, past.key, past.all());
         }
+        self.note_pauses(supervisor);
     }
 }
 

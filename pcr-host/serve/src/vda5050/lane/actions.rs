@@ -15,7 +15,8 @@ impl Lane {
     /// Passes on what the manager wants at once. An order that it cancels gets no further update.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no such message, and for a `cancelOrder` that was there before: it is passed on, and cancels nothing.
+    /// [`Refusal`] for what is no such message, for a `cancelOrder` that was there before, which is passed on and cancels nothing, and for a
+    /// `stopPause` while the vehicle has to stand.
     pub fn instant_actions(
         &mut self,
         supervisor: &mut Supervisor,
@@ -44,11 +45,13 @@ impl Lane {
                 let _ = supervisor.mission(&nothing, now);
             }
         }
-        let actions = actions.to_vec();
-        let header = self.header(Kind::InstantActions, version);
-        let message = InstantActions { rest: message.rest, ..InstantActions::new(header, actions) };
-        self.post(To::Vehicle, Kind::InstantActions, version, &message);
-        repeated.map_or(Ok(()), Err)
+        let (due, held) = self.hold_back(supervisor, actions.to_vec(), now);
+        if held.is_none() || !due.is_empty() {
+            let header = self.header(Kind::InstantActions, version);
+            let message = InstantActions { rest: message.rest, ..InstantActions::new(header, due) };
+            self.post(To::Vehicle, Kind::InstantActions, version, &message);
+        }
+        repeated.or(held).map_or(Ok(()), Err)
     }
 
     /// The action that cancels the order, if one does. One that was used before is a message that comes again: the vehicle does nothing for
@@ -70,13 +73,14 @@ impl Lane {
         (cancel, repeated)
     }
 
-    /// Asks the vehicle for something.
-    pub fn ask_for(&mut self, action_type: &str) {
+    /// Asks the vehicle for something; by which action.
+    pub fn ask_for(&mut self, action_type: &str) -> String {
         let version = self.version.unwrap_or(Version::V2_1);
         let header = self.header(Kind::InstantActions, version);
         let id = format!("pcr-{action_type}-{}-{}", header.timestamp, header.header_id);
-        let message = InstantActions::one(header, action_type, id);
+        let message = InstantActions::one(header, action_type, id.clone());
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
+        id
     }
 
     /// Cancels the order of the vehicle once more, under another name.
