@@ -7,6 +7,7 @@
 mod actions;
 mod job;
 mod mirror;
+mod newest;
 mod orders;
 mod past;
 mod pause;
@@ -23,6 +24,7 @@ use super::topics::{Key, Kind};
 use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::Supervisor;
+use newest::Newest;
 use past::{Noted, Past};
 use pause::Pauses;
 use serde::Serialize;
@@ -63,13 +65,6 @@ pub struct Post {
     pub kind: Kind,
     /// JSON.
     pub payload: Vec<u8>,
-}
-
-/// The newest message of a vehicle.
-#[derive(Clone, Copy, Debug)]
-struct Newest {
-    header_id: u64,
-    stamp: f64,
 }
 
 /// One vehicle.
@@ -159,17 +154,6 @@ impl Lane {
     /// The messages to be sent.
     pub fn posts(&mut self) -> Vec<Post> {
         std::mem::take(&mut self.posts)
-    }
-
-    /// Whether a message is newer than all others of its kind: a higher number, or a later time of a vehicle that counts anew.
-    fn is_new(&mut self, kind: Kind, header: &Header) -> bool {
-        let stamp = pcr_formats::import::seconds(&header.timestamp).unwrap_or(f64::NEG_INFINITY);
-        let newest = self.newest.get(&kind);
-        let is_new = newest.is_none_or(|newest| header.header_id > newest.header_id || stamp > newest.stamp);
-        if is_new {
-            self.newest.insert(kind, Newest { header_id: header.header_id, stamp });
-        }
-        is_new
     }
 
     /// The header of our next message of a kind.

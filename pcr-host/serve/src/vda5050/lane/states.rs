@@ -5,6 +5,7 @@ use super::super::header::Header;
 use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
+use super::newest::Place;
 use super::{Job, Lane};
 use crate::course::Start;
 use crate::robot::{BACK, Robot};
@@ -50,7 +51,16 @@ impl Lane {
     ) -> Result<(), Refusal> {
         let state: State = door::read(bytes, limits)?;
         let version = state.header.check(&self.profile.key, is_third)?;
-        let is_new = self.is_new(Kind::State, &state.header);
+        let newest = self.newest.entry(Kind::State).or_default();
+        let place = newest.take(&state.header, now, |action| state.names(action));
+        if newest.is_in_doubt(now) {
+            self.ask_when(now);
+        }
+        if place == Place::Anew {
+            // By the clock of before.
+            self.newest.remove(&Kind::Visualization);
+        }
+        let is_new = place != Place::Late;
         if is_new {
             self.version = Some(version);
         }
@@ -66,6 +76,12 @@ impl Lane {
             self.mirror();
         }
         located
+    }
+
+    /// Asks the vehicle for a state that is surely newer than all that have come.
+    pub(super) fn ask_when(&mut self, now: f64) {
+        let id = self.ask_for("stateRequest");
+        self.newest.entry(Kind::State).or_default().asks(id, now);
     }
 
     /// The vehicle has the updates up to the one that it names.
@@ -253,9 +269,9 @@ impl Lane {
         if message.header != Header::default() {
             message.header.check(&self.profile.key, is_third)?;
         }
-        let stamp = |header: &Header| pcr_formats::import::seconds(&header.timestamp);
-        let newer = stamp(&message.header).zip(self.state.as_ref().and_then(|state| stamp(&state.header)));
-        if !self.is_new(Kind::Visualization, &message.header) || newer.is_none_or(|(own, state)| own < state) {
+        let is_after = self.newest.get(&Kind::State).is_some_and(|state| state.is_before(&message.header, now));
+        let newest = self.newest.entry(Kind::Visualization).or_default();
+        if !is_after || newest.take(&message.header, now, |_| false) == Place::Late {
             return Ok(());
         }
         if let Some(mut state) = self.state.as_deref().cloned() {
