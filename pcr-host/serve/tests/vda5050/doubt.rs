@@ -291,6 +291,18 @@ fn a_vehicle_that_has_passed_its_base_is_not_where_it_may_be() {
     assert!(own.has_alarm());
 }
 
+/// It was taken for one that has said nothing, wherever it was.
+#[test]
+fn a_vehicle_that_names_no_node_of_its_order_has_to_be_on_its_way() {
+    let mut own = Lone::driving();
+    for (y, alarm) in [(0.0, false), (2.0, true)] {
+        let mut state = own.state();
+        (state["lastNodeSequenceId"], state["agvPosition"]["y"]) = (json!(1), json!(y));
+        own.hears(Kind::State, &state);
+        assert_eq!(own.has_alarm(), alarm, "{y}");
+    }
+}
+
 /// Its place there was taken for one on its way.
 #[test]
 fn a_place_on_another_map_counts_for_nothing() {

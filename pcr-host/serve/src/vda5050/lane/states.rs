@@ -124,9 +124,9 @@ impl Lane {
             Some(job) if job.held.order_id == state.order_id => {
                 let place = job.stop(state.last_node_sequence_id);
                 let Some(place) = place else {
-                    // A node that it was not released yet; or that of an order before, at the beginning of this one.
-                    let is_beyond = state.last_node_sequence_id > job.last().sequence;
-                    if is_new && is_beyond && self.on_its_way(job, robot, pose).is_none() {
+                    // A node that it was not released yet, that of an order before at the beginning of this one, or none at all: it has to
+                    // be on its way all the same.
+                    if is_new && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
                     return Ok(());
