@@ -231,6 +231,81 @@ fn robots_off_their_paths_and_back() {
     assert_eq!(told, ["admitted null", "mission_exists", "alarm back", "alarm off", "clear null"]);
 }
 
+/// A mission that was admitted meanwhile made another place of the length at which a robot was to turn off.
+#[test]
+fn a_replacement_is_of_the_path_that_it_names() {
+    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let mut supervisor = supervisor();
+    let lines = |count: usize| vec![json!({ "kind": "line", "length": 3 }); count];
+    let replace = |name: &str, after: f64, of: Value| {
+        json!({ "verb": "replace", "robot": "a", "mission": name, "after": after, "of": of,
+                "path": [{ "kind": "turn", "sweep": 1.5 }, { "kind": "line", "length": 2 }] })
+    };
+    let mut told = Vec::new();
+    for (request, now) in [
+        (serde_json::from_str(&requests()[0]).unwrap(), 0.0),
+        (json!({ "verb": "mission", "robot": "a", "mission": "1", "path": lines(3) }), 0.0),
+        (json!({ "verb": "position", "robot": "a", "path": 2, "at": [2, 2] }), 2.0),
+        (json!({ "verb": "position", "robot": "a", "path": 2, "at": [4, 4] }), 4.0),
+        (json!({ "verb": "mission", "robot": "a", "mission": "2", "of": 2, "path": lines(1) }), 4.0),
+        (replace("3", 6.5, json!(2)), 5.0),
+        (replace("3", 6.5, json!(4)), 5.0),
+        (replace("3", 6.5, json!(3)), 5.0),
+        // Asked for again it is the same one.
+        (replace("3", 6.5, json!(3)), 5.0),
+        (replace("4", 8.0, Value::Null), 5.0),
+    ] {
+        fits(&schema, &request);
+        let answer = handle(&mut supervisor, request.to_string().as_bytes(), now, now).answer;
+        fits(&schema, &answer);
+        supervisor.settle(now).unwrap();
+        told.push((answer["ok"]["path"].as_u64(), answer["error"]["code"].clone(), answer["error"]["path"].clone()));
+    }
+    let (none, other) = (Value::Null, json!("no_such_path"));
+    let ok = |path: Option<u64>| (path, none.clone(), none.clone());
+    let refused = (None, other, json!(3));
+    let same = ok(Some(4));
+    assert_eq!(
+        told,
+        [
+            ok(Some(1)),
+            ok(Some(2)),
+            ok(None),
+            ok(None),
+            ok(Some(3)),
+            refused.clone(),
+            refused,
+            same.clone(),
+            same,
+            ok(Some(5))
+        ]
+    );
+}
+
+/// A heading that was a thousandth of a radian off was let through, whatever it was off at the end of the path.
+#[test]
+fn a_path_ends_where_who_asks_for_it_believes() {
+    let arc = json!({ "kind": "arc", "radius": 0.2, "sweep": 6.0 });
+    for (heading, path, is_there) in [
+        (9e-4, json!([{ "kind": "line", "length": 1 }]), true),
+        (9e-4, json!([{ "kind": "line", "length": 10 }]), false),
+        (9e-5, json!([{ "kind": "line", "length": 10 }]), true),
+        (std::f64::consts::TAU, json!([{ "kind": "line", "length": 1000 }]), true),
+        // However long it is, it does not lead far.
+        (9e-4, json!([arc, arc]), true),
+        (9e-4, json!([arc, arc, arc]), false),
+        (2e-3, json!([{ "kind": "turn", "sweep": 1 }]), false),
+        (9e-4, json!([{ "kind": "turn", "sweep": 1 }]), true),
+    ] {
+        let mut supervisor = supervisor();
+        handle(&mut supervisor, requests()[0].as_bytes(), 0.0, 0.0);
+        let start = json!({ "x": -3, "y": 0, "heading": heading });
+        let request = json!({ "verb": "mission", "robot": "a", "mission": "1", "start": start, "path": path });
+        let answer = handle(&mut supervisor, request.to_string().as_bytes(), 0.0, 0.0).answer;
+        assert_eq!(answer["error"]["code"] != "apart", is_there, "{request} {answer}");
+    }
+}
+
 /// A message that was older than an alarm, and said so, ended it where it had waited for longer than that: its age was that of when it was
 /// read.
 #[test]

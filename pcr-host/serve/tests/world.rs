@@ -381,6 +381,7 @@ impl World {
             robot: self.vehicles[k].name.clone(),
             mission: format!("mission {}", self.proposals),
             after: (!arrives).then_some(after),
+            of: None,
             start: Some(start),
             path,
         };

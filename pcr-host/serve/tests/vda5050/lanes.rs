@@ -454,6 +454,7 @@ fn who_gets_nowhere_is_said_and_why() {
         robot: robot.into(),
         mission: "1".into(),
         after: None,
+        of: None,
         start: None,
         path: vec![Shape::Line { length }],
     };

@@ -39,7 +39,8 @@ impl Lane {
             (job.cancel, job.cancelled_at) = (Some(cancel), now);
             let given = job.given();
             self.note(supervisor, "order", given);
-            let nothing = Proposal { robot: self.name.clone(), mission, after: None, start: None, path: Vec::new() };
+            let nothing =
+                Proposal { robot: self.name.clone(), mission, after: None, of: None, start: None, path: Vec::new() };
             let waits = supervisor.robot(&self.name).is_ok_and(|robot| robot.waiting.is_some());
             if waits {
                 let _ = supervisor.mission(&nothing, now);

@@ -207,6 +207,7 @@ impl Lane {
             robot: self.name.clone(),
             mission: mission(&job.held, job.held.base),
             after: None,
+            of: None,
             start: None,
             path,
         };
