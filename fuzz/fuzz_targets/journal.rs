@@ -2,7 +2,7 @@
 #![no_main]
 
 use pcr_serve::entry::{Entry, Nowhere};
-use pcr_serve::journal::{frame, read};
+use pcr_serve::journal::{FIRST, HEADER, frame, read};
 use pcr_serve::supervisor::{Settings, Supervisor};
 
 fn restored(entries: Vec<Entry>) {
@@ -15,21 +15,21 @@ fn restored(entries: Vec<Entry>) {
 }
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let journal = [b"pcr-journal\0\x01\0\0\0", bytes].concat();
+    let journal = [&HEADER[..], bytes].concat();
     for bytes in [bytes, &journal] {
         match read(bytes) {
-            Ok((entries, end)) => {
-                assert!(end <= bytes.len());
-                restored(entries);
+            Ok(found) => {
+                assert!(found.end <= bytes.len());
+                restored(found.entries);
             }
             Err(why) => assert!(!why.is_empty()),
         }
     }
     // Past the checksums.
     if let Ok(entries) = serde_json::from_slice::<Vec<Entry>>(bytes) {
-        if let Ok(frame) = frame(&entries) {
-            let whole = [&journal[..16], &frame].concat();
-            assert_eq!(read(&whole).map(|(_, end)| end), Ok(whole.len()));
+        if let Ok((frame, _)) = frame(&entries, FIRST) {
+            let whole = [&HEADER[..], &frame].concat();
+            assert_eq!(read(&whole).map(|found| found.end), Ok(whole.len()));
         }
         restored(entries);
     }

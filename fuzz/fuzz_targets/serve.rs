@@ -19,7 +19,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         let now = f64::from(tick) * 0.1;
         let told: Vec<_> =
             supervisor.robots().iter().map(|robot| (robot.name.clone(), robot.path, robot.granted)).collect();
-        let reply = handle(&mut supervisor, line, now);
+        let reply = handle(&mut supervisor, line, now, now);
         assert!(reply.answer.get("ok").is_some() != reply.answer.get("error").is_some());
         supervisor.settle(now).expect("a journal that is nowhere");
         for (name, path, granted) in told {

@@ -53,6 +53,14 @@ impl Shape {
         }
     }
 
+    /// From its beginning to any of its places it is no further \[m\].
+    fn extent(self) -> f64 {
+        match self {
+            Self::Arc { radius, .. } => self.length().min(2.0 * radius),
+            _ => self.length(),
+        }
+    }
+
     /// The part between two lengths of it \[m\].
     fn part(self, whole: f64, from: f64, to: f64) -> Self {
         match self {
@@ -62,6 +70,11 @@ impl Shape {
             Self::Turn { .. } => self,
         }
     }
+}
+
+/// From the beginning of these shapes to any of their places it is no further \[m\].
+pub fn extent(shapes: &[Shape]) -> f64 {
+    shapes.iter().map(|shape| shape.extent()).sum()
 }
 
 /// A path that owns its parts.

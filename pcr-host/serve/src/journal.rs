@@ -1,5 +1,8 @@
-//! A file of entries to which the program only appends. An entry is a frame with a length, a checksum and JSON; it is
-//! on the disk before anything in it is sent to anyone.
+//! A file of entries to which the program only appends. A batch of entries is a frame with a length, checksums and JSON; it
+//! is on the disk before anything in it is sent to anyone.
+//!
+//! The checksum of each frame is over that of the frame before it, which is in the frame, too. So frames that are
+//! repeated, left out or in another order are damage.
 //!
 //! If the process or the power fails, the last frame may be incomplete; nothing in it has been sent yet, so it is
 //! ignored. Any other error is damage, and the journal is refused.
@@ -13,11 +16,14 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// What a journal begins with: what it is, and the version of its entries.
-const HEADER: &[u8; 16] = b"pcr-journal\0\x02\0\0\0";
+/// What a journal begins with: what it is, and the version of its frames and entries.
+pub const HEADER: &[u8; 16] = b"pcr-journal\0\x03\0\0\0";
 
-/// Length, checksum of it and of the entries.
-const FRAME: usize = 12;
+/// Length, checksum of the frame before, checksum of these two, and of all.
+const FRAME: usize = 16;
+
+/// The part of that which is checked before the length is believed.
+const BEGIN: usize = 12;
 
 /// Frames are no longer than this \[bytes\].
 const LONGEST: usize = 1 << 28;
@@ -47,6 +53,8 @@ pub struct Journal {
     /// Where its frames end, and did after the last start \[bytes\].
     len: u64,
     first: u64,
+    /// Checksum of the last frame.
+    sum: u32,
     /// Where its zeros end \[bytes\].
     end: u64,
     /// A write failed: what is on the disc is not known.
@@ -69,18 +77,19 @@ impl Journal {
         })?;
         let path = folder.join("journal");
         if !path.try_exists().map_err(of(&path))? {
-            written(folder, &[])?;
+            written(folder, HEADER)?;
         }
         let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(of(&path))?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(of(&path))?;
-        let (entries, len) = read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
+        let Frames { entries, end: len, sum } =
+            read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
         let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
         let len = len as u64;
         // Nothing of an incomplete frame is left where others will be.
         file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
-        let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, end: len, failed: false };
+        let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, sum, end: len, failed: false };
         Ok((own, Found { entries, torn }))
     }
 
@@ -107,10 +116,10 @@ impl Keep for Journal {
         if self.failed {
             return Err(io::Error::other("an earlier write has failed"));
         }
-        let frame = frame(entries)?;
+        let (frame, sum) = frame(entries, self.sum)?;
         self.failed = true;
         self.add(&frame).map_err(of(&self.folder.join("journal")))?;
-        self.failed = false;
+        (self.sum, self.failed) = (sum, false);
         Ok(())
     }
 
@@ -122,8 +131,11 @@ impl Keep for Journal {
         if self.failed {
             return Err(io::Error::other("an earlier write has failed"));
         }
+        let (frame, sum) = frame(entries, FIRST)?;
         self.failed = true;
-        self.len = written(&self.folder, entries)?;
+        let bytes = [HEADER.as_slice(), &frame].concat();
+        written(&self.folder, &bytes)?;
+        (self.len, self.sum) = (bytes.len() as u64, sum);
         (self.first, self.end) = (self.len, self.len);
         self.file = OpenOptions::new().write(true).open(self.folder.join("journal"))?;
         self.file.seek(SeekFrom::Start(self.len))?;
@@ -137,70 +149,97 @@ fn of(path: &Path) -> impl Fn(io::Error) -> io::Error {
     move |error| io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
-/// Puts a journal with these entries in the place of the one that is there, all or nothing; returns how long it is.
-fn written(folder: &Path, entries: &[Entry]) -> io::Result<u64> {
+/// Puts a journal of these bytes in the place of the one that is there, all or nothing.
+fn written(folder: &Path, bytes: &[u8]) -> io::Result<()> {
     let (new, path) = (folder.join("journal.new"), folder.join("journal"));
-    let mut bytes = HEADER.to_vec();
-    if !entries.is_empty() {
-        bytes.extend(frame(entries)?);
-    }
     let create = || {
         let mut file = File::create(&new)?;
-        file.write_all(&bytes)?;
+        file.write_all(bytes)?;
         file.sync_all()
     };
     create().map_err(of(&new))?;
     fs::rename(&new, &path).map_err(of(&path))?;
     // The name is on the disc when the folder is.
-    File::open(folder).and_then(|folder| folder.sync_all()).map_err(of(folder))?;
-    Ok(bytes.len() as u64)
+    File::open(folder).and_then(|folder| folder.sync_all()).map_err(of(folder))
 }
 
-/// The bytes of a batch of entries.
+/// What the first frame has instead of the checksum of one before.
+pub const FIRST: u32 = 0;
+
+/// The bytes of a batch of entries after a frame of this checksum, and the checksum of theirs.
 ///
 /// # Errors
 /// [`ErrorKind::InvalidInput`] for a batch that is too long.
-pub fn frame(entries: &[Entry]) -> io::Result<Vec<u8>> {
+pub fn frame(entries: &[Entry], before: u32) -> io::Result<(Vec<u8>, u32)> {
     let text = serde_json::to_vec(entries)?;
     let length = u32::try_from(text.len()).ok().filter(|length| *length as usize <= LONGEST);
-    let length =
-        length.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "too many entries at once"))?.to_le_bytes();
+    let length = length.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "too many entries at once"))?;
     let mut frame = Vec::with_capacity(FRAME + text.len());
-    frame.extend(length);
-    frame.extend(crc32fast::hash(&length).to_le_bytes());
-    frame.extend(crc32fast::hash(&text).to_le_bytes());
+    frame.extend(length.to_le_bytes());
+    frame.extend(before.to_le_bytes());
+    frame.extend(crc32fast::hash(&frame).to_le_bytes());
+    let sum = sum(&frame, &text);
+    frame.extend(sum.to_le_bytes());
     frame.extend(text);
-    Ok(frame)
+    Ok((frame, sum))
 }
 
-/// The entries in the bytes of a journal, and where the last whole frame ends.
+/// The checksum of a frame, by what is before it in the frame and by its entries.
+fn sum(begin: &[u8], text: &[u8]) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    sum.update(begin);
+    sum.update(text);
+    sum.finalize()
+}
+
+/// What is in a journal.
+#[derive(Debug)]
+pub struct Frames {
+    /// The entries, oldest first.
+    pub entries: Vec<Entry>,
+    /// Where the last whole frame ends.
+    pub end: usize,
+    /// Its checksum.
+    pub sum: u32,
+}
+
+/// Reads the bytes of a journal.
 ///
 /// # Errors
 /// What is wrong, in words.
-pub fn read(bytes: &[u8]) -> Result<(Vec<Entry>, usize), String> {
-    let (header, version) = (&HEADER[..12], &HEADER[12..]);
-    match bytes.get(..HEADER.len()) {
-        Some(begin) if begin.starts_with(header) && begin.ends_with(version) => {}
-        Some(begin) if begin.starts_with(header) => return Err("it is that of another version".into()),
+pub fn read(bytes: &[u8]) -> Result<Frames, String> {
+    let (header, version) = HEADER.split_at(12);
+    match bytes.get(..HEADER.len()).map(|begin| begin.split_at(12)) {
+        Some((begin, own)) if begin == header && own == version => {}
+        Some((begin, own)) if begin == header => {
+            let [own, version] = [own, version].map(|version| word(version, 0).unwrap_or(0));
+            return Err(format!(
+                "it is of version {own}, and {version} is read: begin another journal while all robots stand"
+            ));
+        }
         _ => return Err("it is no journal".into()),
     }
-    let (mut entries, mut at) = (Vec::new(), HEADER.len());
-    while let Some(rest) = bytes.get(at..).filter(|rest| !rest.is_empty()) {
-        let damage = |why: &str| format!("at byte {at}: {why}");
+    let mut read = Frames { entries: Vec::new(), end: HEADER.len(), sum: FIRST };
+    while let Some(rest) = bytes.get(read.end..).filter(|rest| !rest.is_empty()) {
+        let damage = |why: &str| format!("at byte {}: {why}", read.end);
         match text(rest) {
-            Ok(text) => {
+            Ok((text, before, sum)) => {
+                if before != read.sum {
+                    return Err(damage("entries that do not follow those before them"));
+                }
                 let batch: Vec<Entry> = serde_json::from_slice(text).map_err(|error| damage(&error.to_string()))?;
-                entries.extend(batch);
-                at += FRAME + text.len();
+                read.entries.extend(batch);
+                read.end += FRAME + text.len();
+                read.sum = sum;
             }
             // The next frame is begun when this one is on the disc. (None begins inside of another one: the fourth byte of a length is
             // no character of JSON.)
             Err(why) if (1..rest.len()).any(|later| text(&rest[later..]).is_ok()) => return Err(damage(why)),
-            Err(why) if !is_torn(rest, at) => return Err(damage(why)),
+            Err(why) if !is_torn(rest, read.end) => return Err(damage(why)),
             Err(_) => break,
         }
     }
-    Ok((entries, at))
+    Ok(read)
 }
 
 fn word(bytes: &[u8], at: usize) -> Option<u32> {
@@ -209,16 +248,18 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
 
 /// The length of the frame that begins here, if that is there.
 fn length(bytes: &[u8]) -> Option<usize> {
-    let length = word(bytes, 0)?;
-    (crc32fast::hash(&length.to_le_bytes()) == word(bytes, 4)?).then_some(length as usize)
+    (crc32fast::hash(bytes.get(..8)?) == word(bytes, 8)?).then_some(word(bytes, 0)? as usize)
 }
 
-/// What is in the frame that begins here, if all of it is there.
-fn text(bytes: &[u8]) -> Result<&[u8], &'static str> {
-    let sum = word(bytes, 8).ok_or("no whole frame")?;
+/// What is in the frame that begins here, the checksum of the one before it and its own, if all of it is there.
+fn text(bytes: &[u8]) -> Result<(&[u8], u32, u32), &'static str> {
+    let (before, own) = word(bytes, 4).zip(word(bytes, BEGIN)).ok_or("no whole frame")?;
     let length = length(bytes).ok_or("a length that is none")?;
     let text = bytes.get(FRAME..FRAME + length).ok_or("no whole frame")?;
-    if crc32fast::hash(text) == sum { Ok(text) } else { Err("entries that are not as they were written") }
+    match sum(&bytes[..BEGIN], text) == own {
+        true => Ok((text, before, own)),
+        false => Err("entries that are not as they were written"),
+    }
 }
 
 /// Whether the frame that begins here, at this byte of the file, has never come to the disc as a whole.
@@ -231,8 +272,8 @@ fn is_torn(bytes: &[u8], at: usize) -> bool {
         // Nothing of it but its beginning, or a sector is missing.
         None => {
             let (_, after) = bytes.split_at(FRAME.min(bytes.len()));
-            let (head, next) = bytes.split_at((SECTOR - at % SECTOR).min(8).min(bytes.len()));
-            is_missing(after) || is_missing(head) || (head.len() < 8 && is_missing(&next[..8 - head.len()]))
+            let (head, next) = bytes.split_at((SECTOR - at % SECTOR).min(BEGIN).min(bytes.len()));
+            is_missing(after) || is_missing(head) || (head.len() < BEGIN && is_missing(&next[..BEGIN - head.len()]))
         }
     }
 }

@@ -87,8 +87,8 @@ pub struct Reply {
     pub watches: Option<bool>,
 }
 
-/// Does what a line asks for.
-pub fn handle(supervisor: &mut Supervisor, line: &[u8], now: f64) -> Reply {
+/// Does what a line asks for. It came at a time, from which ages count, and may have waited since \[s\].
+pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> Reply {
     let (id, verb) = read(line);
     let mut watches = None;
     let done = verb.and_then(|verb| match verb {
@@ -105,8 +105,8 @@ pub fn handle(supervisor: &mut Supervisor, line: &[u8], now: f64) -> Reply {
             supervisor.mission(&proposal, now).map(|verdict| json!(verdict))
         }
         Verb::Remove(Named { robot }) => supervisor.remove(&robot).map(|there| json!({ "removed": there })),
-        Verb::Position(report) => supervisor.position(&report, now).map(|()| json!({})),
-        Verb::Off(Off { robot, x, y, age }) => supervisor.off(&robot, [x, y], age, now).map(|()| json!({})),
+        Verb::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
+        Verb::Off(Off { robot, x, y, age }) => supervisor.off(&robot, [x, y], age, came).map(|()| json!({})),
         Verb::Query(question) => query::answer(supervisor, &question, now),
         Verb::Watch(Watch { events }) => {
             watches = Some(events);

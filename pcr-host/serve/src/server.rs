@@ -147,7 +147,7 @@ pub fn serve(
             batch.push(input);
         }
         let now = begin.elapsed().as_secs_f64();
-        let (mut told, stops) = desk.take(supervisor, batch, now);
+        let (mut told, stops) = desk.take(supervisor, batch, begin, now);
         // What is said from here on is in the journal, or on its way there.
         let settled = supervisor.settle(now).map(|events| told.events = events);
         told.batches = kept.asked();
@@ -174,16 +174,23 @@ pub fn serve(
 
 impl Desk {
     /// Does what is asked; what is to be said of it, and whether it is the end.
-    fn take(&mut self, supervisor: &mut Supervisor, batch: Vec<(Instant, Input)>, now: f64) -> (Told, bool) {
+    fn take(
+        &mut self,
+        supervisor: &mut Supervisor,
+        batch: Vec<(Instant, Input)>,
+        begin: Instant,
+        now: f64,
+    ) -> (Told, bool) {
         let (mut told, mut stops) = (Told { now, ..Told::default() }, false);
         for (came, input) in batch {
+            let time = came.saturating_duration_since(begin).as_secs_f64().min(now);
             match input {
                 Input::Opened(client, out) => drop(self.clients.insert(client, Client { out, watches: false })),
                 // What it has asked before is answered.
                 Input::Closed(client) => told.closed.push(client),
                 Input::TooLong(client) => told.answers.push((client, lines::too_long())),
                 Input::Line(client, line) => {
-                    let reply = lines::handle(supervisor, &line, now);
+                    let reply = lines::handle(supervisor, &line, time, now);
                     if let (Some(watches), Some(client)) = (reply.watches, self.clients.get_mut(&client)) {
                         client.watches = watches;
                     }

@@ -16,7 +16,7 @@ fn place(x: f64, y: f64, heading: f64) -> Start {
 
 fn mission(robot: &str, name: &str, length: f64) -> Proposal {
     let path = vec![Shape::Line { length }];
-    Proposal { robot: robot.into(), mission: name.into(), after: None, start: None, path }
+    Proposal { robot: robot.into(), mission: name.into(), after: None, of: None, start: None, path }
 }
 
 fn report(robot: &str, path: u64, lo: f64, hi: f64) -> Report {

@@ -4,7 +4,7 @@ use crate::world::{Disc, STEP, Trouble, World};
 use pcr_serve::course::Start;
 use pcr_serve::entry::{Entry, Kept, Nowhere};
 use pcr_serve::event::Event;
-use pcr_serve::journal::{self, Journal};
+use pcr_serve::journal::{self, Frames, Journal};
 use pcr_serve::robot::Abilities;
 use pcr_serve::supervisor::{Settings, Supervisor};
 use serde_json::json;
@@ -76,7 +76,7 @@ fn a_journal_that_ends_at_any_byte_keeps_all_that_was_told() {
     assert!(told.len() > 10, "{} writes", told.len());
     let (mut last, mut restarts) = (usize::MAX, 0);
     for end in 16..=bytes.len() {
-        let (entries, read) = journal::read(&bytes[..end]).unwrap();
+        let Frames { entries, end: read, .. } = journal::read(&bytes[..end]).unwrap();
         let Some((_, before)) = told.iter().rev().find(|(written, _)| *written <= end) else { continue };
         let whole =
             told.iter().rev().find(|(written, _)| *written <= end).map_or(16, |(written, _)| (*written).max(16));
@@ -97,7 +97,7 @@ fn a_journal_that_is_damaged_is_not_gone_on_with() {
         world.step();
     }
     let bytes = world.disc.bytes.lock().unwrap().clone();
-    let (entries, end) = journal::read(&bytes).unwrap();
+    let Frames { entries, end, .. } = journal::read(&bytes).unwrap();
     assert_eq!(end, bytes.len());
     // Any bit that is another one is noticed. In the last frame it counted as one that is not complete: what had been told was forgotten. (Of
     // those before it not all: reading them takes long.)
@@ -113,10 +113,44 @@ fn a_journal_that_is_damaged_is_not_gone_on_with() {
             assert!(journal::read(&other).is_err(), "bit {bit} of byte {place}");
         }
     }
-    let mut newer = bytes.clone();
-    newer[12] += 1;
-    assert_eq!(journal::read(&newer).unwrap_err(), "it is that of another version");
+    let mut older = bytes.clone();
+    older[12] = 2;
+    let why = "it is of version 2, and 3 is read: begin another journal while all robots stand";
+    assert_eq!(journal::read(&older).unwrap_err(), why);
     assert_eq!(journal::read(b"{}").unwrap_err(), "it is no journal");
+}
+
+/// A frame that was there twice, was cut from the middle, or had changed places with another one was read as if nothing were wrong.
+#[test]
+fn frames_that_do_not_follow_one_another_are_damage() {
+    let mut world = World::new(3, 2, GOOD);
+    while world.now < 4.0 {
+        world.step();
+    }
+    let bytes = world.disc.bytes.lock().unwrap().clone();
+    let mut ends = vec![16];
+    while ends.last() < Some(&bytes.len()) {
+        let (first, length) = (*ends.last().unwrap(), |at: usize| bytes[at..at + 4].try_into().unwrap());
+        ends.push(first + 16 + u32::from_le_bytes(length(first)) as usize);
+    }
+    let frames: Vec<&[u8]> = ends.windows(2).map(|ends| &bytes[ends[0]..ends[1]]).collect();
+    assert!(frames.len() > 5 && ends.last() == Some(&bytes.len()));
+    let read = |frames: &[&[u8]]| journal::read(&[&bytes[..16], &frames.concat()].concat());
+    assert!(read(&frames).is_ok());
+    for (k, end) in ends[..frames.len()].iter().enumerate() {
+        let why = |at: usize| Some(format!("at byte {at}: entries that do not follow those before them"));
+        let mut twice = frames.clone();
+        twice.insert(k, frames[k]);
+        assert_eq!(read(&twice).err(), why(ends[k + 1]), "twice");
+        if k + 1 < frames.len() {
+            let mut cut = frames.clone();
+            cut.remove(k);
+            assert_eq!(read(&cut).err(), why(*end), "cut");
+            let mut swapped = frames.clone();
+            swapped.swap(k, k + 1);
+            assert_eq!(read(&swapped).err(), why(*end), "swapped");
+        }
+    }
 }
 
 /// What vehicles may go on to is a list that grows with each release. If all of it was written each time, a journal of an hour would have
@@ -154,7 +188,7 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
 
 /// Where the last frame begins.
 fn last_frame(bytes: &[u8]) -> usize {
-    journal::read(&bytes[..bytes.len() - 1]).unwrap().1
+    journal::read(&bytes[..bytes.len() - 1]).unwrap().end
 }
 
 /// The sectors of a frame may reach the disc in any order, and there are zeros where they are to be.
@@ -168,7 +202,7 @@ fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
     let mut bytes = world.disc.bytes.lock().unwrap().clone();
     pcr_serve::entry::Keep::keep(&mut world.disc.clone(), &world.supervisor.snapshot()).unwrap();
     let whole = world.disc.bytes.lock().unwrap().clone();
-    let (before, last) = (journal::read(&bytes).unwrap().0.len(), bytes.len());
+    let (before, last) = (journal::read(&bytes).unwrap().entries.len(), bytes.len());
     assert!(whole.len() - last > 4 * SECTOR && last_frame(&whole) == last);
     let room = whole.len() + 1000;
     bytes.resize(room, 0);
@@ -181,10 +215,10 @@ fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
                 torn[last + sector * SECTOR..][..part.len()].copy_from_slice(part);
             }
         }
-        let (entries, end) = journal::read(&torn).unwrap();
+        let Frames { entries, end, .. } = journal::read(&torn).unwrap();
         assert!(end == last && entries.len() == before, "{missing:b}");
     }
-    let (entries, end) = journal::read(&[whole.clone(), vec![0; 1000]].concat()).unwrap();
+    let Frames { entries, end, .. } = journal::read(&[whole.clone(), vec![0; 1000]].concat()).unwrap();
     assert!(end == whole.len() && entries.len() > before);
 }
 
@@ -222,7 +256,7 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot()).unwrap();
     drop(journal);
     let path = folder.join("journal");
-    let end = journal::read(&std::fs::read(&path).unwrap()).unwrap().1;
+    let end = journal::read(&std::fs::read(&path).unwrap()).unwrap().end;
     let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
     assert!(file.metadata().unwrap().len() > end as u64, "zeros follow");
     (&file).seek(SeekFrom::Start(end as u64)).unwrap();

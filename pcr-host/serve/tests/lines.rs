@@ -5,14 +5,16 @@ use pcr_serve::entry::Nowhere;
 use pcr_serve::lines::{LONGEST, handle, news};
 use pcr_serve::log::{Level, Log};
 use pcr_serve::outbox::{BACKLOG, Lost, outbox};
-use pcr_serve::server::{Input, queue, serve};
+use pcr_serve::server::{Call, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::writer::Kept;
 use pcr_serve::{clients, http};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
+use std::sync::mpsc::sync_channel;
 use std::thread;
+use std::time::{Duration, Instant};
 
 fn supervisor() -> Supervisor {
     Supervisor::new(Settings::default(), Box::new(Nowhere))
@@ -49,7 +51,7 @@ fn the_example_of_the_document() {
     for line in text.lines() {
         if let Some(request) = line.strip_prefix("> ") {
             assert!(said.is_empty(), "the document leaves out {said:?}");
-            let reply = handle(&mut supervisor, request.as_bytes(), now);
+            let reply = handle(&mut supervisor, request.as_bytes(), now, now);
             said.push(reply.answer);
             let events = supervisor.settle(now).unwrap();
             said.extend(events.iter().map(news));
@@ -88,7 +90,7 @@ fn who_asks_for_holds_hears_that_a_robot_is_stopped() {
         &json!({ "verb": "remove", "robot": "new" }),
         &holds,
     ] {
-        let reply = handle(&mut supervisor, request.to_string().as_bytes(), 0.0);
+        let reply = handle(&mut supervisor, request.to_string().as_bytes(), 0.0, 0.0);
         supervisor.settle(0.0).unwrap();
         fits(&schema, &reply.answer);
         if request == &holds {
@@ -165,7 +167,7 @@ fn every_answer_fits_the_schema_and_nothing_panics() {
             }
         }
         let now = round as f64 * 0.1;
-        let reply = handle(&mut supervisor, &line, now);
+        let reply = handle(&mut supervisor, &line, now, now);
         let events = supervisor.settle(now).unwrap();
         for line in [reply.answer].into_iter().chain(events.iter().map(news)) {
             assert!(validator.is_valid(&line), "{line}");
@@ -216,7 +218,7 @@ fn robots_off_their_paths_and_back() {
         (position(1.0, 0.0), 2.3),
     ] {
         fits(&schema, &request);
-        let reply = handle(&mut supervisor, request.to_string().as_bytes(), now).answer;
+        let reply = handle(&mut supervisor, request.to_string().as_bytes(), now, now).answer;
         fits(&schema, &reply);
         told.extend(reply["error"]["code"].as_str().map(str::to_owned));
         for event in supervisor.settle(now).unwrap().iter().map(news) {
@@ -227,6 +229,126 @@ fn robots_off_their_paths_and_back() {
         }
     }
     assert_eq!(told, ["admitted null", "mission_exists", "alarm back", "alarm off", "clear null"]);
+}
+
+/// A mission that was admitted meanwhile made another place of the length at which a robot was to turn off.
+#[test]
+fn a_replacement_is_of_the_path_that_it_names() {
+    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let mut supervisor = supervisor();
+    let lines = |count: usize| vec![json!({ "kind": "line", "length": 3 }); count];
+    let replace = |name: &str, after: f64, of: Value| {
+        json!({ "verb": "replace", "robot": "a", "mission": name, "after": after, "of": of,
+                "path": [{ "kind": "turn", "sweep": 1.5 }, { "kind": "line", "length": 2 }] })
+    };
+    let mut told = Vec::new();
+    for (request, now) in [
+        (serde_json::from_str(&requests()[0]).unwrap(), 0.0),
+        (json!({ "verb": "mission", "robot": "a", "mission": "1", "path": lines(3) }), 0.0),
+        (json!({ "verb": "position", "robot": "a", "path": 2, "at": [2, 2] }), 2.0),
+        (json!({ "verb": "position", "robot": "a", "path": 2, "at": [4, 4] }), 4.0),
+        (json!({ "verb": "mission", "robot": "a", "mission": "2", "of": 2, "path": lines(1) }), 4.0),
+        (replace("3", 6.5, json!(2)), 5.0),
+        (replace("3", 6.5, json!(4)), 5.0),
+        (replace("3", 6.5, json!(3)), 5.0),
+        // Asked for again it is the same one.
+        (replace("3", 6.5, json!(3)), 5.0),
+        (replace("4", 8.0, Value::Null), 5.0),
+    ] {
+        fits(&schema, &request);
+        let answer = handle(&mut supervisor, request.to_string().as_bytes(), now, now).answer;
+        fits(&schema, &answer);
+        supervisor.settle(now).unwrap();
+        told.push((answer["ok"]["path"].as_u64(), answer["error"]["code"].clone(), answer["error"]["path"].clone()));
+    }
+    let (none, other) = (Value::Null, json!("no_such_path"));
+    let ok = |path: Option<u64>| (path, none.clone(), none.clone());
+    let refused = (None, other, json!(3));
+    let same = ok(Some(4));
+    assert_eq!(
+        told,
+        [
+            ok(Some(1)),
+            ok(Some(2)),
+            ok(None),
+            ok(None),
+            ok(Some(3)),
+            refused.clone(),
+            refused,
+            same.clone(),
+            same,
+            ok(Some(5))
+        ]
+    );
+}
+
+/// A heading that was a thousandth of a radian off was let through, whatever it was off at the end of the path.
+#[test]
+fn a_path_ends_where_who_asks_for_it_believes() {
+    let arc = json!({ "kind": "arc", "radius": 0.2, "sweep": 6.0 });
+    for (heading, path, is_there) in [
+        (9e-4, json!([{ "kind": "line", "length": 1 }]), true),
+        (9e-4, json!([{ "kind": "line", "length": 10 }]), false),
+        (9e-5, json!([{ "kind": "line", "length": 10 }]), true),
+        (std::f64::consts::TAU, json!([{ "kind": "line", "length": 1000 }]), true),
+        // However long it is, it does not lead far.
+        (9e-4, json!([arc, arc]), true),
+        (9e-4, json!([arc, arc, arc]), false),
+        (2e-3, json!([{ "kind": "turn", "sweep": 1 }]), false),
+        (9e-4, json!([{ "kind": "turn", "sweep": 1 }]), true),
+    ] {
+        let mut supervisor = supervisor();
+        handle(&mut supervisor, requests()[0].as_bytes(), 0.0, 0.0);
+        let start = json!({ "x": -3, "y": 0, "heading": heading });
+        let request = json!({ "verb": "mission", "robot": "a", "mission": "1", "start": start, "path": path });
+        let answer = handle(&mut supervisor, request.to_string().as_bytes(), 0.0, 0.0).answer;
+        assert_eq!(answer["error"]["code"] != "apart", is_there, "{request} {answer}");
+    }
+}
+
+/// A message that was older than an alarm, and said so, ended it where it had waited for longer than that: its age was that of when it was
+/// read.
+#[test]
+fn ages_count_from_when_a_line_came() {
+    let (sender, inputs) = sync_channel(100);
+    let server = thread::spawn(move || {
+        serve(&mut supervisor(), &inputs, &Kept::default(), Log::new(Level::Error)).unwrap();
+    });
+    let (answer, alarm) = sync_channel(2);
+    let ask = |question: fn(&Supervisor) -> bool| {
+        let answer = answer.clone();
+        let call: Call = Box::new(move |supervisor, _, _| {
+            answer.send(question(supervisor)).unwrap();
+            None
+        });
+        sender.send((Instant::now(), Input::Call(call))).unwrap();
+        alarm.recv().unwrap()
+    };
+    // It is at work.
+    assert!(ask(|supervisor| supervisor.robots().is_empty()));
+    let begin = Instant::now();
+    // What follows came a while ago.
+    let busy = |supervisor: &Supervisor| {
+        thread::sleep(Duration::from_millis(200));
+        supervisor.robots().iter().any(|robot| robot.alarm.is_some())
+    };
+    assert!(!ask(busy));
+    let say = |after: u64, request: Value| {
+        let line = request.to_string().into_bytes();
+        sender.send((begin + Duration::from_millis(after), Input::Line(1, line))).unwrap();
+    };
+    say(0, serde_json::from_str(&requests()[0]).unwrap());
+    say(1, json!({ "verb": "mission", "robot": "a", "mission": "1", "path": [{ "kind": "line", "length": 2 }] }));
+    let position = |age: f64| json!({ "verb": "position", "robot": "a", "path": 2, "at": [0, 0], "age": age });
+    say(20, json!({ "verb": "off", "robot": "a", "x": 0, "y": 2 }));
+    // It does something else for longer than the message is old.
+    assert!(ask(busy));
+    say(40, position(0.03));
+    assert!(ask(|supervisor| supervisor.robots()[0].alarm.is_some()));
+    say(60, position(0.03));
+    assert!(ask(|supervisor| supervisor.robots()[0].alarm.is_none()));
+    sender.send((Instant::now(), Input::Stop)).unwrap();
+    server.join().unwrap();
 }
 
 #[test]

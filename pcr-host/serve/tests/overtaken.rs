@@ -26,7 +26,7 @@ fn a_slow_robot_gets_its_turn() {
         vec![Shape::Turn { sweep: PI }, line(4.0), bend, line(12.0), bend, line(4.0)]
     };
     let ask = |own: &mut Supervisor, robot: &str, mission: String, path: Vec<Shape>, now: f64| {
-        own.mission(&Proposal { robot: robot.into(), mission, after: None, start: None, path }, now).unwrap();
+        own.mission(&Proposal { robot: robot.into(), mission, after: None, of: None, start: None, path }, now).unwrap();
     };
     let mut trips = 0;
     for step in 0..1_200 {
@@ -74,7 +74,7 @@ fn one_that_stands_does_not_put_others_last() {
     }
     let ask = |own: &mut Supervisor, robot: &str, length: f64, now: f64| {
         let path = vec![Shape::Line { length }];
-        let mission = Proposal { robot: robot.into(), mission: "1".into(), after: None, start: None, path };
+        let mission = Proposal { robot: robot.into(), mission: "1".into(), after: None, of: None, start: None, path };
         let verdict = own.mission(&mission, now).unwrap();
         assert!(matches!(verdict, Verdict::Admitted { .. }), "{robot}: {verdict:?}");
     };
@@ -119,7 +119,7 @@ fn a_mission_is_tried_however_many_others_wait() {
     let abilities = Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 };
     let ask = |own: &mut Supervisor, robot: &str| {
         let path = vec![Shape::Line { length: 5.0 }];
-        let proposal = Proposal { robot: robot.into(), mission: "1".into(), after: None, start: None, path };
+        let proposal = Proposal { robot: robot.into(), mission: "1".into(), after: None, of: None, start: None, path };
         own.mission(&proposal, 0.0).unwrap()
     };
     for k in 0..ROW {

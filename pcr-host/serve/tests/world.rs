@@ -8,12 +8,12 @@ use pcr_serve::course::{Course, Shape, Start};
 use pcr_serve::entry::{Entry, Keep};
 use pcr_serve::event::Event;
 use pcr_serve::fault::Fault;
-use pcr_serve::journal::{self, frame};
+use pcr_serve::journal::{self, Frames, frame};
 use pcr_serve::robot::Abilities;
 use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
 use std::f64::consts::PI;
 use std::io;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 /// Time between two controls \[s\].
@@ -53,18 +53,21 @@ impl Dice {
 pub(crate) struct Disc {
     pub(crate) bytes: Arc<Mutex<Vec<u8>>>,
     pub(crate) fails_at: Arc<AtomicUsize>,
+    /// Checksum of the last frame.
+    sum: Arc<AtomicU32>,
 }
 
 impl Disc {
     pub(crate) fn new() -> Self {
-        let header = b"pcr-journal\0\x02\0\0\0".to_vec();
-        Self { bytes: Arc::new(Mutex::new(header)), fails_at: Arc::new(AtomicUsize::new(usize::MAX)) }
+        let (bytes, sum) = (Arc::new(Mutex::new(journal::HEADER.to_vec())), Arc::new(AtomicU32::new(journal::FIRST)));
+        Self { bytes, fails_at: Arc::new(AtomicUsize::new(usize::MAX)), sum }
     }
 
     pub(crate) fn entries(&self) -> Vec<Entry> {
         let mut bytes = self.bytes.lock().unwrap();
-        let (entries, end) = journal::read(&bytes).unwrap();
+        let Frames { entries, end, sum } = journal::read(&bytes).unwrap();
         bytes.truncate(end);
+        self.sum.store(sum, Relaxed);
         entries
     }
 }
@@ -72,13 +75,14 @@ impl Disc {
 impl Keep for Disc {
     fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
         let mut bytes = self.bytes.lock().unwrap();
-        let frame = frame(entries)?;
+        let (frame, sum) = frame(entries, self.sum.load(Relaxed))?;
         let room = self.fails_at.load(Relaxed).saturating_sub(bytes.len());
         if room < frame.len() {
             bytes.extend(&frame[..room]);
             return Err(io::Error::other("killed"));
         }
         bytes.extend(frame);
+        self.sum.store(sum, Relaxed);
         Ok(())
     }
 }
@@ -377,6 +381,7 @@ impl World {
             robot: self.vehicles[k].name.clone(),
             mission: format!("mission {}", self.proposals),
             after: (!arrives).then_some(after),
+            of: None,
             start: Some(start),
             path,
         };

@@ -2,7 +2,7 @@
 //! there are none.
 
 use super::{Supervisor, fleet};
-use crate::course::{Course, Shape, Start};
+use crate::course::{Course, Shape, Start, extent};
 use crate::entry::{Entry, Kept, Known};
 use crate::event::Event;
 use crate::fault::Fault;
@@ -21,6 +21,9 @@ pub struct Proposal {
     /// It begins at this length of the path that the robot has \[m\], if it is to leave it; else at its end.
     #[serde(default)]
     pub after: Option<f64>,
+    /// The number of that path, to be compared; none: not compared.
+    #[serde(default)]
+    pub of: Option<u64>,
     /// Where that is, to be compared; none: not compared.
     #[serde(default)]
     pub start: Option<Start>,
@@ -64,7 +67,7 @@ pub(super) struct Try {
 /// Between two attempts \[s\], at first and at most.
 const PAUSE: [f64; 2] = [0.25, 2.0];
 
-/// A path begins where the one before it ends if it is not further off than \[m\] and \[rad\].
+/// A path begins where the one before it ends if it is nowhere further off than that \[m\], and not turned by more \[rad\].
 const JOIN: f64 = 1e-3;
 
 impl Proposal {
@@ -110,7 +113,14 @@ impl Supervisor {
             shapes: proposal.path.clone(),
             turn: self.turn,
         };
-        self.joins(robot, after, proposal.start)?;
+        // A length of another path is another place.
+        if proposal.of.is_some_and(|path| path != robot.path) {
+            return Err(Fault::NoSuchPath { path: robot.path });
+        }
+        self.joins(robot, after)?;
+        if let Some(start) = proposal.start {
+            is_there(robot, after, start, extent(&proposal.path))?;
+        }
         self.counts.missions += 1;
         // Taken out now: a path that is admitted leaves nothing waiting.
         let robot = &mut self.robots[place];
@@ -162,20 +172,12 @@ impl Supervisor {
     }
 
     /// Whether a path can begin at this length of that of a robot.
-    fn joins(&self, robot: &Robot, after: f64, start: Option<Start>) -> Result<(), Fault> {
+    fn joins(&self, robot: &Robot, after: f64) -> Result<(), Fault> {
         if !(0.0..=robot.course.length()).contains(&after) {
             let length = robot.course.length();
             return Err(Fault::invalid(format!("after: {after} is out of range; the path is {length} m long")));
         }
-        if after < robot.told {
-            return Err(Fault::Released { hold: robot.told });
-        }
-        let Some(start) = start else { return Ok(()) };
-        let end = robot.course.arrival(after).map_err(Fault::invalid)?;
-        let distance = (start.x - end.x).hypot(start.y - end.y);
-        let angle = (start.heading - end.heading).sin().atan2((start.heading - end.heading).cos()).abs();
-        // What is no number is not near.
-        if distance <= JOIN && angle <= JOIN { Ok(()) } else { Err(Fault::Apart { distance, angle }) }
+        if after < robot.told { Err(Fault::Released { hold: robot.told }) } else { Ok(()) }
     }
 
     /// Tries to admit a mission: none if it was, else why not.
@@ -327,7 +329,7 @@ impl Supervisor {
         let robot = &self.robots[place];
         let name = robot.name.clone();
         let possible = match waiting.path == robot.path {
-            true => self.joins(robot, waiting.after, None).and_then(|()| self.attempt(place, &waiting, now)),
+            true => self.joins(robot, waiting.after).and_then(|()| self.attempt(place, &waiting, now)),
             false => Err(Fault::NoSuchPath { path: robot.path }),
         };
         match possible {
@@ -353,6 +355,17 @@ impl Supervisor {
             }
         }
     }
+}
+
+/// Whether a path that leaves that of a robot at a length begins where somebody says, and leads there as far as it goes: a heading that
+/// differs is a place that differs further on.
+fn is_there(robot: &Robot, after: f64, start: Start, extent: f64) -> Result<(), Fault> {
+    let end = robot.course.arrival(after).map_err(Fault::invalid)?;
+    let distance = (start.x - end.x).hypot(start.y - end.y);
+    let angle = (start.heading - end.heading).sin().atan2((start.heading - end.heading).cos()).abs();
+    // What is no number is not near.
+    let is_near = angle <= JOIN && distance + angle * extent <= JOIN;
+    if is_near { Ok(()) } else { Err(Fault::Apart { distance, angle }) }
 }
 
 fn admitted(robot: &Robot) -> Verdict {

@@ -170,7 +170,7 @@ impl Bridge {
                 .visualization(supervisor, payload, limits, is_third, now)
                 .inspect(|()| lane.pass_on(kind, is_third, payload)),
             Kind::Connection => {
-                lane.connection(payload, limits, is_third).inspect(|()| lane.pass_on(kind, is_third, payload))
+                lane.connection(payload, limits, is_third, now).inspect(|()| lane.pass_on(kind, is_third, payload))
             }
             Kind::Factsheet => {
                 lane.factsheet(payload, limits, is_third).inspect(|()| lane.pass_on(kind, is_third, payload))

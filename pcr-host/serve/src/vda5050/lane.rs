@@ -7,7 +7,10 @@
 mod actions;
 mod job;
 mod mirror;
+mod newest;
 mod orders;
+mod past;
+mod pause;
 mod release;
 mod states;
 
@@ -21,6 +24,9 @@ use super::topics::{Key, Kind};
 use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::Supervisor;
+use newest::Newest;
+use past::{Noted, Past};
+use pause::Pauses;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -61,13 +67,6 @@ pub struct Post {
     pub payload: Vec<u8>,
 }
 
-/// The newest message of a vehicle.
-#[derive(Clone, Copy, Debug)]
-struct Newest {
-    header_id: u64,
-    stamp: f64,
-}
-
 /// One vehicle.
 #[derive(Debug)]
 pub struct Lane {
@@ -79,12 +78,14 @@ pub struct Lane {
     /// When that came \[s\].
     heard_at: f64,
     job: Option<Job>,
+    /// The orders that it had, and the actions by which the manager has cancelled any.
+    orders: Past,
+    cancels: Past,
     /// What the manager is told is wrong with its orders, until one is taken.
     errors: Vec<StateError>,
     /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
     astray: Option<(u32, f64)>,
-    /// Whether it was asked to pause or to go on, and when \[s\], until it does.
-    pause: Option<(bool, f64)>,
+    pauses: Pauses,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
     /// What the manager was told of what is ahead.
@@ -97,11 +98,14 @@ impl Lane {
     /// Of a vehicle, with what the supervisor remembers of it.
     pub fn new(profile: Profile, supervisor: &Supervisor) -> Self {
         let name = profile.key.to_string();
-        let job = supervisor.robot(&name).ok().and_then(Job::remembered);
+        let robot = supervisor.robot(&name).ok();
+        let job = robot.and_then(Job::remembered);
+        let [orders, cancels] = ["orders", "cancels"].map(|key| Past::remembered(key, robot));
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        let (state, heard_at, astray, pause) = (None, 0.0, None, None);
+        let pauses = Pauses::remembered(robot);
+        let (state, heard_at, astray) = (None, 0.0, None);
         Self {
             profile,
             name,
@@ -110,9 +114,11 @@ impl Lane {
             state,
             heard_at,
             job,
+            orders,
+            cancels,
             errors,
             astray,
-            pause,
+            pauses,
             sent,
             posts,
             ahead: None,
@@ -150,17 +156,6 @@ impl Lane {
         std::mem::take(&mut self.posts)
     }
 
-    /// Whether a message is newer than all others of its kind: a higher number, or a later time of a vehicle that counts anew.
-    fn is_new(&mut self, kind: Kind, header: &Header) -> bool {
-        let stamp = pcr_formats::import::seconds(&header.timestamp).unwrap_or(f64::NEG_INFINITY);
-        let newest = self.newest.get(&kind);
-        let is_new = newest.is_none_or(|newest| header.header_id > newest.header_id || stamp > newest.stamp);
-        if is_new {
-            self.newest.insert(kind, Newest { header_id: header.header_id, stamp });
-        }
-        is_new
-    }
-
     /// The header of our next message of a kind.
     fn header(&mut self, kind: Kind, version: Version) -> Header {
         let number = self.sent.entry(kind).or_insert(0);
@@ -189,6 +184,22 @@ impl Lane {
     fn note_more(&self, supervisor: &mut Supervisor, key: &str, more: Vec<Value>) {
         // As above.
         let _ = supervisor.note_more(&self.name, key, more);
+    }
+
+    /// Remembers a name that was used.
+    fn note_past(&self, supervisor: &mut Supervisor, key: &str, noted: Noted) {
+        match noted {
+            Noted::More(more) => self.note_more(supervisor, key, more),
+            Noted::All(all) => self.note(supervisor, key, all),
+        }
+    }
+
+    /// Remembers for a robot that was added anew what outlives its order: its notes went with the one before.
+    fn note_anew(&self, supervisor: &mut Supervisor) {
+        for past in [&self.orders, &self.cancels] {
+            self.note(supervisor, past.key, past.all());
+        }
+        self.note_pauses(supervisor);
     }
 }
 

@@ -238,6 +238,13 @@ impl State {
         all.find(|state| state.action_id == action_id).map(|state| state.action_status.as_str())
     }
 
+    /// Whether it says anything of an action: how far that is, or what is wrong with it.
+    pub fn names(&self, action_id: &str) -> bool {
+        let mut references =
+            self.errors.iter().filter_map(|error| error.rest.get("errorReferences")?.as_array()).flatten();
+        self.action(action_id).is_some() || references.any(|reference| reference["referenceValue"] == action_id)
+    }
+
     /// Whether it has nothing more to do of its order.
     pub fn is_idle(&self) -> bool {
         let is_done = |state: &ActionState| matches!(state.action_status.as_str(), "FINISHED" | "FAILED");

@@ -159,13 +159,103 @@ fn a_position_between_states_that_is_back_ends_no_alarm() {
     let between = |own: &Lone, x: f64, header: u64| {
         let mut message = state.clone();
         (message["headerId"], message["agvPosition"]["x"]) = (json!(header), json!(x));
-        message["timestamp"] = json!("2031-01-01T00:00:00.000Z");
         (message.to_string(), interfaces()[1].topic(Version::V2_1, &key(), Kind::Visualization), own.time)
     };
     for (x, header, alarm) in [(own.robot_at() - 1.4, 1, true), (own.robot_at(), 2, false)] {
         let (text, topic, time) = between(&own, x, header);
         own.bridge.receive(&mut own.supervisor, &topic, text.as_bytes(), time);
         assert_eq!(own.has_alarm(), alarm, "{x}: {:?}", own.bridge.log());
+    }
+}
+
+/// A state from before the vehicle was switched off and on had a higher number than all since then: it counted as the newest.
+#[test]
+fn a_state_from_before_a_vehicle_counts_anew_ends_no_alarm() {
+    let mut own = Lone::driving();
+    let mut old = own.state();
+    old["headerId"] = json!(1000);
+    own.hears(Kind::State, &old);
+    own.vehicle.advance(0.1);
+    let mut off = own.state();
+    (off["headerId"], off["agvPosition"]["y"]) = (json!(1), json!(2.0));
+    own.hears(Kind::State, &off);
+    assert!(own.has_alarm());
+    own.time += 1.0;
+    own.hears(Kind::State, &old);
+    own.turn();
+    assert!(own.has_alarm());
+}
+
+/// None of its states counted until it had been on for as long as before.
+#[test]
+fn a_vehicle_whose_clock_begins_anew_is_heard() {
+    for (is_online, is_deaf, has_clock) in
+        [(false, false, true), (true, false, true), (false, true, true), (false, false, false), (true, true, false)]
+    {
+        let mut own = Lone::driving();
+        own.lasts(10.0);
+        let old = own.state();
+        let before = own.robot_at();
+        own.vehicle.forget();
+        own.vehicle.set_clock(-1e6);
+        if is_online {
+            let online: Value = serde_json::from_slice(&own.vehicle.connection("ONLINE")).unwrap();
+            own.hears(Kind::Connection, &online);
+        }
+        // It has rolled away.
+        let mut said = 0;
+        while !own.has_alarm() {
+            said += 1;
+            assert!(said < 100, "it is not heard");
+            own.time += 1.0;
+            own.vehicle.advance(1.0);
+            let mut off = own.state();
+            off["agvPosition"]["y"] = json!(3.0);
+            if !has_clock {
+                off["timestamp"] = json!("0000-00-00T00:00:00Z");
+            }
+            if !is_deaf {
+                own.turn();
+                let state = own.state();
+                off["actionStates"] = state["actionStates"].clone();
+            }
+            own.hears(Kind::State, &off);
+        }
+        let expected = if is_deaf {
+            62
+        } else if is_online {
+            1
+        } else {
+            4
+        };
+        assert_eq!(said, expected, "{is_online} {is_deaf} {has_clock}");
+        // Those of before are older, whatever their clock said, and so is what it said between them.
+        own.time += 0.1;
+        own.hears(Kind::State, &old);
+        own.hears(Kind::Visualization, &old);
+        assert!(own.has_alarm() && own.robot_at() == before);
+    }
+}
+
+/// All that had been on its way from a vehicle that is not heard any more, in the order in which it was written.
+#[test]
+fn late_states_in_a_row_end_no_alarm() {
+    let mut own = Lone::driving();
+    let mut late: Vec<Value> = Vec::new();
+    for _ in 0..20 {
+        own.vehicle.advance(0.1);
+        late.push(own.state());
+    }
+    let mut off = own.state();
+    off["agvPosition"]["y"] = json!(2.0);
+    own.hears(Kind::State, &off);
+    let online: Value = serde_json::from_slice(&own.vehicle.connection("ONLINE")).unwrap();
+    own.hears(Kind::Connection, &online);
+    for state in late {
+        own.time += 1.0;
+        own.turn();
+        own.hears(Kind::State, &state);
+        assert!(own.has_alarm());
     }
 }
 
@@ -199,6 +289,18 @@ fn a_vehicle_that_has_passed_its_base_is_not_where_it_may_be() {
     state["headerId"] = json!(1 << 20);
     own.hears(Kind::State, &state);
     assert!(own.has_alarm());
+}
+
+/// It was taken for one that has said nothing, wherever it was.
+#[test]
+fn a_vehicle_that_names_no_node_of_its_order_has_to_be_on_its_way() {
+    let mut own = Lone::driving();
+    for (y, alarm) in [(0.0, false), (2.0, true)] {
+        let mut state = own.state();
+        (state["lastNodeSequenceId"], state["agvPosition"]["y"]) = (json!(1), json!(y));
+        own.hears(Kind::State, &state);
+        assert_eq!(own.has_alarm(), alarm, "{y}");
+    }
 }
 
 /// Its place there was taken for one on its way.

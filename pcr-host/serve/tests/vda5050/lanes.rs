@@ -114,8 +114,18 @@ impl Pair {
     }
 
     fn cancels(&mut self, id: &str) {
-        let action = json!({ "actionType": "cancelOrder", "actionId": id, "blockingType": "NONE" });
+        self.acts("cancelOrder", id);
+    }
+
+    /// The manager wants something at once.
+    fn acts(&mut self, kind: &str, id: &str) {
+        let action = json!({ "actionType": kind, "actionId": id, "blockingType": "NONE" });
         self.says(Kind::InstantActions, json!({ "actions": [action] }));
+    }
+
+    /// Whether the manager is told that it is paused.
+    fn is_paused(&self) -> bool {
+        self.state.as_ref().is_some_and(|state| state.rest["paused"] == true)
     }
 
     fn is_done(&self, id: &str) -> bool {
@@ -215,6 +225,70 @@ fn what_cancels_an_order_is_sent_until_it_is_there() {
     }
 }
 
+/// A message that came again gave up the order that the vehicle had meanwhile: its state still said that the action is done. What had been
+/// sent and was on its way went to others, too.
+#[test]
+fn what_cancelled_an_order_before_cancels_nothing_when_it_comes_again() {
+    for is_restarted in [false, true] {
+        let mut own = Pair::new();
+        own.order("a", &TO);
+        own.lasts(2.0);
+        own.cancels("stop");
+        own.lasts(10.0);
+        let [x, y] = own.vehicle.place();
+        let places = [[x, y], [x + 4.0, y], [x + 8.0, y]];
+        own.says(Kind::Order, order("b", 0, 0, &places, 2));
+        own.lasts(30.0);
+        assert_eq!(own.state.as_ref().unwrap().action("stop"), Some("FINISHED"));
+        if is_restarted {
+            own.restart();
+        }
+        own.loses = Some(|kind, said| kind == Kind::Order && said["orderId"] == "b");
+        own.says(Kind::Order, order("b", 1, 2, &places[1..], 2));
+        own.cancels("stop");
+        let log = own.bridge.log();
+        assert_eq!(
+            log,
+            ["fleet/v2/sim/001/instantActions: actions[0].actionId: \"stop\" was there before: it cancels nothing"]
+        );
+        own.lasts(60.0);
+        assert!(own.is_done("b") && own.loses.is_none(), "{is_restarted}: {:?}", own.state);
+        // Another one does, from there.
+        own.order("c", &[places[2], places[1], places[0]]);
+        own.lasts(2.0);
+        own.cancels("stop again");
+        own.lasts(10.0);
+        assert!(own.bridge.lanes().all(|lane| lane.job().is_none()), "{:?}", own.state);
+    }
+}
+
+/// After 32 updates of the order after it nobody remembered an order: it was driven again.
+#[test]
+fn an_order_is_an_old_one_however_many_updates_came_since() {
+    let mut own = Pair::new();
+    own.order("a", &[[0.0, 0.0], [1.0, 0.0]]);
+    own.lasts(20.0);
+    assert!(own.is_done("a"));
+    let places: Vec<[f64; 2]> = (0..40).map(|k| [1.0 + 0.2 * f64::from(k), 0.0]).collect();
+    own.says(Kind::Order, order("b", 0, 0, &places[..1], 1));
+    for update in 1..40 {
+        own.lasts(1.5);
+        own.says(Kind::Order, order("b", update as u64, 2 * (update - 1) as u64, &places[update - 1..=update], 2));
+        own.lasts(0.1);
+        assert_eq!(own.errors(), [""; 0], "{update}");
+    }
+    own.lasts(20.0);
+    assert!(own.is_done("b"), "{:?}", own.state);
+    for _ in 0..2 {
+        own.order("a", &[[8.8, 0.0], [1.0, 0.0]]);
+        own.lasts(1.0);
+        assert!(own.errors()[0].contains("an order of this name before"), "{:?}", own.errors());
+        own.restart();
+        own.lasts(1.0);
+    }
+    assert!(own.is_done("b"));
+}
+
 /// The vehicle said that there was nothing to cancel, as the order was lost: neither was sent again.
 #[test]
 fn an_order_that_is_cancelled_before_it_is_there_is_over() {
@@ -273,6 +347,89 @@ fn a_vehicle_that_was_paused_by_a_late_message_or_before_a_restart_goes_on() {
     assert!(!own.is_done("b"));
 }
 
+/// Somebody stands in the way of an order, is taken away, and it is told what its manager wants meanwhile; whether it stands then, and
+/// whether it has come to its end 60 s later.
+fn paused_and_stopped(before: &[&str], while_stopped: &[&str], restarts: bool) -> (Pair, [bool; 2]) {
+    let mut own = Pair::new();
+    own.order("a", &TO);
+    own.lasts(3.0);
+    for (k, kind) in before.iter().enumerate() {
+        own.acts(kind, &format!("before-{k}"));
+        own.lasts(2.0);
+    }
+    own.supervisor.add("new", profile(key(), &CAN).abilities, Start { x: 5.0, y: 2.0, heading: 0.0 }).unwrap();
+    own.lasts(6.0);
+    assert!(own.supervisor.robot("sim/001").unwrap().stopped.is_some() && own.is_paused());
+    let place = own.vehicle.place();
+    for (k, kind) in while_stopped.iter().enumerate() {
+        own.acts(kind, &format!("stopped-{k}"));
+        own.lasts(2.0);
+        if restarts {
+            own.restart();
+            own.lasts(2.0);
+        }
+        // Not even for a moment.
+        assert!(own.is_paused() && own.vehicle.place() == place, "{kind}");
+    }
+    own.supervisor.remove("new").unwrap();
+    own.lasts(5.0);
+    let is_paused = own.is_paused();
+    own.lasts(60.0);
+    let is_done = own.is_done("a");
+    (own, [is_paused, is_done])
+}
+
+/// Who was paused by its manager, or by hand, and then stopped, was let go; and the manager let go who had to stand.
+#[test]
+fn pauses_of_others_are_theirs_to_end_and_ours_are_ours() {
+    for restarts in [false, true] {
+        for (before, while_stopped, found) in [
+            (&[][..], &[][..], [false, true]),
+            (&["startPause"], &[], [true, false]),
+            (&["startPause", "stopPause"], &[], [false, true]),
+            (&[], &["startPause"], [true, false]),
+            (&[], &["stopPause"], [false, true]),
+            (&["startPause"], &["stopPause"], [false, true]),
+            (&["startPause"], &["stopPause", "startPause"], [true, false]),
+            (&[], &["startPause", "stopPause"], [false, true]),
+        ] {
+            let context = format!("{before:?} {while_stopped:?} {restarts}");
+            let (mut own, is) = paused_and_stopped(before, while_stopped, restarts);
+            assert_eq!(is, found, "{context}: {:?}", own.state);
+            let log = own.bridge.log();
+            if while_stopped == ["stopPause"] {
+                let state = own.state.clone().unwrap();
+                assert_eq!(state.action("stopped-0"), Some("FINISHED"), "{context}");
+                let why = "actions[0]: it stands for new; \"stopped-0\" is passed on when it may go";
+                assert!(restarts || log.iter().any(|line| line.contains(why)), "{context}: {log:?}");
+            }
+            own.acts("stopPause", "in the end");
+            own.lasts(60.0);
+            assert!(own.is_done("a"), "{context}: {:?}", own.state);
+        }
+    }
+}
+
+/// The manager pauses it as it is let go: that was ended by what let it go, said again.
+#[test]
+fn who_is_paused_as_it_is_let_go_is_paused() {
+    for wait in [0.0, 0.1, 0.3, 1.5] {
+        let mut own = Pair::new();
+        own.order("a", &TO);
+        own.lasts(3.0);
+        own.supervisor.add("new", profile(key(), &CAN).abilities, Start { x: 5.0, y: 2.0, heading: 0.0 }).unwrap();
+        own.lasts(6.0);
+        own.supervisor.remove("new").unwrap();
+        own.lasts(wait);
+        own.acts("startPause", "manager");
+        own.lasts(30.0);
+        assert!(own.is_paused() && !own.is_done("a"), "{wait}");
+        own.acts("stopPause", "manager too");
+        own.lasts(60.0);
+        assert!(own.is_done("a"), "{wait}: {:?}", own.state);
+    }
+}
+
 #[test]
 fn who_is_missing_is_said() {
     let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
@@ -297,6 +454,7 @@ fn who_gets_nowhere_is_said_and_why() {
         robot: robot.into(),
         mission: "1".into(),
         after: None,
+        of: None,
         start: None,
         path: vec![Shape::Line { length }],
     };

@@ -20,6 +20,7 @@ fn a_place_that_is_taken_is_nobodys_end() {
             robot: robot.into(),
             mission: name.into(),
             after: None,
+            of: None,
             start: None,
             path,
         };
@@ -48,8 +49,14 @@ fn a_path_that_goes_on_goes_on_where_it_was() {
         supervisor.add("a", abilities, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
         let (line, turn) = (Shape::Line { length: 5.0 }, Shape::Turn { sweep: std::f64::consts::FRAC_PI_2 });
         let path = vec![turn, line, turn, line, turn, line];
-        let mission =
-            |name: &str, path| Proposal { robot: "a".into(), mission: name.into(), after: None, start: None, path };
+        let mission = |name: &str, path| Proposal {
+            robot: "a".into(),
+            mission: name.into(),
+            after: None,
+            of: None,
+            start: None,
+            path,
+        };
         supervisor.mission(&mission("one", path), 0.0).unwrap();
         supervisor.settle(0.0).unwrap();
         let robot = supervisor.robot("a").unwrap();
@@ -100,7 +107,7 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
             }
             end = after(end, &path);
             let name = mission.to_string();
-            let proposal = Proposal { robot: "a".into(), mission: name, after: None, start: None, path };
+            let proposal = Proposal { robot: "a".into(), mission: name, after: None, of: None, start: None, path };
             supervisor.mission(&proposal, 0.0).unwrap();
             supervisor.settle(0.0).unwrap();
             let robot = supervisor.robot("a").unwrap();

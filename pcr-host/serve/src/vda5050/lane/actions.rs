@@ -2,7 +2,8 @@
 
 use super::super::door::{self, Limits, Refusal};
 use super::super::held::Rejected;
-use super::super::messages::InstantActions;
+use super::super::messages::{Action, InstantActions};
+use super::super::state::State;
 use super::super::topics::Kind;
 use super::super::version::{Error, Version};
 use super::release::AGAIN;
@@ -14,7 +15,8 @@ impl Lane {
     /// Passes on what the manager wants at once. An order that it cancels gets no further update.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no such message.
+    /// [`Refusal`] for what is no such message, for a `cancelOrder` that was there before, which is passed on and cancels nothing, and for a
+    /// `stopPause` while the vehicle has to stand.
     pub fn instant_actions(
         &mut self,
         supervisor: &mut Supervisor,
@@ -30,33 +32,56 @@ impl Lane {
             ("", Some(version)) => version,
             _ => message.header.check(&self.profile.key, is_third)?,
         };
-        let cancel = actions.iter().find(|action| action.action_type == "cancelOrder");
+        let (cancel, repeated) = self.cancels(supervisor, actions);
         if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
-            (job.cancel, job.cancelled_at) = (Some(cancel.action_id.clone()), now);
+            // What waits to be admitted is given up: the way ends where it ends now.
+            let mission = format!("cancel {cancel}");
+            (job.cancel, job.cancelled_at) = (Some(cancel), now);
             let given = job.given();
             self.note(supervisor, "order", given);
-            // What waits to be admitted is given up: the way ends where it ends now.
-            let mission = format!("cancel {}", cancel.action_id);
-            let nothing = Proposal { robot: self.name.clone(), mission, after: None, start: None, path: Vec::new() };
+            let nothing =
+                Proposal { robot: self.name.clone(), mission, after: None, of: None, start: None, path: Vec::new() };
             let waits = supervisor.robot(&self.name).is_ok_and(|robot| robot.waiting.is_some());
             if waits {
                 let _ = supervisor.mission(&nothing, now);
             }
         }
-        let actions = actions.to_vec();
-        let header = self.header(Kind::InstantActions, version);
-        let message = InstantActions { rest: message.rest, ..InstantActions::new(header, actions) };
-        self.post(To::Vehicle, Kind::InstantActions, version, &message);
-        Ok(())
+        let (due, held) = self.hold_back(supervisor, actions.to_vec(), now);
+        if held.is_none() || !due.is_empty() {
+            let header = self.header(Kind::InstantActions, version);
+            let message = InstantActions { rest: message.rest, ..InstantActions::new(header, due) };
+            self.post(To::Vehicle, Kind::InstantActions, version, &message);
+        }
+        repeated.or(held).map_or(Ok(()), Err)
     }
 
-    /// Asks the vehicle for something.
-    pub fn ask_for(&mut self, action_type: &str) {
+    /// The action that cancels the order, if one does. One that was used before is a message that comes again: the vehicle does nothing for
+    /// it, and says that it is done since the order before.
+    fn cancels(&mut self, supervisor: &mut Supervisor, actions: &[Action]) -> (Option<String>, Option<Refusal>) {
+        let (mut cancel, mut repeated) = (None, None);
+        for (k, action) in actions.iter().enumerate().filter(|(_, action)| action.action_type == "cancelOrder") {
+            let id = &action.action_id;
+            let is_over = |state: &State| matches!(state.action(id), Some("FINISHED" | "FAILED"));
+            if self.cancels.contains(id) || self.state.as_deref().is_some_and(is_over) {
+                let why = format!("{id:?} was there before: it cancels nothing");
+                repeated.get_or_insert(Refusal::new(format!("actions[{k}].actionId"), why));
+                continue;
+            }
+            let noted = self.cancels.push(id);
+            self.note_past(supervisor, self.cancels.key, noted);
+            cancel.get_or_insert(id.clone());
+        }
+        (cancel, repeated)
+    }
+
+    /// Asks the vehicle for something; by which action.
+    pub fn ask_for(&mut self, action_type: &str) -> String {
         let version = self.version.unwrap_or(Version::V2_1);
         let header = self.header(Kind::InstantActions, version);
         let id = format!("pcr-{action_type}-{}-{}", header.timestamp, header.header_id);
-        let message = InstantActions::one(header, action_type, id);
+        let message = InstantActions::one(header, action_type, id.clone());
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
+        id
     }
 
     /// Cancels the order of the vehicle once more, under another name.

@@ -100,14 +100,18 @@ impl Lane {
             && requests("edgeRequests").next().is_none()
     }
 
-    /// Takes whether the vehicle is connected, which nothing depends on: it may go where it was allowed to.
+    /// Takes whether the vehicle is connected, which nothing depends on: it may go where it was allowed to. One that has just connected may
+    /// count anew, and is asked.
     ///
     /// # Errors
     /// [`Refusal`] for what is no such message.
-    pub fn connection(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
+    pub fn connection(&mut self, payload: &[u8], limits: Limits, is_third: bool, now: f64) -> Result<(), Refusal> {
         let message: Connection = door::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
         self.version.get_or_insert(version);
+        if message.connection_state == "ONLINE" && self.state.is_some() {
+            self.ask_when(now);
+        }
         Ok(())
     }
 

@@ -54,8 +54,12 @@ impl Lane {
         if supervisor.robot(&self.name).is_err() {
             return Err(Rejected::new(Error::Order, "", "the vehicle has not yet said where it stands"));
         }
+        let is_its = self.job.as_ref().is_some_and(|job| job.held.order_id == order.order_id);
+        if !is_its && self.orders.contains(&order.order_id) {
+            return Err(was_there());
+        }
         match &self.job {
-            Some(job) if job.held.order_id == order.order_id => self.extend(supervisor, order, now),
+            Some(_) if is_its => self.extend(supervisor, order, now),
             Some(job) if job.lost.is_some() => self.begin_anew(supervisor, order, version, now),
             Some(_) if !self.is_free(supervisor) => {
                 Err(Rejected::new(Error::Order, "orderId", "the vehicle has another order that is not finished"))
@@ -132,6 +136,8 @@ impl Lane {
 
     /// The vehicle has this order from now on.
     fn has(&mut self, supervisor: &mut Supervisor, job: Job) {
+        let noted = self.orders.push(&job.held.order_id);
+        self.note_past(supervisor, self.orders.key, noted);
         self.note(supervisor, "order", job.given());
         self.note(supervisor, "stops", serde_json::to_value(&job.stops).unwrap_or_default());
         self.note(supervisor, "sent", job.sent_note());
@@ -201,13 +207,13 @@ impl Lane {
             robot: self.name.clone(),
             mission: mission(&job.held, job.held.base),
             after: None,
+            of: None,
             start: None,
             path,
         };
         let verdict = supervisor.mission(&proposal, now);
         if verdict.map_err(|fault| Rejected::new(Error::Order, "nodes", fault))? == Verdict::Past {
-            // An old message that comes late: nothing would ever come of it.
-            return Err(Rejected::new(Error::Order, "orderId", "the vehicle had an order of this name before"));
+            return Err(was_there());
         }
         job.asked = job.held.base;
         Ok(())
@@ -217,4 +223,9 @@ impl Lane {
     pub(super) fn deviation(&self) -> f64 {
         (self.profile.abilities.margin - TOLERANCE).max(0.0)
     }
+}
+
+/// An old message that comes late: nothing would ever come of it.
+fn was_there() -> Rejected {
+    Rejected::new(Error::Order, "orderId", "the vehicle had an order of this name before")
 }

@@ -1,7 +1,6 @@
 //! Updates for the vehicle: its base ends where the supervisor allows.
 
 use super::super::order::Order;
-use super::super::state::ActionState;
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::job::{Job, Sent, Stop};
@@ -65,35 +64,6 @@ impl Lane {
         self.note_more(supervisor, "stops", more);
         self.note(supervisor, "sent", sent);
         self.send(version);
-    }
-
-    /// Stops the vehicle where it must not go on, and lets it go again: said again until it says so, as either may be lost.
-    pub fn pause(&mut self, supervisor: &Supervisor, now: f64) {
-        let Ok(robot) = supervisor.robot(&self.name) else { return };
-        let stops = robot.stopped.is_some();
-        let said = self.state.as_ref().and_then(|state| state.rest.get("paused")?.as_bool()).unwrap_or(false);
-        match self.pause {
-            // Who has paused it otherwise lets it go.
-            None if !(stops || said && self.has_paused()) => {}
-            Some((false, _)) if !stops && !said => self.pause = None,
-            Some((asked, at)) if asked == stops && (said == stops || now - at < AGAIN) => {}
-            _ => {
-                self.pause = Some((stops, now));
-                self.ask_for(if stops { "startPause" } else { "stopPause" });
-            }
-        }
-    }
-
-    /// Whether it was we who have paused it last: a message of ours that came late, or one from before a restart.
-    fn has_paused(&self) -> bool {
-        let Some(state) = &self.state else { return false };
-        let mut all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
-        let is_pause = |action: &&ActionState| {
-            let kind = action.rest.get("actionType").and_then(|kind| kind.as_str());
-            matches!(kind, Some("startPause" | "stopPause"))
-        };
-        let last = all.rfind(is_pause);
-        last.is_some_and(|action| action.action_id.starts_with("pcr-startPause-"))
     }
 
     pub(super) fn send(&mut self, version: Version) {

@@ -5,6 +5,7 @@ use super::super::header::Header;
 use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
+use super::newest::Place;
 use super::{Job, Lane};
 use crate::course::Start;
 use crate::robot::{BACK, Robot};
@@ -50,7 +51,16 @@ impl Lane {
     ) -> Result<(), Refusal> {
         let state: State = door::read(bytes, limits)?;
         let version = state.header.check(&self.profile.key, is_third)?;
-        let is_new = self.is_new(Kind::State, &state.header);
+        let newest = self.newest.entry(Kind::State).or_default();
+        let place = newest.take(&state.header, now, |action| state.names(action));
+        if newest.is_in_doubt(now) {
+            self.ask_when(now);
+        }
+        if place == Place::Anew {
+            // By the clock of before.
+            self.newest.remove(&Kind::Visualization);
+        }
+        let is_new = place != Place::Late;
         if is_new {
             self.version = Some(version);
         }
@@ -66,6 +76,12 @@ impl Lane {
             self.mirror();
         }
         located
+    }
+
+    /// Asks the vehicle for a state that is surely newer than all that have come.
+    pub(super) fn ask_when(&mut self, now: f64) {
+        let id = self.ask_for("stateRequest");
+        self.newest.entry(Kind::State).or_default().asks(id, now);
     }
 
     /// The vehicle has the updates up to the one that it names.
@@ -91,6 +107,7 @@ impl Lane {
                 // Where it cannot stand, it is asked again with its next state. An order that it had is void.
                 if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
                     (self.job, self.astray) = (None, None);
+                    self.note_anew(supervisor);
                     self.note(supervisor, MAP, pose.map_id.clone().into());
                 }
             }
@@ -107,9 +124,9 @@ impl Lane {
             Some(job) if job.held.order_id == state.order_id => {
                 let place = job.stop(state.last_node_sequence_id);
                 let Some(place) = place else {
-                    // A node that it was not released yet; or that of an order before, at the beginning of this one.
-                    let is_beyond = state.last_node_sequence_id > job.last().sequence;
-                    if is_new && is_beyond && self.on_its_way(job, robot, pose).is_none() {
+                    // A node that it was not released yet, that of an order before at the beginning of this one, or none at all: it has to
+                    // be on its way all the same.
+                    if is_new && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
                     return Ok(());
@@ -187,7 +204,10 @@ impl Lane {
         if let Some(action) = job.cancel.clone() {
             let status = state.action(&action);
             let has_nothing = job.sent.is_none() || job.lost.is_some();
-            if (has_it && status == Some("FINISHED") || has_nothing) && self.is_still(&state) {
+            // It has all that was sent, or has said so since it was told to cancel: nothing that it may still drive is on its way to it.
+            let is_told = job.is_acknowledged() || self.heard_at > job.sent_at.max(job.cancelled_at);
+            let is_cancelled = has_it && status == Some("FINISHED") && is_told;
+            if (is_cancelled || has_nothing) && self.is_still(&state) {
                 self.reseat(supervisor, &state);
             } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
                 // It came before the order.
@@ -227,6 +247,7 @@ impl Lane {
         // Where it cannot stand it stays what it was: nobody may drive through one that is forgotten.
         if supervisor.reseat(&self.name, start).is_ok() {
             (self.job, self.astray) = (None, None);
+            self.note_anew(supervisor);
             self.note(supervisor, MAP, map.into());
         }
     }
@@ -248,9 +269,9 @@ impl Lane {
         if message.header != Header::default() {
             message.header.check(&self.profile.key, is_third)?;
         }
-        let stamp = |header: &Header| pcr_formats::import::seconds(&header.timestamp);
-        let newer = stamp(&message.header).zip(self.state.as_ref().and_then(|state| stamp(&state.header)));
-        if !self.is_new(Kind::Visualization, &message.header) || newer.is_none_or(|(own, state)| own < state) {
+        let is_after = self.newest.get(&Kind::State).is_some_and(|state| state.is_before(&message.header, now));
+        let newest = self.newest.entry(Kind::Visualization).or_default();
+        if !is_after || newest.take(&message.header, now, |_| false) == Place::Late {
             return Ok(());
         }
         if let Some(mut state) = self.state.as_deref().cloned() {

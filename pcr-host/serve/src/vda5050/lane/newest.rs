@@ -1,0 +1,205 @@
+//! Which message of a kind is the newest one of a vehicle.
+//!
+//! Messages come late, repeated and in any order. Time stamps tell which one was written later, or else numbers of messages, which count
+//! modulo 2³². A vehicle that was switched off and on may count anew, and so may its clock: what it says then looks as if it were late. So a
+//! message that is no continuation of the newest one counts as late until it is proved that the vehicle counts anew: by a message that
+//! names a request which was sent after the newest one had come, or by messages in a row that follow one another for longer than any
+//! message is late. For so long afterwards, what is nearer to the count before is of that.
+
+use super::super::header::Header;
+
+/// No message is later than that \[s\].
+const LATEST: f64 = 60.0;
+
+/// After so many messages in a row that only follow one another the vehicle is asked.
+const ROW: u32 = 3;
+
+/// Between two requests \[s\].
+const AGAIN: f64 = 1.0;
+
+/// When a message was written, as far as it says so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mark {
+    number: u64,
+    stamp: Option<f64>,
+    /// When it came \[s\].
+    came: f64,
+}
+
+impl Mark {
+    fn of(header: &Header, came: f64) -> Self {
+        Self { number: header.header_id, stamp: pcr_formats::import::seconds(&header.timestamp), came }
+    }
+
+    /// Whether it was written after another one, if both are of one count.
+    fn follows(&self, other: &Self) -> bool {
+        match self.stamp.zip(other.stamp) {
+            Some((own, before)) if own != before => own > before,
+            _ => (1..1 << 31).contains(&self.ahead(other)),
+        }
+    }
+
+    /// By how much its number is higher. Numbers may have any width, and begin again after 2³² at the latest.
+    fn ahead(&self, other: &Self) -> u32 {
+        (self.number as u32).wrapping_sub(other.number as u32)
+    }
+
+    /// Whether it is nearer to one than to another.
+    fn is_nearer(&self, to: &Self, than: &Self) -> bool {
+        if let (Some(own), Some(to), Some(than)) = (self.stamp, to.stamp, than.stamp) {
+            return (own - to).abs() < (own - than).abs();
+        }
+        let distance = |other| self.ahead(other).min(other.ahead(self));
+        distance(to) < distance(than)
+    }
+}
+
+/// Messages that follow one another, but not the newest one.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    last: Mark,
+    count: u32,
+    /// When the first one came \[s\].
+    since: f64,
+}
+
+/// What a message is among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// The newest one.
+    Newest,
+    /// The newest one; the vehicle counts anew, and all that it has said before is older.
+    Anew,
+    /// Older, or of nobody knows when.
+    Late,
+}
+
+/// The newest message of a kind.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Newest {
+    known: Option<Mark>,
+    /// That of the count before, and when this one began \[s\].
+    before: Option<(Mark, f64)>,
+    row: Option<Row>,
+    /// A request that was sent after the newest one had come, and when \[s\].
+    asked: Option<(String, f64)>,
+}
+
+impl Newest {
+    /// Takes a message; `names` tells whether it says something of an action.
+    pub(super) fn take(&mut self, header: &Header, now: f64, names: impl Fn(&str) -> bool) -> Place {
+        let mark = Mark::of(header, now);
+        let Some(known) = self.known.filter(|known| !(mark.follows(known) && self.is_of(known, &mark))) else {
+            *self = Self { known: Some(mark), before: self.before, ..Self::default() };
+            return Place::Newest;
+        };
+        let row = match self.row {
+            Some(row) if mark.follows(&row.last) => Row { last: mark, count: row.count + 1, ..row },
+            _ => Row { last: mark, count: 1, since: now },
+        };
+        let is_answer = self.asked.as_ref().is_some_and(|(id, _)| names(id));
+        if is_answer || row.count >= ROW && now - row.since > LATEST {
+            *self = Self { known: Some(mark), before: Some((known, now)), ..Self::default() };
+            return Place::Anew;
+        }
+        self.row = Some(row);
+        Place::Late
+    }
+
+    /// Whether it is time to ask the vehicle for a message that is surely newer.
+    pub(super) fn is_in_doubt(&self, now: f64) -> bool {
+        self.row.is_some_and(|row| row.count >= ROW) && self.asked.as_ref().is_none_or(|(_, at)| now - at >= AGAIN)
+    }
+
+    /// The vehicle was asked for one; does not matter before it has said anything.
+    pub(super) fn asks(&mut self, id: String, now: f64) {
+        self.asked = Some((id, now));
+    }
+
+    /// Whether a message of another kind, that comes now, was written after this one or with it; its numbers are others.
+    pub(super) fn is_before(&self, header: &Header, now: f64) -> bool {
+        let mark = Mark::of(header, now);
+        let is_later = |known: &Mark| mark.stamp.zip(known.stamp).is_some_and(|(own, known)| own >= known);
+        self.known.is_some_and(|known| is_later(&known) && self.is_of(&known, &mark))
+    }
+
+    /// Whether a message is of the count of the newest one, and not of the one before.
+    fn is_of(&self, known: &Mark, mark: &Mark) -> bool {
+        let before = self.before.filter(|(_, since)| mark.came - since <= LATEST);
+        before.is_none_or(|(before, _)| mark.is_nearer(known, &before))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header(number: u64, timestamp: &str) -> Header {
+        Header { header_id: number, timestamp: timestamp.into(), ..Header::default() }
+    }
+
+    fn at(second: u32) -> String {
+        format!("2030-01-01T00:{:02}:{:02}.000Z", second / 60, second % 60)
+    }
+
+    #[test]
+    fn stamps_decide_and_numbers_where_there_are_none() {
+        let nothing = |_: &str| false;
+        for (first, second, is_newer) in [
+            ((5, at(10)), (6, at(11)), true),
+            // It counts anew.
+            ((5, at(10)), (1, at(11)), true),
+            ((5, at(10)), (6, at(9)), false),
+            ((5, at(10)), (6, at(10)), true),
+            ((5, at(10)), (5, at(10)), false),
+            ((5, at(10)), (4, at(10)), false),
+            // Its clock was set.
+            ((5, at(10)), (6, at(800)), true),
+            ((5, String::new()), (6, "soon".into()), true),
+            ((5, String::new()), (4, at(10)), false),
+            ((u64::from(u32::MAX), String::new()), (0, String::new()), true),
+            ((0, String::new()), (u64::from(u32::MAX), String::new()), false),
+        ] {
+            let mut newest = Newest::default();
+            assert_eq!(newest.take(&header(first.0, &first.1), 1.0, nothing), Place::Newest);
+            let place = newest.take(&header(second.0, &second.1), 2.0, nothing);
+            assert_eq!(place == Place::Newest, is_newer, "{first:?} {second:?}");
+        }
+    }
+
+    #[test]
+    fn a_vehicle_counts_anew_when_that_is_proved() {
+        for (is_heard, has_clock, after) in [(true, true, 4), (false, true, 62), (true, false, 4), (false, false, 62)] {
+            let at = |second| if has_clock { at(second) } else { String::new() };
+            let mut newest = Newest::default();
+            let mut asked = false;
+            newest.take(&header(500, &at(600)), 0.0, |_| false);
+            for k in 1..=120 {
+                let place = newest.take(&header(k, &at(k as u32)), k as f64, |id| is_heard && asked && id == "r");
+                let expected = if k < after {
+                    Place::Late
+                } else if k == after {
+                    Place::Anew
+                } else {
+                    Place::Newest
+                };
+                assert_eq!(place, expected, "{k}");
+                if newest.is_in_doubt(k as f64) {
+                    newest.asks("r".into(), k as f64);
+                    asked = true;
+                }
+                // Those from before, which are late or were on their way, are no newer ones.
+                for late in [490, 510] {
+                    let place = newest.clone().take(&header(late, &at(late as u32 + 100)), k as f64 + 0.5, |_| false);
+                    assert!(k < after || k > after + 59 || place == Place::Late, "{k} {late}");
+                }
+            }
+        }
+        // What came in between was newer: the request is as old as that.
+        let mut newest = Newest::default();
+        newest.take(&header(500, &at(600)), 0.0, |_| false);
+        newest.asks("r".into(), 1.0);
+        newest.take(&header(501, &at(602)), 2.0, |_| false);
+        assert_eq!(newest.take(&header(499, &at(599)), 3.0, |id| id == "r"), Place::Late);
+    }
+}

@@ -1,0 +1,72 @@
+//! Names of orders and actions that were used before, remembered with the journal: a message under one of them comes late.
+
+use crate::robot::Robot;
+use serde_json::Value;
+
+/// So many are remembered at least, the last ones.
+const MOST: usize = 64;
+
+/// The names of one kind.
+#[derive(Debug)]
+pub(super) struct Past {
+    /// What the journal calls them.
+    pub(super) key: &'static str,
+    names: Vec<String>,
+}
+
+/// What the journal is to have of another name.
+pub(super) enum Noted {
+    /// This, after what it has.
+    More(Vec<Value>),
+    /// This, in place of what it has.
+    All(Value),
+}
+
+impl Past {
+    /// Those that the journal has.
+    pub(super) fn remembered(key: &'static str, robot: Option<&Robot>) -> Self {
+        let note = robot.and_then(|robot| robot.notes.get(key)).and_then(Value::as_array);
+        let names = note.into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect();
+        Self { key, names }
+    }
+
+    pub(super) fn contains(&self, name: &str) -> bool {
+        self.names.iter().any(|known| known == name)
+    }
+
+    /// Another one. The list in the journal is cut at times only, so that it is not written with every name.
+    pub(super) fn push(&mut self, name: &str) -> Noted {
+        self.names.push(name.to_owned());
+        if self.names.len() <= 2 * MOST {
+            return Noted::More(vec![name.into()]);
+        }
+        self.names.drain(..self.names.len() - MOST);
+        Noted::All(self.all())
+    }
+
+    /// All of them, for the journal.
+    pub(super) fn all(&self) -> Value {
+        self.names.clone().into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_names_are_known_and_the_journal_has_those() {
+        let mut past = Past { key: "orders", names: Vec::new() };
+        let mut journal: Vec<Value> = Vec::new();
+        for k in 0..500 {
+            match past.push(&k.to_string()) {
+                Noted::More(more) => journal.extend(more),
+                Noted::All(all) => journal = all.as_array().unwrap().clone(),
+            }
+            assert_eq!(Value::from(journal.clone()), past.all());
+            assert!((k.max(MOST - 1) + 1 - MOST..=k).all(|known| past.contains(&known.to_string())), "{k}");
+            assert!(journal.len() <= 2 * MOST);
+        }
+        assert!(!past.contains("0"));
+    }
+}
