@@ -1,13 +1,14 @@
 //! `pcr evaluate`.
 
+use super::printed::notes;
 use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, folder, quiet};
-use crate::progress::Progress;
 use clap::Args;
 use pcr_comparing::evaluate::{self, Extent, Problem};
 use pcr_formats::output;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Write docs/evaluation.md: the paper's evaluation and more, measured here and now
 #[derive(Args)]
@@ -32,10 +33,14 @@ impl Arguments {
         let extent = if self.quick { Extent::Quick } else { Extent::Full };
         let written = |error| Stop::not_written(&self.output, &error);
         output::folder(&self.output).map_err(written)?;
-        let progress = Progress::new("parts");
         let Self { data, output, only, .. } = &self;
-        let files = evaluate::write(data, output, extent, only, &mut |done, total| progress.set(done, total));
-        drop(progress);
+        let begin = Instant::now();
+        let mut begins = |part: &str, done: usize, parts: usize| {
+            let (place, seconds) = (done + 1, begin.elapsed().as_secs());
+            // Where standard error is closed, the document is all there is.
+            let _ = writeln!(notes(), "part {place} of {parts}: {part}, {seconds} s after the begin");
+        };
+        let files = evaluate::write(data, output, extent, only, &mut begins);
         let files = files.map_err(|problem| match &problem {
             Problem::File(path, _) if path.starts_with(&self.output) => Stop::Error(problem.to_string(), NOT_WRITTEN),
             _ => Stop::Error(problem.to_string(), WRONG_INPUT),

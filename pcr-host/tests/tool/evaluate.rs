@@ -8,7 +8,12 @@ use std::path::Path;
 fn the_document_and_all_its_pictures_are_written() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
     let output = directory("evaluate");
-    let files = run(&["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", output.to_str().unwrap()]).ok();
+    let result = run(&["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", output.to_str().unwrap()]);
+    // A line a part on standard error, as it begins: the whole takes minutes.
+    let parts: Vec<&str> = result.err().lines().collect();
+    assert!(parts[0].starts_with("part 1 of 13: fleets, 0 s"), "{parts:?}");
+    assert_eq!(parts.len(), 13, "{parts:?}");
+    let files = result.ok();
     let text = fs::read_to_string(output.join("evaluation.md")).unwrap();
     for heading in
         ["# Evaluation", "## Table VI", "## All methods, 12 agents", "## Fig. 12", "## Fig. 13", "## Fig. 14"]

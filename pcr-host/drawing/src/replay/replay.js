@@ -164,8 +164,14 @@ function drawMap() {
   c.setLineDash([]);
   c.lineWidth = 2.5;
   c.beginPath();
-  const travelled = run.travelled[ego];
-  for (let k = Math.round(plan.time / frame); k <= now && k < travelled.length; k++) c.lineTo(x(k * frame), y(travelled[k] * unit));
+  const travelled = run.travelled[ego], first = Math.round(plan.time / frame);
+  // Lengths count from the begin of a mission. That of its first frame is still the length of the mission before it.
+  const begins = new Set(run.journeys.filter((journey) => journey.robot === ego).map((journey) => journey.begin));
+  for (let k = first; k <= now && k < travelled.length; k++) {
+    const again = begins.has(k) && travelled[k] > 0;
+    if (again && k > first) break;
+    c.lineTo(x(k * frame), y(again ? 0 : travelled[k] * unit));
+  }
   c.stroke();
   c.strokeStyle = theme.accent;
   c.lineWidth = 1.3;
