@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Write docs/evaluation.md: the paper's evaluation and more, measured here and now
+/// Measure everything in docs/evaluation.md on this machine, and write it (takes minutes)
 #[derive(Args)]
 #[command(after_help = STATUSES)]
 pub(super) struct Arguments {
@@ -20,10 +20,10 @@ pub(super) struct Arguments {
     /// Directory with the fleets of the paper's Table VI
     #[arg(long, value_name = "DIR", default_value = "tests/data")]
     data: PathBuf,
-    /// Write this part of the document anew, and leave the others as they are; as often as there are parts
+    /// Write only this part of the document anew; may be given several times
     #[arg(long, value_name = "PART", value_parser = clap::builder::PossibleValuesParser::new(evaluate::parts()))]
     only: Vec<String>,
-    /// Small fleets only, without the slowest methods: to see that it works
+    /// Small fleets only, without the slowest methods, to try it out
     #[arg(long)]
     quick: bool,
 }

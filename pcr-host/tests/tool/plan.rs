@@ -40,7 +40,7 @@ fn the_papers_agents_are_resolved_and_the_plan_is_free() {
     assert!(table.starts_with("paper12: a plan without conflicts, by start delays"), "{table}");
     assert!(table.lines().count() == 16 && table.contains("makespan") && table.contains("proved"), "{table}");
     let check = run(&["check", &output]).ok();
-    assert_eq!(check, "paper12: no conflicts\n");
+    assert_eq!(check, "paper12: no conflicts, 12 agents\n");
     let csv = run(&["plan", PAPER, "--format", "csv"]).ok();
     assert!(csv.starts_with("name,id,delay,t_end,label\npaper12,1,") && csv.lines().count() == 13, "{csv}");
 }
