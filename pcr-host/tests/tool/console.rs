@@ -28,12 +28,12 @@ fn steps(block: &str) -> Vec<Step<'_>> {
     steps
 }
 
-fn top() -> PathBuf {
+pub(crate) fn top() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().canonicalize().unwrap()
 }
 
 /// A folder that looks like the repository's top and may be written to.
-fn sandbox(document: &str) -> PathBuf {
+pub(crate) fn sandbox(document: &str) -> PathBuf {
     let folder = directory("console").join(document.replace(['/', '.'], "-"));
     if folder.exists() {
         fs::remove_dir_all(&folder).unwrap();
@@ -48,7 +48,7 @@ fn sandbox(document: &str) -> PathBuf {
     folder
 }
 
-fn prints(command: &str, folder: &Path) -> String {
+pub(crate) fn prints(command: &str, folder: &Path) -> String {
     let tool = Path::new(env!("CARGO_BIN_EXE_pcr")).parent().unwrap();
     let path = format!("{}:{}", tool.display(), std::env::var("PATH").unwrap());
     let shell = Command::new("sh").args(["-c", command]).current_dir(folder).env("PATH", path).output().unwrap();
