@@ -125,7 +125,8 @@ impl Json {
             (_, Some(entries)) => entries,
             (_, None) => unreachable!(),
         };
-        let entry = |(key, value): &(String, Option<&Self>)| format!("{key}{}", value.map_or(String::new(), Self::line));
+        let entry =
+            |(key, value): &(String, Option<&Self>)| format!("{key}{}", value.map_or(String::new(), Self::line));
         let all: Vec<String> = entries.iter().map(entry).collect();
         let is_flat = !matches!(self, Self::Object(_)) && !all.iter().any(|entry| entry.starts_with('{'));
         let space = if is_flat || all.is_empty() { "" } else { " " };
@@ -135,20 +136,21 @@ impl Json {
     /// The value from a column on, in lines as full as they may be.
     fn write(&self, column: usize, after: usize, out: &mut String) {
         let line = self.line();
-        let Some((entries, [open, close])) = self.entries().filter(|_| column + line.len() + after > WIDTH) else {
+        let Some((entries, [open, close])) = self.entries().filter(|_| column + line.chars().count() + after > WIDTH)
+        else {
             out.push_str(&line);
             return;
         };
         let indent = column + 2;
         out.extend([open, ' ']);
-        let mut at = indent;
+        let (mut at, mut broken) = (indent, false);
         let last = entries.len().saturating_sub(1);
         for (place, (key, value)) in entries.iter().enumerate() {
             let whole = format!("{key}{}", value.map_or(String::new(), Self::line));
             let end = if place == last { 2 + after } else { 1 };
             if place > 0 {
                 out.push(',');
-                if at + 2 + whole.len() + end > WIDTH {
+                if broken || at + 2 + whole.chars().count() + end > WIDTH {
                     out.push_str(&format!("\n{}", " ".repeat(indent)));
                     at = indent;
                 } else {
@@ -156,10 +158,12 @@ impl Json {
                     at += 1;
                 }
             }
+            let before = out.len();
             out.push_str(key);
             if let Some(value) = value {
                 value.write(at + key.chars().count(), end, out);
             }
+            broken = out[before..].contains('\n');
             at = out.lines().last().unwrap_or_default().chars().count();
         }
         out.extend([' ', close]);
@@ -202,7 +206,7 @@ fn follow(document: &str) -> usize {
     for pair in parts.windows(2) {
         let Some(command) = pair[0].trim_end().lines().last().and_then(command) else { continue };
         let says = pair[1].split("```").next().unwrap();
-        let now = example(&prints(&format!("{command} 2>/dev/null"), &folder));
+        let now = example(&prints(&format!("{command} 2>/dev/null"), &folder).0);
         count += 1;
         if compared(says) != compared(&now) {
             wrong += &format!("$ {command}\n{now}\n");
