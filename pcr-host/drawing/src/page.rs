@@ -7,7 +7,6 @@
 use super::axis::Frame;
 use super::contour::{Outline, is_thin};
 use super::map::{THIN, places, spans};
-use super::palette::DISTINCT;
 use super::scene::{Scene, Shape};
 use super::template::Page;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
@@ -51,7 +50,6 @@ fn data(scene: &Scene<'_>) -> Value {
         "name": scene.scenario.name,
         "grid": GRID,
         "outlines": scene.has_outlines(),
-        "distinct": scene.motions.len() <= DISTINCT,
         "horizon": interval(scene.horizon()),
         "bounds": [x.lo, x.hi, y.lo, y.hi],
         "ground": scene.ground.map(|ground| ground.lines()),

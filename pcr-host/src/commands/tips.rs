@@ -35,7 +35,9 @@ pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
         }
         _ => return error,
     };
-    error.remove(ContextKind::SuggestedSubcommand);
+    for other in [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg] {
+        error.remove(other);
+    }
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
     error
 }

@@ -1,6 +1,6 @@
 //! What users of other command line tools expect: help, completions, manual pages, quiet, and no option in vain.
 
-use crate::fixture::{PAPER, crossing, directory, file, run};
+use crate::fixture::{PAPER, crossing, directory, file, pcr, run};
 use serde_json::Value;
 
 const COMMANDS: [&str; 17] = [

@@ -201,7 +201,11 @@ fn what_is_refused() {
     let blocked = format!("{}/plan.json", file("plan", "blocked", ""));
     let message = run(&["plan", &input, "-o", &blocked]).failed(3);
     assert!(message.starts_with(&format!("pcr: {blocked}: cannot be written: ")), "{message}");
-    assert!(run(&["plan", "--help"]).ok().contains("  1  no plan, or with --leave-out none for all\n"));
+    assert!(
+        run(&["plan", "--help"])
+            .ok()
+            .contains("  1  no plan for all agents, also where --leave-out has one for some\n")
+    );
 }
 
 #[test]

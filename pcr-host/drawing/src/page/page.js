@@ -408,7 +408,6 @@ function start() {
     chip.addEventListener("click", () => { state.shown[k] = !state.shown[k]; show(); });
     $("chips").append(chip);
   });
-  $("agents").classList.toggle("many", !data.distinct);
   const slider = $("time");
   slider.min = first;
   slider.max = last;
