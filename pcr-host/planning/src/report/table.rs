@@ -74,10 +74,6 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
-        writeln!(
-            out,
-            "k: number of the crossing among those of i with j; type: straight (S) or arc (A), of i and of j"
-        )?;
         let [i, j] = agents(&answer.labels);
         let mut columns = Columns::new(&[
             i,
@@ -101,6 +97,10 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
             columns.row(row);
         }
         columns.write(out)?;
+        writeln!(
+            out,
+            "k: number of the crossing among those of i with j; type: straight (S) or arc (A), of i and of j"
+        )?;
     }
     extents(&answer.labels, &answer.regions, &all, "Regions", out)?;
     let margin = answer.margin_regions.as_deref().unwrap_or_default();
