@@ -46,7 +46,7 @@ def number(found, what, unit=""):
 
 def overview():
     """README: a line for each of some targets and formats."""
-    yield row(["target, format", "ε at 10 m", "library code", "table in RAM", "stack", "instructions: table, a region"])
+    yield row(["target, format", "ε at M = VT = 10 m", "library code", "table in RAM", "stack", "instructions: the whole table, per region"])
     yield "|---" * 6 + "|"
     excess = excesses()
     for target, form, core in SHOWN:

@@ -20,6 +20,7 @@ mod regions;
 mod serve;
 mod simulate;
 mod sources;
+mod tips;
 mod traffic;
 mod work;
 
@@ -37,6 +38,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::sync::{Arc, Mutex};
 
 /// Exit status: a plan that collides, or no plan.
@@ -55,17 +57,17 @@ Exit status:
 const EXAMPLES: &str = "\
 Examples:
   pcr                                      the paper's 12 agents: its tables beside ours, pictures in pcr-out/
-  pcr regions fleet.json                   what every agent has to keep out of, as a table
+  pcr regions fleet.json                   where and when every agent must not be, as a table
   pcr regions fleet.json --json            the same for programs
   pcr map fleet.json -o pictures           the same as pictures
   pcr check fleet.json                     whether the agents collide, moving as the file says
-  pcr plan fleet.json -o plan.json         later starts, so that they do not
-  pcr plan fleet.json -o - | pcr check     through a pipe: without a FILE, scenarios come from standard input";
+  pcr plan fleet.json -o plan.json         later starts, so that they do not collide
+  pcr plan fleet.json -o - | pcr check     without a FILE, scenarios come from standard input";
 
 /// Exact collision regions of discs on paths of lines and arcs.
 ///
-/// Agents are discs that move on given paths. For each agent, pcr computes which parts of its path it has to keep out of, and
-/// when, as another agent is there: in closed form, without sampling. Without a command it shows the paper's 12 agents.
+/// Agents are discs that move on given paths. For each agent, pcr computes which parts of its path are blocked by another agent, and
+/// when. It computes this in closed form and does not sample. Without a command it shows the paper's 12 agents and draws them to pcr-out/.
 #[derive(Parser)]
 #[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(crate) struct Arguments {
@@ -255,6 +257,11 @@ fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
     for line in lines {
         complain(&format!("warning: {name}: {line}"));
     }
+}
+
+/// A whole number from 0, such as a seed.
+fn whole<T: FromStr>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
 }
 
 /// Whether an output is standard output.

@@ -137,7 +137,7 @@ pub fn parts() -> impl Iterator<Item = &'static str> {
 
 /// Writes `evaluation.md` and its pictures into a directory; `data` is the directory with the fleets of the paper's Table VI and
 /// the layouts. With the names of some parts in `only`, these are written anew in the document that is there.
-/// `progress` is told how many parts are done, and of how many. Returns the files.
+/// `begins` is told the name of each part before it is measured, how many are done, and of how many. Returns the files.
 ///
 /// # Errors
 /// [`Problem`] where a fleet cannot be read, or a file cannot be read or written.
@@ -146,7 +146,7 @@ pub fn write(
     directory: &Path,
     extent: Extent,
     only: &[String],
-    progress: &mut dyn FnMut(usize, usize),
+    begins: &mut dyn FnMut(&str, usize, usize),
 ) -> Result<Vec<PathBuf>, Problem> {
     let document = directory.join("evaluation.md");
     let mut text = match only {
@@ -159,10 +159,10 @@ pub fn write(
     }
     let fleets = Fleets::read(data, extent)?;
     let wanted = PARTS.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|it| it == name));
-    let wanted: Vec<Part> = wanted.map(|&(_, part)| part).collect();
+    let wanted: Vec<_> = wanted.collect();
     let mut files = Vec::new();
-    for (done, part) in wanted.iter().enumerate() {
-        progress(done, wanted.len());
+    for (done, (name, part)) in wanted.iter().enumerate() {
+        begins(name, done, wanted.len());
         let section = part(&fleets, extent)?;
         if only.is_empty() {
             text.push('\n');

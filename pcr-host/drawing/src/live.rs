@@ -11,7 +11,7 @@ const PAGE: Page = Page {
     connect: "; connect-src 'self'; img-src 'self'",
     body: include_str!("live/live.html"),
     style: include_str!("live/live.css"),
-    script: include_str!("live/live.js"),
+    script: concat!(include_str!("live/live.js"), include_str!("scale.js")),
 };
 
 /// The page, without data: it gets them from `/layout`, `/state` and `/map` of its server.

@@ -7,10 +7,10 @@
 use super::axis::Frame;
 use super::contour::{Outline, is_thin};
 use super::map::{THIN, places, spans};
-use super::palette::DISTINCT;
 use super::scene::{Scene, Shape};
 use super::template::Page;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
+use pcr_formats::scenario::Agent;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -50,7 +50,6 @@ fn data(scene: &Scene<'_>) -> Value {
         "name": scene.scenario.name,
         "grid": GRID,
         "outlines": scene.has_outlines(),
-        "distinct": scene.motions.len() <= DISTINCT,
         "horizon": interval(scene.horizon()),
         "bounds": [x.lo, x.hi, y.lo, y.hi],
         "ground": scene.ground.map(|ground| ground.lines()),
@@ -82,10 +81,7 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
         json!([time.lo, time.length(), length.lo, speeds[0], speeds[1], acceleration])
     });
     let footprint = scene.footprint(place);
-    let discs = match footprint {
-        Some(footprint) => footprint.discs().iter().map(|disc| json!([disc.ahead, disc.left, disc.radius])).collect(),
-        None => vec![json!([0.0, 0.0, motion.radius()])],
-    };
+    let discs = scene.scenario.agents.get(place).map_or_else(Vec::new, covering);
     json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
@@ -99,6 +95,25 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
         "segments": segments.collect::<Vec<_>>(),
         "phases": phases.collect::<Vec<_>>(),
     })
+}
+
+/// The discs by which contacts are told, as \[ahead, left, radius, from, to\]: on which lengths of the path each of them is there. Where a load
+/// begins or ends, both outlines count.
+fn covering(agent: &Agent) -> Vec<[f64; 5]> {
+    let outlines = agent.outlines();
+    let begin = |[first, last]: [usize; 2]| if first == 0 { 0.0 } else { agent.stretch(first, last).1 };
+    let begins: Vec<f64> = outlines.iter().map(|outline| begin(outline.segments)).collect();
+    let ends = begins.iter().skip(1).copied().chain([f64::MAX]);
+    let mut all = Vec::new();
+    for ((outline, &from), to) in outlines.iter().zip(&begins).zip(ends) {
+        match outline.footprint {
+            Some(footprint) => {
+                all.extend(footprint.discs().iter().map(|disc| [disc.ahead, disc.left, disc.radius, from, to]));
+            }
+            None => all.push([0.0, 0.0, outline.radius, from, to]),
+        }
+    }
+    all
 }
 
 fn map(scene: &Scene<'_>, ego: usize) -> Value {
@@ -228,6 +243,19 @@ mod tests {
             // Half of the last printed digit.
             assert!((crossing[key].as_f64().unwrap() - printed).abs() < 0.05 + 1e-9, "{key} {crossing}");
         }
+    }
+
+    #[test]
+    fn contacts_are_those_of_the_discs_on_their_stretches() {
+        let line = json!({ "kind": "line", "length": 2.0 });
+        let start = json!({ "x": 0.0, "y": 0.0, "heading": 0.0 });
+        let agent = json!({ "id": 1, "radius": 0.3, "v_max": 1.0, "a_max": 1.0, "start": start, "path": [line, line, line],
+            "loads": [{ "segments": [2, 2], "radius": 0.8 }] });
+        let data = data_of(&page_of(&json!({ "agents": [agent] }).to_string()));
+        let discs = data["agents"][0]["discs"].as_array().unwrap();
+        let lengths = |k: usize| [2, 3, 4].map(|column| discs[k][column].as_f64().unwrap());
+        assert_eq!((discs.len(), lengths(0), lengths(1)), (3, [0.3, 0.0, 2.0], [0.8, 2.0, 4.0]));
+        assert_eq!(lengths(2)[..2], [0.3, 4.0]);
     }
 
     #[test]

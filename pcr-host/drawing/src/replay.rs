@@ -16,7 +16,7 @@ const PAGE: Page = Page {
     connect: "",
     body: include_str!("replay/replay.html"),
     style: include_str!("replay/replay.css"),
-    script: include_str!("replay/replay.js"),
+    script: concat!(include_str!("replay/replay.js"), include_str!("scale.js")),
 };
 
 /// Positions are given in this unit \[m\].

@@ -22,8 +22,12 @@ pub enum InputError {
     Refused(Option<PathBuf>, ScenarioError),
     /// It is not of the format that it is read in.
     Foreign(Option<PathBuf>, Format, ImportError),
-    /// It has to be a layout, and is none that is known, or (`true`) empty.
-    NoLayout(Option<PathBuf>, bool),
+    /// It is empty, and what is expected.
+    Empty(Option<PathBuf>, &'static str),
+    /// It is neither JSON, as scenarios are, nor a format that is known by its name or content.
+    Unknown(Option<PathBuf>),
+    /// It has to be a layout, and is none that is known.
+    NoLayout(Option<PathBuf>),
     /// It has to be a layout, and is a scenario.
     IsScenario(Option<PathBuf>),
     /// It cannot be read together with others.
@@ -42,8 +46,14 @@ impl fmt::Display for InputError {
             Self::NotText(file) => write!(f, "{}: not text in UTF-8", name(file)),
             Self::Refused(file, error) => write!(f, "{}:{}: {error}", name(file), error.line()),
             Self::Foreign(file, format, error) => write!(f, "{}: {error} (read as {format})", name(file)),
-            Self::NoLayout(file, true) => write!(f, "{}: empty; a layout is expected", name(file)),
-            Self::NoLayout(file, false) => {
+            Self::Empty(file, what) => write!(f, "{}: empty; {what} is expected", name(file)),
+            Self::Unknown(file) => write!(
+                f,
+                "{}: no scenario, which is a JSON object, nor another format that is known by its name or content; say what it is \
+                 with --from",
+                name(file)
+            ),
+            Self::NoLayout(file) => {
                 write!(f, "{}: not known as a layout by its name or content; say what it is with --from", name(file))
             }
             Self::Single(file) => {
@@ -110,6 +120,8 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
                 Err(error) => Err(InputError::Foreign(name, format, error)),
             }
         }
+        None if import::is_empty(&text) => Err(InputError::Empty(name, "a scenario")),
+        None if !is_json(&text) => Err(InputError::Unknown(name)),
         None => match Scenario::from_json(&text) {
             Ok(mut scenario) => {
                 useful(&name, &text, None, options)?;
@@ -119,6 +131,11 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
             Err(error) => Err(InputError::Refused(name, error)),
         },
     }
+}
+
+/// Whether a text begins as JSON with something in it does.
+fn is_json(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim_start().starts_with(['{', '['])
 }
 
 /// Refuses options that do nothing with a file.
@@ -209,7 +226,8 @@ pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Impor
     let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
         return Err(match import::is_empty(&text) {
             false if text.contains("\"agents\"") => InputError::IsScenario(name),
-            empty => InputError::NoLayout(name, empty),
+            false => InputError::NoLayout(name),
+            true => InputError::Empty(name, "a layout"),
         });
     };
     useful(&name, &text, Some(format), options)?;

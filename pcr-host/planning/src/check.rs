@@ -22,6 +22,9 @@ pub struct Verdict {
     /// What the agents are called, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
+    /// How many agents there are.
+    #[serde(skip)]
+    pub agents: usize,
     /// Sorted by their begin, then by the agents.
     pub conflicts: Vec<Conflict>,
     /// Every pair, if asked for.
@@ -128,6 +131,7 @@ impl Verdict {
         Ok(Self {
             name: scenario.name.clone(),
             labels: Labels::of(scenario),
+            agents: scenario.agents.len(),
             conflicts,
             closest: closest.then_some(nearest),
             certificate: None,
@@ -150,6 +154,7 @@ impl Verdict {
         Self {
             name: name.to_owned(),
             labels: Labels::default(),
+            agents: 0,
             conflicts: Vec::new(),
             closest: None,
             certificate: None,

@@ -24,37 +24,37 @@ Exit status:
   1  refuted, with a place where the table is wrong
   2  wrong arguments, or a file that cannot be read or was refused
   3  the output could not be written
-  4  not proved: within the checker's own rounding of what is promised, as contacts are that just touch";
+  4  undecided: too near to the bound for the checker's own rounding, as discs that just touch are";
 
 const EXAMPLES: &str = "\
 Examples:
   pcr certify fleet.json                       the table of collision regions of a fleet
-  pcr certify fleet.json --scalar q16          the same in a format of a small machine
-  pcr certify fleet.json --limit               and how much farther than needed contacts are covered
+  pcr certify fleet.json --scalar q16          the same in 16.16 fixed point
+  pcr certify fleet.json --limit               and how far from contact it reaches
   pcr certify site.lif.json --radius 0.6       the table of locks of a layout
   pcr regions fleet.json --json --certificate > table.json
-  pcr certify --table table.json               a table as it is held, by whatever has made it, from its numbers alone
-  pcr certify --table console.txt              one that a microcontroller has printed";
+  pcr certify --table table.json               this table, whatever program wrote it
+  pcr certify --table console.txt              a table that a microcontroller printed";
 
-/// Prove that no contact is missing from a table of regions or locks, or show one
+/// Prove that a table of regions or locks is right, or show where it is wrong
 ///
-/// The checker shares no geometry with what has computed the table, and covers, where others sample. What is proved: every contact of the
-/// discs lies in a piece of a region, a piece shows it, and nothing is told that is farther than the stated bound from a contact.
+/// The checker shares no geometry with the code that has computed the table, and does not sample. It proves that every contact of the discs
+/// lies in a piece of a region, and that nothing in the table is farther from a contact than the stated bound.
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Scenario, or a layout, whose locks are certified, edges and nodes; standard input if left out or `-`
+    /// Scenario, or layout, whose locks of edges and nodes are certified; standard input if left out or `-`
     #[arg(conflicts_with = "table")]
     file: Option<PathBuf>,
-    /// A table as `pcr regions --certificate` prints it, or the firmware
+    /// A table, as `pcr regions --certificate` or the firmware prints it
     #[arg(long, value_name = "FILE", conflicts_with = "scalar")]
     table: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Add how far beyond contact everything is covered, in parts of the bound (takes a dozen times as long)
+    /// Add how far from contact the table reaches, as a part of the bound (takes about 12 times as long)
     #[arg(long)]
     limit: bool,
-    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format of the computation: floating point (micro: f32 with roots and angles for microcontrollers), or fixed point (q20: up to ±256 m and s, q16: ±4096, q12: ±65,536)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]

@@ -28,9 +28,9 @@ const EXAMPLES: &str = "\
 Examples:
   pcr check plan.json                                who collides when, where and how deep
   pcr check plan.json --closest                      and how near every two agents come
-  pcr check plan.json --certify                      and the proof that they do not, by an independent checker
+  pcr check plan.json --certify                      and a proof by an independent checker
   pcr check -q plan.json && echo free                for scripts: the exit status says it
-  pcr check - --format json < plans.jsonl            JSON Lines: a scenario a line in, a line a scenario out";
+  pcr check - --format json < plans.jsonl            JSON Lines: one scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says
 #[derive(Args)]
@@ -44,10 +44,10 @@ pub(super) struct Arguments {
     /// Add how near every two agents come, and when (not in CSV)
     #[arg(long)]
     closest: bool,
-    /// Have it proved by a checker that shares nothing with the search for conflicts (not in CSV)
+    /// Prove the answer by an independent checker (not in CSV)
     #[arg(long)]
     certify: bool,
-    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format of the computation: floating point (micro: f32 with roots and angles for microcontrollers), or fixed point (q20: up to ±256 m and s, q16: ±4096, q12: ±65,536)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]

@@ -13,7 +13,7 @@ Examples:
   pcr completions fish > ~/.config/fish/completions/pcr.fish
   pcr completions powershell >> $PROFILE";
 
-/// Print the completions of a shell: what comes after each word of the command line
+/// Print a completion script for a shell
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Shells {

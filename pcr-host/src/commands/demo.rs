@@ -27,7 +27,7 @@ Examples:
 #[derive(Args, Default)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// Directory for the pictures (pcr-out if left out)
+    /// Directory for the pictures (pcr-out if left out, with --quiet none)
     #[arg(short, long, value_name = "DIR", value_parser = folder(), conflicts_with = "scenario")]
     output: Option<PathBuf>,
     /// Print the scenario instead, as a file
@@ -55,7 +55,10 @@ impl Arguments {
         let took = begin.elapsed();
         let answer = Answer::of::<f64>(&scenario, Request::default())?;
         report::overview(&scenario, &answer, took, &mut out)?;
-        draw(&scenario, None, None, &self.output.unwrap_or_else(|| DIRECTORY.into()), &mut out)?;
+        // Pictures that nobody asked for are for people, as the tables are.
+        if let Some(output) = self.output.or_else(|| (!quiet()).then(|| DIRECTORY.into())) {
+            draw(&scenario, None, None, &output, &mut out)?;
+        }
         Ok(ExitCode::SUCCESS)
     }
 }

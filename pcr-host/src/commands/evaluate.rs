@@ -1,15 +1,16 @@
 //! `pcr evaluate`.
 
+use super::printed::notes;
 use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, folder, quiet};
-use crate::progress::Progress;
 use clap::Args;
 use pcr_comparing::evaluate::{self, Extent, Problem};
 use pcr_formats::output;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Instant;
 
-/// Write docs/evaluation.md: the paper's evaluation and more, measured here and now
+/// Measure everything in docs/evaluation.md on this machine, and write it (takes minutes)
 #[derive(Args)]
 #[command(after_help = STATUSES)]
 pub(super) struct Arguments {
@@ -19,10 +20,10 @@ pub(super) struct Arguments {
     /// Directory with the fleets of the paper's Table VI
     #[arg(long, value_name = "DIR", default_value = "tests/data")]
     data: PathBuf,
-    /// Write this part of the document anew, and leave the others as they are; as often as there are parts
+    /// Write only this part of the document anew; may be given several times
     #[arg(long, value_name = "PART", value_parser = clap::builder::PossibleValuesParser::new(evaluate::parts()))]
     only: Vec<String>,
-    /// Small fleets only, without the slowest methods: to see that it works
+    /// Small fleets only, without the slowest methods, to try it out
     #[arg(long)]
     quick: bool,
 }
@@ -32,10 +33,14 @@ impl Arguments {
         let extent = if self.quick { Extent::Quick } else { Extent::Full };
         let written = |error| Stop::not_written(&self.output, &error);
         output::folder(&self.output).map_err(written)?;
-        let progress = Progress::new("parts");
         let Self { data, output, only, .. } = &self;
-        let files = evaluate::write(data, output, extent, only, &mut |done, total| progress.set(done, total));
-        drop(progress);
+        let begin = Instant::now();
+        let mut begins = |part: &str, done: usize, parts: usize| {
+            let (place, seconds) = (done + 1, begin.elapsed().as_secs());
+            // Where standard error is closed, the document is all there is.
+            let _ = writeln!(notes(), "part {place} of {parts}: {part}, {seconds} s after the begin");
+        };
+        let files = evaluate::write(data, output, extent, only, &mut begins);
         let files = files.map_err(|problem| match &problem {
             Problem::File(path, _) if path.starts_with(&self.output) => Stop::Error(problem.to_string(), NOT_WRITTEN),
             _ => Stop::Error(problem.to_string(), WRONG_INPUT),

@@ -17,16 +17,16 @@ use std::process::ExitCode;
 /// Exclusions, as they stand in files of fleets.
 #[derive(Args)]
 pub(super) struct Asked {
-    /// Write the layout to the file of --output, with what keeps its vehicles apart
+    /// Write the layout, with exclusions that keep vehicles apart, to the file of --output
     #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
     write: Option<Target>,
-    /// Cut edges (lanes, straight paths, zones) into equal parts no longer than this before
+    /// Before that, cut edges (lanes, straight paths, zones) into equal parts no longer than this
     #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
     split: Option<f64>,
     /// Write envelopes with this key instead of blocks (openTCS)
     #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
     envelopes: Option<String>,
-    /// Tell what can touch though vehicles keep to what the layout, or FILE, says; exit status 1 if anything can
+    /// List where vehicles can touch although they obey the exclusions in the layout, or in FILE; exit status 1 if there is such a place
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes", "delays"])]
     audit: Option<Option<PathBuf>>,
 }

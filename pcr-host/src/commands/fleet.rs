@@ -6,7 +6,7 @@ mod run;
 #[cfg(feature = "serve")]
 pub(super) use run::{Crew, Run, world};
 
-use super::Stop;
+use super::{Stop, whole};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ Exit status:
   1  two vehicles had the right to one place, or some did not come to their ends; of a record: there was a contact
   2  wrong arguments, or a file that cannot be read or was refused
   3  the record could not be written
-  4  of a record: so near that rounding does not tell";
+  4  of a record: undecided, two vehicles came too near for the rounding of the record";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -41,7 +41,7 @@ const SIMULATED: [&str; 14] = [
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
-    /// Layout; vehicles stand at its safe ends and go from one to another
+    /// Layout; vehicles drive from one of its safe ends to another
     #[arg(required_unless_present_any = ["certify", "streets"])]
     layout: Option<PathBuf>,
     /// A generated site with N streets each way, instead of a layout
@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883", conflicts_with = "alone")]
     broker: String,
     /// Number of vehicles
-    #[arg(long, value_name = "N", default_value_t = 8)]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
     vehicles: usize,
     /// Simulate their fleet manager, too
     #[arg(long, conflicts_with = "alone")]
@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Then let all missions under way finish, until none has for an hour
+    /// Then go on until all missions under way are done, or none was done for an hour
     #[arg(long, requires = "time")]
     finish: bool,
     /// Without a broker: supervisor, route-locks or edge-locks
@@ -75,11 +75,11 @@ pub(super) struct Arguments {
     /// Connections that each vehicle loses per hour
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     drops: f64,
-    /// Part of messages lost, repeated and late, each
+    /// Part of the messages that is lost, part that is repeated, part that is late
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     weather: f64,
     /// The same seed makes the same vehicles
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Write the true positions of the vehicles
     #[arg(long, value_name = "FILE")]
@@ -95,7 +95,9 @@ pub(super) struct Arguments {
 impl Arguments {
     #[cfg(not(feature = "serve"))]
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        Err(Stop::arguments("this pcr was built without `serve`: cargo install --path pcr-host --features serve"))
+        Err(Stop::arguments(
+            "this pcr was built without `serve`: cargo install --locked --path pcr-host --features serve",
+        ))
     }
 
     #[cfg(feature = "serve")]

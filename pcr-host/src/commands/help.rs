@@ -3,6 +3,7 @@
 //! `-h` shows the common options of a command, one line each; `--help` adds those about layouts and other formats,
 //! examples and exit statuses. Options without effect in a command are not shown.
 
+use super::tips::with_tip;
 use super::{Arguments, Stop};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
 use std::ffi::OsString;
@@ -34,9 +35,9 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop>
         // Both in the form of a line an option.
         (*word, long) = ("-h".into(), true);
     }
-    match command(long).try_get_matches_from(words) {
+    match command(long).try_get_matches_from(&words) {
         Ok(matches) => Arguments::from_arg_matches(&matches).map(Some).map_err(|error| Stop::Usage(Box::new(error))),
-        Err(error) if error.use_stderr() => Err(Stop::Usage(Box::new(error))),
+        Err(error) if error.use_stderr() => Err(Stop::Usage(Box::new(with_tip(error, &words)))),
         Err(asked) => {
             let (text, mut out) = (asked.render(), io::stdout().lock());
             if out.is_terminal() {
@@ -65,6 +66,7 @@ pub(super) fn command(long: bool) -> Command {
 
 fn tailored(command: Command, long: bool) -> Command {
     let name = command.get_name().to_owned();
+    let command = if is_missing(&name) { without(command) } else { command };
     let useless = useless(&name);
     let layouts = command.get_arguments().any(|argument| argument.get_help_heading() == Some(LAYOUTS));
     let command = command.mut_args(|argument| {
@@ -86,6 +88,17 @@ fn tailored(command: Command, long: bool) -> Command {
             .after_help(format!("Options for layouts and other formats, examples, exit statuses: pcr {name} --help")),
         (false, false) => command.after_help(format!("Examples and exit statuses: pcr {name} --help")),
     }
+}
+
+/// Whether a command is not in this build.
+fn is_missing(name: &str) -> bool {
+    cfg!(not(feature = "serve")) && matches!(name, "serve" | "fleet")
+}
+
+/// A command that only says how it is to be had.
+fn without(command: Command) -> Command {
+    let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+    command.about(format!("{about} (not in this build)"))
 }
 
 /// With the option for help, which says of itself that there is more only where there is.

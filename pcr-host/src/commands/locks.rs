@@ -13,7 +13,7 @@ use pcr_formats::output;
 use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, origin, write_index};
 use pcr_planning::memory;
 use pcr_planning::report::{self, DelayTable, EdgeLocks, LocksUnprinted};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -27,12 +27,12 @@ Exit status:
 const EXAMPLES: &str = "\
 Examples:
   pcr locks depot.geojson --radius 0.4                  the table of locks of a nav2 route graph
-  pcr locks depot.geojson --radius 0.4 -o locks         and a page: an edge shows what it blocks
+  pcr locks depot.geojson --radius 0.4 -o locks         and a page that shows what an edge blocks
   pcr locks map.xml --radius 0.5 --index map.locks      a table of any size in a file
   pcr locks map.locks --edge e17                        the locks of an edge, from that file
   pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
-  pcr locks depot.geojson --radius 0.4 --write nav2 -o guarded.geojson   with what it excludes
-  pcr locks plant.xml --radius 0.5 --audit -o audit     what the file does not keep apart";
+  pcr locks depot.geojson --radius 0.4 --write nav2 -o guarded.geojson   with its exclusions
+  pcr locks plant.xml --radius 0.5 --audit -o audit     contacts that the file does not exclude";
 
 /// Print which edges of a layout may not be used at the same time, and on which lengths
 #[derive(Args)]
@@ -42,23 +42,23 @@ pub(super) struct Arguments {
     layout: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Add what a vehicle blocks that stands at a node
+    /// Add the lengths that a vehicle blocks while it stands at a node
     #[arg(long)]
     nodes: bool,
-    /// Instead, print how much later than on one edge nobody may set off on another, at --speed (with --acceleration from rest to rest)
+    /// Print times instead: the delays with which two vehicles must not set off on two edges. They drive at --speed, with --acceleration from rest to rest
     #[arg(long, conflicts_with_all = ["edge", "index", "output"])]
     delays: bool,
-    /// Print JSON Lines, a lock a line, for tables of any size
+    /// Print JSON Lines, one lock on each line, for tables of any size
     #[arg(long, hide_short_help = true, conflicts_with_all = ["format", "json", "output"])]
     lines: bool,
-    /// Only what an edge (or a node) shares its time with
+    /// Only the locks of this edge or node
     #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
     edge: Option<String>,
-    /// Write the locks to this file, in which --edge finds an edge by itself; with --edge look there, if it is of this layout
+    /// Write the locks to this file, from which --edge reads one edge without the others; with --edge, read that file
     #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output"])]
     index: Option<PathBuf>,
-    /// Draw the layout with its locks to this directory as well; with --write the file to be written
-    #[arg(short, long, value_name = "DIR")]
+    /// Directory for pictures and a page of the layout with its locks; with --write the file to be written
+    #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
     #[command(flatten)]
     asked: Asked,
@@ -189,7 +189,13 @@ impl Arguments {
     /// The locks of one edge, of a layout or from a file that has them.
     fn of_edge(&self, file: &Path, edge: &str) -> Result<ExitCode, Stop> {
         let found = |index: &Path, of: Option<u32>| {
-            let wrong = |error: IndexError| Stop::wrong(index, error);
+            let wrong = |error: IndexError| match error {
+                IndexError::Io(missing) if missing.kind() == ErrorKind::NotFound => Stop::wrong(
+                    index,
+                    "there is no such table of locks; pcr locks LAYOUT --index, without --edge, writes one",
+                ),
+                other => Stop::wrong(index, other),
+            };
             let mut held = Index::open(index).map_err(wrong)?;
             if of.is_some_and(|of| of != held.origin()) {
                 let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";

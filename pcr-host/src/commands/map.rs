@@ -19,7 +19,7 @@ use std::process::ExitCode;
 const EXAMPLES: &str = "\
 Examples:
   pcr map fleet.json -o pictures                 begin with pictures/index.html
-  pcr map site.json --agent 7 -o pictures        agent 7 and those that it meets, of any number of agents
+  pcr map site.json --agent 7 -o pictures        agent 7 and those that come near it
   pcr demo --scenario | pcr map -o pictures      the paper's 12 agents";
 
 /// Agents of which all are drawn: some 20 ms of a core each, a picture of each in two formats, and 50 kB of the page.
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     /// Directory for the pictures; created where it does not exist, files in it are overwritten
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: PathBuf,
-    /// Only the map of the agent of this number or label, beside those that come near it; as often as there are agents to be drawn
+    /// Only the map of this agent, by number or label, with all agents that come near it; may be given several times
     #[arg(long = "agent", value_name = "AGENT")]
     agents: Vec<String>,
     #[command(flatten)]

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr nodes warehouse.geojson                what --route can be given: nodes, and the edges between them
+  pcr nodes warehouse.geojson                the nodes that --route takes, and the edges
   pcr nodes site.lif.json --vehicle AMR      the edges of one type of vehicle
   pcr nodes town.xodr --json                 for programs";
 

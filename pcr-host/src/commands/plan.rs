@@ -19,7 +19,7 @@ use std::time::Duration;
 const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
-  1  no plan, or with --leave-out none for all
+  1  no plan for all agents, also where --leave-out has one for some
   2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
   3  the output could not be written";
 
@@ -30,38 +30,38 @@ Examples:
   pcr plan fleet.json --pictures maps                 every agent's map before and after
   pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way
   pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first
-  pcr plan fleet.json --leave-out -o plan.json        without those that cannot go, if any
-  pcr plan fleet.json --prove --time-limit 60         until it is the best, or a minute";
+  pcr plan fleet.json --leave-out -o plan.json        without agents that no plan can include
+  pcr plan fleet.json --prove --time-limit 60         until it is proved the best, at most 60 s";
 
-/// Resolve the conflicts of a scenario: later starts or other speeds, by priorities
+/// Plan later starts or other speeds, so that nobody collides
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out or `-`
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The scenario with the plan, if there is one; `-` for standard output
+    /// Write the scenario with the plan to it; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw the collision maps before and after to folders of DIR
+    /// Draw the collision maps without and with it to DIR/before, DIR/after
     #[arg(long, value_name = "DIR", value_parser = folder())]
     pictures: Option<PathBuf>,
-    /// Later starts, or other speeds on the way as well
+    /// Later starts, or also waits and other speeds on the way
     #[arg(long, value_enum, default_value_t = Means::Delay)]
     method: Means,
     /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best` [default: best]
     #[arg(long, value_name = "ORDER", value_parser = asked)]
     priority: Option<Asked>,
-    /// The least sum of times to the arrivals, or the earliest last one
+    /// What is to be least: the sum of times to arrival, or the last arrival
     #[arg(long, value_enum, default_value_t = Least::Sum)]
     objective: Least,
-    /// Plan for the others if not all can go; the fewest are left out
+    /// If there is no plan for all, leave out as few as possible
     #[arg(long)]
     leave_out: bool,
     /// Search until it is proved that no start delays are better
     #[arg(long)]
     prove: bool,
-    /// End that search then; its plan depends on the machine
+    /// End the search after this time; the plan may differ from run to run
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<Duration>,
     #[command(flatten)]

@@ -97,7 +97,7 @@ pub(super) enum Form {
 
 #[derive(Args)]
 pub(super) struct Printed {
-    /// For reading, an object a scenario, or a line a row
+    /// Table for people, or JSON or CSV for programs
     #[arg(long, value_enum, default_value_t = Form::Table)]
     format: Form,
     /// The same as --format json

@@ -16,12 +16,12 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr regions fleet.json                            who has to keep out of what, and when
-  pcr regions fleet.json --agent 3                  what agent 3 has to keep out of
-  pcr regions fleet.json --margin 0.05              with 5 cm to be kept around each, listed apart from contact
-  pcr regions fleet.json --format csv > fleet.csv   a line a region
-  pcr regions fleet.json --json --slices 9          with the lengths covered at 9 times of each region
-  pcr regions - --format json < fleets.jsonl        JSON Lines: a scenario a line in, a line a scenario out";
+  pcr regions fleet.json                            where and when every agent must not be
+  pcr regions fleet.json --agent 3                  the regions of agent 3
+  pcr regions fleet.json --margin 0.05              a second table, for discs 5 cm larger
+  pcr regions fleet.json --format csv > fleet.csv   one line for each region
+  pcr regions fleet.json --json --slices 9          with the lengths inside at 9 times
+  pcr regions - --format json < fleets.jsonl        JSON Lines: one scenario on each line";
 
 /// Slices that are given for a region: more than any picture or table can use, and not more than memory holds.
 const MOST_SLICES: i64 = 10_000;
@@ -38,13 +38,13 @@ pub(super) struct Arguments {
     /// Only the regions that the agent of this number or label has to keep out of
     #[arg(long, value_name = "ID")]
     agent: Option<String>,
-    /// Add the lengths covered at N evenly spaced inner times of each region (JSON only)
+    /// Add the lengths inside each region at N evenly spaced times (JSON only)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST_SLICES))]
     slices: Option<u32>,
-    /// Add the table as it is held, path by path and piece by piece, for `pcr certify --table` (JSON only)
+    /// Add the table itself, with all paths and pieces, for `pcr certify --table` (JSON only)
     #[arg(long)]
     certificate: bool,
-    /// Number format: floating point (micro: f32 with the roots and angles of small machines), or steps of 2⁻¹⁶ (±4096 m, s), 2⁻²⁰ (±256), 2⁻¹² (±65 km)
+    /// Number format of the computation: floating point (micro: f32 with roots and angles for microcontrollers), or fixed point (q20: up to ±256 m and s, q16: ±4096, q12: ±65,536)
     #[arg(long, value_enum, default_value_t = Number::F64)]
     scalar: Number,
     #[command(flatten)]

@@ -14,15 +14,15 @@ pub(super) use bridge::{VEHICLES, broker, interfaces};
 #[cfg(feature = "serve")]
 pub(super) use run::AT_BROKERS;
 
-use super::Stop;
+use super::{Stop, whole};
 use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  standard input has ended, and nobody else can ask
-  2  wrong arguments, or a journal that is damaged or open elsewhere
+  0  ended by the end of standard input (without --stay), or by Ctrl-C
+  2  wrong arguments, or a journal that is damaged or in use
   3  the journal could not be opened or written: no right was given, or none after that";
 
 const EXAMPLES: &str = "\
@@ -39,55 +39,66 @@ Examples:
 #[command(group = ArgGroup::new("vda5050").args(["broker", "demo"]))]
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
-    /// Directory of the journal; it outlives the program
+    /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
     /// Clients over TCP: a port of this machine, or ADDRESS:PORT
-    #[arg(long, value_name = "PORT")]
+    #[arg(long, value_name = "PORT", value_parser = place)]
     listen: Option<String>,
-    /// The live page and metrics: a port of this machine, or ADDRESS:PORT
-    #[arg(long, value_name = "PORT")]
+    /// The live page and metrics: a port, or ADDRESS:PORT
+    #[arg(long, value_name = "PORT", value_parser = place)]
     page: Option<String>,
-    /// Go on when standard input has ended
+    /// Do not end when standard input ends
     #[arg(long)]
     stay: bool,
-    /// Robots may stand so far behind a stop, in m [0.1; VDA: 0.3]
+    /// How far before a stop robots may stand, in m [0.1; VDA: 0.3]
     #[arg(long, value_name = "M")]
     width: Option<f64>,
-    /// Robots are told how far they may go so long before they would have to brake, in s [2; VDA 5050: 8, the least]
+    /// How long before it would have to brake a robot is told that it may go on, in s [2; VDA 5050: 8, the least]
     #[arg(long, value_name = "S")]
     lookahead: Option<f64>,
-    /// A robot is silent when it was not heard for so long, in s
+    /// A robot is silent after this time without a message, in s
     #[arg(long, value_name = "S", default_value_t = 5.0)]
     silence: f64,
     /// Broker of a fleet of VDA 5050, HOST:PORT; user and password from PCR_BROKER_USER and PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT", requires = "fleet")]
     broker: Option<String>,
-    /// Certificate (PEM) of who has signed the broker's: TLS
+    /// Use TLS; certificate (PEM) that has signed the broker's
     #[arg(long, value_name = "FILE", requires = "broker")]
     authority: Option<PathBuf>,
-    /// The vehicles, as docs/serve.md says
+    /// The file of vehicles (docs/serve.md)
     #[arg(long, value_name = "FILE", requires = "broker")]
     fleet: Option<PathBuf>,
     /// First levels of the topics of the fleet manager and of the vehicles
     #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(requires = "vda5050")]
     topics: Vec<String>,
-    /// Start a broker, vehicles on this layout and their manager, too
+    /// Also start a broker, vehicles on this layout and a manager
     #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]
     demo: Option<PathBuf>,
     /// Vehicles of the demo
-    #[arg(long, value_name = "N", default_value_t = 8, requires = "demo")]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>, requires = "demo")]
     vehicles: usize,
     /// Logs on standard error: debug, info, warn or error
     #[arg(long, value_name = "LEVEL", default_value = "info")]
     log: String,
 }
 
+/// Where to listen, as it is written.
+fn place(text: &str) -> Result<String, String> {
+    let port = text.rsplit_once(':').map_or(text, |(_, port)| port);
+    match port.parse::<u16>() {
+        Ok(_) => Ok(text.to_owned()),
+        Err(_) => Err("a port (0 to 65535) or ADDRESS:PORT is expected".into()),
+    }
+}
+
 #[cfg(not(feature = "serve"))]
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        Err(Stop::arguments("this pcr was built without `serve`: cargo install --path pcr-host --features serve"))
+        Err(Stop::arguments(
+            "this pcr was built without `serve`: cargo install --locked --path pcr-host --features serve",
+        ))
     }
 }
 

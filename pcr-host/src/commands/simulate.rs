@@ -1,7 +1,7 @@
 //! `pcr simulate`.
 
 use super::sources::source;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, scenario, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, scenario, whole, write_to};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_drawing::replay;
@@ -48,7 +48,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum)]
     controller: Option<Choice>,
     /// The same seed gives the same run
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Seconds from plan to plan under pcr, 0.05 to 3600 [default: 2]
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
@@ -59,13 +59,13 @@ pub(super) struct Arguments {
     /// How far robots may be off their paths in m, 0 to 10
     #[arg(long, value_name = "M", default_value_t = 0.005, value_parser = |text: &str| within(text, 0.0, 10.0))]
     drift: f64,
-    /// Largest part of its way that a robot loses, 0 to 0.9
+    /// Largest part of its way that a robot loses to slip, 0 to 0.9
     #[arg(long, value_name = "PART", default_value_t = 0.05, value_parser = |text: &str| within(text, 0.0, 0.9))]
     slip: f64,
-    /// Longest hold-up of a robot, about every 10 s, 0 to 3600 s
+    /// Longest stop of a robot, about every 10 s, 0 to 3600 s
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| within(text, 0.0, 3600.0))]
     delay: f64,
-    /// How often a foraging robot goes to and fro (3 if left out)
+    /// Trips of each foraging robot (3 if left out)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     trips: Option<u32>,
     /// A page on which to watch the runs; `-` for standard output

@@ -2,7 +2,7 @@
 
 use super::printed::notes;
 use super::sources::{layout, layout_source};
-use super::{CONFLICTS, Form, Printed, Stop, folder, map, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, folder, map, whole, write_to};
 use clap::Args;
 use pcr_drawing::Ground;
 use pcr_formats::import::Options;
@@ -15,9 +15,9 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr traffic map.geojson --agents 50 --radius 0.4               who waits how long, and the throughput
+  pcr traffic map.geojson --agents 50 --radius 0.4               waits and throughput
   pcr traffic map.geojson --agents 50 --radius 0.4 -o traffic    and files and pictures in traffic/
-  pcr traffic map.geojson --hours 1 --radius 0.4                 robots that get mission after mission
+  pcr traffic map.geojson --hours 1 --radius 0.4                 robots that get one mission after the other
   pcr traffic map.geojson --hours 1 --radius 0.4 --compare       and with locks and start delays";
 
 const STATUSES: &str = "\
@@ -33,16 +33,16 @@ Exit status:
 pub(super) struct Arguments {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
-    /// Agents, a mission each; with --hours one after the other
+    /// Agents; each has one mission, with --hours one after the other
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u16).range(1..))]
     agents: u16,
-    /// Another number gives other missions
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    /// The same seed gives the same missions
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Run the fleet for so many hours, with delays: throughput, waits, proof that nobody touches
     #[arg(long, value_name = "H", value_parser = hours, conflicts_with = "output")]
     hours: Option<f64>,
-    /// The same missions and delays also with locks and with start delays
+    /// Also run the same missions and delays with locks, and with start delays
     #[arg(long, requires = "hours")]
     compare: bool,
     /// Part of the time for which robots are stopped at random [default: 0.02]

@@ -135,7 +135,7 @@ fn lines<W: Work>(
     drop(progress);
     // Whoever should have written it has failed: that nothing collides is not known.
     if tally.read == before {
-        return Err(Stop::Error("standard input: empty; no scenario came in".into(), WRONG_INPUT));
+        return Err(Stop::Error("standard input: empty; a scenario is expected".into(), WRONG_INPUT));
     }
     Ok(())
 }

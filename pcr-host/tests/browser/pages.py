@@ -228,6 +228,9 @@ def check_large(browser):
 def check_audit(browser):
     """Every layer of an audit is drawn, and goes with its box."""
     wrong = []
+    rows = browser.value("document.querySelectorAll('#about tbody tr').length")
+    if rows != browser.value("data.audit.gaps.length"):
+        wrong.append(f"{rows} pairs that can touch are listed")
     layers = {"gaps": "data.audit.gaps.length", "groups": "data.audit.groups.length", "needless": "data.audit.needless.length"}
     for layer, count in layers.items():
         drawn = f"document.querySelectorAll('#audit-layers > .{layer} > *').length"
@@ -236,6 +239,9 @@ def check_audit(browser):
         browser.value(f"document.getElementById('layer-{layer}').click()")
         if browser.value(drawn) != 0:
             wrong.append(f"{layer}: they are drawn though nobody wants them")
+    browser.value("document.querySelector('#about tbody button').click()")
+    if browser.value("document.querySelector('#about h2').textContent.startsWith('Edge ')") is not True:
+        wrong.append("a pair that is chosen in the list does not show its edge")
     return wrong
 
 
@@ -253,18 +259,19 @@ def check_live(browser):
     """Every robot has its row, what it does is told, and the map of one that is chosen with the keyboard is there."""
     rows = "[...document.querySelectorAll('#robots tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))"
     names = [row[0] for row in until(browser, f"({rows}).length && {rows}")]
-    wrong = [] if names == list(ROBOTS) else [f"rows of {names}"]
+    wrong = [] if names == sorted(ROBOTS) else [f"rows of {names}"]
     for said in ("goes", "waits for east-1", "there", "off its path"):
         if not until(browser, f"{rows}.some((row) => row[1].includes('{said}'))"):
             wrong.append(f"nobody {said}: {browser.value(rows)}")
     for event in ("is not where it may be", "north-2 has order 0"):
         if not until(browser, f"document.getElementById('events').textContent.includes('{event}')"):
             wrong.append(f"no event about {event}")
-    place = browser.value(f"{rows}[3][3]")
-    if not until(browser, f"{rows}[3][3] !== '{place}'"):
+    row = names.index("west-4")
+    place = browser.value(f"{rows}[{row}][3]")
+    if not until(browser, f"{rows}[{row}][3] !== '{place}'"):
         wrong.append("a robot that goes is not seen to go")
     browser.value("document.getElementById('ego').focus()")
-    for _ in range(3):
+    for _ in range(1 + names.index("bend-3")):
         browser.key("ArrowDown")
     if browser.value("document.getElementById('ego').value") != "bend-3":
         wrong.append("no robot can be chosen with the keyboard")

@@ -51,7 +51,7 @@ fn a_plan_without_conflicts_is_free() {
         run.json(),
         json!({ "format": "pcr-conflicts", "version": 1, "name": "crossing", "conflicts": [], "error": null, "warnings": [] })
     );
-    assert_eq!(check(&free(), &[]).ok(), "crossing: no conflicts\n");
+    assert_eq!(check(&free(), &[]).ok(), "crossing: no conflicts, 2 agents\n");
     assert_eq!(check(&free(), &["--format", "csv"]).ok().lines().count(), 1);
 }
 

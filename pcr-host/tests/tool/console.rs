@@ -28,12 +28,12 @@ fn steps(block: &str) -> Vec<Step<'_>> {
     steps
 }
 
-fn top() -> PathBuf {
+pub(crate) fn top() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().canonicalize().unwrap()
 }
 
 /// A folder that looks like the repository's top and may be written to.
-fn sandbox(document: &str) -> PathBuf {
+pub(crate) fn sandbox(document: &str) -> PathBuf {
     let folder = directory("console").join(document.replace(['/', '.'], "-"));
     if folder.exists() {
         fs::remove_dir_all(&folder).unwrap();
@@ -48,12 +48,13 @@ fn sandbox(document: &str) -> PathBuf {
     folder
 }
 
-fn prints(command: &str, folder: &Path) -> String {
+/// What a command prints, and whether it ends well.
+pub(crate) fn prints(command: &str, folder: &Path) -> (String, bool) {
     let tool = Path::new(env!("CARGO_BIN_EXE_pcr")).parent().unwrap();
     let path = format!("{}:{}", tool.display(), std::env::var("PATH").unwrap());
     let shell = Command::new("sh").args(["-c", command]).current_dir(folder).env("PATH", path).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
-    text(shell.stdout) + &text(shell.stderr)
+    (text(shell.stdout) + &text(shell.stderr), shell.status.success())
 }
 
 /// Whether the lines are those of a pattern in which `...` stands for any number of lines.
@@ -77,8 +78,10 @@ fn follow(document: &str) -> usize {
         let block = block.split("```").next().unwrap();
         let mut now = String::new();
         for Step { command, says } in steps(block) {
-            let printed = prints(command, &folder);
+            let (printed, well) = prints(command, &folder);
             let lines: Vec<&str> = printed.lines().collect();
+            // Where nothing of the output is shown, it may be no message of an error.
+            assert!(well || says != ["..."], "{document}: {command}\n{printed}");
             commands += 1;
             now += &format!("$ {command}\n");
             if matches(&says, &lines) {
@@ -104,9 +107,10 @@ fn the_readme_shows_what_the_tool_prints() {
 }
 
 #[test]
-fn the_guide_and_the_cookbook_show_what_the_tool_prints() {
+fn the_other_documents_show_what_the_tool_prints() {
     assert!(follow("docs/using.md") >= 1);
     assert!(follow("docs/cookbook.md") >= 5);
+    assert!(follow("docs/layouts.md") >= 6);
 }
 
 #[test]

@@ -8,7 +8,12 @@ use std::path::Path;
 fn the_document_and_all_its_pictures_are_written() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
     let output = directory("evaluate");
-    let files = run(&["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", output.to_str().unwrap()]).ok();
+    let result = run(&["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", output.to_str().unwrap()]);
+    // A line a part on standard error, as it begins: the whole takes minutes.
+    let parts: Vec<&str> = result.err.lines().collect();
+    assert!(parts[0].starts_with("part 1 of 13: fleets, 0 s"), "{parts:?}");
+    assert_eq!((result.status, parts.len()), (0, 13), "{parts:?}");
+    let files = result.out.clone();
     let text = fs::read_to_string(output.join("evaluation.md")).unwrap();
     for heading in
         ["# Evaluation", "## Table VI", "## All methods, 12 agents", "## Fig. 12", "## Fig. 13", "## Fig. 14"]
@@ -30,7 +35,9 @@ fn the_document_and_all_its_pictures_are_written() {
     // One part anew: nothing else changes, and that part as little as memory does.
     let target = output.to_str().unwrap();
     let only = ["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", target, "--only", "memory"];
-    let written = run(&only).ok();
+    let written = run(&[&only[..], &["-q"]].concat());
+    assert_eq!((written.status, written.out, written.err), (0, String::new(), String::new()));
+    let written = run(&only).out;
     assert_eq!(written, format!("{}\n", output.join("evaluation.md").display()));
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), text);
     let full: Vec<&str> = only.iter().copied().filter(|word| *word != "--quick").collect();
@@ -38,7 +45,7 @@ fn the_document_and_all_its_pictures_are_written() {
     assert!(message.contains("was written with --quick"), "{message}");
     let without = text.replace("## Memory, and bytes on the wire", "## Something else");
     fs::write(output.join("evaluation.md"), &without).unwrap();
-    let message = run(&only).failed(2);
+    let message = run(&[&only[..], &["-q"]].concat()).failed(2);
     assert!(message.contains("has no section \"## Memory, and bytes on the wire\""), "{message}");
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), without);
     // Rows of the grazing table: double precision is never wrong, lines at 10 mm are wrong about all near misses.

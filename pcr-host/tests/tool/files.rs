@@ -42,7 +42,7 @@ fn a_scenario_that_is_planned_onto_itself_is_never_lost() {
     assert!(message.starts_with(&format!("pcr: {name}: cannot be written: ")), "{message}");
     assert_eq!((fs::read(&same).unwrap(), names(&folder)), (before, vec!["same.json".to_owned()]));
     run(&["plan", name, "-o", name, "-q"]).ok();
-    assert_eq!((run(&["check", name]).ok().as_str(), names(&folder).len()), ("paper12: no conflicts\n", 1));
+    assert_eq!((run(&["check", name]).ok().as_str(), names(&folder).len()), ("paper12: no conflicts, 12 agents\n", 1));
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn what_is_something_else_is_said_to_be() {
         assert_eq!(run.status, 2, "{name}");
         assert!(run.err.lines().last().unwrap().contains(expected), "{}", run.err);
     }
-    assert!(message("regions", "README.md").contains("README.md:1: column 1: "));
+    assert!(message("regions", "README.md").contains("README.md: no scenario, which is a JSON object, nor "));
 }
 
 /// All files in a directory and those below it.

@@ -1,6 +1,6 @@
 //! What users of other command line tools expect: help, completions, manual pages, quiet, and no option in vain.
 
-use crate::fixture::{PAPER, crossing, directory, file, run};
+use crate::fixture::{PAPER, crossing, directory, file, pcr, run};
 use serde_json::Value;
 
 const COMMANDS: [&str; 17] = [
@@ -126,11 +126,36 @@ fn options_that_do_nothing_are_refused() {
     assert!(run.status == 2 && run.err.starts_with("error: "), "{}", run.err);
 }
 
+#[test]
+fn refused_words_come_with_a_tip() {
+    let layout = real("nav2/aws_graph.geojson");
+    for (arguments, tip) in [
+        (&["version"][..], "tip: pcr --version\n"),
+        (&["check", "-o", "x"], "tip: this command writes no file; its answer goes to standard output: > FILE\n"),
+        (&["regions", PAPER, "--output=x"], "tip: this command writes no file"),
+        (&["locks", &layout, "--audit", "zones.json"], "with an equals sign: --audit=FILE\n"),
+        (&["locks", &layout, "--write", "nav2"], "tip: the output is the file to be written, such as -o guarded"),
+        (&["traffic", &layout, "--hours", "1", "-o", "x"], "tip: files and pictures are of missions that all set off"),
+        (&["fleet", "--certify", "x", "--json"], "tip: --certify prints JSON, and nothing else does\n"),
+        (&["traffic", &layout, "--seed", "-1"], "a whole number from 0 is expected\n"),
+        (&["simulate", "--foraging", "--seed", "-1"], "a whole number from 0 is expected\n"),
+        (&["serve", "--page", "x"], "a port (0 to 65535) or ADDRESS:PORT is expected\n"),
+    ] {
+        let run = run(arguments);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.err.contains(tip) && run.err.matches("tip:").count() <= 1, "{arguments:?}: {}", run.err);
+    }
+    let message = run(&["locks", &layout, "--radius", "0.3", "-q", "--edge", "1", "--index", "none.locks"]).failed(2);
+    assert!(message.starts_with("pcr: none.locks: there is no such table of locks"), "{message}");
+}
+
 #[cfg(not(feature = "serve"))]
 #[test]
 fn what_is_not_built_in_says_how_to_get_it() {
+    let short = run(&["-h"]).ok();
+    assert_eq!(short.matches("(not in this build)\n").count(), 2, "{short}");
     let message = run(&["serve", "--journal", "nowhere"]).failed(2);
-    assert!(message.contains("cargo install --path pcr-host --features serve"), "{message}");
+    assert!(message.contains("cargo install --locked --path pcr-host --features serve"), "{message}");
 }
 
 #[test]
@@ -162,6 +187,11 @@ fn quiet_is_quiet() {
     let pictures = directory("habits").join("quiet");
     silent(&["-q", "plan", &scenario, "--pictures", pictures.to_str().unwrap()], 0);
     silent(&["-q", "map", &scenario, "-o", pictures.to_str().unwrap()], 0);
+    // What only people look at is not written unasked.
+    let empty = directory("habits-quiet");
+    let demo = pcr().arg("-q").current_dir(&empty).output().unwrap();
+    assert!(demo.status.success() && demo.stdout.is_empty() && demo.stderr.is_empty());
+    assert_eq!(std::fs::read_dir(&empty).unwrap().count(), 0);
     #[cfg(feature = "serve")]
     silent(&["-q", "fleet", &layout, "--vehicles", "2", "--alone", "supervisor", "--time", "5"], 0);
     // What a program asked for is there all the same, and so are errors.

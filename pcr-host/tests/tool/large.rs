@@ -18,7 +18,7 @@ fn discs(count: usize, apart: f64) -> String {
 fn more_agents_than_a_table_numbers_are_answered() {
     let name = file("large", "discs.json", discs(70_000, 3.0));
     assert_eq!(run(&["regions", &name, "--format", "csv"]).ok().lines().count(), 1);
-    assert_eq!(run(&["check", &name]).ok(), "discs: no conflicts\n");
+    assert_eq!(run(&["check", &name]).ok(), "discs: no conflicts, 70000 agents\n");
 }
 
 /// Pairs of agents that cross, 8 m apart.

@@ -47,7 +47,7 @@ fn good_lines_leave_no_error() {
     assert_eq!(answers[1]["regions"][0]["slices"].as_array().unwrap().len(), 3);
     // Nothing at all is an answer to nothing, but no sign that nobody collides: whoever should have written has failed.
     let empty = run_with(&["check", "-"], b"\n").failed(2);
-    assert_eq!(empty, "pcr: standard input: empty; no scenario came in\n");
+    assert_eq!(empty, "pcr: standard input: empty; a scenario is expected\n");
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod compare;
 #[cfg(unix)]
 mod console;
 mod evaluate;
+mod examples;
 mod exclusions;
 mod files;
 mod fixture;

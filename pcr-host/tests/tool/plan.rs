@@ -40,7 +40,7 @@ fn the_papers_agents_are_resolved_and_the_plan_is_free() {
     assert!(table.starts_with("paper12: a plan without conflicts, by start delays"), "{table}");
     assert!(table.lines().count() == 16 && table.contains("makespan") && table.contains("proved"), "{table}");
     let check = run(&["check", &output]).ok();
-    assert_eq!(check, "paper12: no conflicts\n");
+    assert_eq!(check, "paper12: no conflicts, 12 agents\n");
     let csv = run(&["plan", PAPER, "--format", "csv"]).ok();
     assert!(csv.starts_with("name,id,delay,t_end,label\npaper12,1,") && csv.lines().count() == 13, "{csv}");
 }
@@ -201,7 +201,11 @@ fn what_is_refused() {
     let blocked = format!("{}/plan.json", file("plan", "blocked", ""));
     let message = run(&["plan", &input, "-o", &blocked]).failed(3);
     assert!(message.starts_with(&format!("pcr: {blocked}: cannot be written: ")), "{message}");
-    assert!(run(&["plan", "--help"]).ok().contains("  1  no plan, or with --leave-out none for all\n"));
+    assert!(
+        run(&["plan", "--help"])
+            .ok()
+            .contains("  1  no plan for all agents, also where --leave-out has one for some\n")
+    );
 }
 
 #[test]

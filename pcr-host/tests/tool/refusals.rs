@@ -79,15 +79,17 @@ fn lines_of_the_file_are_named() {
 
 #[test]
 fn texts_that_are_no_scenario() {
-    assert_eq!(message("", &[]), "1: empty; a scenario is an object with a list of agents");
-    assert_eq!(message("\u{feff}", &[]), "1: empty; a scenario is an object with a list of agents");
+    assert_eq!(message("", &[]), "empty; a scenario is expected");
+    assert_eq!(message("\u{feff}", &[]), "empty; a scenario is expected");
     assert_eq!(message("[]", &[]), "1: an array where an object is expected");
     assert_eq!(message("{}", &[]), "1: agents: missing");
     assert_eq!(message("{\"agents\": [", &[]), "1: column 13: the text ends where a value is expected");
     assert_eq!(message("{\"agents\": [], \"agents\": []}", &[]), "1: agents: given twice");
     assert_eq!(message("[".repeat(1_000_000), &[]), "1: column 65: arrays and objects nested more than 64 deep");
     assert_eq!(message(b"{\"agents\": \xff}", &[]), "not text in UTF-8");
-    assert_eq!(message("\0\u{1}\u{2}", &[]), "1: column 1: \\0\\u{1}\\u{2} where a value is expected");
+    let unknown = "no scenario, which is a JSON object, nor another format that is known by its name or content; say what it is with --from";
+    assert_eq!(message("\0\u{1}\u{2}", &[]), unknown);
+    assert_eq!(message("# A title", &[]), unknown);
     let lines = format!("{}\n{}\n", crossing(), crossing());
     let expected = "2: column 1: more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)";
     assert_eq!(message(lines, &[]), expected);

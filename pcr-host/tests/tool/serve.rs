@@ -40,7 +40,7 @@ fn a_layout_that_is_nearly_full_is_said_to_be() {
     let fleet =
         |vehicles: &str| run(&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--vehicles", vehicles]);
     let said = fleet("9").err;
-    assert!(said.starts_with("pcr: 10 safe ends have room for 9 vehicles; with 9 of them most missions "), "{said}");
+    assert!(said.starts_with("pcr: warning: of 10 safe ends, 1 are free while all 9 vehicles stand; a mission to one of the others waits "), "{said}");
     assert_eq!(fleet("5").err, "");
     assert!(fleet("10").failed(2).ends_with("10 vehicles need 11 places to stand at; there are 10\n"));
 }

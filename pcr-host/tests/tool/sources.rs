@@ -11,7 +11,7 @@ fn free() -> Value {
 
 #[test]
 fn standard_input_is_read_where_no_file_is_named() {
-    assert_eq!(run_with(&["check"], b"{\"agents\":[]}\n").ok(), "scenario: no conflicts\n");
+    assert_eq!(run_with(&["check"], b"{\"agents\":[]}\n").ok(), "scenario: no conflicts, 0 agents\n");
     let pretty = serde_json::to_string_pretty(&crossing()).unwrap();
     for arguments in [&["check"][..], &["check", "-"]] {
         let found = run_with(arguments, pretty.as_bytes());
@@ -109,7 +109,7 @@ fn plans_go_through_a_pipe() {
     assert_eq!(plan.status, 0);
     assert!(plan.err.starts_with("crossing: a plan without conflicts"), "the table is on standard error: {}", plan.err);
     for arguments in [&["check", "-"][..], &["check"]] {
-        assert_eq!(run_with(arguments, plan.out.as_bytes()).ok(), "crossing: no conflicts\n");
+        assert_eq!(run_with(arguments, plan.out.as_bytes()).ok(), "crossing: no conflicts, 2 agents\n");
     }
     let quiet = run(&["plan", &input, "-o", "-", "-q"]);
     assert_eq!((quiet.err.as_str(), quiet.out), ("", plan.out));

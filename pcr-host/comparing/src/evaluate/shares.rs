@@ -47,19 +47,22 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         line.sort_by(|a, b| a[0].total_cmp(&b[0]));
         Series { name: name.into(), points: line, line: true }
     };
-    let times = |title, axis, x: fn(&Point) -> f64| {
-        let series = vec![series("finding pairs", x, |p| p.finding), series("all", x, |p| p.all)];
+    // Fleets of as many agents have other regions: no line leads from one to the other.
+    let times = |title, axis, x: fn(&Point) -> f64, line: bool| {
+        let series = [series("finding pairs", x, |p| p.finding), series("all", x, |p| p.all)];
+        let series = series.map(|series| Series { line, ..series }).to_vec();
         Chart { title, axes: [axis, "time [ms]"], series }.draw()
     };
     let agents = |point: &Point| point.agents as f64;
-    let shares = vec![
+    let shares = [
         series("finding pairs", agents, |p| 100.0 * p.finding / p.all),
         series("regions", agents, |p| 100.0 * (1.0 - p.finding / p.all)),
     ];
+    let shares = shares.map(|series| Series { line: false, ..series }).to_vec();
     let shares = Chart { title: "Shares of the time", axes: ["agents", "share [%]"], series: shares };
     let pictures = vec![
-        ("fig12a", times("Time by the number of agents", "agents", agents)),
-        ("fig12b", times("Time by the number of regions", "regions", |point| point.regions as f64)),
+        ("fig12a", times("Time by the number of agents", "agents", agents, false)),
+        ("fig12b", times("Time by the number of regions", "regions", |point| point.regions as f64, true)),
         ("fig12c", shares.draw()),
     ];
     Ok(Section { text, pictures })

@@ -93,6 +93,7 @@ function draw() {
     for (const side of [2.7, -2.7]) { c.moveTo(bx, by); c.lineTo(bx + 9 * Math.cos(angle + side), by + 9 * Math.sin(angle + side)); }
     c.stroke();
   }
+  drawScale(c, width, height, scale);
   names(c, robots.map((robot) => [robot.robot, ...place.get(robot.robot).map((value, axis) => [x, y][axis](value)), Math.max(3, robot.radius * scale) + 2]), width);
 }
 
@@ -131,13 +132,15 @@ function cells(row, texts) {
 
 function show() {
   const body = $("robots").tBodies[0], ego = $("ego").value;
-  state.robots.forEach((robot, k) => {
+  // By name, 2 before 10.
+  const sorted = [...state.robots].sort((a, b) => a.robot.localeCompare(b.robot, "en", { numeric: true }));
+  sorted.forEach((robot, k) => {
     const row = body.rows[k] ?? body.insertRow(), at = robot.at;
     cells(row, [robot.robot, says(robot), robot.mission ?? "", `${at[0].toFixed(1)} – ${at[1].toFixed(1)}`, robot.hold.toFixed(1), robot.length.toFixed(1)]);
     row.className = (robot.alarm || robot.stopped_for || robot.silent ? "bad " : "") + (robot.robot === ego ? "chosen" : "");
   });
   while (body.rows.length > state.robots.length) body.deleteRow(-1);
-  const known = state.robots.map((robot) => robot.robot), options = [...$("ego").options].slice(1).map((option) => option.value);
+  const known = sorted.map((robot) => robot.robot), options = [...$("ego").options].slice(1).map((option) => option.value);
   if (known.join("\n") !== options.join("\n")) {
     $("ego").replaceChildren($("ego").options[0], ...known.map((name) => new Option(name, name)));
     $("ego").value = known.includes(ego) ? ego : "";

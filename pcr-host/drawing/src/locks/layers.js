@@ -1,13 +1,44 @@
 
 // ---- Layers of an audit: groups as written, pairs that can touch, pairs that are excluded in vain ----
 
+/** Lists the pairs that can touch, those without a common node first; nothing on a page without an audit. */
+function list_gaps() {
+  if (!data.audit) return;
+  const most = 200;
+  const gaps = [...data.audit.gaps].sort((a, b) => (b.relation === "apart") - (a.relation === "apart") || b.depth - a.depth);
+  text(about, "h2", gaps.length === 1 ? "1 pair that can touch" : gaps.length + " pairs that can touch");
+  text(about, "p", "Two vehicles at these places can touch although they obey the file. Red circles show where, large ones where the two places share no node.");
+  const table = text(about, "table", "");
+  table.className = "pairs";
+  const head = text(text(table, "thead", ""), "tr", "");
+  for (const title of ["one", "other", "depth [m]"]) text(head, "th", title);
+  const body = text(table, "tbody", "");
+  for (const gap of gaps.slice(0, most)) {
+    const row = text(body, "tr", ""), button = text(text(row, "td", ""), "button", gap.a);
+    button.type = "button";
+    button.addEventListener("click", () => show_gap(gap));
+    text(row, "td", gap.b);
+    text(row, "td", gap.depth.toFixed(3));
+  }
+  if (gaps.length > most) text(about, "p", `and ${gaps.length - most} more`);
+}
+
+/** Shows the place of a pair, with an edge of it. */
+function show_gap(gap) {
+  const at = data.levels.indexOf(gap.level);
+  if (at >= 0 && Number(level.value) !== at) { level.value = String(at); draw(); }
+  pin(gap.edges[0] ?? gap.edges[1]);
+  const size = 20 * STEPS * data.radius;
+  look([gap.x - size / 2, -gap.y - size / 2, size, size]);
+}
+
 /** Draws the layers of the level that is shown, those that are chosen; nothing on a page without an audit. */
 function draw_layers() {
   if (!data.audit) return;
   const COLOURS = ["#2f8f4e", "#8a5bb5", "#c08a1e", "#2aa1a6", "#b5527f", "#6c7a1f"];
   const { groups, gaps, needless } = data.audit;
-  const kinds = [["corridors", "corridors"], ["groups", groups.length + " groups"], ["gaps", gaps.length + " pairs that can touch"],
-    ["needless", needless.length + " pairs excluded in vain"]];
+  const kinds = [["corridors", "corridors of vehicles"], ["groups", groups.length + " groups, one vehicle each"],
+    ["gaps", gaps.length + " pairs that can touch"], ["needless", needless.length + " pairs excluded needlessly"]];
   let controls = document.getElementById("layers");
   if (!controls) {
     controls = text(document.getElementById("controls"), "span", "");
@@ -20,7 +51,8 @@ function draw_layers() {
       box.type = "checkbox";
       box.checked = true;
       box.id = "layer-" + kind;
-      label.append(" " + name);
+      text(label, "span", "").className = "swatch " + kind;
+      label.append(name);
       box.addEventListener("change", draw_layers);
     }
   }

@@ -96,6 +96,7 @@ function show(k) {
   if (document.activeElement !== choice) list([]);
   if (k === null) {
     text(about, "p", "Point at an edge to see its corridor (blue) and what it blocks (red); click to keep it, again for the next edge on the same line.");
+    list_gaps();
     return;
   }
   const edge = data.edges[k], blocks = blocks_of(k);

@@ -44,13 +44,14 @@ function poseAt(agent, length) {
   return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), heading + 2 * half];
 }
 
-// Of an outline that is no disc each of its discs counts.
-function touch(a, [x, y, heading], b, [u, v, other]) {
+// Of an outline that is no disc each of its covering discs counts; those of a load on its lengths only.
+function touch(a, [x, y, heading, along], b, [u, v, other, beside]) {
   if (Math.hypot(x - u, y - v) > a.radius + b.radius) return false;
-  const placed = (agent, x, y, heading) => agent.discs.map(([ahead, left, radius]) =>
-    [x + ahead * Math.cos(heading) - left * Math.sin(heading), y + ahead * Math.sin(heading) + left * Math.cos(heading), radius]);
-  const others = placed(b, u, v, other);
-  return placed(a, x, y, heading).some(([x, y, r]) => others.some(([u, v, s]) => Math.hypot(x - u, y - v) <= r + s));
+  const placed = (agent, x, y, heading, length) => agent.discs.filter(([, , , from, to]) => from - 1e-9 <= length && length <= to + 1e-9)
+    .map(([ahead, left, radius]) =>
+      [x + ahead * Math.cos(heading) - left * Math.sin(heading), y + ahead * Math.sin(heading) + left * Math.cos(heading), radius]);
+  const others = placed(b, u, v, other, beside);
+  return placed(a, x, y, heading, along).some(([x, y, r]) => others.some(([u, v, s]) => Math.hypot(x - u, y - v) <= r + s));
 }
 
 // ---- Drawing ----
@@ -246,7 +247,8 @@ function summary(region) {
     + `${number(region.time[1])} seconds, ${number(region.length[0])} to ${number(region.length[1])} metres`;
 }
 
-const number = (value) => Number(value.toPrecision(6)).toLocaleString("en", { maximumFractionDigits: 6, useGrouping: false });
+// As the tables of the tool: three decimals, and below a thousandth three digits.
+const number = (value) => (value !== 0 && Math.abs(value) < 1e-3 ? String(Number(value.toPrecision(3))) : value.toFixed(3)).replace("-", "\u2212");
 
 function describe(region) {
   const about = $("about");
@@ -261,14 +263,15 @@ function describe(region) {
     add(about, "p", "Point at a region of the map to read its times and lengths; click to keep it.");
     return;
   }
-  const open = [region.before.length > 0 && "from before the other's start", region.after.length > 0 && "on after its arrival"];
+  const other = agents[region.other].name;
+  const open = [region.before.length > 0 && `before agent ${other} sets off`, region.after.length > 0 && `after agent ${other} has arrived`];
   const line = add(about, "p");
-  add(line, "strong", `Agent ${agents[state.ego].name} against agent ${agents[region.other].name}`);
+  add(line, "strong", `Agent ${agents[state.ego].name} against agent ${other}`);
   line.append(`, type ${region.types.join(", ")} (${region.pieces} piece${region.pieces === 1 ? "" : "s"})`);
   const extent = add(about, "p", `time ${number(region.time[0])} to ${number(region.time[1])} s, length `
     + `${number(region.length[0])} to ${number(region.length[1])} m`);
-  const goes = open.filter(Boolean).join(" and ");
-  if (goes) extent.append(`; goes ${goes}`);
+  const always = open.filter(Boolean).join(" and ");
+  if (always) extent.append(`; also blocked ${always}`);
   if (region.crossings.length === 0) {
     add(about, "p", "The paths come near each other here without a crossing: the paper has no descriptor for it.");
     return;
@@ -291,7 +294,10 @@ function describe(region) {
 // ---- Time ----
 
 function showTime() {
-  const poses = agents.map((agent) => poseAt(agent, lengthAt(agent, state.time)));
+  const poses = agents.map((agent) => {
+    const length = lengthAt(agent, state.time);
+    return [...poseAt(agent, length), length];
+  });
   const hit = agents.map(() => false);
   for (let i = 0; i < agents.length; i += 1) {
     if (!state.shown[i]) continue;
@@ -402,7 +408,6 @@ function start() {
     chip.addEventListener("click", () => { state.shown[k] = !state.shown[k]; show(); });
     $("chips").append(chip);
   });
-  $("agents").classList.toggle("many", !data.distinct);
   const slider = $("time");
   slider.min = first;
   slider.max = last;
@@ -416,6 +421,11 @@ function start() {
     agents.forEach((_, k) => { state.shown[k] = k === state.ego || partners.has(k); });
     show();
   });
+  if (data.outlines) {
+    $("ground").textContent = "Workspace. Agents whose covering discs touch are red: a vehicle with an outline is computed as the discs that cover it, "
+      + "so contact begins a little before the outlines meet. One with loads is drawn as the disc around all its outlines; contacts are told by the discs of the outline that it has at its place. "
+      + "A dashed outline is an agent's end. Select an agent to see its map.";
+  }
   drawWorkspace();
   if (agents.length > 0) selectEgo(state.ego); else { drawMap(); describe(); }
 }

@@ -98,12 +98,15 @@ function drawWorld() {
     c.lineWidth = k === Number($("ego").value) ? 3 : 1.5;
     c.strokeStyle = hit ? theme.hit : theme.robots[k];
     c.stroke();
+    // Above lines of whatever colour.
     c.strokeStyle = theme.paper;
     c.lineWidth = 3;
+    c.lineJoin = "round";
     c.strokeText(robot.id, x(px), y(py));
     c.fillStyle = theme.ink;
     c.fillText(robot.id, x(px), y(py));
   });
+  drawScale(c, width, height, scale);
 }
 
 /** Lines at round values. */
@@ -145,7 +148,10 @@ function drawMap() {
   c.beginPath();
   c.rect(left, top, right - left, bottom - top);
   c.clip();
+  const labels = [];
   for (const region of map.regions) {
+    const points = region.outline.flat();
+    if (points.length > 0) labels.push([robots[region.other].id, ...[0, 1].map((axis) => (Math.min(...points.map((p) => p[axis])) + Math.max(...points.map((p) => p[axis]))) / 2)]);
     c.fillStyle = c.strokeStyle = theme.robots[region.other];
     c.beginPath();
     for (const contour of region.outline) { contour.forEach(([t, l], k) => (k ? c.lineTo(x(t), y(l)) : c.moveTo(x(t), y(l)))); c.closePath(); }
@@ -154,6 +160,16 @@ function drawMap() {
     for (const [a, b, lo, hi] of region.strips) c.fillRect(x(a), y(hi), x(b) - x(a), y(lo) - y(hi));
     c.globalAlpha = 1;
     c.stroke();
+  }
+  c.font = "bold 13px sans-serif";
+  c.textBaseline = "middle";
+  c.lineJoin = "round";
+  for (const [label, t, l] of labels) {
+    c.strokeStyle = theme.paper;
+    c.lineWidth = 3;
+    c.strokeText(label, x(t), y(l));
+    c.fillStyle = theme.ink;
+    c.fillText(label, x(t), y(l));
   }
   c.strokeStyle = theme.own;
   c.lineWidth = 1.5;
@@ -164,8 +180,14 @@ function drawMap() {
   c.setLineDash([]);
   c.lineWidth = 2.5;
   c.beginPath();
-  const travelled = run.travelled[ego];
-  for (let k = Math.round(plan.time / frame); k <= now && k < travelled.length; k++) c.lineTo(x(k * frame), y(travelled[k] * unit));
+  const travelled = run.travelled[ego], first = Math.round(plan.time / frame);
+  // Lengths count from the begin of a mission. That of its first frame is still the length of the mission before it.
+  const begins = new Set(run.journeys.filter((journey) => journey.robot === ego).map((journey) => journey.begin));
+  for (let k = first; k <= now && k < travelled.length; k++) {
+    const again = begins.has(k) && travelled[k] > 0;
+    if (again && k > first) break;
+    c.lineTo(x(k * frame), y(again ? 0 : travelled[k] * unit));
+  }
   c.stroke();
   c.strokeStyle = theme.accent;
   c.lineWidth = 1.3;
@@ -174,7 +196,8 @@ function drawMap() {
   c.lineTo(x(time), bottom);
   c.stroke();
   c.restore();
-  $("caption").textContent = `What robot ${robots[ego].name} keeps out of, with margins, in the plan of ${plan.time.toFixed(2)} s. Dashed: the plan; solid: what it did.`;
+  $("caption").textContent = `Collision map of robot ${robots[ego].name}, as planned at ${plan.time.toFixed(2)} s. Coloured: where and when it would come too near to the robot of that number; `
+    + "the margins for errors are included. Dashed: its planned motion. Solid: its real motion. Vertical line: now.";
 }
 
 function draw() {

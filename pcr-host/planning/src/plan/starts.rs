@@ -145,7 +145,10 @@ impl Starts {
             match conflict.as_slice() {
                 _ if is_circle => None,
                 &[i, j] => Some(Unsolved::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
-                agents => Some(Unsolved::nowhere(ids(agents), "two of them meet whenever they start")),
+                agents => Some(Unsolved::nowhere(
+                    ids(agents),
+                    "no start delays keep all of them apart: whatever the delays are, two of them meet",
+                )),
             }
         };
         // Large fleets have thousands.

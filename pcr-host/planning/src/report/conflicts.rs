@@ -32,7 +32,10 @@ pub fn conflicts_csv(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> 
 pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&verdict.name);
     match verdict.conflicts.len() {
-        0 => writeln!(out, "{name}: no conflicts")?,
+        0 => match verdict.agents {
+            1 => writeln!(out, "{name}: no conflicts, 1 agent")?,
+            agents => writeln!(out, "{name}: no conflicts, {agents} agents")?,
+        },
         1 => writeln!(out, "{name}: 1 conflict")?,
         many => writeln!(out, "{name}: {many} conflicts")?,
     }

@@ -115,7 +115,7 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
     columns.write(out)?;
     writeln!(
         out,
-        "an hour: without the first tenth of the time, in which all set off, and without what was under way at its end"
+        "an hour: missions of the last nine tenths of the time; all robots set off at once in the first tenth"
     )?;
     for run in runs {
         if let Some(why) = &run.outcome.idle_because {
@@ -129,8 +129,8 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
             [driving, turning, stopped, held, aside, idle].map(|part| format!("{:.0} %", 100.0 * part));
         writeln!(
             out,
-            "where the time goes, {}: driving {driving}, turning {turning}, stopped {stopped}, waiting for others {held}, \
-            to an end {aside}, without a way {idle}",
+            "time of the robots, {}: driving {driving}, turning {turning}, stopped {stopped}, waiting for others {held}, \
+            without a free way: driving to an end {aside}, standing {idle}",
             run.outcome.method.name()
         )?;
     }
@@ -163,13 +163,13 @@ fn well_formed(it: &WellFormedness, out: &mut impl Write) -> io::Result<()> {
     }
     if !it.never_ends.is_empty() {
         let count = it.never_ends.len();
-        writeln!(out, "{count} nodes where one robot that stands already cuts others off: {}", list(&it.never_ends))?;
+        writeln!(out, "{count} nodes at which a single standing robot cuts others off: {}", list(&it.never_ends))?;
     }
     if !it.bridges.is_empty() {
         let count = it.bridges.len();
         writeln!(
             out,
-            "{count} edges for both directions that nothing leads around, hence deadlocks without orders: {}",
+            "{count} two-way edges with no way around: robots that meet there block each other, unless orders prevent it: {}",
             list(&it.bridges)
         )?;
     }

@@ -38,7 +38,11 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
         }
     }
     for unsolved in &plan.unsolved {
-        writeln!(out, "  agents {}: {}", all_called(&plan.labels, &unsolved.ids), unsolved.why)?;
+        match unsolved.ids.as_slice() {
+            [] => writeln!(out, "  {}", unsolved.why)?,
+            [id] => writeln!(out, "  agent {}: {}", called(&plan.labels, *id), unsolved.why)?,
+            ids => writeln!(out, "  agents {}: {}", all_called(&plan.labels, ids), unsolved.why)?,
+        }
     }
     if plan.agents.is_empty() && !plan.unsolved.is_empty() {
         return Ok(());

@@ -97,6 +97,10 @@ pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
             columns.row(row);
         }
         columns.write(out)?;
+        writeln!(
+            out,
+            "k: number of the crossing among those of i with j; type: straight (S) or arc (A), of i and of j"
+        )?;
     }
     extents(&answer.labels, &answer.regions, &all, "Regions", out)?;
     let margin = answer.margin_regions.as_deref().unwrap_or_default();
@@ -114,7 +118,7 @@ fn extents(
     if regions.is_empty() {
         return Ok(());
     }
-    writeln!(out, "\n{title}: their extents; what is covered at a given time: --format json --slices N")?;
+    writeln!(out, "\n{title}: their extents; the lengths inside at a given time: --format json --slices N")?;
     let [i, j] = agents(labels);
     let mut columns = Columns::new(&[i, j, "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
     let mut held: HashMap<usize, Vec<String>> = HashMap::new();
@@ -135,9 +139,13 @@ fn extents(
         columns.row(row);
     }
     columns.write(out)?;
-    let near = regions.iter().filter(|region| crossings(region) == 0).count();
-    if near > 0 {
-        writeln!(out, "k -: the paths come near but do not cross ({near} of {})", regions.len())?;
+    if regions.iter().any(|region| region.open_start || region.open_end) {
+        writeln!(out, "open: j stands in the way before t_a already, at its start, or after t_b as well, at its end")?;
     }
+    let near = match regions.iter().filter(|region| crossings(region) == 0).count() {
+        0 => String::new(),
+        near => format!(" (-: the paths come near but do not cross, {near} of {})", regions.len()),
+    };
+    writeln!(out, "k: the crossings in the region{near}")?;
     Ok(())
 }

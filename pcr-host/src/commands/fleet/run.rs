@@ -166,12 +166,11 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     };
     let free = world.manager.free();
     if free < vehicles {
-        let ends = free + vehicles;
         writeln!(
             notes(),
-            "pcr: {ends} safe ends have room for {} vehicles; with {vehicles} of them most missions end where another \
-             vehicle stands, and wait until it leaves",
-            ends.saturating_sub(1)
+            "pcr: warning: of {} safe ends, {free} are free while all {vehicles} vehicles stand; a mission to one of the \
+             others waits until its vehicle has left",
+            free + vehicles
         )?;
     }
     if let Some(file) = &arguments.profiles {

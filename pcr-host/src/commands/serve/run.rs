@@ -1,6 +1,6 @@
 //! Runs the supervisor with its journal, clients and page.
 
-use super::super::printed::quiet;
+use super::super::printed::{notes, quiet};
 use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
 use super::demo::Demo;
 use super::threads::thread;
@@ -16,7 +16,7 @@ use pcr_serve::server::{Handle, Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::writer::{Kept, Writer};
 use pcr_serve::{clients, http};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write};
 use std::net::TcpListener;
 use std::process::ExitCode;
 use std::sync::mpsc::{Sender, channel};
@@ -42,6 +42,11 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         thread("clients", move || clients::listen(&handle, &listener))?;
     }
     if let Some(listener) = page(&arguments).map(|place| bound("--page", place, log)).transpose()? {
+        let url = listener.local_addr().map_or_else(|_| String::new(), |address| format!("http://{address}/"));
+        match demo {
+            Some(_) => writeln!(notes(), "pcr: open {url} in a browser; Ctrl-C ends the demo")?,
+            None => log.write(Level::Info, "page", &[("url", &url)]),
+        }
         let site = site(&listener);
         let handle = handle.clone();
         thread("page", move || http::listen(&handle, &listener, site))?;

@@ -1,0 +1,43 @@
+//! What to do instead, after a word of the command line that was refused.
+
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+use std::ffi::OsString;
+
+/// The error with a tip, where there is a better one than that of the parser.
+pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
+    let words: Vec<_> = words.iter().skip(1).map(|word| word.to_string_lossy()).collect();
+    let command = words.iter().find(|word| !word.starts_with('-')).map_or("", |word| word);
+    let has = |option: &str| words.iter().any(|word| word == option || word.starts_with(&format!("{option}=")));
+    let wrong = match error.get(ContextKind::InvalidArg).or(error.get(ContextKind::InvalidSubcommand)) {
+        Some(ContextValue::String(wrong)) => wrong.as_str(),
+        _ => "",
+    };
+    let is_output = matches!(wrong, "-o" | "--output");
+    let tip = match (error.kind(), command) {
+        (ErrorKind::InvalidSubcommand, "version") => "pcr --version",
+        (ErrorKind::UnknownArgument, "locks")
+            if !wrong.starts_with('-') && words.iter().any(|word| word == "--audit") =>
+        {
+            "a file of exclusions is given to --audit with an equals sign: --audit=FILE"
+        }
+        (ErrorKind::UnknownArgument, "check" | "regions" | "certify" | "nodes" | "compare") if is_output => {
+            "this command writes no file; its answer goes to standard output: > FILE"
+        }
+        (ErrorKind::UnknownArgument, "fleet") if wrong == "--json" || wrong == "--format" => {
+            "--certify prints JSON, and nothing else does"
+        }
+        (ErrorKind::MissingRequiredArgument, "locks") if has("--write") => {
+            "the output is the file to be written, such as -o guarded.geojson; - is standard output"
+        }
+        (ErrorKind::ArgumentConflict, "traffic") if has("--hours") => {
+            "files and pictures are of missions that all set off at once; of hours there is a table, JSON or CSV on standard output"
+        }
+        _ => return error,
+    };
+    for other in [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg] {
+        error.remove(other);
+    }
+    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
+    error
+}
