@@ -116,6 +116,37 @@ fn added_where_others_may_go() {
     assert!(events.iter().any(told), "{events:?}");
 }
 
+/// It stopped the one that had been there for good, and nobody got a mission any more.
+#[test]
+fn added_where_another_one_has_been() {
+    let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
+    own.add("x", ABILITIES, place(0.0, 0.0, 0.0)).unwrap();
+    own.add("far", ABILITIES, place(0.0, 50.0, 0.0)).unwrap();
+    own.mission(&mission("x", "1", 20.0), 0.0).unwrap();
+    for tick in 1..=8 {
+        let at = f64::from(tick);
+        own.position(&report("x", 2, at, at), at).unwrap();
+        own.settle(at).unwrap();
+    }
+    own.add("new", ABILITIES, place(4.0, 0.0, 0.0)).unwrap();
+    assert_eq!(names(&own.settle(9.0).unwrap()), [""; 0]);
+    own.position(&report("x", 2, 9.0, 9.0), 10.0).unwrap();
+    own.settle(10.0).unwrap();
+    assert!(own.robot("x").unwrap().granted > 15.0, "{:?}", own.robot("x"));
+    // Ahead of it, the one that was added is in its way for ever; others are asked to wait for neither.
+    own.add("ahead", ABILITIES, place(19.5, 0.0, 0.0)).unwrap();
+    own.settle(10.1).unwrap();
+    let verdict = own.mission(&mission("far", "1", 1.0), 10.2).unwrap();
+    assert!(matches!(verdict, Verdict::Admitted { .. }), "{verdict:?}");
+    own.settle(10.2).unwrap();
+    for tick in 10..=30 {
+        let (now, hold) = (f64::from(tick) + 0.5, own.robot("x").unwrap().granted);
+        assert!(hold < 19.0 + 1e-6, "{hold}");
+        own.position(&report("x", 2, hold.min(now), hold.min(now)), now).unwrap();
+        own.settle(now).unwrap();
+    }
+}
+
 #[test]
 fn silent_robots_keep_their_right() {
     let disc = Disc::new();

@@ -146,7 +146,7 @@ impl<'a> Smooth<'a> {
                         let length = step.shape.length();
                         Part { end: step.end(), length: [length; 2], aside: 0.0 }
                     });
-                    along.follow(&pieces, &parts.collect::<Vec<_>>());
+                    along.follow(ends[0], &pieces, &parts.collect::<Vec<_>>());
                     fit.deviation = fit.deviation.max(deviation);
                     fit.pieces.extend(pieces.into_iter().filter(|piece| piece.shape.length() > 0.0));
                 }

@@ -4,7 +4,7 @@ use super::{Supervisor, fleet};
 use crate::course::{Course, Start};
 use crate::event::Event;
 use crate::robot::{Alarm, ROOM};
-use pcr_core::{Ecm, Hold, Pass};
+use pcr_core::{Ecm, Hold, Pass, RegionRef};
 
 /// How far a robot may go at most, whatever its orders say, because of one that is not where it may be.
 #[derive(Clone, Copy, Debug, Default)]
@@ -92,7 +92,8 @@ impl Supervisor {
         found().unwrap_or(Some(robot.at - ROOM))
     }
 
-    /// A robot that was added where others may come: nothing is decided with it.
+    /// A robot that was added where others may come: nothing is decided with it. Where one of them has been already,
+    /// nothing is left to decide.
     fn unordered(&self, limits: &mut [Limit]) {
         let fleet = fleet(&self.robots);
         if !self.orders.decisions().any(|decision| decision.pass == Pass::Undecided) {
@@ -100,7 +101,12 @@ impl Supervisor {
         }
         for (place, limit) in limits.iter_mut().enumerate() {
             let Ok(row) = self.orders.row(&fleet, place) else { continue };
-            for (_, region, _) in row.filter(|(_, _, pass)| *pass == Pass::Undecided) {
+            let undecided = row.filter(|(_, _, pass)| *pass == Pass::Undecided).map(|(_, region, _)| region);
+            let left = |region: &RegionRef<'_, f64>| {
+                let [own, their] = [place, region.other()].map(|robot| self.robots[robot].at);
+                own > region.length().hi || their > region.other_length().hi
+            };
+            for region in undecided.filter(|region| !left(region)) {
                 match region.hold(0.0, 0.0) {
                     Hold::Free => {}
                     Hold::At(hold) => limit.lower(hold, region.other()),
