@@ -23,6 +23,10 @@ fn options_without_effect_are_refused() {
         (&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--topics", "a", "b"], "cannot be used with"),
         (&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--manager"], "cannot be used with"),
         (&["fleet", LAYOUT, "--time", "1", "--finish"], "--finish: missions are those of --manager, or of --alone"),
+        (
+            &["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--vehicles", "0"],
+            "--vehicles: allowed is 1 or more\n",
+        ),
         (&["serve", "--topics", "a", "b"], "were not provided"),
         (&["serve", "--demo", LAYOUT, "--lookahead", "2"], "--lookahead: allowed is 8 to 600 for vehicles of VDA 5050"),
         (&["serve", "--demo", LAYOUT, "--width", "0.1"], "--width: allowed is 0.3 to 10 for vehicles of VDA 5050"),
@@ -70,6 +74,7 @@ fn vehicles_are_written_as_they_are_read() {
     for (from, to, reason) in [
         ("pcr-vehicles", "pcr-plan", "format: \"pcr-plan\" where pcr-vehicles is expected"),
         ("\"version\":1", "\"version\":2", "version: 2 where 1 is expected"),
+        ("\"radius\":", "\"radius\":0.1,\"radius\":", "\"radius\" is there twice at line 2 column 77"),
         ("\"version\"", "\"versions\"", "versions: unknown; format, version and vehicles are read"),
     ] {
         let changed = text.replacen(from, to, 1);
@@ -110,6 +115,33 @@ fn a_full_disc_gives_no_right() {
     let again = run_with(&["serve", "--log", "error", "--journal", &name], ADD.as_bytes()).ok();
     let first: Value = serde_json::from_str(again.lines().next().unwrap()).unwrap();
     assert_eq!(first, json!({ "pcr": 1, "id": 1, "ok": { "path": 1 } }));
+}
+
+/// It was the journal of which was said that it cannot be written.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_record_that_cannot_be_written_is_named() {
+    let fleet = ["fleet", LAYOUT, "--vehicles", "3", "--alone", "supervisor", "--record", "/dev/full", "--time"];
+    // At once, and at the end.
+    for time in ["600", "1"] {
+        let failed = run(&[&fleet[..], &[time]].concat()).failed(3);
+        assert!(failed.starts_with("pcr: /dev/full: cannot be written: "), "{failed}");
+    }
+}
+
+/// One that was cut within a line was refused as a file that is no record.
+#[test]
+fn a_record_that_was_cut_is_undecided() {
+    let name = directory("cut").join("run.txt").to_string_lossy().into_owned();
+    run(&["fleet", LAYOUT, "--vehicles", "3", "--alone", "supervisor", "--time", "60", "--record", &name]).ok();
+    let whole = std::fs::read(&name).unwrap();
+    run(&["fleet", "--certify", &name]).ok();
+    for end in [whole.len() / 2, whole.len() - 10] {
+        let name = file("cut", "part.txt", &whole[..end]);
+        let said = run(&["fleet", "--certify", &name]);
+        assert_eq!(said.status, 4, "{}", said.err);
+        assert!(said.out.contains("the record is cut: its last line is missing"), "{}", said.out);
+    }
 }
 
 /// Folders in which nobody can write, not even root.

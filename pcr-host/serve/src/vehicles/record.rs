@@ -10,6 +10,7 @@
 use crc32fast::Hasher;
 use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufRead, Write};
 
@@ -161,12 +162,13 @@ const WINDOW: f64 = 20.0;
 /// Proves that the vehicles of a record never touched, or shows where.
 ///
 /// # Errors
-/// Lines that are none of a record, and fewer than two vehicles: there would be nothing to be proved.
-pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
+/// Lines that are none of a record, and fewer than two vehicles: there would be nothing to be proved. A record that ends within a line after
+/// the first one was cut there, and is undecided.
+pub fn certify(mut text: impl BufRead) -> io::Result<Certificate> {
     let wrong = |line: usize, why: String| io::Error::new(io::ErrorKind::InvalidData, format!("line {line}: {why}"));
-    let mut lines = text.lines().enumerate();
+    let mut lines = std::iter::from_fn(|| next(&mut text).transpose()).enumerate();
     let (_, first) = lines.next().ok_or_else(|| wrong(1, "missing".into()))?;
-    let first = first?;
+    let (first, _) = first?;
     let head: Head = serde_json::from_str(&first).map_err(|error| wrong(1, error.to_string()))?;
     if (head.format.as_str(), head.version) != ("pcr-record", VERSION) {
         return Err(wrong(1, format!("a record of version {VERSION} is expected")));
@@ -187,7 +189,11 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
     sum.update(first.as_bytes());
     sum.update(b"\n");
     for (line, text) in lines {
-        let text = text?;
+        let (text, is_whole) = text?;
+        // No line of a record is JSON before its last character.
+        if !is_whole && serde_json::from_str::<IgnoredAny>(&text).is_err() {
+            break;
+        }
         if end.is_some() {
             return Err(wrong(line + 1, "it comes after the last line of a record".into()));
         }
@@ -222,9 +228,6 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
         };
         point(&text).map_err(|why| wrong(line + 1, why))?;
     }
-    if let Some(none) = tracks.iter().position(Vec::is_empty) {
-        return Err(wrong(1, format!("nothing about {}", head.vehicles[none].name)));
-    }
     let cut = match end {
         None => Some("the record is cut: its last line is missing".to_owned()),
         Some(end) if end.lines != count => Some(format!("the record is cut: it has {count} lines of {}", end.lines)),
@@ -233,7 +236,24 @@ pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
         }
         Some(_) => None,
     };
-    Ok(checked(&head.vehicles, &tracks, cut))
+    if let Some(none) = tracks.iter().position(Vec::is_empty).filter(|_| cut.is_none()) {
+        return Err(wrong(1, format!("nothing about {}", head.vehicles[none].name)));
+    }
+    let vehicles = head.vehicles.len();
+    // Of a record that was cut some may not be there yet.
+    let there = head.vehicles.into_iter().zip(tracks).filter(|(_, track)| !track.is_empty());
+    let (there, tracks): (Vec<_>, Vec<_>) = there.unzip();
+    Ok(Certificate { vehicles, ..checked(&there, &tracks, cut) })
+}
+
+/// The next line, and whether it ends with a line feed.
+fn next(text: &mut impl BufRead) -> io::Result<Option<(String, bool)>> {
+    let mut line = String::new();
+    if text.read_line(&mut line)? == 0 {
+        return Ok(None);
+    }
+    let ends = ["\r\n", "\n"].iter().find_map(|end| line.strip_suffix(end));
+    Ok(Some(ends.map(|whole| (whole.to_owned(), true)).unwrap_or((line.clone(), false))))
 }
 
 fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>], error: Option<String>) -> Certificate {
@@ -402,6 +422,28 @@ mod tests {
         assert_eq!(certify(most.as_bytes()).unwrap().verdict, "contact");
     }
 
+    /// Within a line it was refused as one that is no record.
+    #[test]
+    fn a_record_that_was_cut_at_any_byte_proves_nothing() {
+        let whole = record(1.001);
+        let head = whole.find('\n').unwrap() + 1;
+        for end in
+            (head..head + 200).chain((head + 200..whole.len()).step_by(1009)).chain(whole.len() - 40..whole.len() - 1)
+        {
+            let cut = certify(&whole.as_bytes()[..end]).unwrap();
+            assert_eq!((cut.verdict, cut.contacts.len(), cut.vehicles), ("undecided", 0, 2), "{end}");
+            assert_eq!(cut.error.unwrap(), "the record is cut: its last line is missing");
+        }
+        assert_eq!(certify(&whole.as_bytes()[..whole.len() - 1]).unwrap().verdict, "proved");
+        // Who was there and touched somebody did.
+        let touched = record(0.999);
+        assert_eq!(certify(&touched.as_bytes()[..touched.len() - 50]).unwrap().verdict, "contact");
+        // Where something follows it was not cut, nor where nothing is known of whom.
+        let broken = whole.replacen("]\n", "\n", 1);
+        assert!(certify(broken.as_bytes()).unwrap_err().to_string().starts_with("line 2: "));
+        assert!(certify(&whole.as_bytes()[..head - 5]).unwrap_err().to_string().starts_with("line 1: "));
+    }
+
     /// Of ways of 10 million kilometres rounding would hide contacts of a millionth of a metre.
     #[test]
     fn what_rounding_would_hide_is_refused() {
@@ -481,7 +523,7 @@ mod tests {
         let alone = certify(one.as_bytes()).unwrap_err();
         assert_eq!(alone.to_string(), "line 1: there are no two vehicles, of which contacts could be certified");
         assert!(certify(&b""[..]).is_err());
-        let head = text.lines().next().unwrap();
-        assert!(certify(head.as_bytes()).is_err(), "nobody was anywhere");
+        let nowhere = certify(format!("{}\n{{\"lines\":0}}", text.lines().next().unwrap()).as_bytes()).unwrap_err();
+        assert_eq!(nowhere.to_string(), "line 1: nothing about a");
     }
 }

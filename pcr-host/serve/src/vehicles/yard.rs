@@ -33,6 +33,21 @@ pub struct Settings {
     pub seed: u64,
 }
 
+/// Why a step could not be done.
+#[derive(Debug)]
+pub enum Failed {
+    /// The journal could not be written. What followed from the step was told to nobody; [`Yard::revive`] goes on.
+    Journal(Fault),
+    /// The record could not be written.
+    Record(io::Error),
+}
+
+impl From<Fault> for Failed {
+    fn from(fault: Fault) -> Self {
+        Self::Journal(fault)
+    }
+}
+
 struct Member {
     vehicle: Vehicle,
     incoming: Weather<(Kind, Vec<u8>)>,
@@ -121,16 +136,14 @@ impl<W: Write> Yard<W> {
     /// Goes on for a step.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: the journal could not be written. What followed from this step was told to nobody; [`Yard::revive`] goes on.
-    pub fn step(&mut self) -> Result<(), Fault> {
+    /// [`Failed`].
+    pub fn step(&mut self) -> Result<(), Failed> {
         let own = &mut *self;
         own.time += own.settings.step;
         let (now, step) = (own.time, own.settings.step);
         for (k, member) in own.members.iter_mut().enumerate() {
             member.vehicle.advance(step);
-            own.record
-                .push(k, now, member.vehicle.place())
-                .map_err(|error| Fault::Broken { why: error.to_string() })?;
+            own.record.push(k, now, member.vehicle.place()).map_err(Failed::Record)?;
             if now >= member.away && own.random.happens(own.settings.drops, step) {
                 member.away = now + AWAY * own.random.unit();
                 own.drops += 1;
@@ -166,7 +179,7 @@ impl<W: Write> Yard<W> {
                 }
             }
         }
-        settled
+        Ok(settled?)
     }
 
     /// How long vehicles with something to do have stood.
@@ -259,7 +272,7 @@ impl<W: Write> Yard<W> {
     ///
     /// # Errors
     /// As [`Yard::step`].
-    pub fn drain(&mut self, time: f64) -> Result<usize, Fault> {
+    pub fn drain(&mut self, time: f64) -> Result<usize, Failed> {
         self.manager.end();
         let until = self.time + time;
         while self.time < until && self.manager.busy().next().is_some() {

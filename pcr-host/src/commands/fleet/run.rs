@@ -8,7 +8,6 @@ use pcr_formats::import::{self, Format, Imported, Options, Warnings};
 use pcr_formats::output;
 use pcr_planning::lifelong::{streets, well_formedness};
 use pcr_serve::entry::Nowhere;
-use pcr_serve::fault::Fault;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::lane::Profile;
 use pcr_serve::vda5050::mqtt::Broker;
@@ -22,7 +21,7 @@ use pcr_serve::vehicles::office::Office;
 use pcr_serve::vehicles::record::certify;
 use pcr_serve::vehicles::weather::Climate;
 use pcr_serve::vehicles::world::{World, profile};
-use pcr_serve::vehicles::yard::{self, Yard};
+use pcr_serve::vehicles::yard::{self, Failed, Yard};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::Path;
@@ -154,6 +153,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
             return Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}")));
         }
     }
+    if arguments.vehicles == 0 {
+        return Err(Stop::arguments("--vehicles: allowed is 1 or more"));
+    }
     if arguments.finish && !arguments.manager && arguments.alone.is_none() {
         return Err(Stop::arguments("--finish: missions are those of --manager, or of --alone"));
     }
@@ -202,7 +204,8 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         }
         Ok(())
     };
-    go_on(&mut run, end, |_| true)?;
+    let unwritten = |error: io::Error| unwritten(&arguments, error);
+    go_on(&mut run, end, |_| true).map_err(unwritten)?;
     let (time, done, drops) = (run.fleet.time(), run.done(), run.fleet.drops());
     let mut left = None;
     if let Some(office) = run.office.as_mut().filter(|_| arguments.finish) {
@@ -211,13 +214,21 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         while run.busy() < busy && !flag.load(Ordering::Relaxed) {
             busy = run.busy();
             let until = run.fleet.time() + LONGEST;
-            go_on(&mut run, until, |run| run.busy() > 0)?;
+            go_on(&mut run, until, |run| run.busy() > 0).map_err(unwritten)?;
         }
         left = Some((run.busy(), run.fleet.time() - time));
     }
     let audit = run.fleet.audit().clone();
-    run.close()?;
+    run.close().map_err(unwritten)?;
     told(vehicles, time, done, drops, &audit, left)
+}
+
+/// An error of the record, if the file could not be written: all others that are met on the way are no errors of the system.
+fn unwritten(arguments: &Arguments, error: io::Error) -> Stop {
+    match arguments.record.as_ref().filter(|_| error.raw_os_error().is_some()) {
+        Some(file) => Stop::not_written(file, &error),
+        None => Stop::arguments(error.to_string()),
+    }
 }
 
 /// Where nobody has come to its end for so long, nobody ever will \[s\].
@@ -242,8 +253,12 @@ fn alone(
     let own = pcr_serve::supervisor::Settings { width, lookahead, ..Default::default() };
     let supervisor = Supervisor::new(own, Box::new(Nowhere));
     let interfaces = interfaces(&arguments.topics)?;
-    let mut yard = Yard::new(world, interfaces, settings, supervisor, record)?;
-    let broken = |fault: Fault| Stop::Error(fault.to_string(), super::super::NOT_WRITTEN);
+    let yard = Yard::new(world, interfaces, settings, supervisor, record);
+    let mut yard = yard.map_err(|error| unwritten(arguments, error))?;
+    let broken = |failed: Failed| match failed {
+        Failed::Journal(fault) => Stop::Error(fault.to_string(), super::super::NOT_WRITTEN),
+        Failed::Record(error) => unwritten(arguments, error),
+    };
     while yard.time() < time {
         yard.step().map_err(broken)?;
     }
@@ -259,7 +274,7 @@ fn alone(
         false => None,
     };
     let (audit, longest) = (yard.audit().clone(), yard.longest());
-    yard.close()?;
+    yard.close().map_err(|error| unwritten(arguments, error))?;
     let done = told(crew.vehicles, time, done, drops, &audit, left)?;
     writeln!(tables(), "{}: nobody with an order stood longer than {longest:.0} s", method.name())?;
     Ok(done)

@@ -2,6 +2,7 @@
 
 use super::super::Stop;
 use super::Arguments;
+use pcr_formats::once::Once;
 use pcr_serve::log::{Level, Log};
 use pcr_serve::robot::Abilities;
 use pcr_serve::server::{Handle, Input};
@@ -85,7 +86,7 @@ fn listed(value: &Value) -> Result<&Vec<Value>, String> {
 /// The vehicles in a file.
 fn profiles(file: &Path) -> Result<Vec<Profile>, Stop> {
     let text = std::fs::read_to_string(file).map_err(|error| Stop::wrong(file, error))?;
-    let value: Value = serde_json::from_str(&text).map_err(|error| Stop::wrong(file, error))?;
+    let Once(value) = serde_json::from_str(&text).map_err(|error| Stop::wrong(file, error))?;
     let list = listed(&value).map_err(|why| Stop::wrong(file, why))?;
     let profile =
         |(k, value): (usize, &Value)| profile(value).map_err(|why| Stop::wrong(file, format!("vehicles[{k}]: {why}")));
