@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Measure everything in docs/evaluation.md on this machine, and write it (takes minutes)
+/// Measure docs/evaluation.md anew on this machine (takes minutes)
 #[derive(Args)]
 #[command(after_help = STATUSES)]
 pub(super) struct Arguments {

@@ -33,7 +33,7 @@ Examples:
   pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json     VDA 5050
   pcr serve --demo warehouse_graph.geojson     broker, vehicles, their manager and the page";
 
-/// Supervise a fleet: decide how far each robot may go, by exact passing orders
+/// Supervise a fleet: decide how far each robot may go now
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 #[command(group = ArgGroup::new("vda5050").args(["broker", "demo"]))]

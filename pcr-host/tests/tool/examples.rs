@@ -102,9 +102,12 @@ fn short(word: String) -> String {
     }
 }
 
+/// The entries of a list or an object as they are shown: with their keys, and none for what is left out.
+type Entries<'a> = Vec<(String, Option<&'a Json>)>;
+
 impl Json {
     /// Its entries as they are shown, with their keys, between these brackets.
-    fn entries(&self) -> Option<(Vec<(String, Option<&Self>)>, [char; 2])> {
+    fn entries(&self) -> Option<(Entries<'_>, [char; 2])> {
         match self {
             Self::Word(_) => None,
             Self::List(list) => {
