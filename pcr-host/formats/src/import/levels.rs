@@ -1,10 +1,10 @@
-//! Where the levels of an Open-RMF building are: from pixels of their floor plans to metres, as its building tools do.
+//! The vertices of the levels of an Open-RMF building, and where the levels are: from pixels of their floor plans to
+//! metres, as its building tools do.
 //!
 //! Measurements give the scale of the reference level, which is the first one unless the building names another. The
 //! other levels are laid upon it by the fiducials that both have: their bearings and distances to one another give the
 //! rotation and the scale, and their places the translation, each as a mean.
 
-use super::rmf::{Vertex, scale, vertices};
 use super::value::Object;
 use super::{ImportError, Warnings};
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::fmt;
 
 /// Relative difference of two scales of a level that goes without a warning.
-pub(super) const SPREAD: f64 = 0.01;
+const SPREAD: f64 = 0.01;
 
 /// From a floor plan, y down, to metres, y up: scaled, rotated and moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,6 +160,69 @@ fn fiducials<'j>(level: &Object<'j>, warnings: &mut Warnings) -> Result<Vec<(&'j
         }
     }
     Ok(all)
+}
+
+/// Position as in the file, and name; `None` for what is no vertex.
+pub(super) type Vertex = Option<([f64; 2], Option<String>)>;
+
+/// The vertices of a level.
+pub(super) fn vertices(level: &Object<'_>, graph: bool) -> Result<Vec<Vertex>, ImportError> {
+    Ok(level.list("vertices")?.iter().map(|value| vertex(value, graph)).collect())
+}
+
+fn vertex(value: &Value, graph: bool) -> Vertex {
+    let list = value.as_array()?;
+    let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
+    let name = if graph { list.get(2).and_then(|parameters| parameters.get("name")) } else { list.get(3) };
+    let name = name.and_then(Value::as_str).filter(|name| !name.is_empty());
+    Some(([number(0)?, number(1)?], name.map(str::to_owned)))
+}
+
+/// The value of a parameter, which is a list of its type and itself.
+pub(super) fn parameter<'j>(parameters: Option<&'j Value>, name: &str) -> Option<&'j Value> {
+    match parameters?.get(name)? {
+        Value::Array(typed) => typed.get(1),
+        plain => Some(plain),
+    }
+}
+
+/// Ends of a lane, a wall or a measurement.
+pub(super) fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 2]); 2], String> {
+    let list = value.as_array().ok_or("not a list")?;
+    let mut ends = [(0, [0.0; 2]); 2];
+    for (k, end) in ends.iter_mut().enumerate() {
+        let place = list.get(k).and_then(Value::as_u64).ok_or("two numbers of vertices are expected")?;
+        let vertex =
+            usize::try_from(place).ok().and_then(|place| vertices.get(place)?.as_ref().map(|vertex| (place, vertex.0)));
+        *end = vertex.ok_or(format!("there is no vertex {place}"))?;
+    }
+    Ok(ends)
+}
+
+/// Metres of a pixel: the mean of the measurements of a level; `None` without any.
+fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
+    let mut scales = Vec::new();
+    for (k, value) in level.list("measurements")?.iter().enumerate() {
+        let metres = parameter(value.get(2), "distance").and_then(Value::as_f64);
+        let scale = ends(value, vertices)
+            .ok()
+            .zip(metres)
+            .map(|([(_, a), (_, b)], metres)| metres / (a[0] - b[0]).hypot(a[1] - b[1]));
+        match scale.filter(|scale| (1e-9..1e9).contains(scale)) {
+            Some(scale) => scales.push(scale),
+            None => warnings.add(format_args!("{}, measurement {k}", level.name), "left out: it gives no scale"),
+        }
+    }
+    if scales.is_empty() {
+        return Ok(None);
+    }
+    let mean = scales.iter().sum::<f64>() / scales.len() as f64;
+    let spread = scales.iter().map(|scale| (scale / mean - 1.0).abs()).fold(0.0, f64::max);
+    if spread > SPREAD {
+        let percent = 100.0 * spread;
+        warnings.add(&level.name, format!("its measurements differ from their mean by up to {percent:.1} %"));
+    }
+    Ok(Some(mean))
 }
 
 /// The first level of a building, in the order of the file.
