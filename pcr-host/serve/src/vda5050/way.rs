@@ -15,8 +15,11 @@ const NEAR: f64 = 1e-6;
 /// Angle that is rounding and nothing else \[rad\].
 const STRAIGHT: f64 = 1e-9;
 
-/// How far lines and arcs may be off a trajectory \[m\]: margins have to cover it.
+/// How far lines and arcs may be off a trajectory, and that off its nodes \[m\]: margins have to cover it.
 pub const TOLERANCE: f64 = 2e-3;
+
+/// How far they are aside of it at most \[m\]. At the same length they are further off, the longer it is.
+const FIT: f64 = 1e-4;
 
 /// A path, and where the nodes of its order are on it.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +89,7 @@ impl Way {
             acceleration: one,
             rotation: one,
             rotation_acceleration: one,
+            tolerance: Some(FIT),
             horizon: true,
             ..Options::default()
         };
@@ -94,7 +98,10 @@ impl Way {
         let read = read.map_err(|error| Refusal::new(field(), error))?;
         let Some(agent) = read.agents.first() else { return Err(Refusal::new(field(), "no way")) };
         if agent.radius > 1.0 + TOLERANCE {
-            return Err(Refusal::new(field(), format!("lines and arcs are {} m off it", agent.radius - 1.0)));
+            return Err(Refusal::new(
+                field(),
+                format!("it is {:.4} m off its nodes, or off lines and arcs", agent.radius - 1.0),
+            ));
         }
         let [x, y, mut heading] = agent.start;
         let mut at = [x, y];
@@ -285,6 +292,20 @@ mod tests {
         assert_eq!(way.near([1.0, 0.05], [0.0, 8.0], 0.1), Some([1.0, 7.0]));
         assert_eq!(way.near([1.0, 0.05], [0.0, 8.0], 0.04), None);
         assert_eq!(way.near([1.0, 0.0], [2.0, 3.0], 0.1), None, "outside of the window");
+    }
+
+    #[test]
+    fn long_curves_are_read_and_gaps_are_refused() {
+        let wave: Vec<Value> =
+            (0..=40).map(|k| json!({ "x": 2 * k, "y": if k % 2 == 0 { 0.0 } else { 1.5 } })).collect();
+        let curve = json!({ "degree": 3, "controlPoints": wave });
+        let length = |from: f64| {
+            Way::new(ORIGIN, &held(&[[from, 0.0], [80.0, 0.0]], Some(curve.clone()))).map(|way| way.length())
+        };
+        assert!(length(0.0).is_ok_and(|length| length > 80.0));
+        assert!(length(0.001).is_ok());
+        let refusal = length(0.01).unwrap_err().to_string();
+        assert!(refusal.contains("m off its nodes, or off lines and arcs"), "{refusal}");
     }
 
     #[test]
