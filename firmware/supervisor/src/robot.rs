@@ -20,7 +20,9 @@ use crate::fleet::{Motions, Store};
 use crate::message::{Answer, Edition};
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged};
+use pcr_core::{
+    Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged,
+};
 
 /// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
 /// in total, and at most `R` regions that it has with the others.
