@@ -1,25 +1,8 @@
 //! Messages of VDA 5050 about one vehicle, vehicles of which it is not said where they face, and gaps that count.
 
-use pcr_formats::import::{Format, Options, Warnings, scenario};
-use pcr_formats::scenario::Scenario;
+use crate::import_vda5050::{options, read};
+use pcr_formats::import::Options;
 use serde_json::{Value, json};
-
-fn options() -> Options {
-    Options {
-        radius: Some(0.4),
-        speed: Some(1.0),
-        acceleration: Some(0.5),
-        rotation: Some(1.0),
-        rotation_acceleration: Some(1.0),
-        ..Options::default()
-    }
-}
-
-fn read(text: &str, options: &Options) -> Result<(Scenario, Vec<String>), String> {
-    let mut warnings = Warnings::default();
-    let scenario = scenario(Format::Vda5050, text, options, &mut warnings).map_err(|error| error.to_string())?;
-    Ok((scenario, warnings.lines()))
-}
 
 /// Nodes n0, n1, … every 5 m along the x axis, those from `from` up to `to`, released up to `base`.
 fn order(update: u64, from: usize, to: usize, base: usize) -> Value {

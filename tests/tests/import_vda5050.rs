@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 const FLYWEI: &str = include_str!("../data/real/vda5050/order_v2_flywei.json");
 const NULLS: &str = include_str!("../data/real/vda5050/order_v2_nulls_opentcs.json");
 
-fn options() -> Options {
+pub(crate) fn options() -> Options {
     Options {
         radius: Some(0.4),
         speed: Some(2.0),
@@ -19,7 +19,7 @@ fn options() -> Options {
     }
 }
 
-fn read(text: &str, options: &Options) -> Result<(Scenario, Vec<String>), String> {
+pub(crate) fn read(text: &str, options: &Options) -> Result<(Scenario, Vec<String>), String> {
     let mut warnings = Warnings::default();
     let scenario = scenario(Format::Vda5050, text, options, &mut warnings).map_err(|error| error.to_string())?;
     Ok((scenario, warnings.lines()))
