@@ -1,9 +1,10 @@
-//! Admission of a new path: chooses orders with which all agents can still finish.
+//! Admission of a new path: chooses orders with which its agent can finish, and keeps nobody else from that.
 //!
-//! For each region of the new path where both orders are possible, the caller says which agent goes first. If some
-//! agent would then wait for ever, orders that keep an agent stuck are reversed, one after the other, each at most
-//! once. Choosing orders is NP-hard in general. Hence a path that is refused may be possible, but one that is admitted
-//! is safe and free of deadlock.
+//! For each region of the new path where both orders are possible, the caller says which agent goes first. If the
+//! agent would then wait for ever, orders that keep an agent stuck are reversed, one after the other, each at most once.
+//! If it can finish, it keeps nobody else from that: an agent goes first only in regions that it leaves. Choosing orders
+//! is NP-hard in general. Hence a path that is refused may be possible, but one that is admitted is safe and free of
+//! deadlock.
 
 use crate::ecm::Region;
 use crate::error::{Full, Mismatch, Unchanged};
@@ -36,8 +37,8 @@ where
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
     O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
 {
-    /// Gives an agent a new path and orders for all its regions, with which every agent can finish, but for those that
-    /// could not finish before either. The orders between the other agents stay as they are. The path in `fleet` and the
+    /// Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that
+    /// could if this one were not there. The orders between the other agents stay as they are. The path in `fleet` and the
     /// entry in `progress` are replaced.
     ///
     /// `prefer` is called for regions, whose ego is the agent, and says which one should go first: [`Pass::First`] or
@@ -48,7 +49,7 @@ where
     /// not to exceed.
     ///
     /// Cost: that of [`Ecm::replace`](crate::Ecm::replace), two to four holds for each region of the row, and at most
-    /// one check more than the row has regions; twice that and one check more if some agent cannot finish before.
+    /// one check more than the row has regions.
     ///
     /// # Errors
     /// [`Refused`], which names the agent in the way; everything is then unchanged. Another path, or the same path
@@ -91,31 +92,7 @@ where
         mission: Mission<'m, S>,
         tolerances: Tolerances<S>,
         reaches: &mut [Reach<S>],
-        mut prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
-    ) -> Result<(), Refused> {
-        reaches.iter_mut().for_each(|reach| reach.excused = false);
-        let found = self.attempt(fleet, progress, mission, tolerances, reaches, &mut prefer);
-        if !matches!(found, Err(Refused::Stuck { agent, .. }) if agent != mission.agent) {
-            return found;
-        }
-        // Another agent may have to wait for ever without the mission, too.
-        if self.check(fleet, progress, tolerances, reaches).is_ok() {
-            return found;
-        }
-        for (reach, agent) in reaches.iter_mut().zip(0..) {
-            reach.excused = reach.is_stuck() && agent != mission.agent;
-        }
-        self.attempt(fleet, progress, mission, tolerances, reaches, &mut prefer)
-    }
-
-    fn attempt<'m>(
-        &mut self,
-        fleet: &mut [Motion<'m, S>],
-        progress: &mut [Progress<S>],
-        mission: Mission<'m, S>,
-        tolerances: Tolerances<S>,
-        reaches: &mut [Reach<S>],
-        prefer: &mut impl FnMut(&RegionRef<'_, S>) -> Pass,
+        prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
     ) -> Result<(), Refused> {
         let Mission { agent, motion, progress: own } = mission;
         self.ecm.holds_all(fleet)?;
@@ -220,7 +197,7 @@ where
         progress: &[Progress<S>],
         agent: usize,
         width: S,
-        prefer: &mut impl FnMut(&RegionRef<'_, S>) -> Pass,
+        mut prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
     ) -> Result<(), Refused> {
         for (place, order) in (0..self.ecm.len()).zip(self.orders.as_mut()) {
             if !self.ecm.agents_at(place).is_some_and(|agents| agents.contains(&agent)) {
@@ -247,7 +224,7 @@ where
         Ok(())
     }
 
-    /// Checks the orders, and reverses some orders of the agent while some agent would wait for ever.
+    /// Checks the orders, and reverses some orders of the agent while it would wait for ever.
     fn repair(
         &mut self,
         fleet: &[Motion<'_, S>],
@@ -257,11 +234,18 @@ where
         reaches: &mut [Reach<S>],
     ) -> Result<(), Refused> {
         loop {
-            let found = self.settle(fleet, progress, tolerances, reaches);
+            let found = self.check(fleet, progress, tolerances, reaches);
+            let reach = reaches.get(agent).copied().unwrap_or_default();
             if !matches!(found, Err(Refused::Stuck { .. })) {
                 return found;
             }
-            let Some(place) = self.culprit(agent, tolerances.gain, reaches) else { return found };
+            if !reach.is_stuck() {
+                // At its end it is in nobody's way: who waits for ever would do so without it.
+                return Ok(());
+            }
+            let Some(place) = self.culprit(agent, tolerances.gain, reaches) else {
+                return Err(self.stuck(agent, reach));
+            };
             self.turn(fleet, progress, agent, place);
         }
     }
@@ -273,7 +257,7 @@ where
             self.places(agent).find_map(|(place, agents, order)| {
                 let other = if agents[0] == agent { agents[1] } else { agents[0] };
                 let held = if pass == Pass::First { other } else { agent };
-                let held = reaches.get(held).filter(|reach| reach.is_wronged())?;
+                let held = reaches.get(held).filter(|reach| reach.is_stuck())?;
                 let counts = order.open && order.pass_of(agent, agents) == pass && order.hold < held.at + gain;
                 counts.then_some(place)
             })

@@ -41,22 +41,15 @@ pub struct Reach<S> {
     pub(super) end: S,
     /// Whether the agent has gained since its orders were last evaluated.
     pub(super) moved: bool,
-    /// Whether it may wait for ever, as it would have to without the change that is checked.
-    pub(super) excused: bool,
 }
 
 impl<S: Scalar> Reach<S> {
     /// An unused entry, to fill a storage with.
-    pub const EMPTY: Self = Self { at: S::ZERO, next: S::ZERO, end: S::ZERO, moved: false, excused: false };
+    pub const EMPTY: Self = Self { at: S::ZERO, next: S::ZERO, end: S::ZERO, moved: false };
 
     /// Whether the agent cannot reach the end of its path.
     pub(super) fn is_stuck(&self) -> bool {
         self.at < self.end
-    }
-
-    /// Whether it cannot, and has to.
-    pub(super) fn is_wronged(&self) -> bool {
-        self.is_stuck() && !self.excused
     }
 }
 
@@ -93,18 +86,6 @@ where
         tolerances: Tolerances<S>,
         reaches: &mut [Reach<S>],
     ) -> Result<(), Refused> {
-        reaches.iter_mut().for_each(|reach| reach.excused = false);
-        self.settle(fleet, progress, tolerances, reaches)
-    }
-
-    /// The same, where some agents are excused.
-    pub(super) fn settle(
-        &mut self,
-        fleet: &[Motion<'_, S>],
-        progress: &[Progress<S>],
-        tolerances: Tolerances<S>,
-        reaches: &mut [Reach<S>],
-    ) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
         let limited = |length: S| S::ZERO.max(length).min(S::LIMIT);
@@ -113,7 +94,7 @@ where
             let end = motion.path().length();
             // A place that is NaN is taken as the start.
             let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().known()).min(end);
-            *reach = Reach { at, next: end, end, moved: true, ..*reach };
+            *reach = Reach { at, next: end, end, moved: true };
         }
         while self.sweep(fleet, progress, tolerances, reaches)? {
             let mut gained = false;
@@ -129,7 +110,7 @@ where
                 break;
             }
         }
-        let Some(agent) = reaches.iter().position(Reach::is_wronged) else { return Ok(()) };
+        let Some(agent) = reaches.iter().position(Reach::is_stuck) else { return Ok(()) };
         Err(self.stuck(agent, reaches.get(agent).copied().unwrap_or_default()))
     }
 
@@ -176,7 +157,7 @@ where
     }
 
     /// The agent that keeps this one from going on.
-    fn stuck(&self, agent: usize, reach: Reach<S>) -> Refused {
+    pub(super) fn stuck(&self, agent: usize, reach: Reach<S>) -> Refused {
         let mut nearest: Option<(S, usize, usize)> = None;
         for (place, agents, order) in self.places(agent) {
             let hold = match order.pass_of(agent, agents) {

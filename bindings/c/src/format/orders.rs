@@ -154,8 +154,8 @@ pub extern "C" fn pcr_fleet_check(
     })
 }
 
-/// Gives an agent a new path and orders for all its regions, with which every agent can finish, but for those that could
-/// not finish before either. The orders between the other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
+/// Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
+/// if this one were not there. The orders between the other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
 /// least up to where the agent can stop. `prefer` says for every other agent whether the admitted one should pass it
 /// first (PCR_FIRST) or second, where both are possible; if it is null, second. The table must be built, and the memory
 /// needs room as for `pcr_fleet_replace`.

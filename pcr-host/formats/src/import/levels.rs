@@ -104,7 +104,10 @@ impl<'j> Reference<'j> {
                 Ok(placing)
             }
             (None, Some(measured)) => {
-                let problem = format!("no two fiducials place it upon level {}", self.name);
+                let problem = match self.scale {
+                    Some(_) => format!("no two fiducials place it upon level {}", self.name),
+                    None => format!("level {}, upon which it belongs, has no measurements", self.name),
+                };
                 warnings.add(&level.name, format!("{problem}; it has the scale of its own measurements"));
                 Ok(Placing::scaled(measured))
             }
