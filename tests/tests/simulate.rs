@@ -74,6 +74,60 @@ fn assert_safe(task: &Task, outcome: &Outcome, case: &str) {
     assert_eq!(planning.expect("a supervisor plans").breaches, 0, "{case}");
 }
 
+/// One that turns twice, one with a slow middle of its path, and one that only turns.
+const SLOWER: &str = r#"{ "agents": [
+    { "id": 1, "radius": 0.3, "v_max": 1, "a_max": 0.5, "turn_v_max": 0.5, "turn_a_max": 1, "start": { "x": 0, "y": 0, "heading": 0 },
+      "path": [ { "kind": "line", "length": 4 }, { "kind": "turn", "sweep": 1.5 }, { "kind": "line", "length": 3 },
+                { "kind": "turn", "sweep": 3 } ] },
+    { "id": 2, "radius": 0.3, "start": { "x": 7, "y": 2, "heading": 3.14159 },
+      "path": [ { "kind": "line", "length": 2 }, { "kind": "line", "length": 1 }, { "kind": "line", "length": 2 } ],
+      "profile": { "v0": 0, "pieces": [
+        { "duration": 1, "accel": 1 }, { "duration": 1.03125, "accel": 0 }, { "duration": 0.75, "accel": -1 },
+        { "duration": 4, "accel": 0 }, { "duration": 0.75, "accel": 1 }, { "duration": 1.03125, "accel": 0 },
+        { "duration": 1, "accel": -1 } ] } },
+    { "id": 3, "radius": 0.3, "v_max": 1, "a_max": 1, "turn_v_max": 0.1, "turn_a_max": 1, "start": { "x": 9, "y": 2, "heading": 0 },
+      "path": [ { "kind": "turn", "sweep": 2 } ] } ] }"#;
+
+#[test]
+fn robots_turn_in_place_and_are_slow_where_their_own_motion_is() {
+    let scenario = Scenario::from_json(SLOWER).expect("a scenario");
+    let task = Task::of(&scenario).expect("a task");
+    assert_eq!(task.warnings, [""; 0]);
+    for seed in 0..SEEDS {
+        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        assert_safe(&task, &outcome, &format!("seed {seed}"));
+        let duration = |place: usize| {
+            let journey = outcome.trace.journeys.iter().find(|journey| journey.robot == place).expect("its mission");
+            (journey.end.expect("an end") - journey.begin) as f64 * FRAME
+        };
+        // 6 and 5 s of driving, 3.5 and 6.5 s of turns; the mean speed of a turn takes as long as the turn.
+        assert!(duration(0) > 20.9 && duration(2) > 20.0, "seed {seed}: {} {}", duration(0), duration(2));
+        let fastest = outcome.trace.travelled[1].windows(2).filter(|pair| pair[0] >= 2.0 && pair[1] <= 3.0);
+        let fastest = fastest.map(|pair| (pair[1] - pair[0]) / FRAME).fold(0.0, f64::max);
+        assert!(fastest > 0.2 && fastest <= 0.25 + 1e-9, "seed {seed}: {fastest}");
+    }
+    // Without disturbances, as fast as by their own motions.
+    let exact = settings(0, Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 });
+    let outcome = run(&task, Controller::Pcr, exact).expect("a run");
+    for journey in &outcome.trace.journeys {
+        let took = (journey.end.expect("an end") - journey.begin) as f64 * FRAME;
+        assert!((took - journey.unimpeded).abs() < 0.2, "{took} {}", journey.unimpeded);
+    }
+    for (journey, agent) in outcome.trace.journeys.iter().zip(&scenario.agents) {
+        let own = agent.duration();
+        assert!((journey.unimpeded - own).abs() < 1e-3 * own, "{} {own}", journey.unimpeded);
+    }
+}
+
+#[test]
+fn own_motions_that_wait_are_simulated_without_their_waits_and_that_is_told() {
+    let waits = SLOWER.replace(r#"{ "duration": 4, "accel": 0 }"#, r#"{ "duration": 3, "accel": 0 },
+        { "duration": 0.25, "accel": -1 }, { "duration": 9, "accel": 0 }, { "duration": 0.25, "accel": 1 }, { "duration": 0.75, "accel": 0 }"#);
+    let task = Task::of(&Scenario::from_json(&waits).expect("a scenario")).expect("a task");
+    assert_eq!(task.warnings.len(), 1, "{:?}", task.warnings);
+    assert!(task.warnings[0].starts_with("agent 2: its own motion takes 18.81"), "{:?}", task.warnings);
+}
+
 #[test]
 fn foraging_robots_do_not_collide_under_the_supervisor() {
     for seed in 0..SEEDS {

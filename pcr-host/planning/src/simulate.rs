@@ -52,7 +52,6 @@ pub use vector::Vector;
 use crate::regions::Failure;
 use body::Command;
 use orca::Orca;
-use pcr_core::{Limits, Profile};
 use potential::Potential;
 use replan::InTheWay;
 use serde::Serialize;
@@ -109,6 +108,8 @@ struct Frame<'a> {
     speeds: &'a [f64],
     /// Which robots stand at the ends of their paths, which they know.
     arrived: &'a [bool],
+    /// Which robots turn in place.
+    turning: &'a [bool],
 }
 
 /// A plan of the supervisor, for the replay.
@@ -190,12 +191,7 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
 pub fn time_limit(task: &Task) -> f64 {
     let robot = |robot: &Robot| {
         let missions = robot.missions.iter();
-        missions.map(|mission| mission.release.max(0.0) + unimpeded(&mission.course, robot.limits)).sum::<f64>()
+        missions.map(|mission| mission.release.max(0.0) + mission.course.unimpeded(robot.limits)).sum::<f64>()
     };
     60.0 + 8.0 * task.robots.iter().map(robot).fold(0.0, f64::max)
-}
-
-/// Time for a course from rest to rest with nobody in the way \[s\].
-fn unimpeded(course: &Course, limits: Limits<f64>) -> f64 {
-    Profile::rest_to_rest(course.length(), limits).map_or(0.0, |profile| profile.as_profile().duration())
 }

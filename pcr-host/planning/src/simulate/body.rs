@@ -36,6 +36,9 @@ const DRIFTING: f64 = 0.1;
 /// A robot on a path stands at its end when it is nearer than this \[m\].
 const AT_END: f64 = 1e-3;
 
+/// And at a turn in place when it is nearer than this \[m\].
+const AT_TURN: f64 = 1e-6;
+
 /// What a robot is told for a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Command {
@@ -54,6 +57,10 @@ pub(super) struct Body {
     drift: Vector,
     /// Along the course \[m\].
     travelled: f64,
+    /// Segments of the course up to the last turn in place.
+    turned: usize,
+    /// For how long it has turned at the next one \[s\].
+    turning: f64,
     /// Of the wheels \[m/s\].
     velocity: Vector,
     speed: f64,
@@ -74,6 +81,8 @@ impl Body {
             position: robot.home(),
             drift: [0.0; 2],
             travelled: 0.0,
+            turned: 0,
+            turning: 0.0,
             velocity: [0.0; 2],
             speed: 0.0,
             slip: 0.0,
@@ -100,6 +109,11 @@ impl Body {
         self.speed
     }
 
+    /// Whether it turns in place.
+    pub(super) fn turns(&self) -> bool {
+        self.turning > 0.0
+    }
+
     /// What the camera sees.
     pub(super) fn observed(&mut self) -> Vector {
         add(self.position, self.camera.in_disc(self.disturbance.noise))
@@ -107,13 +121,13 @@ impl Body {
 
     /// At the beginning of a course.
     pub(super) fn begin(&mut self) {
-        self.travelled = 0.0;
+        (self.travelled, self.turned, self.turning) = (0.0, 0, 0.0);
     }
 
     /// Whether it has come to the end of a course: on the path, or within `reach` of its end.
     pub(super) fn has_arrived(&mut self, course: &Course, reach: f64) -> bool {
         let end = course.length();
-        if end - self.travelled <= AT_END {
+        if end - self.travelled <= AT_END && course.in_place(self.turned).is_none() {
             self.travelled = end;
             self.speed = 0.0;
             return true;
@@ -128,9 +142,19 @@ impl Body {
         match command {
             Command::Along(speed) => {
                 let Some(course) = course else { return };
-                // A robot knows the end of its path, say from a mark on the floor.
-                let left = course.length() - self.travelled;
-                self.speed = speed.min(speed_within(left, self.limits.acceleration, FRAME));
+                // A robot knows the end of its path and where it turns, say from marks on the floor, and how fast it may be.
+                let turn = course.in_place(self.turned);
+                let left = turn.map_or(course.length(), |turn| turn.at) - self.travelled;
+                if let Some(turn) = turn.filter(|_| left <= AT_TURN) {
+                    self.speed = 0.0;
+                    self.turning += FRAME * part;
+                    if self.turning >= turn.duration {
+                        (self.turned, self.turning) = (turn.segment + 1, 0.0);
+                    }
+                    return;
+                }
+                let allowed = course.allowed(self.travelled, self.limits.acceleration, FRAME);
+                self.speed = speed.min(allowed).min(speed_within(left, self.limits.acceleration, FRAME));
                 self.travelled += self.speed * FRAME * part;
                 if self.speed > 0.0 {
                     self.drift();

@@ -1,6 +1,4 @@
-//! Braking in frames: a robot keeps its speed during a frame, and changes it by a bounded step between frames.
-
-use pcr_core::Limits;
+//! Braking in frames: a robot keeps its speed during a frame, and changes it by a bounded step between frames. And fastest motions.
 
 /// The way from now to a stop \[m\]: this speed \[m/s\] in the frame that begins, then as much less as is possible in
 /// every further one.
@@ -18,20 +16,56 @@ pub(super) fn speed_within(length: f64, acceleration: f64, frame: f64) -> f64 {
     (length / frame + step * frames * (frames + 1.0) / 2.0) / (frames + 1.0)
 }
 
-/// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed to rest after `length` \[m\]; `None`
-/// where it cannot stop there.
-pub(super) fn to_rest(speed: f64, length: f64, limits: Limits<f64>) -> Option<Vec<(f64, f64)>> {
-    /// Of the way to stop, what rounding may add to it.
+/// The largest speed of which no more than `slow` \[m/s\] is left after `length` \[m\], with braking from the next frame on.
+pub(super) fn speed_before(length: f64, slow: f64, acceleration: f64, frame: f64) -> f64 {
+    // A frame at this speed, and then the way of steady braking, which is longer than that in frames.
+    let step = acceleration * frame;
+    (step * step + slow * slow + 2.0 * acceleration * length.max(0.0)).sqrt() - step
+}
+
+/// A stretch of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stretch {
+    /// \[m\]
+    pub(super) length: f64,
+    /// Largest speed on it \[m/s\].
+    pub(super) top: f64,
+}
+
+/// Speeds \[m/s\] where stretches begin, and at the end, from which a robot can keep to all that follow and stop at the end.
+pub(super) fn speeds_to_rest(stretches: &[Stretch], acceleration: f64) -> Vec<f64> {
+    let mut speeds = vec![0.0_f64; stretches.len() + 1];
+    let mut before = 0.0_f64;
+    for (k, stretch) in stretches.iter().enumerate().rev() {
+        let previous = k.checked_sub(1).map_or(f64::INFINITY, |previous| stretches[previous].top);
+        before = (before * before + 2.0 * acceleration * stretch.length).sqrt().min(stretch.top).min(previous);
+        speeds[k] = before;
+    }
+    speeds
+}
+
+/// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed to rest at the end of some stretches; `None`
+/// where it cannot keep to them.
+pub(super) fn to_rest(speed: f64, stretches: &[Stretch], acceleration: f64) -> Option<Vec<(f64, f64)>> {
+    /// Of the square of a speed, what rounding may add to it.
     const ROUNDING: f64 = 1e-12;
-    let Limits { speed: top, acceleration } = limits;
-    if length < speed * speed / (2.0 * acceleration) * (1.0 - ROUNDING) {
+    let most = speeds_to_rest(stretches, acceleration);
+    if most[0] * most[0] < speed * speed * (1.0 - ROUNDING) {
         return None;
     }
-    let peak = top.min((speed * speed / 2.0 + acceleration * length).sqrt()).max(speed);
-    let ramps = (2.0 * peak * peak - speed * speed) / (2.0 * acceleration);
-    let cruise = if peak > 0.0 { (length - ramps).max(0.0) / peak } else { 0.0 };
-    let pieces = [((peak - speed) / acceleration, acceleration), (cruise, 0.0), (peak / acceleration, -acceleration)];
-    Some(pieces.into_iter().filter(|(duration, _)| *duration > 0.0).collect())
+    let (mut pieces, mut speed) = (Vec::new(), speed);
+    for (&Stretch { length, top }, most) in stretches.iter().zip(&most[1..]) {
+        let after = most.min((speed * speed + 2.0 * acceleration * length).sqrt());
+        let squares = speed * speed + after * after;
+        let peak = top.min((squares / 2.0 + acceleration * length).sqrt()).max(speed).max(after);
+        let ramps = (2.0 * peak * peak - squares) / (2.0 * acceleration);
+        let cruise = if peak > 0.0 { (length - ramps).max(0.0) / peak } else { 0.0 };
+        let [faster, slower] = [speed, after].map(|end| (peak - end) / acceleration);
+        pieces.extend([(faster, acceleration), (cruise, 0.0), (slower, -acceleration)]);
+        speed = after;
+    }
+    pieces.retain(|(duration, _)| *duration > 0.0);
+    Some(pieces)
 }
 
 #[cfg(test)]
@@ -56,19 +90,65 @@ mod tests {
     }
 
     #[test]
-    fn motions_to_rest_travel_the_length_within_the_limits() {
-        let limits = Limits { speed: 0.5, acceleration: 0.2 };
-        for (speed, length) in [(0.0, 2.0), (0.0, 0.1), (0.3, 1.0), (0.5, 5.0), (0.2, 0.1), (0.0, 0.0)] {
-            let pieces = to_rest(speed, length, limits).expect("long enough");
-            let (mut now, mut travelled, mut top) = (speed, 0.0, speed);
-            for (duration, acceleration) in pieces {
-                assert!(duration > 0.0 && acceleration.abs() <= limits.acceleration);
-                travelled += now * duration + acceleration * duration * duration / 2.0;
-                now += acceleration * duration;
-                top = top.max(now);
+    fn speeds_before_a_slow_stretch_are_low_enough_there() {
+        let (acceleration, frame) = (0.4, 1.0 / 30.0);
+        for (k, slow) in (0..2000).flat_map(|k| [0.0, 0.05, 0.3].map(|slow| (k, slow))) {
+            let length = f64::from(k) * 1e-4;
+            let (mut travelled, mut now) = (0.0, speed_before(length, slow, acceleration, frame));
+            while now > slow {
+                travelled += now * frame;
+                now -= acceleration * frame;
             }
-            assert!((travelled - length).abs() < 1e-12 && now.abs() < 1e-12 && top <= limits.speed + 1e-12);
+            assert!(travelled <= length + 1e-12, "{length}: {travelled}");
         }
-        assert_eq!(to_rest(0.5, 0.6, limits), None);
+    }
+
+    #[test]
+    fn motions_to_rest_travel_the_length_within_the_limits() {
+        let acceleration = 0.2;
+        let stretch = |length, top| Stretch { length, top };
+        let one = |length| vec![stretch(length, 0.5)];
+        let three = |a, b, c| vec![stretch(a, 0.5), stretch(b, 0.1), stretch(c, 0.4)];
+        for (speed, stretches) in [
+            (0.0, one(2.0)),
+            (0.0, one(0.1)),
+            (0.3, one(1.0)),
+            (0.5, one(5.0)),
+            (0.2, one(0.1)),
+            (0.0, one(0.0)),
+            (0.0, three(2.0, 1.0, 3.0)),
+            (0.5, three(1.0, 0.01, 0.02)),
+            (0.2, three(0.08, 0.2, 0.0)),
+            (0.0, three(0.0, 1.0, 1.0)),
+        ] {
+            let pieces = to_rest(speed, &stretches, acceleration).expect("long enough");
+            let (mut now, mut travelled) = (speed, 0.0);
+            let top = |at: f64| {
+                let mut end = 0.0;
+                let passed = |stretch: &&Stretch| {
+                    end += stretch.length;
+                    at > end - 1e-12
+                };
+                stretches.get(stretches.iter().take_while(passed).count()).map_or(0.0, |stretch| stretch.top)
+            };
+            for (duration, its) in pieces {
+                assert!(duration > 0.0 && its.abs() <= acceleration);
+                // A step of many, in the middle of which the speed is in no other stretch.
+                for _ in 0..1000 {
+                    let step = duration / 1000.0;
+                    let middle = now * step / 2.0 + its * step * step / 8.0;
+                    assert!(
+                        now + its * step / 2.0 <= top(travelled + middle) + 1e-3,
+                        "{stretches:?}: {now} at {travelled}"
+                    );
+                    travelled += now * step + its * step * step / 2.0;
+                    now += its * step;
+                }
+            }
+            let length: f64 = stretches.iter().map(|stretch| stretch.length).sum();
+            assert!((travelled - length).abs() < 1e-12 && now.abs() < 1e-12, "{stretches:?}: {travelled} {now}");
+        }
+        assert_eq!(to_rest(0.5, &one(0.6), acceleration), None);
+        assert_eq!(to_rest(0.5, &three(0.5, 1.0, 1.0), acceleration), None);
     }
 }

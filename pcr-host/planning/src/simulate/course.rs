@@ -1,13 +1,27 @@
 //! The path of a mission, and the motion of an agent along the rest of it.
 
+use super::braking::{Stretch, speed_before, speeds_to_rest, to_rest};
 use crate::fleet::speed;
-use pcr_core::{Curve, Invalid, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};
-use pcr_formats::scenario::PathSegment;
+use pcr_core::{Curve, Invalid, Limits, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};
+use pcr_formats::scenario::{PathSegment, TURN};
 
-/// A path of lines and arcs.
+/// A path of lines and arcs, and how fast it may be travelled.
 #[derive(Clone, Debug)]
 pub struct Course {
     segments: Vec<Segment<f64>>,
+    /// Largest speed on each segment, if it has one of its own \[m/s\].
+    tops: Vec<f64>,
+}
+
+/// A turn in place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InPlace {
+    /// Place of its segment.
+    pub(super) segment: usize,
+    /// Length along the course \[m\].
+    pub(super) at: f64,
+    /// \[s\]
+    pub(super) duration: f64,
 }
 
 impl Course {
@@ -19,10 +33,10 @@ impl Course {
         let mut course = Self::standing(start)?;
         for segment in path {
             match *segment {
-                PathSegment::Line { length } => course.push(Curve::Line, length)?,
+                PathSegment::Line { length } => course.push(Curve::Line, length, f64::INFINITY)?,
                 PathSegment::Arc { radius, sweep } => {
                     let turn = if sweep > 0.0 { Turn::Left } else { Turn::Right };
-                    course.push(Curve::Arc { radius, turn }, radius * sweep.abs())?;
+                    course.push(Curve::Arc { radius, turn }, radius * sweep.abs(), f64::INFINITY)?;
                 }
             }
         }
@@ -35,22 +49,30 @@ impl Course {
     /// # Errors
     /// As [`Course::new`].
     pub fn standing(pose: Pose<f64>) -> Result<Self, Invalid> {
-        Ok(Self { segments: vec![Segment::standing(pose)?] })
+        Ok(Self { segments: vec![Segment::standing(pose)?], tops: vec![f64::INFINITY] })
     }
 
     /// To stand at its beginning.
     pub(super) fn beginning(&self) -> Self {
         // What a segment begins with is a pose in range.
         let pose = self.path().map(|path| path.pose_at(0.0));
-        Self { segments: pose.and_then(Segment::standing).into_iter().collect() }
+        Self { segments: pose.and_then(Segment::standing).into_iter().collect(), tops: vec![f64::INFINITY] }
     }
 
     /// The path of a motion.
     pub fn of(motion: &Motion<'_, f64>) -> Self {
-        Self { segments: motion.path().segments().to_vec() }
+        let segments = motion.path().segments().to_vec();
+        Self { tops: vec![f64::INFINITY; segments.len()], segments }
     }
 
-    fn push(&mut self, curve: Curve<f64>, length: f64) -> Result<(), Invalid> {
+    /// With a largest speed on each segment \[m/s\], by its place; infinite where it has none of its own. That of a turn in place is its length
+    /// by its duration.
+    #[must_use]
+    pub fn within(self, top: impl Fn(usize) -> f64) -> Self {
+        Self { tops: (0..self.segments.len()).map(top).collect(), ..self }
+    }
+
+    fn push(&mut self, curve: Curve<f64>, length: f64, top: f64) -> Result<(), Invalid> {
         let [.., last] = self.segments.as_slice() else {
             return Ok(());
         };
@@ -61,8 +83,10 @@ impl Course {
         if next.length() > 0.0 {
             if last.length() == 0.0 {
                 self.segments.clear();
+                self.tops.clear();
             }
             self.segments.push(next);
+            self.tops.push(top);
         }
         Ok(())
     }
@@ -92,13 +116,62 @@ impl Course {
     /// As [`Course::new`].
     pub fn from(&self, length: f64) -> Result<Self, Invalid> {
         let mut rest = Self::standing(self.path()?.pose_at(length))?;
-        for segment in &self.segments {
+        for (segment, &top) in self.segments.iter().zip(&self.tops) {
             let left = segment.from() + segment.length() - length;
             if left > 0.0 {
-                rest.push(segment.curve(), left.min(segment.length()))?;
+                rest.push(segment.curve(), left.min(segment.length()), top)?;
             }
         }
         Ok(rest)
+    }
+
+    /// Its stretches up to a length \[m\] on which a robot with a largest speed \[m/s\] may be equally fast.
+    fn stretches(&self, until: f64, speed: f64) -> Vec<Stretch> {
+        let mut stretches: Vec<Stretch> = Vec::new();
+        for (segment, top) in self.segments.iter().zip(&self.tops) {
+            let (length, top) = (segment.length().min(until - segment.from()).max(0.0), top.min(speed));
+            match stretches.last_mut() {
+                Some(last) if last.top == top => last.length += length,
+                _ => stretches.push(Stretch { length, top }),
+            }
+        }
+        stretches
+    }
+
+    /// The largest speed at its beginning from which a robot with these limits can keep to it, and stop at its end \[m/s\].
+    pub(super) fn most(&self, limits: Limits<f64>) -> f64 {
+        speeds_to_rest(&self.stretches(self.length(), limits.speed), limits.acceleration)[0]
+    }
+
+    /// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed at its beginning to rest at a length \[m\] of it;
+    /// `None` where there is none.
+    pub(super) fn to_rest(&self, speed: f64, until: f64, limits: Limits<f64>) -> Option<Vec<(f64, f64)>> {
+        to_rest(speed, &self.stretches(until, limits.speed), limits.acceleration)
+    }
+
+    /// Time from rest to rest with nobody in the way \[s\].
+    pub(super) fn unimpeded(&self, limits: Limits<f64>) -> f64 {
+        self.to_rest(0.0, self.length(), limits).into_iter().flatten().map(|(duration, _)| duration).sum()
+    }
+
+    /// The speed in a frame from a length on \[m\] with which a robot keeps to all that follows; turns in place are left aside \[m/s\].
+    pub(super) fn allowed(&self, length: f64, acceleration: f64, frame: f64) -> f64 {
+        let ahead = self.segments.iter().zip(&self.tops).filter(|(segment, top)| {
+            top.is_finite() && !is_turn(segment) && segment.from() + segment.length() > length
+        });
+        ahead.fold(f64::INFINITY, |allowed: f64, (segment, &top)| {
+            let before = segment.from() - length;
+            allowed.min(if before > 0.0 { speed_before(before, top, acceleration, frame) } else { top })
+        })
+    }
+
+    /// The first turn in place that takes time among its segments from this place on.
+    pub(super) fn in_place(&self, from: usize) -> Option<InPlace> {
+        let turns = self.segments.iter().zip(&self.tops).enumerate().skip(from);
+        turns.filter(|(_, (segment, _))| is_turn(segment)).find_map(|(place, (segment, top))| {
+            let duration = segment.length() / top;
+            (duration > 0.0).then_some(InPlace { segment: place, at: segment.from(), duration })
+        })
     }
 
     /// The least radius of an arc \[m\]; infinite without any.
@@ -109,6 +182,10 @@ impl Course {
         };
         self.segments.iter().map(radius).fold(f64::INFINITY, f64::min)
     }
+}
+
+fn is_turn(segment: &Segment<f64>) -> bool {
+    matches!(segment.curve(), Curve::Arc { radius: TURN, .. })
 }
 
 /// A course and when an agent is where on it.

@@ -5,7 +5,6 @@
 //! rest: as early as it can brake, or just before one of the regions on its way; [`earliest_start`] gives the time that
 //! it has to wait there. The place with the earliest arrival is used.
 
-use super::braking::to_rest;
 use super::course::{Course, Drive};
 use crate::fleet::{HostEcm, build_ecm_of};
 use crate::plan::start_delays;
@@ -250,7 +249,7 @@ impl Problem<'_> {
         if length <= 0.0 {
             return Drive::standing(robot.rest.clone(), self.now);
         }
-        Drive::new(robot.rest.clone(), speed, &to_rest(speed, length, robot.limits)?, self.begin(robot))
+        Drive::new(robot.rest.clone(), speed, &robot.rest.to_rest(speed, length, robot.limits)?, self.begin(robot))
     }
 
     /// The motion that arrives first among those considered.
@@ -278,10 +277,10 @@ impl Problem<'_> {
         if stop >= length {
             return None;
         }
-        let mut pieces = to_rest(speed, stop, robot.limits)?;
+        let mut pieces = robot.rest.to_rest(speed, stop, robot.limits)?;
         let stops_at = self.begin(robot) + pieces.iter().map(|(duration, _)| duration).sum::<f64>();
         let onward = robot.rest.from(stop).ok()?;
-        let further = to_rest(0.0, onward.length(), robot.limits)?;
+        let further = onward.to_rest(0.0, onward.length(), robot.limits)?;
         let onward = Drive::new(onward, 0.0, &further, stops_at)?;
         let (fleet, ecm) = row(onward.motion(robot.radius)?, others)?;
         let wait = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)?;
@@ -294,11 +293,9 @@ impl Problem<'_> {
     }
 }
 
-/// Its speed, as far as the rest of its path lets it stop.
+/// Its speed, as far as it can keep to the rest of its path, and stop at the end.
 fn speed_that_stops(robot: &State) -> f64 {
-    /// Rounding must not make the way to stop longer than the rest of the path.
-    const LESS: f64 = 1.0 - 1e-12;
-    robot.speed.min((2.0 * robot.limits.acceleration * robot.rest.length()).sqrt() * LESS)
+    robot.speed.min(robot.rest.most(robot.limits))
 }
 
 /// The order with this robot moved to its front.

@@ -225,7 +225,7 @@ impl Supervisor {
                 false => narrowed(agent.at, speed * FRAME, seen, error, &agent.course),
             };
         }
-        let moves = self.agents.iter().any(|agent| agent.speed > 0.0);
+        let moves = frame.turning.contains(&true) || self.agents.iter().any(|agent| agent.speed > 0.0);
         self.still = if moves { 0.0 } else { self.still + FRAME };
     }
 

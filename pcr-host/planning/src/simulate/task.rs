@@ -5,11 +5,14 @@ use super::course::Course;
 use super::vector::{Vector, norm, sub};
 use crate::fleet::Fleet;
 use crate::regions::Failure;
-use pcr_core::{Drive, Limits};
-use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
+use pcr_core::Limits;
+use pcr_formats::scenario::{Agent, Labels, MotionSpec, Part, PathSegment, Scenario, TURN};
 
 /// When the last robot may set off \[s\]: every frame until then is simulated and kept.
 const LATEST: f64 = 1e4;
+
+/// By how much a motion is slower than it could be before that is told, relative.
+const SLOWER: f64 = 1e-3;
 
 /// A run: robots, what stands in their way, and their missions.
 #[derive(Clone, Debug)]
@@ -70,36 +73,39 @@ impl Robot {
 
 impl Task {
     /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
-    /// around all of them, and turns in place take no time. Of a profile, only the largest speed and acceleration count: both are
-    /// among the warnings, and so are agents in the way that overlap one another: no run counts them as a collision.
+    /// around all of them. Of a profile, the largest speed on each segment, the durations of turns in place and the largest acceleration
+    /// count; where it takes longer than these allow, that is among the warnings. So are agents in the way that overlap one another: no run
+    /// counts them as a collision.
     ///
     /// # Errors
     /// [`Failure::Refused`] where a value is out of range, [`Failure::Late`] where somebody sets off too late.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
         let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
-        for (agent, motion) in scenario.agents.iter().zip(fleet.motions()) {
-            let course = Course::of(&motion);
+        let mut warnings = scenario.warnings.clone();
+        for (place, (agent, motion)) in scenario.agents.iter().zip(fleet.motions()).enumerate() {
+            let tops = tops(agent);
+            let top = |segment| fleet.source(place, segment).and_then(|source| tops.get(source).copied());
+            let course = Course::of(&motion).within(|segment| top(segment).unwrap_or(f64::INFINITY));
             if course.length() > 0.0 {
                 if agent.t_start > LATEST {
                     return Err(Failure::Late(agent.id, LATEST));
                 }
-                let missions = vec![Mission { release: agent.t_start, course }];
                 let limits = limits(&agent.motion);
+                let (own, least) = (agent.duration(), course.unimpeded(limits));
+                if own > least * (1.0 + SLOWER) {
+                    let by = "by its largest speed on each segment and its largest acceleration";
+                    warnings.push(format!(
+                        "agent {}: its own motion takes {own:.3} s; it is simulated {by}, by which it takes {least:.3} s",
+                        agent.id
+                    ));
+                }
+                let missions = vec![Mission { release: agent.t_start, course }];
                 robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
             } else {
                 let centre = course.point_at(0.0);
                 standing.push((agent.id, centre, agent.reach()));
                 obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
-            }
-        }
-        let mut warnings = scenario.warnings.clone();
-        for (agent, motion) in scenario.agents.iter().zip(fleet.motions()) {
-            if agent.turns_in_place() {
-                warnings.push(format!("agent {}: its turns in place take no time in a simulation", agent.id));
-            } else if Drive::of(&motion).is_none() {
-                let why = "its own profile is slower on the way than its largest speed and acceleration, by which it is simulated";
-                warnings.push(format!("agent {}: {why}", agent.id));
             }
         }
         warnings.extend(overlapping(&standing));
@@ -128,6 +134,22 @@ fn overlapping(standing: &[(u64, Vector, f64)]) -> Vec<String> {
     let more = count - named.len();
     let named = named.into_iter().map(|[i, j]| format!("agents {i} and {j} stand in contact"));
     named.chain((more > 0).then(|| format!("{more} more pairs of agents stand in contact"))).collect()
+}
+
+/// The largest speed of a profile on each segment \[m/s\], and that of a turn in place in the mean, without the waits; infinite without a profile.
+fn tops(agent: &Agent) -> Vec<f64> {
+    if matches!(agent.motion, MotionSpec::RestToRest { .. }) {
+        return Vec::new();
+    }
+    let top = |(segment, parts): (&PathSegment, Vec<Part>)| {
+        let moves = || parts.iter().filter(|part| part.before > 0.0 || part.after > 0.0);
+        let top = match *segment {
+            PathSegment::Arc { radius: TURN, .. } => segment.length() / moves().map(|part| part.duration).sum::<f64>(),
+            _ => moves().map(|part| part.before.max(part.after)).fold(0.0, f64::max),
+        };
+        if top > 0.0 { top } else { f64::INFINITY }
+    };
+    agent.path.iter().zip(agent.parts()).map(top).collect()
 }
 
 /// Those of the scenario; of a profile, the most it makes use of, and where it never accelerates, a second to top speed.

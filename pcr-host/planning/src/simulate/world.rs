@@ -5,7 +5,7 @@ use super::course::Course;
 use super::outcome::{Journey, Trace};
 use super::task::{Robot, Task};
 use super::vector::Vector;
-use super::{Control, FRAME, Frame, Settings, unimpeded};
+use super::{Control, FRAME, Frame, Settings};
 
 /// A robot with its missions.
 struct Agent<'a> {
@@ -70,7 +70,7 @@ impl<'a> World<'a> {
                 begin: frame,
                 end: None,
                 goal: next.course.point_at(next.course.length()),
-                unimpeded: unimpeded(&next.course, agent.robot.limits),
+                unimpeded: next.course.unimpeded(agent.robot.limits),
             });
         }
     }
@@ -91,7 +91,9 @@ impl<'a> World<'a> {
         let seen: Vec<Vector> = self.agents.iter_mut().map(|agent| agent.body.observed()).collect();
         let speeds: Vec<f64> = self.agents.iter().map(|agent| agent.body.speed()).collect();
         let arrived: Vec<bool> = self.agents.iter().map(|agent| agent.course.is_some() && !agent.travels).collect();
-        let commands = control.commands(&Frame { time, seen: &seen, speeds: &speeds, arrived: &arrived });
+        let turning: Vec<bool> = self.agents.iter().map(|agent| agent.body.turns()).collect();
+        let commands =
+            control.commands(&Frame { time, seen: &seen, speeds: &speeds, arrived: &arrived, turning: &turning });
         let tracks = self.trace.positions.iter_mut().zip(&mut self.trace.travelled);
         for ((agent, command), (track, travelled)) in self.agents.iter_mut().zip(commands).zip(tracks) {
             agent.body.step(time, command, agent.course);
