@@ -189,6 +189,10 @@ fn as_many_robots_as_safe_ends_go_on_or_say_why_not() {
         outcome.idle_because.as_ref().is_some_and(|why| why.starts_with("nobody has reached a goal for ")),
         "{line:?}"
     );
+    // Also in a short run.
+    let short = answer(&graph(&points, &[[0, 1], [1, 2], [2, 3]]), 2, 0.1);
+    let why = short.runs[0].outcome.idle_because.as_deref().unwrap_or_default();
+    assert!(!short.is_sound() && why.starts_with("nobody has moved for "), "{short:?}");
     // A robot at one of two nodes leaves none that could be reached.
     let two = layout(Format::Nav2, &graph(&points[..2], &[[0, 1]]), 0.4);
     assert_eq!(well_formedness(&two, 1).expect("a site").safe_ends.len(), 1);

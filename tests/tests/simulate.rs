@@ -79,7 +79,7 @@ const SLOWER: &str = r#"{ "agents": [
     { "id": 1, "radius": 0.3, "v_max": 1, "a_max": 0.5, "turn_v_max": 0.5, "turn_a_max": 1, "start": { "x": 0, "y": 0, "heading": 0 },
       "path": [ { "kind": "line", "length": 4 }, { "kind": "turn", "sweep": 1.5 }, { "kind": "line", "length": 3 },
                 { "kind": "turn", "sweep": 3 } ] },
-    { "id": 2, "radius": 0.3, "start": { "x": 7, "y": 2, "heading": 3.14159 },
+    { "id": 2, "radius": 0.3, "start": { "x": 7, "y": 9, "heading": 3.14159 },
       "path": [ { "kind": "line", "length": 2 }, { "kind": "line", "length": 1 }, { "kind": "line", "length": 2 } ],
       "profile": { "v0": 0, "pieces": [
         { "duration": 1, "accel": 1 }, { "duration": 1.03125, "accel": 0 }, { "duration": 0.75, "accel": -1 },

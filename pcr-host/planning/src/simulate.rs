@@ -9,6 +9,7 @@
 //! noise       random numbers by seed, robot and purpose
 //! body        the true state of a robot                           Disturbance
 //! supervisor  plans with collision regions every few seconds:
+//!   agent       a robot as it knows it
 //!   observer    where a robot can be
 //!   replan      motions for the rest of the paths
 //!   guard       passing orders in between
@@ -24,6 +25,7 @@
 //! Time advances in frames of the camera. The same task, seed and settings give the same run, down to the last digit;
 //! only the time that planning takes differs between machines.
 
+mod agent;
 mod body;
 mod braking;
 mod contact;
@@ -50,12 +52,13 @@ pub use task::{Mission, Obstacle, Robot, Task};
 pub use vector::Vector;
 
 use crate::regions::Failure;
-use body::Command;
+use agent::Errors;
+use body::{Command, Turning};
 use orca::Orca;
 use potential::Potential;
 use replan::InTheWay;
 use serde::Serialize;
-use supervisor::{Errors, Statistics, Supervisor};
+use supervisor::{Statistics, Supervisor};
 use world::World;
 
 /// Time of a frame \[s\]: the camera of the paper sees 30 a second.
@@ -108,8 +111,8 @@ struct Frame<'a> {
     speeds: &'a [f64],
     /// Which robots stand at the ends of their paths, which they know.
     arrived: &'a [bool],
-    /// Which robots turn in place.
-    turning: &'a [bool],
+    /// The turn in place of each robot that has begun one, which it knows.
+    turning: &'a [Option<Turning>],
 }
 
 /// A plan of the supervisor, for the replay.

@@ -136,8 +136,9 @@ impl Traffic {
             conflicts_after: conflicts(&plan)?,
             certificate: Proof::of::<f64>(&plan)?,
             makespan,
-            sum_of_costs: ends().sum(),
-            lower_bound: at_once.agents.iter().map(Agent::duration).sum(),
+            // A sum of nothing is -0.
+            sum_of_costs: ends().sum::<f64>() + 0.0,
+            lower_bound: at_once.agents.iter().map(Agent::duration).sum::<f64>() + 0.0,
             missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
             missions: travels,
             unsolved: out.iter().map(|out| Unsolved::of(&missions, [id(out.agent), id(out.by)], out.always)).collect(),

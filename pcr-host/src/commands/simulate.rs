@@ -142,6 +142,7 @@ impl Arguments {
             write_to(output, &replay::page(&task, &outcomes))?;
         }
         let simulation = Simulation::of(&task, settings, &outcomes);
+        say(&file, simulation.warnings.iter().skip(task.warnings.len()).cloned());
         let mut out = self.printed.out(is_standard(self.output.as_ref()));
         match self.printed.form() {
             Form::Table => report::simulation_table(&simulation, &mut out)?,

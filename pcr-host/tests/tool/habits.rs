@@ -136,6 +136,10 @@ fn refused_words_come_with_a_tip() {
         (&["locks", &layout, "--audit", "zones.json"], "with an equals sign: --audit=FILE\n"),
         (&["locks", &layout, "--write", "nav2"], "tip: the output is the file to be written, such as -o guarded"),
         (&["traffic", &layout, "--hours", "1", "-o", "x"], "tip: files and pictures are of missions that all set off"),
+        (
+            &["traffic", &layout, "--hours", "1", "--corner-radius", "1"],
+            "with --hours robots turn in place at corners\n",
+        ),
         (&["fleet", "--certify", "x", "--json"], "tip: --certify prints JSON, and nothing else does\n"),
         (&["traffic", &layout, "--seed", "-1"], "a whole number from 0 is expected\n"),
         (&["simulate", "--foraging", "--seed", "-1"], "a whole number from 0 is expected\n"),

@@ -101,3 +101,30 @@ fn agents_that_stand_in_contact_are_warned_about() {
     let said = run(&["simulate", &name, "--controller", "orca"]).err;
     assert!(said.lines().count() == 17 && said.ends_with(": 29 more pairs of agents stand in contact\n"), "{said}");
 }
+
+#[test]
+fn margins_are_no_part_of_those_that_stand() {
+    let stands = json!({ "id": 1, "radius": 0.5, "margin": 0.3, "v_max": 1, "a_max": 1, "path": [], "start": { "x": 0, "y": 0, "heading": 0 } });
+    let goes = json!({ "id": 2, "radius": 0.5, "v_max": 1, "a_max": 1, "path": [{ "kind": "line", "length": 3 }],
+        "start": { "x": 1.2, "y": 0, "heading": 0 } });
+    let name = file("simulate", "margin.json", json!({ "agents": [stands, goes] }).to_string());
+    for controller in ["pcr", "orca"] {
+        // It stands within the margin, so that the supervisor has no plan, and says so by its status.
+        let said = run(&["simulate", &name, "--controller", controller, "--json"]);
+        assert_eq!(said.status, i32::from(controller == "pcr"));
+        let run = &serde_json::from_str::<serde_json::Value>(&said.out).unwrap()["runs"][0];
+        assert_eq!(run["collisions"], json!([]), "{controller}");
+        let clearance = run["clearance"].as_f64().unwrap();
+        assert!((clearance - 0.2).abs() < 0.02, "{controller}: {clearance}");
+    }
+}
+
+#[test]
+fn who_only_goes_to_ends_has_nothing_to_do_on_a_circle_and_that_is_told() {
+    let circle = json!({ "id": 1, "radius": 0.2, "v_max": 1, "a_max": 1, "path": [{ "kind": "arc", "radius": 1, "sweep": 6.283185307179586 }],
+        "start": { "x": 0, "y": 0, "heading": 0 } });
+    let name = file("simulate", "circle.json", json!({ "agents": [circle] }).to_string());
+    let said = |controller: &str| run(&["simulate", &name, "--controller", controller]).err;
+    assert_eq!(said("pcr"), "");
+    assert!(said("orca").contains("agent 1: its path ends where it begins"), "{}", said("orca"));
+}

@@ -22,6 +22,9 @@ const START: f64 = 0.1;
 /// Who has waited for a way for longer than this has waited for long \[s\].
 const LONG: f64 = 600.0;
 
+/// Where all stand at their ends for longer than this, and missions wait, nothing changes any more \[s\].
+const QUIET: f64 = 60.0;
+
 /// Runs a fleet on a layout.
 ///
 /// # Errors
@@ -67,6 +70,10 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
         let before: f64 = run.robots.iter().map(|robot| robot.at).sum();
         run.step(tick, now, open);
         let moves = run.robots.iter().map(|robot| robot.at).sum::<f64>() > before;
+        if open {
+            let waits = run.missions.iter().flatten().any(|mission| !mission.admitted);
+            run.quiet = if waits && run.robots.iter().all(Robot::has_arrived) { run.quiet + STEP } else { 0.0 };
+        }
         still = if moves || run.robots.iter().all(Robot::has_arrived) { 0.0 } else { still + STEP };
         run.outcome.standstill = f64::max(run.outcome.standstill, still);
         time += begin.elapsed();
@@ -142,6 +149,8 @@ impl Run {
             Some(self.why_idle(outcome.stuck))
         } else if outcome.starved > 0 && idle > LONG {
             Some(format!("nobody has reached a goal for {idle:.0} s: {}", self.why_idle(outcome.stuck)))
+        } else if self.quiet > QUIET {
+            Some(format!("nobody has moved for {:.0} s: {}", self.quiet, self.why_idle(outcome.stuck)))
         } else {
             None
         };

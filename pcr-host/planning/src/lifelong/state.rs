@@ -69,6 +69,8 @@ pub(super) struct Run {
     pub(super) travel: (f64, f64),
     pub(super) steady: usize,
     pub(super) last_arrival: f64,
+    /// For how long all have stood at their ends while missions wait \[s\].
+    pub(super) quiet: f64,
     /// Tasks that are not done yet, where not everybody has a mission of its own.
     pub(super) tasks: Option<Queue>,
 }
@@ -151,6 +153,7 @@ impl Run {
             travel: (0.0, 0.0),
             steady: 0,
             last_arrival: 0.0,
+            quiet: 0.0,
             tasks: tasks.map(Queue::of),
         })
     }

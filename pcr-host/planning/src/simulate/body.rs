@@ -37,12 +37,23 @@ const DRIFTING: f64 = 0.1;
 const AT_END: f64 = 1e-3;
 
 /// And at a turn in place when it is nearer than this \[m\].
-const AT_TURN: f64 = 1e-6;
+pub(super) const AT_TURN: f64 = 1e-6;
+
+/// A turn in place that a robot has begun.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turning {
+    /// Length along its course \[m\].
+    pub(super) at: f64,
+    /// For how long it has turned \[s\].
+    pub(super) time: f64,
+}
 
 /// What a robot is told for a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Command {
-    /// Along the path of its mission \[m/s\].
+    /// It stands, and does not begin its mission.
+    Stay,
+    /// Along the path of its mission, at this speed where it does not turn in place \[m/s\].
     Along(f64),
     /// In any direction \[m/s\].
     Freely(Vector),
@@ -59,8 +70,8 @@ pub(super) struct Body {
     travelled: f64,
     /// Segments of the course up to the last turn in place.
     turned: usize,
-    /// For how long it has turned at the next one \[s\].
-    turning: f64,
+    /// The next one, if it has begun.
+    turning: Option<Turning>,
     /// Of the wheels \[m/s\].
     velocity: Vector,
     speed: f64,
@@ -82,7 +93,7 @@ impl Body {
             drift: [0.0; 2],
             travelled: 0.0,
             turned: 0,
-            turning: 0.0,
+            turning: None,
             velocity: [0.0; 2],
             speed: 0.0,
             slip: 0.0,
@@ -109,9 +120,9 @@ impl Body {
         self.speed
     }
 
-    /// Whether it turns in place.
-    pub(super) fn turns(&self) -> bool {
-        self.turning > 0.0
+    /// The turn in place that it has begun and not done.
+    pub(super) fn turning(&self) -> Option<Turning> {
+        self.turning
     }
 
     /// What the camera sees.
@@ -121,7 +132,7 @@ impl Body {
 
     /// At the beginning of a course.
     pub(super) fn begin(&mut self) {
-        (self.travelled, self.turned, self.turning) = (0.0, 0, 0.0);
+        (self.travelled, self.turned, self.turning) = (0.0, 0, None);
     }
 
     /// Whether it has come to the end of a course: on the path, or within `reach` of its end.
@@ -140,6 +151,7 @@ impl Body {
     pub(super) fn step(&mut self, time: f64, command: Command, course: Option<&Course>) {
         let part = self.part_that_counts(time);
         match command {
+            Command::Stay => {}
             Command::Along(speed) => {
                 let Some(course) = course else { return };
                 // A robot knows the end of its path and where it turns, say from marks on the floor, and how fast it may be.
@@ -147,9 +159,10 @@ impl Body {
                 let left = turn.map_or(course.length(), |turn| turn.at) - self.travelled;
                 if let Some(turn) = turn.filter(|_| left <= AT_TURN) {
                     self.speed = 0.0;
-                    self.turning += FRAME * part;
-                    if self.turning >= turn.duration {
-                        (self.turned, self.turning) = (turn.segment + 1, 0.0);
+                    let time = self.turning.map_or(0.0, |turning| turning.time) + FRAME * part;
+                    self.turning = Some(Turning { at: turn.at, time });
+                    if time >= turn.duration {
+                        (self.turned, self.turning) = (turn.segment + 1, None);
                     }
                     return;
                 }

@@ -1,9 +1,10 @@
 //! The path of a mission, and the motion of an agent along the rest of it.
 
+use super::FRAME;
 use super::braking::{Stretch, speed_before, speeds_to_rest, to_rest};
 use crate::fleet::speed;
 use pcr_core::{Curve, Invalid, Limits, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};
-use pcr_formats::scenario::{PathSegment, TURN};
+use pcr_formats::scenario::{KINK, PathSegment, TURN};
 
 /// A path of lines and arcs, and how fast it may be travelled.
 #[derive(Clone, Debug)]
@@ -138,6 +139,16 @@ impl Course {
         stretches
     }
 
+    /// With so much less \[s\] of its first turn in place.
+    #[must_use]
+    pub(super) fn turned(mut self, time: f64) -> Self {
+        if let Some(InPlace { segment, duration, .. }) = self.in_place(0).filter(|_| time > 0.0) {
+            // A frame at least is left.
+            self.tops[segment] *= duration / (duration - time).max(FRAME);
+        }
+        self
+    }
+
     /// The largest speed at its beginning from which a robot with these limits can keep to it, and stop at its end \[m/s\].
     pub(super) fn most(&self, limits: Limits<f64>) -> f64 {
         speeds_to_rest(&self.stretches(self.length(), limits.speed), limits.acceleration)[0]
@@ -174,18 +185,19 @@ impl Course {
         })
     }
 
-    /// The least radius of an arc \[m\]; infinite without any.
+    /// The least radius of an arc that is driven \[m\]; infinite without any.
     pub(super) fn least_radius(&self) -> f64 {
         let radius = |segment: &Segment<f64>| match segment.curve() {
-            Curve::Line => f64::INFINITY,
-            Curve::Arc { radius, .. } => radius,
+            Curve::Arc { radius, .. } if !is_turn(segment) => radius,
+            _ => f64::INFINITY,
         };
         self.segments.iter().map(radius).fold(f64::INFINITY, f64::min)
     }
 }
 
+/// Whether a segment is a turn in place, and no joint that is passed without a stop.
 fn is_turn(segment: &Segment<f64>) -> bool {
-    matches!(segment.curve(), Curve::Arc { radius: TURN, .. })
+    matches!(segment.curve(), Curve::Arc { radius: TURN, .. }) && segment.length() > KINK * TURN
 }
 
 /// A course and when an agent is where on it.

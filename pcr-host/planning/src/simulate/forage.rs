@@ -61,7 +61,7 @@ pub fn task(seed: u64, trips: u32) -> Task {
         let missions = (0..trips).flat_map(|_| trip.clone()).collect();
         Robot { id: place as u64 + 1, radius: RADIUS, margin: 0.0, limits: LIMITS, missions }
     });
-    let obstacles = OBSTACLES.map(|centre| Obstacle { id: None, centre, radius: OBSTACLE });
+    let obstacles = OBSTACLES.map(|centre| Obstacle { id: None, centre, radius: OBSTACLE, margin: 0.0 });
     Task {
         name: "foraging".into(),
         labels: Labels::default(),

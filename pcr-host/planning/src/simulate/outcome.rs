@@ -82,7 +82,12 @@ impl Simulation {
     pub fn of(task: &Task, settings: Settings, outcomes: &[Outcome]) -> Self {
         let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
         let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
-        let (name, labels, warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
+        let (name, labels, mut warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
+        if outcomes.iter().any(|outcome| outcome.run.controller != Controller::Pcr) {
+            let why =
+                "its path ends where it begins; potential and orca go to its end by any way, and have nothing to do";
+            warnings.extend(task.closed().map(|id| format!("agent {id}: {why}")));
+        }
         Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }
 

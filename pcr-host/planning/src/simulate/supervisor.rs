@@ -8,25 +8,18 @@
 //! Plans keep a margin for the errors of the camera and of the robots ([`Errors`]). A late robot is no danger: the
 //! guard holds those that pass after it. If no new plan is found, the old orders stay.
 
+use super::agent::{Agent, Errors, standing};
+use super::body::{AT_TURN, Turning};
 use super::braking::{speed_within, stopping_length};
 use super::course::{Course, Drive};
 use super::guard::Guard;
 use super::observer::narrowed;
 use super::replan::{InTheWay, Plan, Problem, SEARCHED, State};
-use super::task::{Obstacle, Robot, Task};
+use super::task::{Obstacle, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
 use crate::regions::Failure;
-use pcr_core::{Interval, Invalid, Limits, Point, Pose, Radians};
+use pcr_core::{Interval, Limits};
 use std::time::Instant;
-
-/// What is known of the errors of camera and robots.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Errors {
-    /// Of an observed position \[m\].
-    pub(super) noise: f64,
-    /// Of a robot from its path \[m\].
-    pub(super) drift: f64,
-}
 
 /// Nobody stands for so long without a reason that stays, beside two periods of planning \[s\].
 const RESTING: f64 = 1.0;
@@ -36,73 +29,6 @@ const REST: f64 = 8.0;
 
 /// How fast a robot that is ahead of its plan falls back to it \[1/s\].
 const FALLING_BACK: f64 = 2.0;
-
-/// One robot as the supervisor knows it.
-#[derive(Debug)]
-struct Agent {
-    limits: Limits<f64>,
-    /// Radius, with the margins for passing orders and for plans \[m\].
-    radius: f64,
-    margins: [f64; 2],
-    /// The path that it is on, and where on it.
-    course: Course,
-    at: Interval<f64>,
-    /// What it was told for the last frame \[m/s\].
-    speed: f64,
-    /// A mission that no plan takes up yet.
-    next: Option<Course>,
-    /// Of a first mission that is known before it begins: when it begins \[s\]; else 0.
-    release: f64,
-}
-
-impl Agent {
-    /// A robot that stands where its first mission begins.
-    ///
-    /// # Errors
-    /// [`Failure::Robot`] where its path, or its disc with the margins, is out of range.
-    fn new(robot: &Robot, errors: Errors) -> Result<Self, Failure> {
-        let course = match robot.missions.first() {
-            Some(mission) => Ok(mission.course.beginning()),
-            None => standing(robot.home()),
-        };
-        let limits = robot.limits;
-        // A robot goes straight during a frame, not along the arc: off its middle by the sagitta, and nowhere farther from the path than
-        // half the way from one of its ends, however sharp the path turns.
-        let way = limits.speed * FRAME;
-        let least = robot.missions.iter().map(|mission| mission.course.least_radius()).fold(f64::INFINITY, f64::min);
-        let off = errors.drift + (way * way / (8.0 * least)).min(way / 2.0);
-        let agent = Self {
-            limits,
-            radius: robot.radius,
-            margins: [robot.margin + off, robot.margin + off + errors.drift + errors.noise],
-            course: course.map_err(|_| Failure::Robot(robot.id))?,
-            at: Interval::new(0.0, 0.0),
-            speed: 0.0,
-            next: None,
-            release: 0.0,
-        };
-        let largest = agent.radius + agent.margins[1];
-        let fits =
-            |course: &Course| Drive::at_unit_speed(course.clone()).is_some_and(|it| it.motion(largest).is_some());
-        match fits(&agent.course) && robot.missions.iter().all(|mission| fits(&mission.course)) {
-            true => Ok(agent),
-            false => Err(Failure::Robot(robot.id)),
-        }
-    }
-
-    /// Whether it stands at the end of its path.
-    fn stands(&self) -> bool {
-        self.speed <= 0.0 && self.at.lo >= self.course.length()
-    }
-
-    /// The path that a plan is for, which takes up a new mission or does not, and where the robot is on it.
-    fn to_plan(&self, takes_up: bool) -> (&Course, Interval<f64>, f64) {
-        match &self.next {
-            Some(next) if takes_up => (next, Interval::new(0.0, 0.0), 0.0),
-            _ => (&self.course, self.at, self.speed),
-        }
-    }
-}
 
 /// The controller that plans with collision regions.
 #[derive(Debug)]
@@ -186,8 +112,9 @@ impl Supervisor {
         let agents = task.robots.iter().map(|robot| Agent::new(robot, errors)).collect::<Result<Vec<_>, _>>()?;
         let obstacle = |obstacle: &Obstacle| {
             let drive = standing(obstacle.centre).ok().and_then(|course| Drive::standing(course, 0.0));
-            let drive = drive.filter(|drive| drive.motion(obstacle.radius).is_some());
-            drive.map(|drive| (drive, obstacle.radius)).ok_or(Failure::Obstacle(obstacle.centre))
+            let radius = obstacle.radius + obstacle.margin;
+            let drive = drive.filter(|drive| drive.motion(radius).is_some());
+            drive.map(|drive| (drive, radius)).ok_or(Failure::Obstacle(obstacle.centre))
         };
         let obstacles = task.obstacles.iter().map(obstacle).collect::<Result<_, _>>()?;
         let guard = guard(&agents)?;
@@ -225,7 +152,13 @@ impl Supervisor {
                 false => narrowed(agent.at, speed * FRAME, seen, error, &agent.course),
             };
         }
-        let moves = frame.turning.contains(&true) || self.agents.iter().any(|agent| agent.speed > 0.0);
+        for (agent, turning) in self.agents.iter_mut().zip(frame.turning) {
+            agent.turned = turning.map_or(0.0, |turning| turning.time);
+            if let Some(Turning { at, .. }) = turning {
+                agent.at = Interval::new(agent.at.lo.max(at - AT_TURN), agent.at.hi.min(*at));
+            }
+        }
+        let moves = self.agents.iter().any(|agent| agent.speed > 0.0 || agent.turned > 0.0);
         self.still = if moves { 0.0 } else { self.still + FRAME };
     }
 
@@ -298,7 +231,7 @@ impl Supervisor {
         let Some(current) = &self.plan else { return f64::INFINITY };
         let left = |(place, agent): (usize, &Agent)| {
             let [at, end] = [agent.at.middle(), agent.course.length()].map(|length| current.reached(place, length));
-            (end - at.min(now)).max(0.0)
+            (end - (at + agent.turned).min(now)).max(0.0)
         };
         self.agents.iter().enumerate().map(left).sum()
     }
@@ -397,11 +330,11 @@ impl Supervisor {
         self.plan = Some(current);
     }
 
-    /// The speed of a robot for the next frame.
-    fn speed(&mut self, place: usize, time: f64, hold: f64) -> f64 {
-        let (Some(agent), Some(current)) = (self.agents.get(place), &self.plan) else { return 0.0 };
+    /// What a robot does in the next frame.
+    fn command(&mut self, place: usize, time: f64, hold: f64) -> Command {
+        let (Some(agent), Some(current)) = (self.agents.get(place), &self.plan) else { return Command::Stay };
         if agent.next.is_some() {
-            return 0.0;
+            return Command::Stay;
         }
         let Limits { speed: top, acceleration } = agent.limits;
         let change = acceleration * FRAME;
@@ -414,22 +347,7 @@ impl Supervisor {
         if allowed < slower - 1e-9 {
             self.statistics.breaches += 1;
         }
-        possible.min(allowed).max(slower)
-    }
-}
-
-impl Agent {
-    /// At its top speed it can stop before this in the next frame as well \[m\]: what holds it beyond does not matter yet.
-    fn horizon(&self) -> f64 {
-        let Limits { speed, acceleration } = self.limits;
-        self.at.hi + 2.0 * speed * FRAME + stopping_length(speed, acceleration, FRAME)
-    }
-
-    /// As a plan takes it, with one of its margins.
-    fn state(&self, margin: usize, taken: bool) -> Option<State> {
-        let (course, at, speed) = self.to_plan(taken);
-        let radius = self.radius + self.margins.get(margin)?;
-        Some(State { rest: course.from(at.middle()).ok()?, speed, limits: self.limits, release: self.release, radius })
+        Command::Along(possible.min(allowed).max(slower))
     }
 }
 
@@ -437,10 +355,6 @@ fn guard(agents: &[Agent]) -> Result<Guard, Failure> {
     let courses: Vec<Course> = agents.iter().map(|agent| agent.course.clone()).collect();
     let radii: Vec<f64> = agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
     Guard::new(&courses, &radii).map_err(Failure::Full)
-}
-
-fn standing([x, y]: [f64; 2]) -> Result<Course, Invalid> {
-    Course::standing(Pose { position: Point::new(x, y), heading: Radians(0.0) })
 }
 
 impl Control for Supervisor {
@@ -471,7 +385,7 @@ impl Control for Supervisor {
         }
         let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.at).collect();
         let holds = self.guard.holds(&places, |place| self.agents.get(place).map_or(f64::INFINITY, Agent::horizon));
-        holds.iter().enumerate().map(|(place, &hold)| Command::Along(self.speed(place, frame.time, hold))).collect()
+        holds.iter().enumerate().map(|(place, &hold)| self.command(place, frame.time, hold)).collect()
     }
 
     fn is_stuck(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use super::contact::ROUNDING;
 use super::course::Course;
+use super::steering::reach;
 use super::vector::{Vector, norm, sub};
 use crate::fleet::Fleet;
 use crate::regions::Failure;
@@ -62,6 +63,8 @@ pub struct Obstacle {
     pub centre: Vector,
     /// \[m\]
     pub radius: f64,
+    /// Margin to be kept around it \[m\].
+    pub margin: f64,
 }
 
 impl Robot {
@@ -105,11 +108,23 @@ impl Task {
             } else {
                 let centre = course.point_at(0.0);
                 standing.push((agent.id, centre, agent.reach()));
-                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach() + agent.margin });
+                obstacles.push(Obstacle { id: Some(agent.id), centre, radius: agent.reach(), margin: agent.margin });
             }
         }
         warnings.extend(overlapping(&standing));
         Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles, warnings })
+    }
+}
+
+impl Task {
+    /// Robots with a path that ends where it begins: controllers that go to its end by any way have nothing to do.
+    pub(super) fn closed(&self) -> impl Iterator<Item = u64> {
+        let reach = reach(self);
+        let is_closed = move |mission: &Mission| {
+            let [begin, end] = [0.0, mission.course.length()].map(|length| mission.course.point_at(length));
+            norm(sub(begin, end)) < reach
+        };
+        self.robots.iter().filter(move |robot| robot.missions.iter().any(is_closed)).map(|robot| robot.id)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The true world, frame by frame: robots, their missions, and a record of everything.
 
-use super::body::Body;
+use super::body::{Body, Turning};
 use super::course::Course;
 use super::outcome::{Journey, Trace};
 use super::task::{Robot, Task};
@@ -91,7 +91,7 @@ impl<'a> World<'a> {
         let seen: Vec<Vector> = self.agents.iter_mut().map(|agent| agent.body.observed()).collect();
         let speeds: Vec<f64> = self.agents.iter().map(|agent| agent.body.speed()).collect();
         let arrived: Vec<bool> = self.agents.iter().map(|agent| agent.course.is_some() && !agent.travels).collect();
-        let turning: Vec<bool> = self.agents.iter().map(|agent| agent.body.turns()).collect();
+        let turning: Vec<Option<Turning>> = self.agents.iter().map(|agent| agent.body.turning()).collect();
         let commands =
             control.commands(&Frame { time, seen: &seen, speeds: &speeds, arrived: &arrived, turning: &turning });
         let tracks = self.trace.positions.iter_mut().zip(&mut self.trace.travelled);
