@@ -115,7 +115,7 @@ fn robots_turn_in_place_and_are_slow_where_their_own_motion_is() {
     }
     for (journey, agent) in outcome.trace.journeys.iter().zip(&scenario.agents) {
         let own = agent.duration();
-        assert!((journey.unimpeded - own).abs() < 1e-3 * own, "{} {own}", journey.unimpeded);
+        assert!((journey.unimpeded - own).abs() < 1e-2 * own, "{} {own}", journey.unimpeded);
     }
 }
 

@@ -136,8 +136,8 @@ trait Control {
     fn assign(&mut self, robot: usize, course: &Course);
     /// A command for each robot.
     fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command>;
-    /// How near its goal a robot has arrived \[m\]; 0 for robots on paths, which know their end.
-    fn reach(&self) -> f64 {
+    /// How near its goal a robot has arrived \[m\]; 0 for robots on paths, which know their end, and on the way to another point.
+    fn reach(&self, _robot: usize) -> f64 {
         0.0
     }
     /// Whether nobody will ever move again but for new missions.

@@ -120,11 +120,14 @@ fn margins_are_no_part_of_those_that_stand() {
 }
 
 #[test]
-fn who_only_goes_to_ends_has_nothing_to_do_on_a_circle_and_that_is_told() {
+fn who_goes_straight_to_the_end_has_nothing_to_do_on_a_circle_and_that_is_told() {
     let circle = json!({ "id": 1, "radius": 0.2, "v_max": 1, "a_max": 1, "path": [{ "kind": "arc", "radius": 1, "sweep": 6.283185307179586 }],
         "start": { "x": 0, "y": 0, "heading": 0 } });
     let name = file("simulate", "circle.json", json!({ "agents": [circle] }).to_string());
-    let said = |controller: &str| run(&["simulate", &name, "--controller", controller]).err;
-    assert_eq!(said("pcr"), "");
-    assert!(said("orca").contains("agent 1: its path ends where it begins"), "{}", said("orca"));
+    for (controller, least, told) in [("pcr", 7.2, false), ("orca", 5.0, false), ("potential", 0.0, true)] {
+        let said = run(&["simulate", &name, "--controller", controller, "--json"]);
+        assert_eq!(said.err.contains("agent 1: its path ends where it begins"), told, "{controller}: {}", said.err);
+        let run = &said.json()["runs"][0];
+        assert!(run["done"] == 1 && run["travel"].as_f64().unwrap() >= least, "{controller}: {run}");
+    }
 }

@@ -98,7 +98,7 @@ impl Control for Orca {
         commands
     }
 
-    fn reach(&self) -> f64 {
-        self.reach
+    fn reach(&self, robot: usize) -> f64 {
+        if self.robots.get(robot).is_some_and(Steered::heads_for_end) { self.reach } else { 0.0 }
     }
 }

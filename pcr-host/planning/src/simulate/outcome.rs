@@ -2,6 +2,7 @@
 
 use super::contact::{contacts, separation};
 use super::replan::InTheWay;
+use super::steering::closed;
 use super::supervisor::Statistics;
 use super::task::Task;
 use super::vector::{Vector, norm, sub};
@@ -83,10 +84,9 @@ impl Simulation {
         let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
         let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
         let (name, labels, mut warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
-        if outcomes.iter().any(|outcome| outcome.run.controller != Controller::Pcr) {
-            let why =
-                "its path ends where it begins; potential and orca go to its end by any way, and have nothing to do";
-            warnings.extend(task.closed().map(|id| format!("agent {id}: {why}")));
+        if outcomes.iter().any(|outcome| outcome.run.controller == Controller::Potential) {
+            let why = "its path ends where it begins; the controller potential goes straight to the end, and has nothing to do";
+            warnings.extend(closed(task).map(|id| format!("agent {id}: {why}")));
         }
         Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }

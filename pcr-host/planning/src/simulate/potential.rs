@@ -73,7 +73,7 @@ impl Control for Potential {
         commands
     }
 
-    fn reach(&self) -> f64 {
+    fn reach(&self, _robot: usize) -> f64 {
         self.reach
     }
 }

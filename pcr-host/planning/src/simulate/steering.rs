@@ -34,10 +34,27 @@ pub(super) fn reach(task: &Task) -> f64 {
     ARRIVED * task.robots.iter().map(|robot| robot.radius).fold(f64::INFINITY, f64::min)
 }
 
+/// Robots with a path that ends where it begins: who goes straight to the end has nothing to do.
+pub(super) fn closed(task: &Task) -> impl Iterator<Item = u64> {
+    let reach = reach(task);
+    let is_closed = move |course: &Course| {
+        let [begin, end] = [0.0, course.length()].map(|length| course.point_at(length));
+        norm(sub(begin, end)) < reach
+    };
+    let closed =
+        task.robots.iter().filter(move |robot| robot.missions.iter().any(|mission| is_closed(&mission.course)));
+    closed.map(|robot| robot.id)
+}
+
 impl Steered {
     pub(super) fn assign(&mut self, course: &Course) {
         self.course = Some(course.clone());
         self.target = 0.0;
+    }
+
+    /// Whether its target is the end of its path.
+    pub(super) fn heads_for_end(&self) -> bool {
+        self.course.as_ref().is_some_and(|course| self.target >= course.length())
     }
 
     /// The velocity towards the goal from where the robot was seen, slower near it \[m/s\].

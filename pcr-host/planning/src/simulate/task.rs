@@ -2,7 +2,6 @@
 
 use super::contact::ROUNDING;
 use super::course::Course;
-use super::steering::reach;
 use super::vector::{Vector, norm, sub};
 use crate::fleet::Fleet;
 use crate::regions::Failure;
@@ -113,18 +112,6 @@ impl Task {
         }
         warnings.extend(overlapping(&standing));
         Ok(Self { name: scenario.name.clone(), labels: Labels::of(scenario), robots, obstacles, warnings })
-    }
-}
-
-impl Task {
-    /// Robots with a path that ends where it begins: controllers that go to its end by any way have nothing to do.
-    pub(super) fn closed(&self) -> impl Iterator<Item = u64> {
-        let reach = reach(self);
-        let is_closed = move |mission: &Mission| {
-            let [begin, end] = [0.0, mission.course.length()].map(|length| mission.course.point_at(length));
-            norm(sub(begin, end)) < reach
-        };
-        self.robots.iter().filter(move |robot| robot.missions.iter().any(is_closed)).map(|robot| robot.id)
     }
 }
 

@@ -49,7 +49,7 @@ impl<'a> World<'a> {
         let time = frame as f64 * FRAME;
         for (place, agent) in self.agents.iter_mut().enumerate() {
             let Some(end) = agent.course.filter(|_| agent.travels) else { continue };
-            if agent.body.has_arrived(end, control.reach()) {
+            if agent.body.has_arrived(end, control.reach(place)) {
                 agent.travels = false;
                 let of = |journey: &&mut Journey| journey.robot == place && journey.end.is_none();
                 if let Some(journey) = self.trace.journeys.iter_mut().find(of) {
