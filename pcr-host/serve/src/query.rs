@@ -1,6 +1,6 @@
 //! Queries about a fleet.
 
-use crate::course::{Course, Shape, Start};
+use crate::course::{Course, JOINT, Shape, Start};
 use crate::entry::Side;
 use crate::fault::Fault;
 use crate::robot::{Alarm, ROOM, Robot};
@@ -155,13 +155,21 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
         &Question::Safe { ref robot, length: [lo, hi], until } => {
             let (ego, ways) = (place(robot)?, ways(robots)?);
             let (at, end) = (robots[ego].at, robots[ego].course.length());
-            if !(at..=end).contains(&lo) || !(lo..=end).contains(&hi) || !(0.0..=1e6).contains(&until) {
+            if !(at - JOINT..=end + JOINT).contains(&lo)
+                || !(lo..=end + JOINT).contains(&hi)
+                || !(0.0..=1e6).contains(&until)
+            {
                 return Err(Fault::invalid(format!(
                     "length: what is ahead are {at} to {end} m; until: 0 to 1000000 s"
                 )));
             }
             let fleet = motions(&ways)?;
-            let safe = safe_intervals(&fleet, ego, Interval::new(lo - at, hi - at), Interval::new(0.0, until));
+            let safe = safe_intervals(
+                &fleet,
+                ego,
+                Interval::new((lo - at).max(0.0), (hi - at).max(0.0)),
+                Interval::new(0.0, until),
+            );
             let safe: Vec<[f64; 2]> = safe.map_err(Fault::invalid)?.map(|safe| [safe.lo, safe.hi]).collect();
             Ok(json!({ "safe": safe }))
         }
