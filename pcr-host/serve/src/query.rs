@@ -9,7 +9,7 @@ use pcr_core::{Encounter, Interval, Limits, Motion, Profile, safe_intervals};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// A question.
+/// A question. Those without fields have braces, or others' fields would be taken with them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
@@ -20,7 +20,7 @@ pub enum Question {
         robot: Option<String>,
     },
     /// How far everybody may go, and who must not go on for the time being.
-    Holds,
+    Holds {},
     /// The regions of a robot with others, and who goes first.
     Regions {
         /// Which.
@@ -41,7 +41,7 @@ pub enum Question {
         until: f64,
     },
     /// What has happened since the start.
-    Counts,
+    Counts {},
 }
 
 /// A robot as it is told.
@@ -111,7 +111,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             let views: Vec<View<'_>> = robots.iter().map(|robot| View::of(supervisor, robot, now)).collect();
             Ok(json!({ "robots": views }))
         }
-        Question::Holds => {
+        Question::Holds {} => {
             let hold = |robot: &Robot| {
                 let waits_for = supervisor.waits_for(robot);
                 let mut told =
@@ -173,7 +173,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             let safe: Vec<[f64; 2]> = safe.map_err(Fault::invalid)?.map(|safe| [safe.lo, safe.hi]).collect();
             Ok(json!({ "safe": safe }))
         }
-        Question::Counts => Ok(json!(supervisor.counts())),
+        Question::Counts {} => Ok(json!(supervisor.counts())),
     }
 }
 
