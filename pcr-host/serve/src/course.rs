@@ -8,6 +8,10 @@ use std::f64::consts::{PI, TAU};
 /// less than what discs are larger by.
 pub const FAR: f64 = 2e7;
 
+/// A length that is no further than that from where a shape ends is there \[m\]: sums and messages round lengths. A path that turns off
+/// there is off by twice that at most, half of what discs are larger by.
+pub const JOINT: f64 = 2.5e-7;
+
 /// Where a path begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -61,12 +65,11 @@ impl Shape {
         }
     }
 
-    /// The part between two lengths of it \[m\].
-    fn part(self, whole: f64, from: f64, to: f64) -> Self {
+    /// As much of it \[m\].
+    fn of_length(self, length: f64) -> Self {
         match self {
-            _ if from <= 0.0 && to >= whole => self,
-            Self::Line { .. } => Self::Line { length: to - from },
-            Self::Arc { radius, sweep } => Self::Arc { radius, sweep: ((to - from) / radius).copysign(sweep) },
+            Self::Line { .. } => Self::Line { length },
+            Self::Arc { radius, sweep } => Self::Arc { radius, sweep: (length / radius).copysign(sweep) },
             Self::Turn { .. } => self,
         }
     }
@@ -84,7 +87,7 @@ pub struct Course {
     start: Start,
     shapes: Vec<Shape>,
     segments: Vec<Segment<f64>>,
-    /// Length before each shape \[m\].
+    /// Length before each shape, and that of all \[m\]: the same numbers as in the segments.
     offsets: Vec<f64>,
     phases: Vec<Phase<f64>>,
 }
@@ -124,14 +127,14 @@ impl Course {
         }
         let pose = Pose { position: Point::new(start.x, start.y), heading: Radians(start.heading) };
         let mut last = Segment::standing(pose)?;
-        let (mut segments, mut offsets): (Vec<Segment<f64>>, _) = (Vec::new(), Vec::with_capacity(shapes.len()));
+        let (mut segments, mut before): (Vec<Segment<f64>>, _) = (Vec::new(), Vec::with_capacity(shapes.len()));
         for &shape in &shapes {
-            offsets.push(last.from() + last.length());
+            before.push(segments.len());
             let next = match shape {
                 Shape::Turn { sweep } => {
                     last = last.turned(Radians(sweep))?;
-                    if let Some(before) = segments.last_mut() {
-                        *before = last;
+                    if let Some(segment) = segments.last_mut() {
+                        *segment = last;
                     }
                     continue;
                 }
@@ -156,12 +159,14 @@ impl Course {
             return Err(Invalid::OutOfRange("length"));
         }
         let phases = if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() };
+        let offset = |&place: &usize| segments.get(place).map_or(length, Segment::from);
+        let offsets = before.iter().map(offset).chain([length]).collect();
         Ok(Self { start, shapes, segments, offsets, phases })
     }
 
     /// \[m\]
     pub fn length(&self) -> f64 {
-        self.segments.last().map_or(0.0, |last| last.from() + last.length())
+        self.offsets.last().copied().unwrap_or(0.0)
     }
 
     /// Where it begins.
@@ -198,12 +203,28 @@ impl Course {
         Motion::new(PathRef::new(&self.segments)?, profile, radius, 0.0)
     }
 
-    /// The part between two lengths \[m\].
+    /// Where a shape ends that ends at this length but for rounding, else the length \[m\].
+    fn joint(&self, length: f64) -> f64 {
+        let off = |end: f64| (end - length).abs();
+        let near = self.offsets.iter().copied().filter(|&end| off(end) <= JOINT);
+        near.min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(length)
+    }
+
+    /// The part between two lengths \[m\]. Where it begins at a turn in place, that is done.
     ///
     /// # Errors
     /// [`Invalid`] where it is no path.
     pub fn part(&self, from: f64, to: f64) -> Result<Self, Invalid> {
-        Self::new(self.pose(from), self.between(from, to).collect())
+        let to = self.joint(to);
+        let Some(first) = self.ahead(from, to) else { return Self::new(self.arrival(from)?, Vec::new()) };
+        let mut kept: Vec<Shape> = self.up_to(first, to).collect();
+        if from <= self.offsets[first] {
+            return Self::new(self.departure(first), kept);
+        }
+        if let Some(shape) = kept.first_mut() {
+            *shape = shape.of_length(self.offsets[first + 1].min(to) - from);
+        }
+        Self::new(self.pose(from), kept)
     }
 
     /// This course from the part on in which `from` is, up to `to`, and then other shapes; with the length that is left out before
@@ -212,29 +233,27 @@ impl Course {
     /// # Errors
     /// [`Invalid`] where that is no path.
     pub fn rejoined(&self, from: f64, to: f64, shapes: &[Shape]) -> Result<(Self, f64), Invalid> {
-        let first = (0..self.shapes.len()).find(|&k| self.offsets[k] + self.shapes[k].length() > from);
-        let (start, dropped) = match first.filter(|_| to > from) {
+        let to = self.joint(to);
+        let first = self.ahead(from, to);
+        let (start, dropped) = match first {
             // Nothing of it is ahead: a robot that stands.
-            None => (self.arrival(from)?, from),
+            None => (self.arrival(to)?, to),
             Some(first) => (self.departure(first), self.offsets[first]),
         };
-        let first = first.filter(|_| to > from).unwrap_or(self.shapes.len());
-        let all = self.length();
-        let kept = (first..self.shapes.len()).filter_map(|k| {
-            let (begin, shape) = (self.offsets[k], self.shapes[k]);
-            let end = (begin + shape.length()).min(to);
-            match shape {
-                Shape::Turn { .. } => (begin < to || to >= all).then_some(shape),
-                _ => (end > begin).then(|| shape.part(shape.length(), 0.0, end - begin)),
-            }
-        });
+        let kept = self.up_to(first.unwrap_or(self.shapes.len()), to);
         let kept = kept.chain(shapes.iter().copied()).collect();
         // It does not grow with the turns of all missions before.
         let heading = (start.heading + PI).rem_euclid(TAU) - PI;
         Ok((Self::new(Start { heading, ..start }, kept)?, dropped))
     }
 
-    /// In which pose a shape begins, after the turns before it: which of two shapes a length belongs to is a matter of rounding there.
+    /// The first shape that goes on from a length, if there is any before another length: no turn in place.
+    fn ahead(&self, from: f64, to: f64) -> Option<usize> {
+        let first = (0..self.shapes.len()).find(|&k| self.offsets[k + 1] > from.max(0.0) + JOINT)?;
+        (from < to && self.offsets[first] < to).then_some(first)
+    }
+
+    /// In which pose a shape begins, after the turns before it.
     fn departure(&self, shape: usize) -> Start {
         self.shapes.iter().take(shape).fold(self.start, |Start { x, y, heading }, shape| {
             let (chord, sweep) = match *shape {
@@ -252,19 +271,18 @@ impl Course {
     /// # Errors
     /// [`Invalid`] where that is no place.
     pub fn arrival(&self, length: f64) -> Result<Start, Invalid> {
-        let before = Self::new(self.start, self.between(-1.0, length).collect())?;
+        let before = Self::new(self.start, self.up_to(0, self.joint(length)).collect())?;
         Ok(before.pose(before.length()))
     }
 
-    /// The parts of shapes between two lengths; of turns in place those in between, and those at the end of all.
-    fn between(&self, from: f64, to: f64) -> impl Iterator<Item = Shape> {
-        let all = self.length();
-        let ends = self.offsets.iter().skip(1).copied().chain([all]);
-        self.shapes.iter().zip(&self.offsets).zip(ends).filter_map(move |((&shape, &begin), end)| {
-            let (lo, hi) = (begin.max(from), end.min(to));
+    /// The shapes from one on, up to a length; of turns in place those before it, and those at the end of all.
+    fn up_to(&self, first: usize, to: f64) -> impl Iterator<Item = Shape> {
+        (first..self.shapes.len()).filter_map(move |k| {
+            let (begin, end, shape) = (self.offsets[k], self.offsets[k + 1], self.shapes[k]);
             match shape {
-                Shape::Turn { .. } => (begin > from && (begin < to || to >= all)).then_some(shape),
-                _ => (hi > lo).then(|| shape.part(end - begin, lo - begin, hi - begin)),
+                Shape::Turn { .. } => (begin < to || to >= self.length()).then_some(shape),
+                _ if to >= end => (end > begin).then_some(shape),
+                _ => (to > begin).then(|| shape.of_length(to - begin)),
             }
         })
     }

@@ -9,7 +9,7 @@ use std::fmt;
 pub enum Fault {
     /// There is no robot of this name.
     NoSuchRobot,
-    /// There is one of this name already, another one.
+    /// There is one of this name already, another one, or one that has had a mission since.
     RobotExists,
     /// The robot has a mission of this name with another path.
     MissionExists,
@@ -64,7 +64,9 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSuchRobot => f.write_str("there is no robot of this name"),
-            Self::RobotExists => f.write_str("there is another robot of this name"),
+            Self::RobotExists => f.write_str(
+                "there is a robot of this name, which is another one, stands elsewhere, or has had a mission",
+            ),
             Self::MissionExists => f.write_str("there is another mission of this name, with another path"),
             Self::NoSuchPath { path } => write!(f, "the path of the robot has the number {path}"),
             Self::Released { hold } => write!(f, "the robot has been allowed to go up to {hold} m already"),

@@ -1,6 +1,6 @@
 //! Queries about a fleet.
 
-use crate::course::{Course, Shape, Start};
+use crate::course::{Course, JOINT, Shape, Start};
 use crate::entry::Side;
 use crate::fault::Fault;
 use crate::robot::{Alarm, ROOM, Robot};
@@ -9,7 +9,7 @@ use pcr_core::{Encounter, Interval, Limits, Motion, Profile, safe_intervals};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// A question.
+/// A question. Those without fields have braces, or others' fields would be taken with them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
@@ -20,7 +20,7 @@ pub enum Question {
         robot: Option<String>,
     },
     /// How far everybody may go, and who must not go on for the time being.
-    Holds,
+    Holds {},
     /// The regions of a robot with others, and who goes first.
     Regions {
         /// Which.
@@ -41,7 +41,7 @@ pub enum Question {
         until: f64,
     },
     /// What has happened since the start.
-    Counts,
+    Counts {},
 }
 
 /// A robot as it is told.
@@ -111,7 +111,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             let views: Vec<View<'_>> = robots.iter().map(|robot| View::of(supervisor, robot, now)).collect();
             Ok(json!({ "robots": views }))
         }
-        Question::Holds => {
+        Question::Holds {} => {
             let hold = |robot: &Robot| {
                 let waits_for = supervisor.waits_for(robot);
                 let mut told =
@@ -155,17 +155,25 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
         &Question::Safe { ref robot, length: [lo, hi], until } => {
             let (ego, ways) = (place(robot)?, ways(robots)?);
             let (at, end) = (robots[ego].at, robots[ego].course.length());
-            if !(at..=end).contains(&lo) || !(lo..=end).contains(&hi) || !(0.0..=1e6).contains(&until) {
+            if !(at - JOINT..=end + JOINT).contains(&lo)
+                || !(lo..=end + JOINT).contains(&hi)
+                || !(0.0..=1e6).contains(&until)
+            {
                 return Err(Fault::invalid(format!(
                     "length: what is ahead are {at} to {end} m; until: 0 to 1000000 s"
                 )));
             }
             let fleet = motions(&ways)?;
-            let safe = safe_intervals(&fleet, ego, Interval::new(lo - at, hi - at), Interval::new(0.0, until));
+            let safe = safe_intervals(
+                &fleet,
+                ego,
+                Interval::new((lo - at).max(0.0), (hi - at).max(0.0)),
+                Interval::new(0.0, until),
+            );
             let safe: Vec<[f64; 2]> = safe.map_err(Fault::invalid)?.map(|safe| [safe.lo, safe.hi]).collect();
             Ok(json!({ "safe": safe }))
         }
-        Question::Counts => Ok(json!(supervisor.counts())),
+        Question::Counts {} => Ok(json!(supervisor.counts())),
     }
 }
 

@@ -210,7 +210,7 @@ impl Supervisor {
     /// Adds a robot that stands. Whoever has not yet been allowed to pass there waits for it until it has a mission.
     ///
     /// # Errors
-    /// [`Fault::RobotExists`], [`Fault::Invalid`]. To add the same one twice is no error.
+    /// [`Fault::RobotExists`], [`Fault::Invalid`]. To add the same one twice is no error before it has a mission.
     pub fn add(&mut self, name: &str, abilities: Abilities, start: Start) -> Result<(), Fault> {
         self.works()?;
         if let Ok(robot) = self.robot(name) {

@@ -1,6 +1,8 @@
 //! The supervisor as users see it: runs of fleets, kills, lines.
 
 mod alarms;
+mod asked;
+mod joints;
 mod kills;
 mod lines;
 mod overtaken;

@@ -2,7 +2,7 @@
 //! there are none.
 
 use super::{Supervisor, fleet};
-use crate::course::{Course, Shape, Start, extent};
+use crate::course::{Course, JOINT, Shape, Start, extent};
 use crate::entry::{Entry, Kept, Known};
 use crate::event::Event;
 use crate::fault::Fault;
@@ -73,7 +73,7 @@ const JOIN: f64 = 1e-3;
 impl Proposal {
     /// Whether it is the one that begins at this length of the path before, along these shapes.
     fn asks_for(&self, after: f64, shapes: &[Shape]) -> bool {
-        self.path == shapes && self.after.is_none_or(|own| own == after)
+        self.path == shapes && self.after.is_none_or(|own| (own - after).abs() <= JOINT)
     }
 }
 
@@ -117,9 +117,9 @@ impl Supervisor {
         if proposal.of.is_some_and(|path| path != robot.path) {
             return Err(Fault::NoSuchPath { path: robot.path });
         }
-        self.joins(robot, after)?;
+        let joint = joint(robot, after)?;
         if let Some(start) = proposal.start {
-            is_there(robot, after, start, extent(&proposal.path))?;
+            is_there(robot, joint, start, extent(&proposal.path))?;
         }
         self.counts.missions += 1;
         // Taken out now: a path that is admitted leaves nothing waiting.
@@ -128,7 +128,7 @@ impl Supervisor {
         if let Some(before) = &before {
             Robot::outlives(&mut robot.past, before.mission.clone());
         }
-        let refused = match self.attempt(place, &waiting, now) {
+        let refused = match self.attempt(place, &waiting, joint, now) {
             Ok(refused) => refused,
             Err(fault) => {
                 let robot = &mut self.robots[place];
@@ -171,26 +171,17 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Whether a path can begin at this length of that of a robot.
-    fn joins(&self, robot: &Robot, after: f64) -> Result<(), Fault> {
-        if !(0.0..=robot.course.length()).contains(&after) {
-            let length = robot.course.length();
-            return Err(Fault::invalid(format!("after: {after} is out of range; the path is {length} m long")));
-        }
-        if after < robot.told { Err(Fault::Released { hold: robot.told }) } else { Ok(()) }
-    }
-
-    /// Tries to admit a mission: none if it was, else why not.
+    /// Tries to admit a mission that begins at a length of the path before \[m\]: none if it was, else why not.
     ///
     /// # Errors
     /// [`Fault`] for what will never be possible.
-    fn attempt(&mut self, place: usize, mission: &Waiting, now: f64) -> Result<Option<Verdict>, Fault> {
+    fn attempt(&mut self, place: usize, mission: &Waiting, joint: f64, now: f64) -> Result<Option<Verdict>, Fault> {
         let robot = &self.robots[place];
         if robot.alarm.is_some() {
             let why = "it is not where it may be".into();
             return Ok(Some(Verdict::Waiting { by: Some(robot.name.clone()), why }));
         }
-        let rejoined = robot.course.rejoined(robot.at, mission.after, &mission.shapes);
+        let rejoined = robot.course.rejoined(robot.at, joint, &mission.shapes);
         let (course, dropped) = rejoined.map_err(Fault::invalid)?;
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
         let (at, told) = (shifted(robot.at), shifted(robot.told));
@@ -329,7 +320,7 @@ impl Supervisor {
         let robot = &self.robots[place];
         let name = robot.name.clone();
         let possible = match waiting.path == robot.path {
-            true => self.joins(robot, waiting.after).and_then(|()| self.attempt(place, &waiting, now)),
+            true => joint(robot, waiting.after).and_then(|joint| self.attempt(place, &waiting, joint, now)),
             false => Err(Fault::NoSuchPath { path: robot.path }),
         };
         match possible {
@@ -355,6 +346,21 @@ impl Supervisor {
             }
         }
     }
+}
+
+/// At which length of the path of a robot another path begins that is to begin there, as far as rounding allows.
+///
+/// # Errors
+/// [`Fault`] where none can begin.
+fn joint(robot: &Robot, after: f64) -> Result<f64, Fault> {
+    let length = robot.course.length();
+    if !(-JOINT..=length + JOINT).contains(&after) {
+        return Err(Fault::invalid(format!("after: {after} is out of range; the path is {length} m long")));
+    }
+    if after < robot.told - JOINT {
+        return Err(Fault::Released { hold: robot.told });
+    }
+    Ok(after.max(robot.told).min(length))
 }
 
 /// Whether a path that leaves that of a robot at a length begins where somebody says, and leads there as far as it goes: a heading that

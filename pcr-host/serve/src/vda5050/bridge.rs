@@ -217,7 +217,10 @@ impl Bridge {
                 let names = names.join(", ");
                 self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
             }
-            for (name, why) in self.lanes.iter().filter_map(|lane| Some((lane.name(), lane.misfit()?))) {
+            let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
+            let elsewhere = unknown.filter_map(|lane| Some((lane.name(), lane.elsewhere()?)));
+            let misfits = self.lanes.iter().filter_map(|lane| Some((lane.name(), lane.misfit()?)));
+            for (name, why) in elsewhere.chain(misfits) {
                 self.log.push(format!("nobody is released anything: {name}: {why}"));
             }
         }

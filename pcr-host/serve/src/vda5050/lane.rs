@@ -6,6 +6,7 @@
 
 mod actions;
 mod job;
+mod maps;
 mod mirror;
 mod newest;
 mod orders;
@@ -92,6 +93,8 @@ pub struct Lane {
     ahead: Option<mirror::Ahead>,
     /// Why its disc is not that of the vehicle, by the vehicle's own words.
     misfit: Option<String>,
+    /// Why it does not stand where it says: that is another map than that of the others.
+    elsewhere: Option<String>,
 }
 
 impl Lane {
@@ -123,6 +126,7 @@ impl Lane {
             posts,
             ahead: None,
             misfit: None,
+            elsewhere: None,
         }
     }
 

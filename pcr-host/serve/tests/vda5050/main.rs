@@ -6,6 +6,7 @@ mod dump;
 mod faults;
 mod following;
 mod lanes;
+mod maps;
 mod runs;
 mod samples;
 mod schemas;

@@ -8,6 +8,7 @@ use super::super::version::{Error, Version};
 use super::super::way::{TOLERANCE, Way};
 use super::Lane;
 use super::job::{BEGINS, Job, mission};
+use super::maps::map_of;
 use crate::supervisor::{Proposal, Supervisor, Verdict};
 
 impl Lane {
@@ -50,7 +51,7 @@ impl Lane {
         if self.version.is_some_and(|own| own.major() != version.major()) {
             return Err(Refusal::new("version", "not that of the vehicle").into());
         }
-        self.passable(&order)?;
+        self.passable(supervisor, &order)?;
         if supervisor.robot(&self.name).is_err() {
             return Err(Rejected::new(Error::Order, "", "the vehicle has not yet said where it stands"));
         }
@@ -85,7 +86,7 @@ impl Lane {
     }
 
     /// Refuses what the vehicle's margin does not cover.
-    fn passable(&self, order: &Order) -> Result<(), Rejected> {
+    fn passable(&self, supervisor: &Supervisor, order: &Order) -> Result<(), Rejected> {
         for (k, edge) in order.edges.iter().enumerate() {
             if edge.rest.contains_key("corridor") {
                 let field = format!("edges[{k}].corridor");
@@ -99,8 +100,10 @@ impl Lane {
                 .map_err(|refusal| Refusal::new(format!("nodes[{k}].nodePosition.{}", refusal.field), refusal.why))?;
         }
         let maps = order.nodes.iter().filter_map(|node| node.node_position.as_ref()).map(|position| &position.map_id);
-        let here = self.state.as_ref().and_then(|state| state.position()).map(|pose| &pose.map_id);
-        let mut all = maps.chain(here);
+        let here = self.state.as_ref().and_then(|state| state.position()).map(|pose| pose.map_id.as_str());
+        // After a restart that is known before it says anything.
+        let known = supervisor.robot(&self.name).ok().and_then(map_of);
+        let mut all = maps.map(String::as_str).chain(here).chain(known);
         let first = all.next();
         if all.any(|map| Some(map) != first) {
             return Err(Rejected::new(Error::Order, "nodes", "from map to map: there are no common coordinates"));

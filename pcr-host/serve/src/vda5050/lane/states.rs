@@ -5,6 +5,7 @@ use super::super::header::Header;
 use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
+use super::maps::{MAP, map_of};
 use super::newest::Place;
 use super::{Job, Lane};
 use crate::course::Start;
@@ -17,9 +18,6 @@ const ASTRAY: (u32, f64) = (3, 2.0);
 
 /// A vehicle that has lost its order keeps its right of way for so long \[s\], in case that another order goes on with the same way.
 const KEPT: f64 = 30.0;
-
-/// The note of the map on which a vehicle is.
-const MAP: &str = "map";
 
 /// A late message is so much older than the newest one at least, and no older than that \[s\].
 const LATE: f64 = 1e-3;
@@ -103,6 +101,7 @@ impl Lane {
         let (at, is_new) = ([pose.x, pose.y], with == With::Newest);
         let Ok(robot) = supervisor.robot(&self.name) else {
             if is_new && self.is_still(state) && self.reach(pose) >= 0.0 {
+                self.shares(supervisor, &pose.map_id)?;
                 let start = Start { x: pose.x, y: pose.y, heading: pose.theta };
                 // Where it cannot stand, it is asked again with its next state. An order that it had is void.
                 if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
@@ -113,9 +112,12 @@ impl Lane {
             }
             return Ok(());
         };
-        if let Some(map) = robot.notes.get(MAP).and_then(|map| map.as_str()).filter(|map| *map != pose.map_id) {
+        if let Some(map) = map_of(robot).filter(|map| *map != pose.map_id) {
             let why = format!("{:?}; what is known of it is on {map:?}", pose.map_id);
             return Err(Refusal::new("position.mapId", why));
+        }
+        if is_new {
+            self.elsewhere = None;
         }
         let reach = self.reach(pose);
         let (path, end) = (robot.path, robot.course.length());
@@ -194,7 +196,7 @@ impl Lane {
         let Some(job) = &self.job else {
             // It was moved by hand, or to another map: it stands where it says.
             let map = state.position().map(|pose| pose.map_id.as_str());
-            let is_elsewhere = robot.notes.get(MAP).is_some_and(|known| map.is_some_and(|map| *known != map));
+            let is_elsewhere = map_of(robot).is_some_and(|known| map.is_some_and(|map| known != map));
             if self.stays_astray((is_off || is_elsewhere) && self.is_still(&state), now) {
                 self.reseat(supervisor, &state);
             }
@@ -244,6 +246,9 @@ impl Lane {
     pub(super) fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
         let Some(pose) = state.position().filter(|pose| pose.is_known() && self.reach(pose) >= 0.0) else { return };
         let (start, map) = (Start { x: pose.x, y: pose.y, heading: pose.theta }, pose.map_id.clone());
+        if self.shares(supervisor, &map).is_err() {
+            return;
+        }
         // Where it cannot stand it stays what it was: nobody may drive through one that is forgotten.
         if supervisor.reseat(&self.name, start).is_ok() {
             (self.job, self.astray) = (None, None);

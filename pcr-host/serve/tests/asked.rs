@@ -1,0 +1,104 @@
+//! What is asked again, in vain, or with too much.
+
+use pcr_serve::entry::Nowhere;
+use pcr_serve::lines::handle;
+use pcr_serve::supervisor::{Settings, Supervisor};
+use serde_json::{Value, json};
+
+struct Asks {
+    supervisor: Supervisor,
+    now: f64,
+}
+
+impl Asks {
+    fn new() -> Self {
+        Self { supervisor: Supervisor::new(Settings::default(), Box::new(Nowhere)), now: 0.0 }
+    }
+
+    fn ask(&mut self, line: &Value) -> Value {
+        handle(&mut self.supervisor, line.to_string().as_bytes(), self.now, self.now).answer
+    }
+
+    /// Asks; with the events that follow within some seconds.
+    fn events(&mut self, line: &Value) -> Vec<(String, String)> {
+        let answer = self.ask(line);
+        assert!(answer["ok"].is_object(), "{answer}");
+        let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let mut all = Vec::new();
+        for _ in 0..10 {
+            self.now += 0.5;
+            all.extend(self.supervisor.settle(self.now).unwrap().iter().map(|event| json!(event)));
+        }
+        all.iter().map(|event| (text(&event["event"]), text(&event["robot"]))).collect()
+    }
+}
+
+fn add(robot: &str, x: f64, heading: f64) -> Value {
+    json!({ "verb": "add", "robot": robot, "start": { "x": x, "y": 0, "heading": heading },
+        "abilities": { "radius": 0.25, "speed": 1, "acceleration": 0.5 } })
+}
+
+fn mission(robot: &str, length: f64) -> Value {
+    json!({ "verb": "mission", "robot": robot, "mission": robot, "path": [{ "kind": "line", "length": length }] })
+}
+
+#[test]
+fn a_robot_is_added_again_until_it_has_a_mission() {
+    let mut asks = Asks::new();
+    for _ in 0..2 {
+        assert_eq!(asks.ask(&add("a", 0.0, 0.0))["ok"]["path"], 1);
+    }
+    assert_eq!(asks.ask(&add("a", 0.1, 0.0))["error"]["code"], "robot_exists");
+    asks.events(&mission("a", 3.0));
+    let error = &asks.ask(&add("a", 0.0, 0.0))["error"];
+    assert_eq!(error["code"], "robot_exists");
+    assert!(error["message"].as_str().unwrap().contains("has had a mission"), "{error}");
+    asks.ask(&json!({ "verb": "remove", "robot": "a" }));
+    assert!(asks.ask(&add("a", 0.0, 0.0))["ok"]["path"].as_u64() > Some(2));
+}
+
+/// Both ways out of the document.
+#[test]
+fn who_is_added_on_a_way_that_was_given_away_goes_or_the_other_one_does() {
+    let is = |event: &str, robot: &str| (event.to_owned(), robot.to_owned());
+    for removed in ["b", "a"] {
+        let mut asks = Asks::new();
+        asks.events(&add("a", 0.0, 0.0));
+        asks.events(&mission("a", 10.0));
+        assert!(asks.events(&add("b", 2.0, 1.5)).contains(&is("stop", "a")));
+        let events = asks.events(&mission("b", 3.0));
+        assert!(!events.contains(&is("admitted", "b")) && !events.contains(&is("go", "a")), "{events:?}");
+        let events = asks.events(&json!({ "verb": "remove", "robot": removed }));
+        let expected = if removed == "b" { is("go", "a") } else { is("admitted", "b") };
+        assert!(events.contains(&expected), "{removed}: {events:?}");
+        if removed == "a" {
+            asks.events(&add("a", 0.0, 0.0));
+            assert!(asks.events(&mission("a", 10.0)).contains(&is("admitted", "a")));
+        }
+    }
+}
+
+#[test]
+fn a_question_has_no_other_fields_than_its_own() {
+    let mut asks = Asks::new();
+    asks.events(&add("a", 0.0, 0.0));
+    let all = ["robots", "holds", "regions", "conflicts", "safe", "counts"];
+    for (what, takes) in
+        all.into_iter().zip([&["robot"][..], &[], &["robot"], &["robot"], &["robot", "length", "until"], &[]])
+    {
+        let fields = [("robot", json!("a")), ("length", json!([0, 0])), ("until", json!(1)), ("age", json!(0))];
+        let ask = |names: &[&str]| {
+            let mut line = json!({ "verb": "query", "what": what });
+            for (name, value) in fields.iter().filter(|(name, _)| names.contains(name)) {
+                line[name] = value.clone();
+            }
+            line
+        };
+        let answer = asks.ask(&ask(takes));
+        assert!(answer["ok"].is_object(), "{what}: {answer}");
+        for (name, _) in fields.iter().filter(|(name, _)| !takes.contains(name)) {
+            let answer = asks.ask(&ask(&[takes, &[*name][..]].concat()));
+            assert_eq!(answer["error"]["code"], "malformed", "{what} with {name}: {answer}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Lengths at which a shape of a path ends, but for rounding, and turns in place there.
+
+use crate::world::Dice;
+use pcr_serve::course::{Course, Shape, Start};
+use pcr_serve::entry::Nowhere;
+use pcr_serve::event::Event;
+use pcr_serve::fault::Fault;
+use pcr_serve::query::{Question, answer};
+use pcr_serve::robot::Abilities;
+use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const CAN: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const ORIGIN: Start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+const CORNER: Shape = Shape::Turn { sweep: FRAC_PI_2 };
+
+fn line(length: f64) -> Shape {
+    Shape::Line { length }
+}
+
+/// Hundredths of a metre, whose sums are rounded.
+fn hundredths(dice: &mut Dice, from: u32, to: u32) -> f64 {
+    f64::from(from + dice.below((to - from) as usize) as u32) / 100.0
+}
+
+fn proposal(mission: &str, path: &[Shape]) -> Proposal {
+    let (robot, mission, path) = ("a".into(), mission.into(), path.to_vec());
+    Proposal { robot, mission, after: None, of: None, start: None, path }
+}
+
+fn supervisor(start: Start) -> Supervisor {
+    let mut supervisor = Supervisor::new(Settings::default(), Box::new(Nowhere));
+    supervisor.add("a", CAN, start).unwrap();
+    supervisor
+}
+
+fn is_admitted(supervisor: &mut Supervisor, proposal: &Proposal) -> bool {
+    matches!(supervisor.mission(proposal, 0.0).unwrap(), Verdict::Admitted { .. })
+}
+
+/// As far as rounding may put two poses apart.
+fn is_same(a: Start, b: Start) -> bool {
+    let turned = (a.heading - b.heading + PI).rem_euclid(2.0 * PI) - PI;
+    (a.x - b.x).hypot(a.y - b.y) < 1e-6 && turned.abs() < 1e-6
+}
+
+#[test]
+fn the_turn_at_the_end_of_a_path_is_done() {
+    let mut dice = Dice(1);
+    for k in 0..2_000 {
+        let mut path: Vec<Shape> = (0..1 + dice.below(4)).map(|_| line(hundredths(&mut dice, 10, 500))).collect();
+        if k == 0 {
+            path = vec![line(3.58), line(1.39), line(0.89)];
+        }
+        let x = 100.0 + path.iter().map(|shape| shape.length()).sum::<f64>();
+        path.push(Shape::Turn { sweep: 1.5 });
+        let mut own = supervisor(Start { x: 100.0, ..ORIGIN });
+        assert!(is_admitted(&mut own, &proposal("m", &path)));
+        let next = |heading| {
+            let start = Some(Start { x, y: 0.0, heading });
+            Proposal { start, ..proposal("n", &[line(3.0)]) }
+        };
+        assert!(matches!(own.mission(&next(0.0), 0.0), Err(Fault::Apart { .. })), "{path:?}");
+        assert!(is_admitted(&mut own, &next(1.5)), "{path:?}");
+        let course = &own.robot("a").unwrap().course;
+        let end = Start { x: x + 3.0 * 1.5_f64.cos(), y: 3.0 * 1.5_f64.sin(), heading: 1.5 };
+        assert!(is_same(course.pose(course.length()), end), "{path:?}");
+    }
+}
+
+/// What is left of a path leads where the path leads, and what is joined to it where it would from there.
+#[test]
+fn courses_that_are_cut_at_a_joint_lead_where_they_did() {
+    let mut dice = Dice(2);
+    let mut cuts = 0;
+    for _ in 0..3_000 {
+        let shapes: Vec<Shape> = (0..2 + dice.below(6))
+            .map(|_| match dice.below(3) {
+                0 => Shape::Turn { sweep: dice.range(-PI, PI) },
+                1 => Shape::Arc { radius: hundredths(&mut dice, 30, 100), sweep: dice.range(-PI, PI) },
+                _ => line(hundredths(&mut dice, 1, 200)),
+            })
+            .collect();
+        let course = Course::new(Start { x: 100.0, ..ORIGIN }, shapes.clone()).unwrap();
+        let end = course.pose(course.length());
+        let count = dice.below(shapes.len() + 1);
+        let plain: f64 = shapes[..count].iter().map(|shape| shape.length()).sum();
+        let joints = [plain, plain.next_up(), plain.next_down(), plain + 1e-7, plain - 1e-7].map(|at| at.max(0.0));
+        for at in joints {
+            cuts += 1;
+            let rest = course.part(at, course.length()).unwrap();
+            assert!(is_same(rest.pose(rest.length()), end), "{shapes:?} from {at}");
+            assert!((rest.length() + at - course.length()).abs() < 1e-6, "{shapes:?} from {at}");
+            let (whole, dropped) = course.rejoined(at, course.length() - 1e-9, &[CORNER]).unwrap();
+            assert!(is_same(whole.pose(whole.length()), Start { heading: end.heading + FRAC_PI_2, ..end }));
+            assert!((whole.length() + dropped - course.length()).abs() < 1e-6, "{shapes:?} from {at}");
+            // Where it is left, the turns there are not done, but at its end.
+            let is_end = at > course.length() - 1e-6;
+            let mut first = shapes[..count].to_vec();
+            let turns = |shape: &Shape| shape.length() == 0.0;
+            while !is_end && first.last().is_some_and(turns) {
+                first.pop();
+            }
+            let first = if is_end { shapes.clone() } else { first };
+            let left = Course::new(Start { x: 100.0, ..ORIGIN }, first).unwrap();
+            let left = left.pose(left.length());
+            assert!(is_same(course.arrival(at).unwrap(), left), "{shapes:?} to {at}");
+            for from in [0.0, 0.5 * at, at, joints[2]] {
+                let (joined, _) = course.rejoined(from, at, &[]).unwrap();
+                assert!(is_same(joined.pose(joined.length()), left), "{shapes:?} from {from} to {at}");
+            }
+        }
+    }
+    assert_eq!(cuts, 15_000);
+}
+
+#[test]
+fn who_is_at_a_turn_goes_on_after_it() {
+    let mut own = supervisor(ORIGIN);
+    assert!(is_admitted(&mut own, &proposal("m", &[line(0.11), line(0.69), line(0.27), CORNER, line(5.0)])));
+    own.add("c", CAN, Start { x: 1.07, y: 3.0, heading: 0.0 }).unwrap();
+    own.settle(0.0).unwrap();
+    for at in [1.06, 1.07_f64.next_down(), 1.07, 1.07_f64.next_up()] {
+        own.position(&Report { robot: "a".into(), path: 2, at: [at, at], age: 0.0 }, 0.0).unwrap();
+        let ask = |question: Question| answer(&own, &question, 0.0).unwrap();
+        let conflicts = ask(Question::Conflicts { robot: "a".into() });
+        assert_eq!(conflicts["conflicts"].as_array().unwrap().len(), 1, "{at}");
+        let safe = ask(Question::Safe { robot: "a".into(), length: [at + 2.5, at + 3.4], until: 60.0 });
+        assert_eq!(safe["safe"].as_array().unwrap().len(), 0, "{at}: {safe}");
+    }
+    // The whole way, in lengths that a sum has rounded.
+    for length in [[1.07, 6.07_f64.next_up()], [1.07_f64.next_down(), 6.07]] {
+        answer(&own, &Question::Safe { robot: "a".into(), length, until: 60.0 }, 0.0).unwrap();
+    }
+}
+
+/// l + old origin − new origin is the length on the new path.
+#[test]
+fn lengths_are_converted_from_path_to_path() {
+    let mut dice = Dice(3);
+    let mut moved = 0;
+    for k in 0..1_500 {
+        let mut lengths = [0; 3].map(|_| hundredths(&mut dice, 10, 200));
+        if k == 0 {
+            lengths = [0.22, 1.75, 1.28];
+        }
+        let mut own = supervisor(ORIGIN);
+        let shapes: Vec<Shape> = lengths.map(line).into_iter().chain([CORNER]).collect();
+        assert!(is_admitted(&mut own, &proposal("m", &shapes)));
+        own.settle(0.0).unwrap();
+        let (old, at) = (own.robot("a").unwrap().course.length(), lengths[0] + 0.01);
+        own.position(&Report { robot: "a".into(), path: 2, at: [at, at], age: 0.0 }, 0.0).unwrap();
+        own.settle(0.0).unwrap();
+        // What is joined is nothing, and what was passed is left out.
+        assert!(is_admitted(&mut own, &proposal("n", &[])));
+        let events = own.settle(0.0).unwrap();
+        let origin = events.iter().find_map(|event| match event {
+            Event::Admitted { origin, .. } => Some(*origin),
+            _ => None,
+        });
+        let after = old - origin.unwrap();
+        moved += u32::from(after != own.robot("a").unwrap().course.length());
+        let replace = Proposal { after: Some(after), of: Some(3), ..proposal("o", &[line(4.0)]) };
+        assert!(is_admitted(&mut own, &replace), "{lengths:?}");
+        // Whoever asks again may have added up in another order.
+        let again = Proposal { after: Some(after.next_up()), ..replace };
+        assert!(is_admitted(&mut own, &again), "{lengths:?}");
+        let course = &own.robot("a").unwrap().course;
+        assert!(course.shapes().contains(&CORNER), "{lengths:?}");
+        let end = Start { x: lengths.iter().sum(), y: 4.0, heading: FRAC_PI_2 };
+        assert!(is_same(course.pose(course.length()), end), "{lengths:?}");
+    }
+    assert!(moved > 100, "{moved} lengths were rounded");
+}
+
+#[test]
+fn what_was_told_is_kept_where_a_path_turns_off_there() {
+    let mut own = supervisor(ORIGIN);
+    assert!(is_admitted(&mut own, &proposal("m", &[line(9.0)])));
+    own.settle(0.0).unwrap();
+    let told = own.robot("a").unwrap().told;
+    assert!(told > 1.0 && told < 9.0);
+    let turns_off = |mission, after| Proposal { after: Some(after), ..proposal(mission, &[CORNER, line(1.0)]) };
+    let refused = own.mission(&turns_off("n", told - 1e-6), 0.0);
+    assert!(matches!(refused, Err(Fault::Released { .. })), "{refused:?}");
+    let beyond = own.mission(&turns_off("n", 9.0 + 1e-6), 0.0);
+    assert!(matches!(beyond, Err(Fault::Invalid { .. })), "{beyond:?}");
+    assert!(is_admitted(&mut own, &turns_off("n", told.next_down())));
+    let robot = own.robot("a").unwrap();
+    assert_eq!((robot.told, robot.course.length()), (told, told + 1.0));
+}
