@@ -6,13 +6,15 @@ A claim is a `[[claim]]` of ledger.toml or a section with an anchor of docs/equa
 
 gappa        scripts of proofs/gappa about kernels as recorded (proofs/recorded; a unit test of pcr-core compares them)
 z3           lemmas of proofs/real/lemmas.py, over the real numbers
-budget       the sums of the rows' coefficients, against the constants in the sources, both exact
+budget       the sums of the rows' coefficients, against the constants in the sources, both exact; what each row adds is in its bound
+code         expressions of the sources that use what is proved: each is there exactly once, comments left out
 sum          the figures of an argument by hand add up to no more than it says
 exhaustive   every input, by the example `exhaust` (left out by --quick, and then not counted as held)
 test         tests that exist and are not ignored; they run in step `tests` of .ci/test.sh
 hand         an argument that is written out at the anchor of the claim
 """
 
+import itertools
 import pathlib
 import re
 import subprocess
@@ -25,8 +27,27 @@ LEDGER = tomllib.loads((ROOT / "proofs/ledger.toml").read_text())
 PRECISION = {"f64": 53, "f32": 24}
 
 
+# Texts that stand for those of files: those of mutants.py.
+CHANGED = {}
+
+
 def text_of(path):
-    return (ROOT / path).read_text()
+    return CHANGED[path] if path in CHANGED else (ROOT / path).read_text()
+
+
+def code_of(path):
+    """A Rust source without comments, and with one space wherever there is any."""
+    tokens = r"""'(?:\\.|[^\\'])'|"(?:\\.|[^"\\])*"|//[^\n]*|/\*.*?\*/"""
+    text = re.sub(tokens, lambda m: " " if m[0][0] == "/" else m[0], text_of(path), flags=re.S)
+    return " ".join(text.split())
+
+
+def only(found, what):
+    """The only one of a list: another one could be the one that counts."""
+    found = list(found)
+    if len(found) != 1:
+        raise ValueError(f"{len(found)} of {what}")
+    return found[0]
 
 
 # Gappa
@@ -39,11 +60,16 @@ def dyadic(number):
 
 def near_sine_coefficients():
     """The coefficients of the sine and cosine of f64, as numbers, from the source."""
-    body = text_of("pcr-core/src/scalar/trig.rs").split("near_sin_cos_f64(f64)")[1]
-    numbers = [float(n.replace("_", "")) for n in re.findall(r"-?\d[\d_]*\.[\d_]+e-\d+", body.split("even[0]")[0])]
-    # A part of a quarter turn comes first.
+    # Parts of a quarter turn come first.
     names = "se0 ce0 se1 ce1 se2 ce2 so0 co0 so1 co1 so2 co2".split()
-    return dict(zip(names, numbers[1:], strict=True))
+    return dict(zip(names, near_sine_numbers()[2:], strict=True))
+
+
+def near_sine_numbers():
+    """All numbers of the sine and cosine of f64: the two parts of a quarter turn and the coefficients."""
+    code = code_of("pcr-core/src/scalar/trig.rs")
+    body = only(re.findall(r"near_sin_cos_f64\(f64\),(.*?)even\[0\]", code), "near_sin_cos_f64")
+    return [float(n.replace("_", "")) for n in re.findall(r"-?\d[\d_]*\.[\d_]+(?:e-?\d+)?", body)]
 
 
 def gappa(script, values, precision):
@@ -85,16 +111,51 @@ def by_z3(claim):
 
 
 def constant(path, pattern):
-    found = re.search(pattern, text_of(path))
+    found = only(re.finditer(pattern, code_of(path)), pattern)
     return Fraction(found[1].replace("_", ""))
+
+
+def by_code(claim):
+    for place in claim["code"]:
+        path, expression = place.split(": ", 1)
+        only(re.findall(re.escape(expression), code_of(path)), f"`{expression}` in {path}")
+    return True
+
+
+KINDS = ("floating", "micro", "digits", "parts")
+
+
+def rows(kind):
+    return [claim[kind] for claim in LEDGER["claim"] if kind in claim]
+
+
+def exact(value):
+    return Fraction(str(value))
 
 
 def total(kind, at):
     """The sum of all rows of a kind, for lengths and coordinates `x` of the one that is followed (j) and of the one that is
     covered (i), and radii, as parts of M."""
     parts = {"j": at[0], "i": at[1], "radius": at[2], "one": 1}
-    rows = [claim[kind] for claim in LEDGER["claim"] if kind in claim]
-    return sum(Fraction(str(value)) * parts[name] for row in rows for name, value in row.items())
+    return sum(exact(value) * parts[name] for row in rows(kind) for name, value in row.items())
+
+
+def is_stated(claim):
+    """What a row adds to a budget is what its bound says: a sum of some of its figures, once or for both paths. Where an argument adds
+    up to it (`most`), that is among it. What `Micro` adds is more than in its bound, and is held by the sum of all rows alone."""
+    figures = [exact(n) for n in re.findall(r"(?<![\w^{.])\d+(?:\.\d+)?", claim["bound"])]
+    if "\\sqrt2" in claim["bound"]:
+        figures.append(exact("1.415"))
+    sums = {sum(some) for size in range(1, len(figures) + 1) for some in itertools.combinations(figures, size)}
+    sums |= {2 * some for some in sums}
+    added = [exact(value) for kind in KINDS if kind != "micro" for value in claim.get(kind, {}).values()]
+    if "most" in claim:
+        most = exact(claim["most"])
+        if added and most not in added:
+            return f"{claim['most']} is derived, {[float(value) for value in added]} are added"
+        sums.add(most)
+    missing = [float(value) for value in added if value not in sums]
+    return not missing or f"{missing} are added, and not in the bound"
 
 
 # M is a coordinate or length and twice a radius: what is linear in them is largest at these corners.
@@ -105,6 +166,10 @@ def by_budget(claim):
     has = constant(claim["source"], claim["constant"])
     if "shift_from" in claim:
         has = Fraction(2) ** (claim["shift_from"] - int(has))
+    for name, value in claim.get("adds", {}).items():
+        found = sum(exact(row.get(name, 0)) for row in rows(claim["sum"]))
+        if found != exact(value):
+            return f"the rows add up to {float(found)} of {name}, not to {value}"
     needs = max(total(claim["sum"], corner) for corner in CORNERS)
     needs *= Fraction(str(claim.get("second_order", 1)))
     return needs <= has or f"{float(needs)} are needed, {float(has)} are allowed"
@@ -115,10 +180,10 @@ def by_budget(claim):
 
 def by_sum(claim):
     """Sums, products and quotients of decimals, exact."""
-    exact = re.sub(r"\d+(\.\d+)?", lambda number: f"Fraction('{number[0]}')", claim["terms"])
+    terms = re.sub(r"\d+(\.\d+)?", lambda number: f"Fraction('{number[0]}')", claim["terms"])
     if not re.fullmatch(r"[\d. +*/()-]+", claim["terms"]):
         return f"not a sum: {claim['terms']}"
-    value = eval(exact, {"Fraction": Fraction})
+    value = eval(terms, {"Fraction": Fraction})
     return value <= Fraction(str(claim["most"])) or f"{float(value)} is more than {claim['most']}"
 
 
@@ -162,6 +227,7 @@ HOLDS = {
     "gappa": by_gappa,
     "z3": by_z3,
     "budget": by_budget,
+    "code": by_code,
     "exhaustive": by_exhaustive,
     "test": by_test,
     "hand": by_hand,
@@ -175,8 +241,16 @@ def held(claim):
     missing = [used for used in claim.get("uses", []) if used not in known]
     if missing:
         return f"uses {missing}, which are no claims"
-    for by in claim["by"].split(", "):
-        result = HOLDS[by](claim)
+    methods = claim["by"].split(", ")
+    if ("code" in claim) != ("code" in methods):
+        return "code is listed, or held by, alone"
+    if any(kind in claim for kind in KINDS) and (stated := is_stated(claim)) is not True:
+        return stated
+    for by in methods:
+        try:
+            result = HOLDS[by](claim)
+        except ValueError as error:
+            result = str(error)
         if result is not True:
             return f"{by}: {result}"
     return True

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Prints every claim of docs/errors*.md and docs/equations.md with how it is held, and fails if one is not.
+# Prints every claim of docs/errors*.md and docs/equations.md with how it is held, and fails if one is not, or if a change of a constant
+# that is proved is not told (proofs/mutants.py).
 #   proofs/check.sh            all, 2 minutes
 #   proofs/check.sh --quick    without the runs over all inputs, whose claims then count as missed
 # Installs Gappa (Debian) and z3 (Debian's, or that of PyPI) where they are missing, and says so.
@@ -17,4 +18,5 @@ fi
 
 # The kernels are those that are proved things of: pcr-core/src/recorded.rs.
 cargo test -q --locked -p pcr-core --lib recorded::
+python3 proofs/mutants.py
 python3 proofs/check.py "$@"

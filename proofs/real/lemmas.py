@@ -189,11 +189,31 @@ def polynomials():
     return held
 
 
+# 60 digits.
+PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
+
+
+def quarter_turns():
+    """Up to 2^20 quarter turns of f64, in two parts: the first part exact, both right to 2^-60, the second rounded by 2^-67"""
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+    from check import near_sine_numbers
+
+    first, second = (Fraction(number) for number in near_sine_numbers()[:2])
+    most = 2**20
+    # As many digits as it has, and 20 more, are no more than 53.
+    digits = first.numerator.bit_length()
+    # |x| < 10^6 has no more quarter turns.
+    held = 10**6 / (PI / 2) + 1 < most and digits <= 33
+    held &= abs(first + second - PI / 2) * most <= Fraction(1, 2**60)
+    return held and abs(second) * most <= Fraction(1, 2**13)
+
+
 LEMMAS = {
     function.__name__.replace("_", "-"): function
     for function in (
         offset_identity, offset_y, offset_x, half_width, residual, residual_bound, diameter, moved, covers, turned, amplified,
         common_factor, ramp_slow_end, two_laps, two_roots, through_both_ends, polynomials,
+        quarter_turns,
     )
 }
 

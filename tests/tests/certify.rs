@@ -5,10 +5,13 @@
 use pcr_certify::data::{Pair, Table};
 use pcr_certify::pair::Findings;
 use pcr_certify::table::{Checker, Margin};
+use pcr_certify::travel;
 use pcr_core::scalar::Micro;
+use pcr_core::{Limits, Motion, Path as CorePath, Point, Pose, Profile};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::import::{self, Options, Warnings};
 use pcr_formats::scenario::Scenario;
+use pcr_planning::certificate;
 use pcr_planning::certify::{Certified, Dump};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::Format;
@@ -101,6 +104,45 @@ fn what_lies_opposite_a_centre_is_not_told() {
     behind_the_centre::<Q20>();
     behind_the_centre::<Q16>();
     behind_the_centre::<Q12>();
+}
+
+/// Profiles from rest to rest and stretched ones, twice over: what is rounded most often.
+fn motions_pass<S: Format>() {
+    let number = |x: f64| S::from_f64(x);
+    let mut dice = Dice::seeded(7);
+    let mut passed = 0;
+    for _ in 0..PAIRS {
+        let (length, limits) = (number(dice.magnitude(0.01, 100.0)), [0.05, 0.05].map(|lo| dice.magnitude(lo, 5.0)));
+        let limits = Limits { speed: number(limits[0]), acceleration: number(limits[1]) };
+        let start = Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0) };
+        let path = CorePath::<S, 1>::starting_at(start).and_then(|path| path.line(length)).unwrap();
+        let Ok(mut profile) = Profile::<S, 3>::rest_to_rest(length, limits) else { continue };
+        for _ in 0..3 {
+            let motion = Motion::new(path.as_path(), profile.as_profile(), number(0.5), S::ZERO).unwrap();
+            let agent = certificate::agent(1, &motion, S::angle(0.0), &[]);
+            assert_eq!(
+                travel::checked(&agent).and_then(|()| travel::arrives(&agent)),
+                Ok(()),
+                "{}: {agent:?}",
+                S::NAME
+            );
+            passed += 1;
+            let duration = number(profile.as_profile().duration().to_f64() * dice.magnitude(0.9, 1.7));
+            let Ok(next) = Profile::stretched(profile.as_profile(), duration) else { break };
+            profile = next;
+        }
+    }
+    assert!(passed > PAIRS, "{}: {passed}", S::NAME);
+}
+
+#[test]
+fn motions_are_those_of_their_phases_in_every_format() {
+    motions_pass::<f64>();
+    motions_pass::<f32>();
+    motions_pass::<Micro>();
+    motions_pass::<Q20>();
+    motions_pass::<Q16>();
+    motions_pass::<Q12>();
 }
 
 fn data(name: &str) -> PathBuf {
@@ -387,6 +429,29 @@ fn motions_are_proved_or_refuted_as_conflicts_say() {
     for contact in &proof.contacts {
         assert!(contact.clearance < 0.0);
     }
+    // Nothing is proved of one agent, or of none.
+    let mut few = scenario;
+    for left in [1, 0] {
+        few.agents.truncate(left);
+        let refused = Verdict::certified::<f64>(&few, false).unwrap_err();
+        assert!(refused.to_string().contains("no two discs of different agents"), "{refused}");
+    }
+}
+
+#[test]
+fn regions_of_an_agent_that_is_not_there_are_none() {
+    let answer =
+        Answer::of::<f64>(&fleet("paper12.json"), Request { certificate: true, ..Request::default() }).unwrap();
+    let text = serde_json::to_value(&answer).unwrap();
+    let read = |agent: u64, regions: serde_json::Value| {
+        let mut other = text.clone();
+        (other["agent"], other["regions"]) = (agent.into(), regions);
+        Dump::of_json(&other.to_string()).map(drop)
+    };
+    let own = text["regions"].as_array().unwrap().iter().filter(|region| region["i"] == 3).cloned();
+    assert_eq!(read(3, own.collect()), Ok(()));
+    assert!(read(3, serde_json::json!([])).unwrap_err().contains("of agents 3"));
+    assert_eq!(read(77, serde_json::json!([])), Err("agent: 77 is none of the certificate".into()));
 }
 
 /// A field that is not there is not taken for one that says none, nor is one that nobody knows passed over.

@@ -41,7 +41,9 @@ fn is_proved_of_lengths_of_the_format<S: Format>(seeds: &[u64]) {
     for &seed in seeds {
         let (pair, drives) = certifiable::<S>(seed);
         let mut table = table::<S>(&pair, &drives).expect("it fits");
-        table.agents.iter_mut().for_each(|agent| agent.path.step = 0.0);
+        // Of the paths alone: motions that are rounded as in fixed point are none of floating point.
+        table.agents.iter_mut().for_each(|agent| (agent.path.step, agent.travel) = (0.0, None));
+        table.pairs[0].regions.iter_mut().for_each(|region| region.times = None);
         let found = Checker::new(&table).and_then(|checker| checker.check(Margin::Needed)).expect("a table");
         let is_about_shares = found.refuted.iter().all(|witness| witness.promise == Promise::Shared);
         assert!(!found.refuted.is_empty() && is_about_shares, "{seed} of {}: {found:?}", S::NAME);

@@ -169,6 +169,13 @@ fn what_is_shared_in_a_building_is_refused() {
         let why = refused(Format::Rmf, &text, Target::Rmf, None);
         assert!(why.contains("anchor or an alias"), "{why}");
     }
+    // What is merged would be in the parts and in both directions.
+    for split in [None, Some(1.5)] {
+        let merged = BUILDING.replacen("{bidirectional: [4, true], ", "{<<: {bidirectional: [4, true]}, ", 1);
+        assert_ne!(merged, BUILDING);
+        let why = refused(Format::Rmf, &merged, Target::Rmf, split);
+        assert!(why.contains("lanes L1/0: its parameters have a merge key (<<)"), "{why}");
+    }
     // Elsewhere they do no harm.
     let text = format!("more: &x {{}}\nagain: *x\n{BUILDING}");
     assert!(written(Format::Rmf, &text, 0.4, Target::Rmf, None).0.starts_with("more: &x {}\nagain: *x\n"));

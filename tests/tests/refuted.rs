@@ -1,7 +1,7 @@
 //! Tables that were changed are refuted by the checker, or have lost nothing: what it proves is tried by points, and every place that it
 //! shows is looked at, with exact arithmetic that shares nothing with it.
 
-use pcr_certify::data::{Pair, Share, Table};
+use pcr_certify::data::{Pair, Phase, Share, Table};
 use pcr_certify::pair::{Findings, Promise, Witness};
 use pcr_certify::table::{Checker, Margin};
 use pcr_core::scalar::Micro;
@@ -263,6 +263,46 @@ fn tables_with_a_number_falsified_are_refuted() {
     falsified_tables_are_refuted::<Q20>();
     falsified_tables_are_refuted::<Q16>();
     falsified_tables_are_refuted::<Q12>();
+}
+
+/// Motions that go back, jump, or end before their path does: a region may then be left and come to again at a time that nobody tells.
+fn motions_that_are_none_are_refused<S: Format>() {
+    let table = table_of::<S>(&fleet()).unwrap().remove(0);
+    let refused = |why: &str, change: &dyn Fn(&mut Vec<Phase>)| {
+        for place in 0..table.agents.len() {
+            let mut other = table.clone();
+            change(&mut other.agents[place].travel.as_mut().unwrap().phases);
+            let found = Checker::new(&other).map(drop).unwrap_err();
+            assert!(found.contains(why), "{}: {place}: {found}", S::NAME);
+        }
+    };
+    let ends = |phases: &[Phase]| phases.last().map(|last| (last.time[1], last.length[1])).unwrap();
+    refused("its phases end at 0 m", &|phases| phases.clear());
+    refused("its phases end at", &|phases| phases.truncate(1));
+    refused("too short a way", &|phases| {
+        let (time, length) = ends(phases);
+        *phases = vec![Phase { time: [0.0, time], length: [0.0, length], speed: [5.0 * length / time; 2] }];
+    });
+    // A tenth faster than it goes.
+    refused("too short a way", &|phases| {
+        let (time, length) = ends(phases);
+        *phases = vec![Phase { time: [0.0, time], length: [0.0, length], speed: [1.1 * length / time, 9.0] }];
+    });
+    refused("takes no time", &|phases| {
+        let (time, length) = ends(phases);
+        let phase = |time, length| Phase { time, length, speed: [0.0; 2] };
+        *phases = vec![phase([0.0, time], [0.0; 2]), phase([time; 2], [0.0, length])];
+    });
+}
+
+#[test]
+fn motions_that_go_back_or_jump_are_refused() {
+    motions_that_are_none_are_refused::<f64>();
+    motions_that_are_none_are_refused::<f32>();
+    motions_that_are_none_are_refused::<Micro>();
+    motions_that_are_none_are_refused::<Q20>();
+    motions_that_are_none_are_refused::<Q16>();
+    motions_that_are_none_are_refused::<Q12>();
 }
 
 /// Pairs that are special: full circles, several laps, legs and paths of length 0, contact from the start, disc as large as circle, far

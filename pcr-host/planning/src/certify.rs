@@ -140,7 +140,10 @@ impl Dump {
         if let Some(error) = dump.error {
             return Err(format!("its regions were not computed: {error}"));
         }
-        dump.certificate.iter().try_for_each(|table| told::bodies(table, &dump.footprints))?;
+        for table in &dump.certificate {
+            told::bodies(table, &dump.footprints)?;
+            told::asked(table, dump.agent)?;
+        }
         if let Some(regions) = &dump.regions {
             let asked = Asked { agent: dump.agent, covers: &dump.footprints };
             let lists = [("regions", Some(regions)), ("margin_regions", dump.margin_regions.as_ref())];

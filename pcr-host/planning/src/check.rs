@@ -143,9 +143,9 @@ impl Verdict {
     /// The same with a certificate.
     ///
     /// # Errors
-    /// As [`Verdict::of`].
+    /// As [`Verdict::of`], and [`Failure::NoPair`].
     pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
-        let certificate = Some(Proof::of::<S>(scenario)?);
+        let certificate = Some(Proof::of_pairs::<S>(scenario)?);
         Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
     }
 

@@ -103,6 +103,8 @@ pub enum Failure {
     Ambiguous(String, Vec<u64>),
     /// A number that is that of an agent and the label of others.
     Twofold(u64, String, Vec<u64>),
+    /// A proof is asked for, and there are no two discs of different agents.
+    NoPair,
     /// The memory does not hold what was asked for.
     TooLarge(TooLarge),
     /// Something is done for fewer agents only: it would take too long.
@@ -124,6 +126,9 @@ impl fmt::Display for Failure {
             Self::Refused(refused) => refused.fmt(f),
             Self::Full(full) => full.fmt(f),
             Self::TooLarge(too_large) => too_large.fmt(f),
+            Self::NoPair => {
+                f.write_str("there are no two discs of different agents, of which contacts could be certified")
+            }
             Self::TooMany { what, agents, most } => write!(f, "{what} for {most} agents at most; there are {agents}"),
             Self::Overfull([i, j]) => write!(
                 f,

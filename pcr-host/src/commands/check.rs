@@ -21,7 +21,8 @@ const STATUSES: &str = "\
 Exit status:
   0  no conflicts; with --certify proved, too
   1  conflicts; with --certify also what is not proved
-  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
+  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough); with --certify also one
+     without two agents, of which nothing would be proved
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
@@ -80,7 +81,7 @@ struct Check {
 
 impl Check {
     fn verdict<S: Format>(&self, scenario: &Scenario, told: Told<'_>) -> Result<Verdict, Failure> {
-        let certificate = self.certify.then(|| Proof::of::<S>(scenario)).transpose()?;
+        let certificate = self.certify.then(|| Proof::of_pairs::<S>(scenario)).transpose()?;
         Ok(Verdict { certificate, ..Verdict::watched::<S>(scenario, self.closest, told)? })
     }
 }

@@ -85,7 +85,7 @@ impl Mover {
         let stretches = stretches(&agent.path)?;
         let travel = agent.travel.as_ref().ok_or("no motion")?;
         let start = Twofold::from(travel.start);
-        travel::checked(travel)?;
+        travel::checked(agent)?;
         let mut legs: Vec<(f64, Leg)> = Vec::new();
         let stands = |stretch: &Stretch, at: Twofold| {
             let course = Course { carrier: stretch.placed.exact, ramp: Ramp::standing(at) };
@@ -93,21 +93,24 @@ impl Mover {
         };
         let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return Err("no segments".into()) };
         legs.push((f64::NEG_INFINITY, stands(first, Twofold::ZERO)));
-        let (mut arrival, mut reached) = (travel.start, 0.0);
+        let (mut arrival, mut reached, mut jumps) = (travel.start, 0.0, 0.0);
         for phase in &travel.phases {
             let time = phase.time;
             reached = phase.length[1];
             let ends = time.map(|time| (start + Twofold::from(time)).to_f64());
             if time[0] < time[1] {
                 add_legs(&mut legs, &stretches, phase, start, ends);
+            } else {
+                jumps += phase.length[1] - phase.length[0];
             }
             arrival = ends[1];
         }
         let end = last.before + last.placed.length;
         let gap = (end - Twofold::from(reached)).abs().to_f64();
         legs.push((arrival, stands(last, last.placed.length)));
-        // A length beyond the end of the path is none: the agent is at its end.
-        legs.iter_mut().for_each(|(_, leg)| leg.off += gap);
+        // A length beyond the end of the path is none: the agent is at its end. What takes no time is rounded off.
+        let gone = (gap + jumps) * (1.0 + 4.0 * f64::EPSILON);
+        legs.iter_mut().for_each(|(_, leg)| leg.off += gone);
         let speed = legs.iter().map(|(_, leg)| leg.speed).fold(0.0, f64::max);
         let off = legs.iter().map(|(_, leg)| leg.off).fold(0.0, f64::max);
         let area = area(&stretches, (agent.radius + off).next_up());

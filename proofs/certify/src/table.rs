@@ -82,11 +82,11 @@ impl<'a> Checker<'a> {
             if !numbers.iter().all(|&number| (0.0..1e15).contains(&number)) {
                 return Err(wrong("a radius, rounding or lag is out of range".into()));
             }
-            agent.travel.as_ref().map_or(Ok(()), travel::checked).map_err(wrong)?;
-            let wrong = |problem: String| format!("agent {} (place {place}): {problem}", agent.id);
+            let stretches = stretches(&agent.path).map_err(wrong)?;
+            travel::checked(agent).and_then(|()| travel::arrives(agent)).map_err(wrong)?;
             let arcs = agent.path.segments.iter().filter_map(|segment| Some((segment.length, segment.radius?.abs())));
             let over = arcs.map(|(length, radius)| length - TAU * radius).fold(0.0, f64::max);
-            Ok(Placed { agent, stretches: stretches(&agent.path).map_err(wrong)?, over })
+            Ok(Placed { agent, stretches, over })
         });
         let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs, apart: table.apart };
         checker.all_pairs_are_there()?;

@@ -35,6 +35,13 @@ pub(crate) fn prepare(
                 continue;
             }
             own(lane, "lanes", &edge.id)?;
+            if lane.list().get(Form::LANE).is_some_and(|parameters| parameters.get("<<").is_some()) {
+                // A copy for one direction or part would still have what is merged.
+                return Err(ImportError::new(format!(
+                    "lanes {}: its parameters have a merge key (<<), and it has to become several lanes; write out what is merged",
+                    edge.id
+                )));
+            }
             let ends =
                 [0, 1].map(|k| lane.list().get(k).and_then(Spanned::text).and_then(|text| text.parse::<usize>().ok()));
             let [Some(from), Some(to)] = ends else { continue };

@@ -3,6 +3,7 @@
 use crate::bodies::Bodies;
 use crate::certificate;
 use crate::fleet::{Format, Refused};
+use crate::regions::Failure;
 use pcr_certify::motion::{Meeting, Mover, meetings};
 use pcr_core::{Interval, Motion};
 use pcr_formats::scenario::Scenario;
@@ -61,6 +62,17 @@ impl Proof {
             Ok(movers) => Self::found(&movers),
             Err(problem) => Self { error: Some(problem), ..Self::found(&[]) }.undecided(),
         })
+    }
+
+    /// The same for who asks whether there is a contact: of one agent alone, or of none, nothing would be proved.
+    ///
+    /// # Errors
+    /// [`Failure::Refused`] where a value does not fit the format, [`Failure::NoPair`].
+    pub fn of_pairs<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
+        match Self::of::<S>(scenario)? {
+            Self { pairs: 0, error: None, .. } => Err(Failure::NoPair),
+            proof => Ok(proof),
+        }
     }
 
     fn found(movers: &[Mover]) -> Self {

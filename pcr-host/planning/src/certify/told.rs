@@ -52,6 +52,16 @@ pub(super) fn bodies(table: &Table, covers: &[Cover]) -> Result<(), String> {
     Ok(())
 }
 
+/// Whoever was asked for is there: of nobody else would anything be compared.
+pub(super) fn asked(table: &Table, agent: Option<u64>) -> Result<(), String> {
+    match agent {
+        Some(asked) if !table.agents.iter().any(|agent| agent.id == asked) => {
+            Err(format!("agent: {asked} is none of the certificate"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// How many discs have which number.
 fn counts(table: &Table) -> BTreeMap<u64, usize> {
     let mut counts = BTreeMap::new();
