@@ -13,9 +13,9 @@ pub(crate) fn row(flags: impl DoubleEndedIterator<Item = bool>) -> u32 {
 pub(crate) fn digest(sum: u32, number: u32) -> u32 {
     // The constant, because the bijection maps 0 to 0.
     let mut mixed = (sum.rotate_left(5) ^ number).wrapping_add(0x9E37_79B9);
-    for (shift, factor) in [(17, 0xED5A_D4BB), (11, 0xAC4C_1B51), (15, 0x3184_8BAB)] {
-        mixed = (mixed ^ (mixed >> shift)).wrapping_mul(factor);
-    }
+    mixed = (mixed ^ (mixed >> 17)).wrapping_mul(0xED5A_D4BB);
+    mixed = (mixed ^ (mixed >> 11)).wrapping_mul(0xAC4C_1B51);
+    mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x3184_8BAB);
     mixed ^ (mixed >> 14)
 }
 
