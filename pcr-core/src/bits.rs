@@ -6,11 +6,17 @@ pub(crate) fn row(flags: impl DoubleEndedIterator<Item = bool>) -> u32 {
     flags.rev().fold(0, |row, flag| row << 1 | u32::from(flag))
 }
 
-/// Adds a number to a checksum: multiplying by an odd constant spreads a change to higher bits, the shift spreads it to
-/// lower bits.
+/// Adds a number to a checksum. Each bit of either changes every bit of the result about every other time (Wellons'
+/// `triple32`), the last number as well as the first: sums of checksums do not cancel when agents exchange numbers.
+// Not inlined: it would be there for each kind of number.
+#[inline(never)]
 pub(crate) fn digest(sum: u32, number: u32) -> u32 {
-    let product = (sum.rotate_left(5) ^ number).wrapping_mul(0x9E37_79B9);
-    product ^ (product >> 15)
+    // The constant, because the bijection maps 0 to 0.
+    let mut mixed = (sum.rotate_left(5) ^ number).wrapping_add(0x9E37_79B9);
+    mixed = (mixed ^ (mixed >> 17)).wrapping_mul(0xED5A_D4BB);
+    mixed = (mixed ^ (mixed >> 11)).wrapping_mul(0xAC4C_1B51);
+    mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x3184_8BAB);
+    mixed ^ (mixed >> 14)
 }
 
 /// Indices of the bits that are set, the lowest first.
@@ -51,7 +57,23 @@ impl Iterator for Runs {
 
 #[cfg(test)]
 mod tests {
-    use super::{Ones, Runs, row};
+    use super::{Ones, Runs, digest, row};
+
+    #[test]
+    fn a_bit_of_a_checksum_changes_every_bit_of_the_next_one() {
+        const SUMS: u32 = 4096;
+        let sums = || (0..SUMS).map(|k| k.wrapping_mul(0x9E37_79B9));
+        for bit in 0..32 {
+            for (of_sum, of_number) in [(1 << bit, 0), (0, 1 << bit)] {
+                for place in 0..32 {
+                    let changes = |&sum: &u32| (digest(sum, 1) ^ digest(sum ^ of_sum, 1 ^ of_number)) >> place & 1 == 1;
+                    let changed = sums().filter(changes).count() as i32;
+                    assert!((changed - SUMS as i32 / 2).abs() < 200, "bit {bit} changes bit {place} {changed} times");
+                }
+            }
+        }
+        assert_ne!(digest(0, 0), 0);
+    }
 
     #[test]
     fn the_first_flag_is_the_lowest_bit() {

@@ -51,7 +51,8 @@ impl Default for Region {
 /// query.
 ///
 /// Every method takes the fleet as an argument and refuses a fleet other than that of the table. It compares a checksum
-/// of the number of agents, their paths and their radii; start times, profiles, margins and lateness may change.
+/// of the number of agents, their paths and their radii, which has 32 bits: it guards against mistakes, and overlooks
+/// about one in two billion. Start times, profiles, margins and lateness may change.
 /// A motion whose [`Motion::lag`] has grown since (by a longer wait in floating point, or a profile that misses the end
 /// of its path by more) has to be given to [`Ecm::replace`]: the regions are those of the lag with which they were
 /// computed, and too small by what was added to it.

@@ -192,7 +192,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// A checksum of all that the regions of this agent depend on: path, radius, and its index in the fleet.
     pub(crate) fn digest(&self, place: usize) -> u32 {
-        digest(digest(self.digest, place as u32), self.radius.digest())
+        [self.radius.digest(), place as u32].into_iter().fold(self.digest, digest)
     }
 
     /// Box around the area that the disc sweeps, expanded by twice the rounding error of a distance \[m\]. Agents whose

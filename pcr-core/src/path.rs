@@ -179,18 +179,17 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         rest.fold(first, Bounds::hull)
     }
 
-    /// A checksum of the geometry of the path.
+    /// A checksum of all that defines the path: where it begins, and heading, curvature and length of each segment.
     pub(crate) fn digest(self) -> u32 {
         let origin = self.segments.first().map_or_else(Point::default, |first| first.start);
-        self.segments.iter().fold(digest(origin.x.digest(), origin.y.digest()), |sum, segment| {
+        let begin = [origin.x.digest(), origin.y.digest()].into_iter().fold(0, digest);
+        self.segments.iter().fold(begin, |sum, segment| {
             let bend = match segment.curve {
                 Curve::Line => S::ZERO,
                 Curve::Arc { radius, turn: Turn::Left } => radius,
                 Curve::Arc { radius, turn: Turn::Right } => -radius,
             };
-            [segment.end.x, segment.end.y, segment.length, bend]
-                .into_iter()
-                .fold(sum, |sum, number| digest(sum, number.digest()))
+            [segment.heading.digest(), segment.length.digest(), bend.digest()].into_iter().fold(sum, digest)
         })
     }
 

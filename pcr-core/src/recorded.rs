@@ -205,6 +205,9 @@ impl Angle<N> for N {
     fn is_finite(self) -> bool {
         true
     }
+    fn digest(self) -> u32 {
+        Scalar::digest(self)
+    }
     fn subtended(length: N, radius: N) -> Self {
         operation(length.0 / radius.0, "{0} / {1}", &[length, radius], true)
     }

@@ -275,6 +275,8 @@ pub trait Angle<S: Scalar>:
     const ZERO: Self;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
+    /// The bits of the angle, folded to 32, for a checksum.
+    fn digest(self) -> u32;
     /// Whether a heading of so many turns still has an accurate direction; always if angles are modulo one turn.
     fn is_in_range(self) -> bool {
         true

@@ -52,7 +52,7 @@ pub struct Segment<S: Scalar> {
     pub(crate) start: Point<S>,
     pub(crate) end: Point<S>,
     pub(crate) direction: Direction<S>,
-    heading: S::Angle,
+    pub(crate) heading: S::Angle,
     heading_at_end: S::Angle,
     pub(crate) curve: Curve<S>,
     /// Circumference of the full circle of an arc \[m\].

@@ -76,6 +76,9 @@ impl<const F: u32> Angle<Q<F>> for Turns {
     fn is_finite(self) -> bool {
         true
     }
+    fn digest(self) -> u32 {
+        self.0 as u32
+    }
     /// A turn to the left: the length is not negative.
     fn subtended(length: Q<F>, radius: Q<F>) -> Self {
         Self(((sweep(length, radius) * TURNS + (1 << 30)) >> 31) as i32)

@@ -253,6 +253,9 @@ impl<X: Shadowed> Angle<N<X>> for Turned<X> {
     fn is_finite(self) -> bool {
         self.value.is_finite()
     }
+    fn digest(self) -> u32 {
+        Angle::<X::S>::digest(self.value)
+    }
     fn subtended(length: N<X>, radius: N<X>) -> Self {
         let value = Angle::<X::S>::subtended(length.value, radius.value);
         Self { value, exact: length.exact / radius.exact }

@@ -57,6 +57,7 @@ mod near_misses;
 mod no_numbers;
 mod orders_admit;
 mod orders_adversary;
+mod orders_brakes;
 mod orders_check;
 mod orders_fleet;
 mod orders_hold;

@@ -5,6 +5,7 @@ use pcr_core::{
     Ecm, Full, Hold, Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
     Tolerances, Unchanged,
 };
+use pcr_fixed::Q16;
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::execution::Table;
 use std::f64::consts::FRAC_PI_2;
@@ -54,13 +55,21 @@ impl Scene<'_> {
             let turned = (0..count).map(move |agent| (agent + turn) % count);
             [turned.clone().collect::<Vec<_>>(), turned.map(|agent| count - 1 - agent).collect()]
         });
-        let mut answers: Vec<_> = numberings.map(|numbers| self.numbered(&numbers)).collect();
+        // With a least gain of 0, too, or one that is less than the last digit of a place.
+        let gains = [TOLERANCES.gain, 0.0, -1.0, 1e-30];
+        let tolerances = gains.map(|gain| Tolerances { gain, ..TOLERANCES });
+        let mut answers: Vec<_> =
+            numberings.flat_map(|numbers| tolerances.map(|tolerances| self.numbered(&numbers, tolerances))).collect();
         let last = answers.pop().expect("a numbering");
         answers.iter().for_each(|answer| assert_eq!(answer, &last));
         last
     }
 
-    fn numbered(&self, numbers: &[usize]) -> (Result<(), &'static str>, Vec<(usize, Pass)>) {
+    fn numbered(
+        &self,
+        numbers: &[usize],
+        tolerances: Tolerances<f64>,
+    ) -> (Result<(), &'static str>, Vec<(usize, Pass)>) {
         let agent_of = |number: usize| numbers.iter().position(|&other| other == number).expect("a number");
         let agents = || (0..numbers.len()).map(|number| self.agents[agent_of(number)]);
         let mut fleet: Vec<Motion<'_, f64>> = agents().map(|(course, _)| course.motion()).collect();
@@ -88,7 +97,7 @@ impl Scene<'_> {
         };
         let before = all(&orders, &fleet, &progress);
         let mut reaches = vec![Reach::EMPTY; numbers.len()];
-        let found = orders.admit(&mut fleet, &mut progress, mission, TOLERANCES, &mut reaches, |region| {
+        let found = orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut reaches, |region| {
             let other = agent_of(region.other());
             self.wanted.iter().find(|wanted| wanted.0 == other).expect("both ways are possible").1
         });
@@ -103,7 +112,7 @@ impl Scene<'_> {
             }
         });
         if found.is_ok() {
-            assert_eq!(orders.check(&fleet, &progress, TOLERANCES, &mut reaches), Ok(()));
+            assert_eq!(orders.check(&fleet, &progress, tolerances, &mut reaches), Ok(()));
         }
         (found, row(&orders, &fleet, 0))
     }
@@ -391,6 +400,37 @@ fn the_row_of_an_agent_has_no_path_exchanged() {
     orders.fill_row(&fleet, 1).expect("room");
     assert_eq!(orders.replace(&mut fleet, 1, ways[0].motion()), Err(Mismatch::OnlyRow(1).into()));
     assert!(orders.hold(&fleet, 1, &[REST; 3]).is_ok());
+}
+
+#[test]
+fn tolerances_of_any_size_are_taken_as_the_nearest_that_makes_sense() {
+    let number = |bits| Q16::from_bits(bits);
+    let course = |start: [f64; 3], length: f64| {
+        Course::<Q16>::new(&Disc { radius: 0.25, start, legs: vec![Leg::Line(length)] }).expect("a valid disc")
+    };
+    // Two crossings in a circle: with the first preferences nobody could go on.
+    let (east, bend) = (
+        course([-3.0, 0.0, 0.0], 9.0),
+        Disc {
+            radius: 0.25,
+            start: [3.0, 3.0, -FRAC_PI_2],
+            legs: vec![Leg::Line(4.0), Leg::arc(1.5, -3.0 * FRAC_PI_2 * 0.999), Leg::Line(5.0)],
+        },
+    );
+    let (bend, stands) = (Course::<Q16>::new(&bend).expect("a valid disc"), course([3.0, 3.0, -FRAC_PI_2], 0.0));
+    for (width, gain) in [(655, i32::MAX), (655, 1 << 28), (i32::MIN, 66), (-1, 66), (655, i32::MIN), (655, 0)] {
+        let mut fleet = [east.motion(), stands.motion()];
+        let storage = (vec![Region::EMPTY; 12], vec![Piece::EMPTY; 40], vec![Order::EMPTY; 24]);
+        let mut orders = Table::<Q16>::build(storage.0, storage.1, storage.2, &fleet).expect("room");
+        let rest = Progress::at_rest(number(0));
+        let mission = Mission { agent: 1, motion: bend.motion(), progress: rest };
+        let tolerances = Tolerances { width: number(width), gain: number(gain) };
+        let admitted =
+            orders.admit(&mut fleet, &mut [rest; 2], mission, tolerances, &mut [Reach::EMPTY; 2], |region| {
+                if region.other_length().lo < number(7 << 15) { Pass::First } else { Pass::Second }
+            });
+        assert!(gain > 66 || admitted.is_ok(), "{width} {gain}: {admitted:?}");
+    }
 }
 
 #[test]

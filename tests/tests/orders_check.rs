@@ -2,11 +2,9 @@
 //! alone, and by agents that go on one at a time.
 
 use pcr_core::{
-    Brakes, Encounter, Full, Hold, Limits, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances,
-    plan_delays,
+    Encounter, Full, Hold, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances, plan_delays,
 };
-use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::build_ecm;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::execution::Table;
 use pcr_tests::generators::{Dice, pair};
@@ -280,42 +278,6 @@ fn priorities_may_go_round_in_a_circle_where_all_follow_one_another() {
     }
     let mut reaches = [Reach::EMPTY; 4];
     assert_eq!(orders.check(&motions, &progress, EXACT, &mut reaches), Ok(()));
-}
-
-#[test]
-fn brakes_are_enough() {
-    let limits = Limits { speed: 2.0, acceleration: 0.7 };
-    let brakes = Brakes::new(limits.acceleration, 0.2).expect("brakes");
-    for k in 0..2000 {
-        let way = f64::from(k) * 1e-3;
-        let speed = brakes.speed(way);
-        assert!(brakes.distance(speed) <= way + 1e-12 && brakes.distance(speed + 1e-6) >= way, "{way} {speed}");
-    }
-    assert_eq!((brakes.speed(0.0), brakes.speed(-1.0), brakes.distance(0.0)), (0.0, 0.0, 0.0));
-    stopping_ways_are_no_shorter_than_exact::<f32>();
-    stopping_ways_are_no_shorter_than_exact::<Q12>();
-    stopping_ways_are_no_shorter_than_exact::<Q16>();
-    stopping_ways_are_no_shorter_than_exact::<Q20>();
-}
-
-/// Of formats that are coarser than f64: rounding never takes away from a way, or adds to a speed.
-fn stopping_ways_are_no_shorter_than_exact<S: Format>() {
-    let digit = S::slack(S::from_f64(8.0)).to_f64();
-    for (deceleration, reaction) in [(0.7, 0.2), (2.3, 0.0), (0.11, 1.3)] {
-        let [a, r] = [deceleration, reaction].map(|number| S::from_f64(number));
-        let brakes = Brakes::new(a, r).expect("brakes");
-        let [a, r] = [a, r].map(S::to_f64);
-        for k in 1..400 {
-            let number = S::from_f64(f64::from(k) * 0.005);
-            let (exact, v) = (number.to_f64(), number.to_f64());
-            let way = brakes.distance(number).to_f64();
-            let least = v * r + v * v / (2.0 * a);
-            assert!(least <= way && way <= least + 20.0 * digit, "{v} m/s: {way} m for {least} m");
-            let speed = brakes.speed(number).to_f64();
-            let most = ((a * r).powi(2) + 2.0 * a * exact).sqrt() - a * r;
-            assert!(speed <= most && most <= speed + 20.0 * digit, "{exact} m: {speed} m/s for {most} m/s");
-        }
-    }
 }
 
 #[test]

@@ -1,13 +1,16 @@
 //! The table of a fleet: order, exchange of agents, and what happens when it is full.
 
+use pcr_core::scalar::Angle;
 use pcr_core::{
     Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef, Turn,
-    Unchanged, Unsolved, plan_delays,
+    Unchanged, Unsolved, first_conflict, plan_delays,
 };
+use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, HostEcm, build_ecm};
+use pcr_planning::fleet::{Fleet, Format, HostEcm, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::Dice;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// What a region is, for comparison.
 type Entry = ([usize; 2], [Interval<f64>; 3], usize);
@@ -182,6 +185,68 @@ fn the_table_of_another_fleet_is_refused() {
     let mut others = again.motions();
     others[3] = others[3].delayed(1.0).and_then(|late| late.with_margin(0.1)?.with_lateness(0.5)).expect("a motion");
     assert_eq!(ecm.row(&others, 0).map(Iterator::count).ok(), ecm.row(&motions, 0).map(Iterator::count).ok());
+}
+
+/// Numbers that two agents exchange do not cancel, nor does what begins and ends at the same points hide another path.
+fn exchanged<S: Format>() {
+    const FLEETS: usize = 2000;
+    let mut dice = Dice::seeded(7);
+    let limits = Limits { speed: S::from_f64(1.0), acceleration: S::from_f64(1.0) };
+    for _ in 0..FLEETS {
+        let mut tenths = |lo, hi| (dice.range(lo, hi) * 10.0).round() / 10.0;
+        let lane = |x: f64, y: f64, length: f64| {
+            let disc = Disc { radius: 0.25, start: [x, y, 0.0], legs: vec![Leg::Line(length)] };
+            Course::<S>::new(&disc).expect("a valid disc")
+        };
+        let y = tenths(-9.0, 9.0);
+        let lanes = [0.0, 0.6, 20.0].map(|aside| lane(tenths(-9.0, 9.0), y + aside, tenths(1.0, 9.0)));
+        let fleet = |radii: [f64; 3]| {
+            [0, 1, 2].map(|agent: usize| {
+                let motion = lanes[agent].motion();
+                Motion::new(motion.path(), motion.profile(), S::from_f64(radii[agent]), S::ZERO).expect("a motion")
+            })
+        };
+        for [a, b] in [[0.25, 0.5], [0.2, 0.4], [0.25, 0.3]] {
+            let (right, wrong) = (fleet([a, b, a]), fleet([b, a, a]));
+            let ecm = build_ecm(&right).expect("a small fleet");
+            assert_eq!(ecm.row(&wrong, 0).err(), Some(Mismatch::OtherFleet), "{a} and {b} m");
+        }
+    }
+    // A whole circle begins and ends at the same point whatever its heading.
+    let circle = |heading: f64| {
+        let start = Pose { position: Point::new(S::from_f64(5.0), S::from_f64(5.0)), heading: S::angle(heading) };
+        let radius = S::from_f64(2.0);
+        let path = Path::<S, 1>::starting_at(start)
+            .and_then(|path| path.arc(radius, Turn::Left, S::Angle::circumference(radius)))
+            .expect("a circle");
+        let profile = Profile::<S, 3>::rest_to_rest(path.as_path().length(), limits).expect("a profile");
+        (path, profile)
+    };
+    let circles = [0.0, 0.5, FRAC_PI_2, PI, -FRAC_PI_2].map(circle);
+    let motions = circles.each_ref().map(|(path, profile)| {
+        Motion::new(path.as_path(), profile.as_profile(), S::from_f64(0.25), S::ZERO).expect("a motion")
+    });
+    let other = Course::<S>::new(&Disc { radius: 0.25, start: [-5.0, 7.0, 0.0], legs: vec![Leg::Line(8.0)] });
+    let other = other.expect("a valid disc");
+    for (k, motion) in motions.iter().enumerate() {
+        let fleet = [*motion, other.motion()];
+        let ecm = build_ecm(&fleet).expect("a small fleet");
+        for (l, stranger) in motions.iter().enumerate().filter(|&(l, _)| l != k) {
+            assert_eq!(ecm.row(&[*stranger, fleet[1]], 0).err(), Some(Mismatch::OtherFleet), "circles {k} and {l}");
+            let always = Interval::new(-S::LIMIT, S::LIMIT);
+            let found = first_conflict(stranger, ecm.row(&fleet, 0).expect("its fleet"), always);
+            assert!(found.is_err() || ecm.is_empty(), "circles {k} and {l}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn exchanged_numbers_and_turned_circles_are_another_fleet() {
+    exchanged::<f64>();
+    exchanged::<f32>();
+    exchanged::<Q12>();
+    exchanged::<Q16>();
+    exchanged::<Q20>();
 }
 
 #[test]

@@ -2,8 +2,8 @@
 //!
 //! Each run has a fleet of its own, drawn at random and planned by the supervisor. Every robot is a [`Client`] with a [`Briefing`] and
 //! a [`Robot`], as on its own controller; between them and the supervisor is one line with faults in both directions. Robots stop
-//! at random, and get new paths when they have arrived. They move as they like up to their holds, and where all discs really
-//! are is checked ten times a step.
+//! at random, get new paths when they have arrived, and in half of the runs forget everything on the way (*restarts*). They move as
+//! they like up to their holds, and where all discs really are is checked ten times a step.
 
 use pcr_core::scalar::Angle;
 use pcr_core::{Brakes, Curve, Interval, Limits, Pass, Point, Pose, Turn};
@@ -28,6 +28,8 @@ pub(crate) const ORDERS: usize = 2 * REGIONS;
 
 /// Seconds between two controls.
 const STEP: f64 = 0.1;
+/// Controls after which no frame from before a restart can be on its way any more.
+const SILENCE: usize = 90;
 /// Most controls of a run: seconds of driving, and as many of waiting.
 const CONTROLS: usize = 6000;
 
@@ -109,13 +111,16 @@ pub(crate) struct Tally {
     pub(crate) faults: usize,
     /// Robots that came to the ends of their paths.
     pub(crate) arrived: usize,
+    /// Controllers that forgot everything, and those of them that had to find their places.
+    pub(crate) restarts: usize,
+    pub(crate) resumed: usize,
     /// Least distance between two discs \[m\].
     pub(crate) gap: f64,
 }
 
 impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { runs, robots, orders, admitted, refused, frames, faults, arrived, gap } = self;
+        let Self { runs, robots, orders, admitted, refused, frames, faults, arrived, restarts, resumed, gap } = self;
         writeln!(
             f,
             "{runs} runs, {robots} robots, {arrived} at the ends of their paths; {orders} times to wait for one"
@@ -124,6 +129,7 @@ impl std::fmt::Display for Tally {
             f,
             "{admitted} paths admitted on the way, {refused} refused; {frames} frames, {faults} of them damaged, lost or late"
         )?;
+        writeln!(f, "{restarts} controllers restarted, {resumed} of them on the way")?;
         write!(f, "no two discs touch; the least distance is {:.1} mm", gap * 1e3)
     }
 }
@@ -211,6 +217,8 @@ struct Driver<S: Number> {
     hold: f64,
     /// Controls since it asked.
     waits: usize,
+    /// Controls for which it says nothing.
+    silent: usize,
 }
 
 /// Runs of a number format, from this seed on. With `reckless`, robots do not look at their holds.
@@ -340,11 +348,13 @@ fn run<S: Rounded>(
             stops: 0,
             hold: 0.0,
             waits: 0,
+            silent: 0,
         })
         .collect();
     tally.robots += drivers.len();
     let (mut there, mut back) = (Way::default(), Way::default());
     let mut missions = random.below(4);
+    let forgets = if random.chance(500) { 3 } else { 0 };
     for _ in 0..CONTROLS {
         for driver in &mut drivers {
             driver.send(&mut there, &mut random, bad, tally);
@@ -358,6 +368,10 @@ fn run<S: Rounded>(
         for driver in &mut drivers {
             driver.hear(&heard, tally)?;
             driver.control(&mut random, reckless)?;
+            if random.chance(forgets) {
+                driver.restart();
+                tally.restarts += 1;
+            }
         }
         advance(&mut drivers, tally)?;
         let arrived = |driver: &Driver<S>| driver.at >= driver.end();
@@ -422,6 +436,10 @@ impl<S: Rounded> Driver<S> {
     /// Sends its question, or the last one again.
     fn send(&mut self, line: &mut Way, random: &mut Random, bad: usize, tally: &mut Tally) {
         self.waits += 1;
+        if self.silent > 0 {
+            self.silent -= 1;
+            return;
+        }
         let none = self.robot.edition() == Edition::default();
         if none && !self.asks {
             self.inquire();
@@ -446,6 +464,14 @@ impl<S: Rounded> Driver<S> {
         if self.at >= self.end() { self.length } else { S::from_f64((self.at - 1e-4).max(0.0)) }
     }
 
+    /// Its controller is switched off and on: the robot stands where it is, and knows nothing any more.
+    fn restart(&mut self) {
+        (self.client, self.robot) = (Client::robot(self.index), Robot::new());
+        self.briefing.clear();
+        (self.asks, self.told, self.speed, self.hold) = (false, None, 0.0, 0.0);
+        self.silent = SILENCE;
+    }
+
     fn inquire(&mut self) {
         (self.asks, self.waits) = (true, 0);
         self.briefing.clear();
@@ -464,9 +490,6 @@ impl<S: Rounded> Driver<S> {
             };
             match answer {
                 Answer::Refused(Refusal::Edition(_)) => self.inquire(),
-                Answer::Orders { agent, edition, path } if self.asks && agent == self.index => {
-                    self.brief(edition, path)?;
-                }
                 Answer::Refused(refusal) if self.asks => return Err(format!("no orders but {refusal:?}").into()),
                 answer if self.asks => {
                     match self.briefing.take(&answer) {
@@ -477,6 +500,7 @@ impl<S: Rounded> Driver<S> {
                     match answer {
                         Answer::Member { agent, with, .. } if agent == self.index => self.told = Some(with),
                         Answer::Passing { pass: Pass::Second, .. } => tally.orders += 1,
+                        Answer::Orders { .. } if self.asks => self.brief(tally)?,
                         _ => {}
                     }
                 }
@@ -486,11 +510,20 @@ impl<S: Rounded> Driver<S> {
         Ok(())
     }
 
-    fn brief(&mut self, edition: Edition, path: u16) -> Result<(), Box<dyn Error>> {
+    fn brief(&mut self, tally: &mut Tally) -> Result<(), Box<dyn Error>> {
         self.asks = false;
         let at = self.reported();
         let fleet = motions(&self.briefing)?;
-        let changed = self.robot.brief(&self.briefing, &fleet, edition, path, at);
+        let mut changed = self.robot.brief(&self.briefing, &fleet, at);
+        if changed == Err(Unclear::Begun) {
+            // It looks around; what it is told is the path that it is on.
+            if self.told != self.path {
+                return Err("another path was begun".into());
+            }
+            tally.resumed += 1;
+            let resumed = self.robot.resume(&self.briefing);
+            changed = resumed.and_then(|()| self.robot.brief(&self.briefing, &fleet, at));
+        }
         if changed == Err(Unclear::Disagreement) {
             // They have changed meanwhile.
             drop(fleet);
@@ -521,7 +554,7 @@ impl<S: Rounded> Driver<S> {
         self.stops = self.stops.saturating_sub(1);
         let way = if reckless { f64::INFINITY } else { self.hold - self.at };
         if way <= 1e-3 {
-            (self.at, self.speed) = (self.hold, 0.0);
+            (self.at, self.speed) = (self.at.max(self.hold), 0.0);
             return Ok(());
         }
         let safe = Brakes::new(1.0, STEP)?.speed(way.clamp(0.0, 1e3));

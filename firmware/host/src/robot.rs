@@ -122,10 +122,12 @@ impl<S: Rounded> Here<S> {
         let last = ask(supervisor, &mut client, &Request::Orders { agent: OWN }, |answer| {
             clear = clear.and_then(|()| told.take(answer));
         })?;
-        let Answer::Orders { path, .. } = last else { return Err(format!("{last:?}").into()) };
+        if !matches!(last, Answer::Orders { .. }) {
+            return Err(format!("{last:?}").into());
+        }
         clear.map_err(|unclear| format!("{unclear:?}"))?;
         let fleet = motions(&told)?;
-        robot.brief(&told, &fleet, edition, path, zero).map_err(|unclear| format!("{unclear:?}"))?;
+        robot.brief(&told, &fleet, zero).map_err(|unclear| format!("{unclear:?}"))?;
         drop(fleet);
         let others = (0..OWN).map(Client::robot).collect();
         Ok(Self { told, robot, client, others, edition, at: zero })
@@ -141,10 +143,11 @@ impl<S: Rounded> Here<S> {
     ) -> Result<S, Box<dyn Error>> {
         let edition = self.edition;
         let other = (reports / 3).min(usize::from(OWN) - 1);
-        places[other] = (places[other] + 4.0 / 3.0).min(4.0);
+        let before = places[other];
+        places[other] = (before + 4.0 / 3.0).min(4.0);
         // At the end of its way where that is reached, whatever the rounding.
         let to = if reports % 3 == 2 { 4.0 } else { places[other] };
-        for at in [0.0, to] {
+        for at in [before, to] {
             let at = S::from_f64(at);
             let report = Request::Report { agent: other as u16, edition, at: pcr_core::Interval::new(at, at) };
             ask(supervisor, &mut self.others[other], &report, |_| {})?;

@@ -59,8 +59,10 @@ impl Client {
     }
 
     /// The robot with this index. It may send requests that change no fleet ([`Request::is_of_robots`]), in any order.
+    /// It counts from 1, so a robot that was restarted waits until no answer to its requests before that can be on its
+    /// way any more.
     pub const fn robot(agent: u16) -> Self {
-        Self::of(agent.saturating_add(1))
+        Self::of(Tag::of_robot(agent))
     }
 
     const fn of(who: u16) -> Self {

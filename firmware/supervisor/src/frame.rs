@@ -15,7 +15,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Version of the protocol.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
 
 /// Length of the longest frame before encoding: header, message, check.
 pub const MAX_PLAIN: usize = 192;
@@ -46,6 +46,11 @@ impl Tag {
     pub const REQUEST: u16 = u16::MAX;
     /// The planner, whose requests change the fleet.
     pub const PLANNER: u16 = 0;
+
+    /// The robot with this index.
+    pub(crate) const fn of_robot(agent: u16) -> u16 {
+        agent.saturating_add(1)
+    }
 }
 
 /// A frame that was received.

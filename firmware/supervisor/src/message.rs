@@ -66,7 +66,7 @@ pub enum Request<S: Number> {
         agent: u16,
         /// Edition of the orders that the robot has.
         edition: Edition,
-        /// Place of the robot on its path \[m\].
+        /// Place of the robot on its path \[m\]: it is not further back than `lo`, nor further on than `hi`.
         at: Interval<S>,
     },
     /// Asks for the orders of a robot. Answers: an [`Answer::Member`] for itself and each robot with which it has
@@ -98,7 +98,8 @@ pub struct Terms<S: Number> {
     /// How far beyond its last place a robot may be sent \[m\]: more than the distance that it goes until its next
     /// report, plus a stopping distance. Parts of its path that are further ahead can still be given to others.
     pub horizon: S,
-    /// When a robot stands, the known lower end of its place may be behind it by up to this \[m\].
+    /// When a robot stands, the known lower end of its place may be behind it by up to this \[m\]. A report may be as
+    /// far behind what the robot has reported before; one that is further behind is refused.
     pub width: S,
 }
 
@@ -117,10 +118,18 @@ impl<S: Number> Request<S> {
         !matches!(self, Self::Hello | Self::Row { .. } | Self::Conflicts) && !self.is_of_robots()
     }
 
+    /// The robot that the request is about, if it is one that robots send about themselves.
+    pub(crate) fn robot(&self) -> Option<u16> {
+        match *self {
+            Self::Report { agent, .. } | Self::Orders { agent } => Some(agent),
+            _ => None,
+        }
+    }
+
     /// Whether a robot may send the request, with sequence numbers of its own: executing it twice, late or in another
     /// order does no harm.
     pub fn is_of_robots(&self) -> bool {
-        matches!(self, Self::Hello | Self::Report { .. } | Self::Orders { .. })
+        *self == Self::Hello || self.robot().is_some()
     }
 }
 
@@ -227,6 +236,9 @@ pub enum Answer<S: Number> {
         edition: Edition,
         /// [`Edition::number`] in which the robot got its path.
         path: u16,
+        /// What is known of its place on this path \[m\]: the length that it has reported, and the length that it was
+        /// given. It stands at the start if that is 0.
+        at: Interval<S>,
     },
 }
 
@@ -357,7 +369,7 @@ pub enum Refusal {
     Running,
     /// No robots are under way.
     NotRunning,
-    /// A term is out of range, or the number of the run is that of the last run.
+    /// A term is out of range, or the number of the run is 0 or that of the last run.
     Terms,
     /// Orders have changed; ask for them with [`Request::Orders`].
     Edition(Edition),
@@ -377,7 +389,8 @@ pub enum Refusal {
     Stuck([u16; 2]),
     /// The second agent is in the way of the first, whichever of them goes first.
     Blocked([u16; 2]),
-    /// A robot sent a request that only the planner may send; robots may greet, report, and ask for their orders.
+    /// A robot sent a request that only the planner may send, or one about another robot; robots may greet, report, and
+    /// ask for their orders.
     Robot,
     /// The table has no room for all regions of the fleet. These numbers are needed (65535 means at least as many);
     /// there is no table now.
@@ -386,6 +399,12 @@ pub enum Refusal {
         regions: u16,
         /// Number of pieces.
         pieces: u16,
+    },
+    /// The place of a robot is behind what it has reported: the report is late, the robot has lost its place, or two
+    /// robots have one index.
+    Behind {
+        /// The robot.
+        agent: u16,
     },
 }
 

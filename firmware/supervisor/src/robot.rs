@@ -6,7 +6,7 @@
 //!     briefing.clear();                                  // Request::Orders, answer by answer
 //!     briefing.take(&answer)?;
 //!     briefing.put_motions(&mut fleet)?;
-//!     robot.brief(&briefing, &fleet, edition, path, at)?; // Answer::Orders
+//!     robot.brief(&briefing, &fleet, at)?;
 //!     loop {
 //!         robot.hear(&briefing, &answer);                // Answer::Place, Answer::Go
 //!         let hold = robot.hold(&fleet);                 // brake so that you stay there
@@ -15,13 +15,17 @@
 //! ```
 //!
 //! While the robot asks for new orders, the last hold that it computed stays valid.
+//!
+//! A robot that was restarted has forgotten how far it has come. If its path was begun, [`Robot::brief`] says so
+//! ([`Unclear::Begun`]): it stays where it is until it knows its place on the path that it was told, calls
+//! [`Robot::resume`], and is briefed again.
 
 use crate::fleet::{Motions, Store};
 use crate::message::{Answer, Edition};
 use crate::number::Number;
 use heapless::Vec;
 use pcr_core::{
-    Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged,
+    Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Scalar, Unchanged,
 };
 
 /// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
@@ -31,6 +35,8 @@ pub struct Briefing<S: Number, const A: usize, const N: usize, const R: usize> {
     agent: u16,
     /// Edition of the answers received so far.
     edition: Option<Edition>,
+    /// From the last answer: the number of the edition in which the robot got its path, and what is known of its place.
+    path: Option<(u16, Interval<S>)>,
     /// Indices of the robots, in increasing order, and their paths.
     members: Vec<u16, A>,
     paths: Store<S, A, N>,
@@ -47,12 +53,12 @@ struct Passing<S> {
 impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N, R> {
     /// An empty briefing for the robot with this index.
     pub const fn new(agent: u16) -> Self {
-        Self { agent, edition: None, members: Vec::new(), paths: Store::new(), passings: Vec::new() }
+        Self { agent, edition: None, path: None, members: Vec::new(), paths: Store::new(), passings: Vec::new() }
     }
 
     /// Removes everything.
     pub fn clear(&mut self) {
-        self.edition = None;
+        (self.edition, self.path) = (None, None);
         self.members.clear();
         self.paths.clear();
         self.passings.clear();
@@ -76,6 +82,10 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
                 let passing = Passing { other, pass, from };
                 self.passings.push(passing).map_err(|_| Invalid::Full("order"))?;
             }
+            Answer::Orders { agent, edition, path, at } if agent == self.agent => {
+                self.is_of(edition)?;
+                self.path = Some((path, at));
+            }
             _ => {}
         }
         Ok(())
@@ -95,6 +105,12 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
         self.paths.put_motions(motions)
     }
 
+    /// Edition of the orders, edition in which the robot got its path, and what is known of its place.
+    fn complete(&self) -> Result<(Edition, Edition, Interval<S>), Unclear> {
+        let (edition, (path, at)) = self.edition.zip(self.path).ok_or(Unclear::Disagreement)?;
+        Ok((edition, Edition { number: path, ..edition }, at))
+    }
+
     fn place_of(&self, agent: u16) -> Option<usize> {
         self.members.iter().position(|&member| member == agent)
     }
@@ -107,10 +123,14 @@ pub enum Unclear {
     Full(Full),
     /// The paths are not those of the briefing, or its own path is not among them.
     Mismatch(Mismatch),
-    /// The answers belong to different editions, or the robot computes other regions than those that were sent.
+    /// The answers belong to different editions or are not complete, or the robot computes other regions than those that
+    /// were sent.
     Disagreement,
     /// There are too many robots or orders, or a path is invalid.
     Invalid(Invalid),
+    /// The path of the orders was begun, but not by this robot as far as it knows: it was restarted since then, or
+    /// another one has its index. [`Robot::resume`].
+    Begun,
 }
 
 impl From<Invalid> for Unclear {
@@ -175,8 +195,20 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         self.own
     }
 
-    /// Accepts orders that are complete ([`Answer::Orders`]); `at` is the robot's place on the path that it had before
-    /// \[m\]. Returns whether its path has changed; it is then at the start of the new one.
+    /// Says that the robot is on the path of these orders, after [`Unclear::Begun`]. Its place there must have been
+    /// found without what it has forgotten, as by landmarks; it is `at` for the next [`Robot::brief`].
+    ///
+    /// # Errors
+    /// [`Unclear::Disagreement`] if the answers are not complete.
+    pub fn resume<const N: usize>(&mut self, briefing: &Briefing<S, A, N, R>) -> Result<(), Unclear> {
+        (_, self.path, _) = briefing.complete()?;
+        (self.sent, self.hold) = (S::ZERO, S::ZERO);
+        Ok(())
+    }
+
+    /// Accepts orders that are complete, up to [`Answer::Orders`]. `at` is the robot's place on the path that it had
+    /// before, or on which it resumes \[m\]; of a place that is known as a range, the lower end. Returns whether its path
+    /// has changed; it is then at the start of the new one.
     ///
     /// Cost: that of [`Orders::fill_row`].
     ///
@@ -187,18 +219,17 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         &mut self,
         briefing: &Briefing<S, A, N, R>,
         fleet: &[Motion<'_, S>],
-        edition: Edition,
-        path: u16,
         at: S,
     ) -> Result<bool, Unclear> {
-        let path = Edition { number: path, ..edition };
-        let changed = path != self.path;
-        let at = if changed { S::ZERO } else { at };
-        if briefing.edition != Some(edition) {
-            return Err(Unclear::Disagreement);
-        }
-        self.own = briefing.place_of(briefing.agent).ok_or(Mismatch::NoSuchAgent(usize::from(briefing.agent)))?;
         self.edition = Edition::default();
+        let (edition, path, known) = briefing.complete()?;
+        let changed = path != self.path;
+        if changed && known.hi > S::ZERO {
+            return Err(Unclear::Begun);
+        }
+        // 0 on a path that was not begun.
+        let at = Scalar::min(Scalar::max(S::ZERO, at), known.hi);
+        self.own = briefing.place_of(briefing.agent).ok_or(Mismatch::NoSuchAgent(usize::from(briefing.agent)))?;
         self.orders.fill_row(fleet, self.own)?;
         let mut told = briefing.passings.iter();
         for place in 0..self.orders.ecm().len() {
@@ -220,6 +251,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         if changed {
             (self.sent, self.hold) = (S::ZERO, S::ZERO);
         }
+        // It may stay where it resumes.
+        self.hold = Scalar::max(self.hold, at);
         (self.edition, self.path) = (edition, path);
         Ok(changed)
     }

@@ -84,7 +84,9 @@ where
                 (replies.tag.who, replies.tag.sequence) = (frame.tag.who, frame.tag.sequence);
                 if frame.tag.who == Tag::PLANNER {
                     self.done(frame.tag.sequence, frame.check, frame.message, replies);
-                } else if frame.message.is_of_robots() {
+                } else if frame.message.is_of_robots()
+                    && frame.message.robot().is_none_or(|agent| Tag::of_robot(agent) == frame.tag.who)
+                {
                     let next = self.next();
                     self.service.answer(frame.message, next, replies);
                 } else {

@@ -22,7 +22,7 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
     /// Replaces an agent, and computes only its regions.
     ///
     /// # Errors
-    /// [`Unchanged`].
+    /// [`Unchanged`]; the new fleet then has no table.
     fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],

@@ -2,11 +2,12 @@
 //!
 //! Robots keep their orders even if messages are lost, late or repeated:
 //!
-//! - The part that a robot has passed only grows. So an old report changes nothing, and a hold that is computed from
-//!   old places is too low, never too high.
+//! - The part that a robot has passed only grows. So an old report is refused or changes nothing, and a hold that is
+//!   computed from old places is too low, never too high.
 //! - The length to which a robot was sent ([`Answer::Go`]) only grows, too, and the robot never goes further. It is the
 //!   upper end of the robot's place, which needs no clock. So a robot that gets a new path passes second wherever
-//!   another robot may already be on the way.
+//!   another robot may already be on the way. It is sent with the orders, so that a robot that was restarted on the way
+//!   does not take itself to be at the start.
 //! - Reports and places carry the edition of the orders. Those about another path have another edition, and are
 //!   dropped.
 
@@ -94,7 +95,12 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         agent: usize,
         motion: Motion<'m, S>,
     ) -> Result<(), Unchanged> {
-        self.orders.replace(fleet, agent, motion)
+        // Robots are not under way: there are no orders to be kept, and so no room for them is needed.
+        self.orders.remove(fleet, agent)?;
+        if let Some(place) = fleet.get_mut(agent) {
+            *place = motion;
+        }
+        self.orders.insert(fleet, agent)
     }
 
     #[inline(never)]
@@ -114,7 +120,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
     #[inline(never)]
     fn order(&mut self, fleet: &[Motion<'_, S>], terms: Terms<S>) -> Result<Edition, Refusal> {
         let possible = |value: S, least: S| Scalar::is_finite(value) && value >= least && value <= S::LIMIT;
-        if terms.run == self.edition.run || !possible(terms.horizon, S::LEAST) || !possible(terms.width, S::ZERO) {
+        let used = [0, self.edition.run].contains(&terms.run);
+        if used || !possible(terms.horizon, S::LEAST) || !possible(terms.width, S::ZERO) {
             return Err(Refusal::Terms);
         }
         self.orders.as_planned(fleet)?;
@@ -144,6 +151,10 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         if !(S::ZERO <= at.lo && at.lo <= at.hi && at.hi <= known.hi) {
             return Err(Refusal::Beyond { agent: short(agent) });
         }
+        // It does not go back: nobody is told how far to go who has lost his place.
+        if at.hi < known.lo - self.terms.width {
+            return Err(Refusal::Behind { agent: short(agent) });
+        }
         let lo = Scalar::max(known.lo, at.lo);
         let to = Scalar::max(known.hi, Scalar::min(lo + self.terms.horizon, end));
         if let Some(robot) = self.robots.get_mut(agent) {
@@ -169,7 +180,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         with: impl Fn(usize) -> Result<Agent<S>, Refusal>,
         send: &mut impl FnMut(Answer<S>),
     ) -> Result<Answer<S>, Refusal> {
-        let (path, edition) = (self.robot(agent)?.path, self.edition);
+        let (Robot { at, path }, edition) = (*self.robot(agent)?, self.edition);
         let partners = || Ok::<_, Refusal>(self.orders.row(fleet, agent)?.map(|(_, region, _)| region.other()));
         let mut next = 0_usize;
         for other in partners()?
@@ -185,7 +196,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         for (_, region, pass) in self.orders.row(fleet, agent)? {
             send(Answer::Passing { other: short(region.other()), edition, pass, from: region.length().lo });
         }
-        Ok(Answer::Orders { agent: short(agent), edition, path })
+        Ok(Answer::Orders { agent: short(agent), edition, path, at })
     }
 
     fn arrived(&self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Refusal> {

@@ -1,9 +1,12 @@
 //! Orders are handed out once, go on as robots do, and whatever belongs to other orders is refused.
 
 use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Radians};
-use pcr_supervisor::frame::{self, Tag};
+use pcr_supervisor::frame::{self, Reads, Receiver, Tag};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
-use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Motions, Request, Robot, Service, Step, Traffic};
+use pcr_supervisor::robot::Unclear;
+use pcr_supervisor::{
+    Agent, Answer, Briefing, Client, Event, Motions, Request, Robot, Service, Session, Step, Traffic,
+};
 use std::f32::consts::FRAC_PI_2;
 
 type Table = Traffic<f32, 3, 8, 12, 16>;
@@ -69,7 +72,7 @@ fn robots_get_their_orders_and_go_by_them() {
         )
         .collect();
     assert_eq!(passes, [(0, Pass::Second), (2, Pass::First)]);
-    assert_eq!(told.last(), Some(&Answer::Orders { agent: 1, edition: FIRST, path: 1 }));
+    assert_eq!(told.last(), Some(&Answer::Orders { agent: 1, edition: FIRST, path: 1, at: Interval::new(0.0, 0.0) }));
 
     let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
     told.iter().for_each(|answer| briefing.take(answer).expect("room"));
@@ -77,7 +80,7 @@ fn robots_get_their_orders_and_go_by_them() {
     briefing.put_motions(&mut fleet).expect("motions");
     let mut robot = Robot::<f32, 3, 4, 8>::new();
     assert_eq!(robot.hold(&fleet), 0.0, "no orders yet");
-    assert_eq!(robot.brief(&briefing, &fleet, FIRST, 1, 0.0), Ok(true));
+    assert_eq!(robot.brief(&briefing, &fleet, 0.0), Ok(true));
     assert_eq!(robot.hold(&fleet), 0.0, "not sent anywhere yet");
     for answer in report(&mut service, 1, FIRST, 0.0) {
         robot.hear(&briefing, &answer);
@@ -107,6 +110,100 @@ fn robots_get_their_orders_and_go_by_them() {
     }
 }
 
+/// What a controller knows that was switched on just now.
+fn fresh(service: &mut Supervisor, agent: u16) -> (Robot<f32, 3, 4, 8>, Briefing<f32, 3, 4, 4>) {
+    let mut briefing = Briefing::new(agent);
+    for answer in answers(service, Request::Orders { agent }) {
+        briefing.take(&answer).expect("room");
+    }
+    (Robot::new(), briefing)
+}
+
+#[test]
+fn a_robot_that_was_restarted_on_the_way_does_not_begin_again() {
+    let mut service = running();
+    for at in [0.0, 2.0, 2.5] {
+        report(&mut service, 0, FIRST, at);
+    }
+    let (mut robot, briefing) = fresh(&mut service, 0);
+    let mut fleet = Motions::new();
+    briefing.put_motions(&mut fleet).expect("motions");
+    for at in [0.0, 2.5] {
+        assert_eq!(robot.brief(&briefing, &fleet, at), Err(Unclear::Begun), "it does not know where it is");
+        robot.hear(&briefing, &Answer::Go { agent: 0, edition: FIRST, to: 4.0 });
+        assert_eq!(robot.hold(&fleet), 0.0, "it stays");
+    }
+    // Who takes itself to be behind what it has reported is not sent anywhere.
+    assert_eq!(report(&mut service, 0, FIRST, 0.0), refused(Refusal::Behind { agent: 0 }));
+    let [lo, hi] = [2.0, 2.75];
+    let range = Request::Report { agent: 0, edition: FIRST, at: Interval::new(lo, hi) };
+    assert_eq!(answers(&mut service, range), [Answer::Go { agent: 0, edition: FIRST, to: 4.0 }], "it may be at 2.5 m");
+    robot.resume(&briefing).expect("a path");
+    assert_eq!(robot.brief(&briefing, &fleet, 2.5), Ok(false));
+    assert_eq!(robot.hold(&fleet), 2.5, "it stays where it is");
+    for answer in report(&mut service, 0, FIRST, 2.5) {
+        robot.hear(&briefing, &answer);
+    }
+    assert_eq!(robot.hold(&fleet), 4.0);
+    assert_eq!(Robot::<f32, 3, 4, 8>::new().resume(&Briefing::<f32, 3, 4, 4>::new(0)), Err(Unclear::Disagreement));
+
+    // Sent, and not heard of since then: it may have set off.
+    report(&mut service, 2, FIRST, 0.0);
+    let (mut robot, briefing) = fresh(&mut service, 2);
+    let mut fleet = Motions::new();
+    briefing.put_motions(&mut fleet).expect("motions");
+    assert_eq!(robot.brief(&briefing, &fleet, 0.0), Err(Unclear::Begun));
+    // Never sent anywhere: it stands at the start.
+    let (mut robot, briefing) = fresh(&mut service, 1);
+    let mut fleet = Motions::new();
+    briefing.put_motions(&mut fleet).expect("motions");
+    assert_eq!((robot.brief(&briefing, &fleet, 3.0), robot.hold(&fleet)), (Ok(true), 0.0));
+}
+
+#[test]
+fn a_report_may_be_behind_by_the_width_and_no_further() {
+    let mut service = planned();
+    let terms = Terms { width: 0.25, ..TERMS };
+    assert_eq!(answers(&mut service, Request::Order(terms)), [Answer::Edition(FIRST)]);
+    report(&mut service, 0, FIRST, 0.0);
+    report(&mut service, 0, FIRST, 1.0);
+    assert_eq!(report(&mut service, 0, FIRST, 0.75), [Answer::Go { agent: 0, edition: FIRST, to: 3.0 }]);
+    assert_eq!(report(&mut service, 0, FIRST, 0.5), refused(Refusal::Behind { agent: 0 }));
+}
+
+#[test]
+fn a_robot_speaks_for_itself_only() {
+    let mut session = Session::of(running());
+    let mut say = |who, request: &Request<f32>| {
+        let frame = frame::encode(Tag { who, sequence: 1, place: Tag::REQUEST }, request).expect("a short request");
+        let mut receiver = Receiver::new(Reads::Answers);
+        let mut said = Vec::new();
+        frame.iter().for_each(|&byte| session.take(byte, &mut |frame: &[u8]| said.extend_from_slice(frame)));
+        let heard = said.into_iter().filter_map(|byte| receiver.take::<Answer<f32>>(byte));
+        heard.map(|frame| frame.expect("a whole frame").message).collect::<Vec<_>>()
+    };
+    let report = Request::Report { agent: 0, edition: FIRST, at: Interval::new(0.0, 0.0) };
+    assert_eq!(say(2, &report), refused(Refusal::Robot), "robot 1 says where robot 0 is");
+    assert_eq!(say(2, &Request::Orders { agent: 0 }), refused(Refusal::Robot));
+    assert_eq!(say(1, &report), [Answer::Go { agent: 0, edition: FIRST, to: 2.0 }]);
+    assert!(matches!(say(2, &Request::Hello)[..], [Answer::Hello { .. }]));
+}
+
+#[test]
+fn an_exchanged_agent_needs_no_room_for_orders_that_it_has_not() {
+    let mut service = Service::<f32, 2, 3, 1, 12, Traffic<f32, 2, 1, 12, 1>>::with(Traffic::new(), &[]);
+    let mut ask = |request| {
+        let mut last = None;
+        service.answer(request, 1, |answer| last = Some(answer));
+        last.expect("an answer")
+    };
+    ask(Request::Add(agent(0.0, 0.0, 0.0)));
+    ask(Request::Add(agent(FRAC_PI_2, 0.0, 3.0)));
+    assert!(matches!(ask(Request::Compute), Answer::Computed { regions: 1, .. }));
+    assert_eq!(ask(Request::Replace { agent: 0, with: agent(0.0, 0.1, 0.0) }), Answer::Fleet { agents: 2 });
+    assert_eq!(ask(Request::Row { ego: 1 }), Answer::End { count: 1 });
+}
+
 #[test]
 fn what_a_robot_was_not_told_of_is_no_order() {
     let mut service = running();
@@ -121,12 +218,12 @@ fn what_a_robot_was_not_told_of_is_no_order() {
         let mut fleet = Motions::new();
         briefing.put_motions(&mut fleet).expect("motions");
         let mut robot = Robot::<f32, 3, 4, 8>::new();
-        let briefed = robot.brief(&briefing, &fleet, FIRST, 1, 0.0).is_ok();
+        let briefed = robot.brief(&briefing, &fleet, 0.0).is_ok();
         robot.hear(&briefing, &Answer::Go { agent: 1, edition: FIRST, to: 4.0 });
         (briefed, robot.hold(&fleet) > 0.0)
     };
     assert_eq!(brief(&told), (true, true));
-    for missing in 0..told.len() - 1 {
+    for missing in 0..told.len() {
         let mut less = told.clone();
         less.remove(missing);
         assert_eq!(brief(&less), (false, false), "without {:?}", told[missing]);
@@ -180,7 +277,9 @@ fn rights_are_given_once_and_the_fleet_stays_while_robots_go() {
         answers(&mut service, Request::Add(agent));
     }
     answers(&mut service, Request::Compute);
-    assert_eq!(answers(&mut service, Request::Order(TERMS)), refused(Refusal::Terms), "the number of the last run");
+    for (run, why) in [(TERMS.run, "the number of the last run"), (0, "no number")] {
+        assert_eq!(answers(&mut service, Request::Order(Terms { run, ..TERMS })), refused(Refusal::Terms), "{why}");
+    }
     assert!(matches!(answers(&mut service, Request::Order(Terms { run: 8, ..TERMS }))[..], [Answer::Edition(_)]));
     let mut meeting = Supervisor::with(Table::new(), &[]);
     for agent in [agent(0.0, 0.0, 0.0), agent(FRAC_PI_2, 0.0, 0.0)] {
@@ -240,7 +339,8 @@ fn a_list_that_has_become_shorter_while_it_was_sent_is_asked_for_anew() {
         frame.iter().filter_map(|&byte| client.take::<f32>(byte)).collect::<Vec<_>>()
     };
     let passing = Answer::Passing { other: 0, edition: FIRST, pass: Pass::First, from: 1.0 };
-    let end = Answer::Orders { agent: 1, edition: Edition { number: 2, ..FIRST }, path: 1 };
+    let end =
+        Answer::Orders { agent: 1, edition: Edition { number: 2, ..FIRST }, path: 1, at: Interval::new(0.0, 0.0) };
     for place in 0..3 {
         assert_eq!(hear(place, &passing), [Event::Answer(passing.clone())]);
     }

@@ -81,7 +81,7 @@ fn every_message_comes_back_as_it_was() {
         Answer::Place { agent: 65535, edition, at: 2.5_f32 },
         Answer::Go { agent: 65535, edition, to: 2.5 },
         Answer::Passing { other: 65535, edition, pass: Pass::Second, from: 2.5 },
-        Answer::Orders { agent: 65535, edition, path: 65535 },
+        Answer::Orders { agent: 65535, edition, path: 65535, at: Interval::new(0.5, 1.5) },
     ] {
         there_and_back(answer);
     }
@@ -119,6 +119,7 @@ fn every_message_comes_back_as_it_was() {
         Refusal::Blocked([65535; 2]),
         Refusal::Robot,
         Refusal::Needs { regions: 65535, pieces: 65535 },
+        Refusal::Behind { agent: 65535 },
     ] {
         there_and_back(Answer::<f32>::Refused(refusal));
     }

@@ -1,4 +1,4 @@
-//! A checksum that identifies the fleet of a table.
+//! A checksum that identifies the fleet of a table. A sum, so that one agent can be taken out and put in again.
 
 use crate::motion::Motion;
 use crate::scalar::Scalar;

@@ -95,6 +95,7 @@ where
         prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
     ) -> Result<(), Refused> {
         let Mission { agent, motion, progress: own } = mission;
+        let tolerances = tolerances.limited();
         self.ecm.holds_all(fleet)?;
         let (Some(&before), Some(place)) = (fleet.get(agent), progress.get_mut(agent)) else {
             return Err(Mismatch::NoSuchAgent(agent).into());
@@ -258,7 +259,7 @@ where
                 let other = if agents[0] == agent { agents[1] } else { agents[0] };
                 let held = if pass == Pass::First { other } else { agent };
                 let held = reaches.get(held).filter(|reach| reach.is_stuck())?;
-                let counts = order.open && order.pass_of(agent, agents) == pass && order.hold < held.at + gain;
+                let counts = order.open && order.pass_of(agent, agents) == pass && order.hold <= held.at + gain;
                 counts.then_some(place)
             })
         };

@@ -35,10 +35,12 @@ impl<S: Scalar> Brakes<S> {
         Ok(Self { deceleration, reaction, lost })
     }
 
-    /// Stopping distance from a speed \[m/s\], rounded up \[m\]: `v τ + v² / 2a`.
+    /// Stopping distance from a speed \[m/s\], rounded up \[m\]: `v τ + v² / 2a`. A speed beyond [`Scalar::LIMIT`] is
+    /// taken as that, and a distance beyond it may be too short, but is beyond it as well. 0 if the speed is not above
+    /// 0, as NaN is not.
     pub fn distance(&self, speed: S) -> S {
-        let speed = speed.max(S::ZERO);
-        let ramp = speed.times(speed.quotient(self.deceleration)).narrow().half();
+        let speed = S::ZERO.max(speed).min(S::LIMIT);
+        let ramp = speed.portion(speed, self.deceleration.double());
         let way = speed.times(self.reaction).narrow() + ramp;
         // Only distances above 0: those of the lowest speeds round to 0.
         if speed > S::ZERO { way + S::slack(way + speed) } else { way }

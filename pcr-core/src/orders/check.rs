@@ -25,8 +25,16 @@ pub struct Tolerances<S> {
     pub width: S,
     /// A gain below this \[m\] does not count as progress, because agents that follow one another around a circle may
     /// gain less and less. The number of sweeps of a check is at most the length of all paths divided by this. With 0
-    /// only a gain of 0 is none.
+    /// only a gain of 0 is none. Less than 0 is taken as 0.
     pub gain: S,
+}
+
+impl<S: Scalar> Tolerances<S> {
+    /// Neither below 0 nor too large to be added to a length.
+    pub(super) fn limited(self) -> Self {
+        let limited = |length: S| S::ZERO.max(length).min(S::LIMIT);
+        Self { width: limited(self.width), gain: limited(self.gain) }
+    }
 }
 
 /// The state of an agent in a check.
@@ -88,8 +96,7 @@ where
     ) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
         let reaches = reaches.get_mut(..fleet.len()).ok_or(Full::Reaches)?;
-        let limited = |length: S| S::ZERO.max(length).min(S::LIMIT);
-        let tolerances = Tolerances { width: limited(tolerances.width), gain: limited(tolerances.gain) };
+        let tolerances = tolerances.limited();
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();
             // A place that is NaN is taken as the start.

@@ -198,6 +198,9 @@ macro_rules! impl_float {
             fn is_finite(self) -> bool {
                 self.0.is_finite()
             }
+            fn digest(self) -> u32 {
+                Scalar::digest(self.0)
+            }
             fn is_in_range(self) -> bool {
                 self.0.abs() <= $heading
             }

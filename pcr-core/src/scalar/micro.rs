@@ -169,6 +169,9 @@ impl Angle<Micro> for Radians<Micro> {
     fn is_finite(self) -> bool {
         self.0.0.is_finite()
     }
+    fn digest(self) -> u32 {
+        Scalar::digest(self.0)
+    }
     fn is_in_range(self) -> bool {
         self.0.0.abs() <= 1_024.0
     }

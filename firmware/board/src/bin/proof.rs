@@ -113,7 +113,7 @@ fn arithmetic<S: Scalar>() {
     ));
     let (p, q) = (angle::<S>(), angle::<S>());
     any((p + q, p - q, -p, p < q, Angle::is_finite(p), Angle::sin_cos(p), Angle::arc_length(p, a)));
-    any((Angle::subtended_rest(p, a, b), Angle::sum(p, q), Angle::is_in_range(p)));
+    any((Angle::subtended_rest(p, a, b), Angle::sum(p, q), Angle::is_in_range(p), Angle::digest(p)));
     any((S::Angle::subtended(a, b), S::Angle::half_subtended(a, b)));
     any((S::Angle::atan2(a, b), S::Angle::atan2_each([a, b], [b, a]), S::Angle::circumference(a)));
 }

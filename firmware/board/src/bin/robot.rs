@@ -66,10 +66,11 @@ fn work(link: &mut Link, told: &mut Told, keeper: &mut Keeper) -> Option<()> {
     told.clear();
     let mut clear = true;
     let last = link.ask(&Request::Orders { agent: OWN }, |answer| clear &= told.take(answer).is_ok())?;
-    let Answer::Orders { edition, path, .. } = last else { return None };
+    let Answer::Orders { edition, .. } = last else { return None };
     let mut fleet = Motions::new();
     told.put_motions(&mut fleet).ok().filter(|()| clear)?;
-    keeper.brief(told, &fleet, edition, path, Number::ZERO).ok()?;
+    // It stands at the start. Restarted on the way it would be refused, as it cannot find its place there.
+    keeper.brief(told, &fleet, Number::ZERO).ok()?;
     let end = fleet.get(keeper.own())?.path().length();
     let meter = Meter::new();
     let (mut at, mut most, mut all, mut holds) = (Number::ZERO, 0_u32, 0_u32, 0_u32);
