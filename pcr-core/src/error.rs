@@ -184,6 +184,14 @@ pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Re
     if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }
 }
 
+/// A length, in range and not negative. Below the square of [`Scalar::LEAST`](crate::Scalar::LEAST) it is taken as 0: the
+/// product of a length with an acceleration would lose its digits to underflow, and a segment without any length could
+/// then get the time of a whole ramp.
+pub(crate) fn length<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
+    let least = crate::scalar::Wide::narrow(S::LEAST.times(S::LEAST));
+    Ok(if not_negative(value, "length")? < least { S::ZERO } else { value })
+}
+
 /// Checks the radius of a disc or an arc.
 pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
     if positive(value, "radius")? < S::LEAST { Err(Invalid::TooSmall("radius")) } else { Ok(value) }

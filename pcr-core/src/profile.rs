@@ -4,7 +4,7 @@
 //! the motion, so a delay does not change a profile. Both maps are evaluated from the slow end of a phase, where the
 //! square root of the inverse does not cancel (docs/equations.md, time map).
 
-use crate::error::{Invalid, in_range, not_negative, positive};
+use crate::error::{self, Invalid, in_range, not_negative, positive};
 use crate::geometry::Interval;
 use crate::scalar::{Ramp, Scalar, Wide};
 use heapless::Vec;
@@ -175,7 +175,7 @@ impl<S: Scalar> Profile<S, 3> {
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] (length), [`Invalid::NonPositive`] (limits).
     pub fn rest_to_rest(length: S, limits: Limits<S>) -> Result<Self, Invalid> {
-        not_negative(length, "length")?;
+        let length = error::length(length)?;
         positive(limits.speed, "largest speed")?;
         positive(limits.acceleration, "largest acceleration")?;
         let mut phases = Vec::new();

@@ -14,7 +14,7 @@ mod near;
 
 pub(crate) use near::{ROW, in_box};
 
-use crate::error::{self, Invalid, in_range, not_negative};
+use crate::error::{self, Invalid, in_range};
 use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
 use crate::scalar::{Angle, Scalar, Sector, Unit};
 
@@ -126,7 +126,7 @@ impl<S: Scalar> Segment<S> {
     /// [`Invalid::NonFinite`], [`Invalid::Negative`], [`Invalid::OutOfRange`] (also for the end point and the
     /// length of the path).
     pub fn then_line(&self, length: S) -> Result<Self, Invalid> {
-        not_negative(length, "length")?;
+        let length = error::length(length)?;
         let mut line = self.then(Curve::Line, S::ZERO, length);
         line.advance();
         line.bounds = Bounds::around(line.start, line.end);
@@ -144,7 +144,7 @@ impl<S: Scalar> Segment<S> {
     pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
         error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
-        not_negative(length, "length")?;
+        let length = error::length(length)?;
         let circumference = S::Angle::circumference(radius);
         // The length of a full turn may be a product `sweep * radius` with a rounding error.
         if length > circumference + S::slack(circumference) {

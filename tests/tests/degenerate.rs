@@ -2,7 +2,7 @@
 //!
 //! All agents drive at 1 m/s from the time 0 on, so that the time is the length `s` along the other's path.
 
-use pcr_core::Interval;
+use pcr_core::{Encounter, Interval, Limits, Motion, Path, Point, Pose, Profile, Radians, Scalar};
 use pcr_tests::audit::Audit;
 use pcr_tests::disc::{Disc, Leg};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -389,4 +389,44 @@ fn a_joint_inside_a_region_does_not_cut_it() {
     assert!(
         ecm.pair(&motions, 0, 1).expect("the table of the fleet").next().expect("one region").pieces().count() >= 8
     );
+}
+
+/// A leg that is shorter than any rounding changes nothing, however short it is: not what is met on the way, and not when.
+#[test]
+fn legs_of_hardly_any_length_change_no_conflict() {
+    fn met<S: Scalar<Angle = Radians<S>>>(tiny: S, number: fn(f64) -> S) -> (S, S) {
+        let path = |[x, y, heading]: [f64; 3], lengths: &[S]| {
+            let pose = Pose { position: Point::new(number(x), number(y)), heading: Radians(number(heading)) };
+            let path =
+                lengths.iter().try_fold(Path::<S, 3>::starting_at(pose).unwrap(), |path, &length| path.line(length));
+            path.unwrap()
+        };
+        let profile = |path: &Path<S, 3>, speed: f64, acceleration: f64| {
+            let limits = Limits { speed: number(speed), acceleration: number(acceleration) };
+            Profile::<S, 3>::rest_to_rest(path.as_path().length(), limits).unwrap()
+        };
+        let a = path([1.893, -2.326, 2.1995], &[tiny, number(1.1313), tiny]);
+        let b = path([2.842, -1.628, -1.905], &[number(1.773)]);
+        let (p, q) = (profile(&a, 1.86, 0.0211), profile(&b, 0.7046, 1.205));
+        let motion = |path: &Path<S, 3>, profile: &Profile<S, 3>, radius: f64| -> (Path<S, 3>, Profile<S, 3>, S) {
+            (path.clone(), profile.clone(), number(radius))
+        };
+        let [a, b] = [motion(&a, &p, 0.888), motion(&b, &q, 0.2117)];
+        let [a, b] = [&a, &b].map(|(path, profile, radius)| {
+            Motion::new(path.as_path(), profile.as_profile(), *radius, S::ZERO).unwrap()
+        });
+        let encounter = Encounter::new(&a, &b);
+        let conflict = encounter.conflicts(encounter.time()).next().expect("a conflict");
+        (conflict.time.lo, conflict.depth)
+    }
+    let (time, depth) = met(0.0, |number| number);
+    assert!((depth - 0.4092).abs() < 1e-4, "{time} {depth}");
+    for tiny in [5e-324, 1e-320, 1e-310, 1e-200, 0.9e-150, 1.1e-150, 1e-100, 1e-30, 1e-15] {
+        let (at, deep) = met(tiny, |number| number);
+        assert!((at - time).abs() < 1e-9 && (deep - depth).abs() < 1e-9, "{tiny}: {at} {deep}");
+    }
+    for tiny in [1e-45, 1e-44, 1e-43, 1e-40, 1e-38, 0.9e-18, 1.1e-18, 1e-15, 1e-9] {
+        let (at, deep) = met(tiny as f32, |number| number as f32);
+        assert!((f64::from(at) - time).abs() < 1e-3 && (f64::from(deep) - depth).abs() < 1e-3, "{tiny}: {at} {deep}");
+    }
 }

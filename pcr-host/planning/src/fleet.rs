@@ -260,8 +260,11 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
                 None => last.then_line(length),
                 Some((radius, turn)) => last.then_arc(radius, turn, length),
             };
-            segments.push(next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?);
-            sources.push(source);
+            let next = next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?;
+            if next.length() > S::ZERO {
+                segments.push(next);
+                sources.push(source);
+            }
         }
     }
     if segments.is_empty() {
