@@ -138,3 +138,14 @@ fn a_contact_that_was_proved_is_told_as_in_the_table() {
     let decimals = |number: &str| number.split_once('.').map(|(_, behind)| behind.len());
     assert_eq!((decimals(time), decimals(clearance)), (Some(3), Some(3)), "{line}");
 }
+
+#[test]
+fn nothing_is_proved_of_an_agent_alone() {
+    let nothing = "there are no two discs of different agents, of which contacts could be certified\n";
+    for (name, agents) in [("one.json", json!([straight(1, [0.0; 3], 4.0)])), ("none.json", json!([]))] {
+        let name = file("check", name, json!({ "agents": agents }).to_string());
+        assert!(run(&["check", &name]).ok().contains("no conflicts"));
+        assert!(run(&["check", &name, "--certify"]).failed(2).ends_with(nothing));
+        assert!(run(&["certify", &name]).failed(2).ends_with(nothing));
+    }
+}
