@@ -184,7 +184,12 @@ def refusals(tool, folder, browser):
         wrong += same(tool, folder, browser, f"an arc of {sweep} rad")
         wrong += [] if browser.value("answers.conflicts.length + answers.map.length") else [f"an arc of {sweep} rad has no region"]
     # Far from the origin, where steps of the grid are lost in rounding.
-    browser.value("open(START); const seen = view; grabbed = {}; view = { ...seen, x: 1000000000000000.25 * 1e8 }; drawPlane(); grabbed = null; view = seen; draw(); 0")
+    lines = browser.value("""(() => { open(START); const pen = $('plane').getContext('2d'), seen = view; let lines = 0;
+      pen.stroke = () => { if (++lines > 5000) throw new Error(); };
+      grabbed = {}; view = { ...view, x: 2 ** 54 };
+      try { drawPlane(); } catch { lines = Infinity; }
+      delete pen.stroke; grabbed = null; view = seen; draw(); return String(lines); })()""")
+    wrong += ["the grid has no end far from the origin"] if lines == "Infinity" else []
     return wrong
 
 
