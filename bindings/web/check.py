@@ -7,6 +7,7 @@
 - legs that are dragged close to a tangent are lines, and headings close to a multiple of 45° are that, exactly;
 - delays that the page plans leave no conflict for the tool;
 - a saved file is the scenario, for the page and for the tool; plans that the tool writes are loaded, and what is no scenario is refused with a reason;
+- what the tool refuses is refused, in files and in fields, and what it takes is taken, with the reason said and nothing of it drawn;
 - a link that is copied opens the scenario, in a new window and in one that shows the page.
 
 Screenshots stay in FOLDER."""
@@ -142,6 +143,86 @@ def files(tool, folder, browser):
     return wrong
 
 
+def refusals(tool, folder, browser):
+    """Files that the tool takes or refuses are for the page what they are for the tool; what is refused replaces nothing."""
+    wrong, file, one = [], folder / "judged.json", ONE["agents"][0]
+    fleet = lambda more=(), **fields: {"agents": [dict(one, **fields)], **dict(more)}
+    leg = lambda **fields: fleet(path=[one["path"][0], fields])
+    arc = lambda radius, sweep: leg(kind="arc", radius=radius, sweep=sweep)
+    start = lambda **fields: dict(one["start"], **fields)
+    refused = ((fleet(path=[], radius=0.3, start=start(x=1000000000000000.25)), "agent 1, x: 1000000000000000.2"), (fleet(start=start(heading=-1.1e10)), "agent 1, heading"),
+               (fleet(t_start=None), "t_start is not a number"), (fleet({"name": None}), "the name is not a text"), (fleet({"warnings": None}), "warnings"), (fleet({"warnings": [1]}), "warnings"),
+               (fleet(id="12"), "could be taken for the number"), (fleet(id="+007"), "could be taken for the number"), (fleet(id="a\u0007"), "control character U+0007"), (fleet(id="x" * 201), "201 characters"),
+               (fleet(id="a", label="b"), "its id is a text"), (fleet(label=None), "not a text"), (fleet(label="a\nb"), "control character U+000A"), (fleet(label="a\u202eb"), "U+202E"), (fleet(label="x" * 300), "300 characters"),
+               (arc(-1, 1), "agent 1, leg 2, radius: -1 is out of range; allowed is above 0"), (arc(0, 1), "agent 1, leg 2, radius"), (leg(kind="line", length=-1), "agent 1, leg 2, length"),
+               (fleet(radius=0), "agent 1, radius"), (fleet(radius=-0.2), "agent 1, radius"), (fleet(v_max=0), "agent 1, v_max"), (fleet(a_max=-1), "agent 1, a_max"), (fleet(t_start=1e10), "the motion takes"),
+               (fleet(v_max=1e-10), "the motion takes"), (arc(1e10, 2), "m long"), (fleet(start=None), "not an object"))
+    # The highest number that an id may have as text is one less than 2^64.
+    taken = (fleet(id="18446744073709551616"), fleet(id="é" * 200), fleet(label="x" * 200), fleet(label=""), fleet({"name": ""}), fleet({"warnings": []}), fleet(t_start=-5), fleet(path=[]),
+             leg(kind="line", length=0), arc(0.5, 10), arc(0.5, -20), arc(0.5, 6.283185307179587), arc(0.5, 6.2831853071796))
+    status = lambda: subprocess.run([tool, "check", file, "-q"], capture_output=True, check=False).returncode
+    browser.value("open(START); 0")
+    kept, drawn = browser.value("scenario"), browser.value("$('plane').toDataURL()")
+    for scenario, reason in refused:
+        file.write_text(json.dumps(scenario))
+        said = load(browser, file)
+        if status() != 2 or not said.startswith("Not loaded: ") or reason not in said or browser.value("scenario") != kept or browser.value("$('plane').toDataURL()") != drawn:
+            wrong.append(f"{file.read_text()}: the tool ends with {status()}, the page says {said}")
+    for scenario in taken:
+        file.write_text(json.dumps(scenario))
+        said = load(browser, file)
+        if status() != 0 or said != "No conflict." or browser.value("scenario.agents[0].path") != scenario["agents"][0]["path"]:
+            wrong.append(f"{file.read_text()}: the tool ends with {status()}, the page says {said}")
+    # More turns than there is room for.
+    file.write_text(json.dumps(arc(0.5, 200)))
+    said = load(browser, file)
+    wrong += [] if "each turn of an arc counted" in said else [f"an arc of 32 turns: {said}"]
+    # Two and four turns, of which one is hit by another agent.
+    for sweep in (10, -20):
+        other = dict(one, id=2, start={"x": 2, "y": -2, "heading": math.pi / 2}, path=[{"kind": "line", "length": 5}])
+        browser.value(f"open({json.dumps({'agents': [*arc(0.5, sweep)['agents'], other]})}); 0")
+        wrong += same(tool, folder, browser, f"an arc of {sweep} rad")
+        wrong += [] if browser.value("answers.conflicts.length + answers.map.length") else [f"an arc of {sweep} rad has no region"]
+    # Far from the origin, where steps of the grid are lost in rounding.
+    lines = browser.value("""(() => { open(START); const pen = $('plane').getContext('2d'), seen = view; let lines = 0;
+      pen.stroke = () => { if (++lines > 5000) throw new Error(); };
+      grabbed = {}; view = { ...view, x: 2 ** 54 };
+      try { drawPlane(); } catch { lines = Infinity; }
+      delete pen.stroke; grabbed = null; view = seen; draw(); return String(lines); })()""")
+    wrong += ["the grid has no end far from the origin"] if lines == "Infinity" else []
+    return wrong
+
+
+def fields(browser):
+    """What is typed into a field is taken, or told and not drawn; agents that are added have ids that the tool takes."""
+    wrong = []
+    typed = lambda field, text: (browser.value(f"(() => {{ const f = document.querySelector('[aria-label=\"{field}\"]'); f.value = '{text}'; f.dispatchEvent(new Event('input')); }})()"),
+                                 browser.value(SLEEP.format(100)), browser.value("$('said').textContent"))[2]
+    browser.value("open(START); chosen = scenario.agents.findIndex((agent) => agent.path.some((leg) => leg.kind === 'arc')); edit(); update(); 0")
+    leg = browser.value("scenario.agents[chosen].path.findIndex((leg) => leg.kind === 'arc')") + 1
+    agent, kept, drawn = browser.value("chosen") + 1, browser.value("scenario"), browser.value("$('plane').toDataURL()")
+    for field, text, reason in ((f"Radius of leg {leg}", "-1", f"agent {agent}, leg {leg}, radius: -1"), (f"Radius of leg {leg}", "0", f"leg {leg}, radius"), (f"Turn of leg {leg}", "0", "does not turn"),
+                                (f"Turn of leg {leg}", "", f"leg {leg}, sweep is not a number"), ("Radius [m]", "-0.1", f"agent {agent}, radius"), ("Speed [m/s]", "0", f"agent {agent}, v_max"),
+                                ("Start x [m]", "1000000000000000.25", f"agent {agent}, x")):
+        said = typed(field, text)
+        if not said.startswith("Not taken: ") or reason not in said or browser.value("scenario") != kept or browser.value("$('plane').toDataURL()") != drawn:
+            wrong.append(f"{text} in {field}: {said}")
+        wrong += [] if browser.value(f"document.querySelector('[aria-label=\"{field}\"]').ariaInvalid") == "true" else [f"{field} is not marked"]
+        browser.value("edit(); update(); 0")
+    said = typed(f"Radius of leg {leg}", "-1"), typed(f"Radius of leg {leg}", "1.5")
+    if said[1].startswith("Not") or browser.value(f"scenario.agents[chosen].path[{leg - 1}].radius") != 1.5:
+        wrong.append(f"a radius that is mended: {said[1]}")
+    # Whatever else makes a scenario one that is refused: nothing of it is drawn.
+    browser.value(f"open({json.dumps(ONE)}); scenario.agents[0].start.x = 1e13; update(); 0")
+    blank = browser.value("!$('plane').getContext('2d').getImageData(0, 0, $('plane').width, $('plane').height).data.some((byte) => byte)")
+    wrong += [] if blank and browser.value("$('said').classList.contains('wrong')") else ["what is refused is drawn"]
+    named = {"agents": [dict(ONE["agents"][0], id="AGV-7"), dict(ONE["agents"][0], id="agent-1", start={"x": 0, "y": 5, "heading": 0})]}
+    browser.value(f"open({json.dumps(named)}); $('add').click(); $('add').click(); 0")
+    ids = browser.value("scenario.agents.map((agent) => agent.id)")
+    wrong += [] if ids == ["AGV-7", "agent-1", "agent-2", "agent-3"] and browser.value("read(scenario).agents.length") == 4 else [f"agents that are added to named ones are {ids}"]
+    return wrong
+
+
 def links(browser, page):
     """Copies a link and opens it, in a page that is newly opened and in one that shows something else."""
     wrong = []
@@ -231,7 +312,7 @@ def main(tool, page, folder):
         drag(browser, "leg", (90, -60), moves=40)
         took = sorted(browser.value("update = inner, took"))
         print(f"a drag with {browser.value('scenario.agents.length')} agents, regions and pictures: {len(took)} frames of {took[len(took) // 2]:.1f} ms, {took[-1]:.1f} ms at most")
-        wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + links(browser, page)
+        wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + refusals(tool, folder, browser) + fields(browser) + links(browser, page)
         wrong += browser.noise()
         browser.open(page, 390, "dark")
         ready(browser)

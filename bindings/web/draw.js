@@ -24,7 +24,8 @@ function frame(width, height) {
   return { at: ({ x, y }) => [width / 2 + (x - view.x) * view.zoom, height / 2 - (y - view.y) * view.zoom] };
 }
 
-const TIP = 34;
+// More lines than a wide screen has; steps that are lost in rounding must not go on for ever.
+const TIP = 34, LINES = 400;
 
 function handles(agent, at) {
   const poses = joints(agent), [x, y] = at(poses[0]);
@@ -33,10 +34,11 @@ function handles(agent, at) {
 }
 
 function trace(pen, agent, at) {
-  const poses = joints(agent);
+  // A canvas ends an arc of more than one turn where it began.
+  const path = parts(agent.path), poses = joints({ start: agent.start, path });
   pen.beginPath();
   pen.moveTo(...at(poses[0]));
-  agent.path.forEach((leg, k) => {
+  path.forEach((leg, k) => {
     if (leg.kind === "line") return pen.lineTo(...at(poses[k + 1]));
     const side = Math.sign(leg.sweep), { x, y, heading } = poses[k], r = leg.radius;
     const centre = { x: x - side * r * Math.sin(heading), y: y + side * r * Math.cos(heading) };
@@ -46,13 +48,15 @@ function trace(pen, agent, at) {
 }
 
 function drawPlane() {
-  const { pen, width, height } = fit($("plane")), { at } = frame(width, height);
+  const { pen, width, height } = fit($("plane"));
+  if (!answers.valid) return;
+  const { at } = frame(width, height);
   const spacing = 10 ** Math.ceil(Math.log10(40 / view.zoom));
   pen.strokeStyle = tint("--grid");
   for (const [axis, size] of [["x", width], ["y", height]]) {
-    const half = size / 2 / view.zoom;
-    for (let k = Math.ceil((view[axis] - half) / spacing); k * spacing < view[axis] + half; k++) {
-      const [x, y] = at({ x: k * spacing, y: k * spacing });
+    const half = size / 2 / view.zoom, first = Math.ceil((view[axis] - half) / spacing);
+    for (let line = 0; line < LINES && (first + line) * spacing < view[axis] + half; line++) {
+      const k = first + line, [x, y] = at({ x: k * spacing, y: k * spacing });
       pen.beginPath();
       if (axis === "x") { pen.moveTo(x, 0); pen.lineTo(x, height); } else { pen.moveTo(0, y); pen.lineTo(width, y); }
       pen.stroke();
@@ -60,7 +64,7 @@ function drawPlane() {
   }
   pen.fillStyle = tint("--dim");
   pen.fillText(`grid ${spacing} m`, 8, height - 8);
-  const places = answers.valid ? rows(pcr.pcr_places(time), 6) : [];
+  const places = rows(pcr.pcr_places(time), 6);
   const hit = new Set(answers.conflicts.filter((row) => row[2] <= time && time <= row[3]).flatMap((row) => [row[0], row[1]]));
   scenario.agents.forEach((agent, k) => {
     pen.strokeStyle = colour(k);

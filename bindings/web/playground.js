@@ -7,10 +7,19 @@ const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 const tint = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 let pcr, scenario, chosen = 0, time = 0, playing = false, answers, view, grabbed = null, queued = false;
+// Why what stands in a field was not taken.
+let untaken = "";
 
 function say(text, wrong = false) {
   $("said").textContent = text;
   $("said").classList.toggle("wrong", wrong);
+}
+
+/** Gives the module a scenario; throws the reason if the tool or the module refuses it. */
+function build(next) {
+  read(next);
+  write(next.agents);
+  rows(pcr.pcr_build(next.agents.length), 0);
 }
 
 /** Computes everything anew; what cannot be computed is said, and nothing of it is drawn. */
@@ -19,8 +28,7 @@ function update() {
   chosen = Math.max(0, Math.min(chosen, agents.length - 1));
   answers = { conflicts: [], map: [], holds: null, first: 0, last: 1, valid: false };
   try {
-    write(agents);
-    rows(pcr.pcr_build(agents.length), 0);
+    build(scenario);
     answers.valid = true;
     answers.first = Math.min(0, pcr.pcr_first());
     answers.last = Math.max(pcr.pcr_last(), answers.first + 1);
@@ -32,6 +40,7 @@ function update() {
   } catch (error) {
     say(error.message, true);
   }
+  if (untaken) say(untaken, true);
   draw();
 }
 
@@ -56,7 +65,7 @@ function draw() {
   drawPlane();
   drawMap();
   const agent = scenario.agents[chosen], hold = answers.holds?.[chosen];
-  $("caption").textContent = agent ? `Collision map of agent ${name(chosen)}: where it must not be, by time and travelled length, in the colour of the other agent; the line is its motion.${
+  $("caption").textContent = agent && answers.valid ? `Collision map of agent ${name(chosen)}: where it must not be, by time and travelled length, in the colour of the other agent; the line is its motion.${
     hold === undefined ? "" : isFinite(hold) ? ` Now it may go to ${hold.toFixed(3)} m (dashed).` : " Now nobody is in its way."}` : "";
   const ends = (from, to) => [from.toFixed(3), to.toFixed(3)];
   table($("conflicts"), ["i", "j", "from [s]", "to [s]", "depth [m]"],
@@ -74,6 +83,7 @@ const SLIDERS = [["radius", "Radius [m]", 0.02, 1], ["v_max", "Speed [m/s]", 0.0
 /** The controls of the chosen agent. */
 function edit() {
   const agents = scenario.agents, agent = agents[chosen];
+  untaken = "";
   $("agent").replaceChildren(...agents.map((_, k) => new Option(name(k), k, false, k === chosen)));
   $("which").textContent = agent ? name(chosen) : "";
   $("remove").disabled = !agent;
@@ -82,7 +92,19 @@ function edit() {
   const number = (object, field, what, scale = 1) => {
     const input = Object.assign(document.createElement("input"), { type: "number", step: "any", value: +(object[field] * scale).toPrecision(12) });
     input.setAttribute("aria-label", what);
-    input.addEventListener("input", () => { if (isFinite(input.valueAsNumber)) { object[field] = input.valueAsNumber / scale; later(); } });
+    input.addEventListener("input", () => {
+      const before = object[field];
+      object[field] = input.valueAsNumber / scale;
+      untaken = "";
+      try {
+        read(scenario);
+      } catch (error) {
+        object[field] = before;
+        untaken = `Not taken: ${error.message}`;
+      }
+      input.setAttribute("aria-invalid", Boolean(untaken));
+      later();
+    });
     return input;
   };
   $("sliders").replaceChildren(...(agent ? SLIDERS : []).map(([field, text, min, max]) => {
@@ -90,7 +112,7 @@ function edit() {
     Object.assign(slider, { type: "range", min, max, step: "any", value: agent[field] });
     const exact = number(agent, field, text);
     slider.setAttribute("aria-label", `${text}, slider`);
-    slider.addEventListener("input", () => { agent[field] = +Number(slider.value).toFixed(3); exact.value = agent[field]; later(); });
+    slider.addEventListener("input", () => { agent[field] = +Number(slider.value).toFixed(3); exact.value = agent[field]; exact.removeAttribute("aria-invalid"); untaken = ""; later(); });
     exact.addEventListener("input", () => { slider.value = agent[field]; });
     label.append(text, slider, exact);
     return label;
@@ -157,10 +179,11 @@ function listen() {
   $("agent").addEventListener("change", () => { chosen = Number($("agent").value); edit(); update(); });
   $("add").addEventListener("click", () => {
     const ids = scenario.agents.map((agent) => agent.id), named = ids.some((id) => typeof id === "string"), low = view ?? { x: 0, y: 0 };
-    // The least number that nobody has, as a name where the others have names.
-    let id = 1;
-    while (ids.some((other) => String(other) === String(id))) id++;
-    scenario.agents.push({ id: named ? String(id) : id, radius: 0.3, v_max: 1, a_max: 0.5, t_start: 0, start: { x: low.x - 2, y: low.y, heading: 0 },
+    // The least number that nobody has; in a name where the others have names, as digits alone would be taken for a number.
+    const made = (number) => (named ? `agent-${number}` : number);
+    let number = 1;
+    while (ids.includes(made(number))) number++;
+    scenario.agents.push({ id: made(number), radius: 0.3, v_max: 1, a_max: 0.5, t_start: 0, start: { x: low.x - 2, y: low.y, heading: 0 },
       path: [{ kind: "line", length: 2 }, { kind: "arc", radius: 1, sweep: Math.PI / 2 }] });
     chosen = scenario.agents.length - 1;
     edit();
@@ -173,7 +196,7 @@ function listen() {
     try {
       if (!answers.valid) throw new Error($("said").textContent);
       const delays = rows(pcr.pcr_plan(), 1).map(([delay]) => delay);
-      scenario.agents.forEach((agent, k) => { agent.t_start = (agent.t_start ?? 0) + delays[k]; });
+      scenario.agents.forEach((agent, k) => { agent.t_start = agent.t_start + delays[k]; });
       edit();
       update();
       say(`Planned: delays ${delays.map((delay, k) => `${name(k)}: ${delay.toFixed(2)} s`).join(", ")}`);
@@ -235,7 +258,15 @@ function listen() {
 }
 
 function open(found) {
-  scenario = read(found);
+  const next = read(found);
+  try {
+    build(next);
+  } catch (error) {
+    // The module has to know again what is shown.
+    if (scenario) update();
+    throw error;
+  }
+  scenario = next;
   chosen = 0;
   time = 0;
   view = null;

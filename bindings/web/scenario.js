@@ -8,18 +8,32 @@ function rows(count, width) {
   return Array.from({ length: count }, (_, k) => Array.from(numbers.subarray(k * width, (k + 1) * width)));
 }
 
+/** Parts of at most one turn each, equally long, that the tool makes of a leg. A full turn may come in with a rounded 2π. */
+const turns = (leg) => (leg.kind === "line" ? 1 : Math.max(1, Math.ceil(Math.abs(leg.sweep) / (2 * Math.PI) * (1 - 1e-12))));
+
+/** The legs as the library takes them. With three turns or more, lengths may differ from the tool's in the last digit. */
+const parts = (path) => path.flatMap((leg) => (turns(leg) === 1 ? [leg] : Array(turns(leg)).fill({ ...leg, sweep: leg.sweep / turns(leg) })));
+
 const pair = (leg) => (leg.kind === "line" ? [leg.length, 0] : [leg.radius, leg.sweep]);
 
 function write(agents) {
   const stride = pcr.pcr_stride(), input = new Float64Array(pcr.memory.buffer, pcr.pcr_input(), AGENTS * stride);
-  agents.forEach((a, k) => input.set([a.start.x, a.start.y, a.start.heading, a.radius, a.t_start ?? 0, a.v_max, a.a_max, a.path.length,
-    ...a.path.flatMap(pair)], k * stride));
+  agents.forEach((a, k) => {
+    // The tool leaves out what has no length.
+    const legs = parts(a.path).filter((leg) => leg.length !== 0);
+    input.set([a.start.x, a.start.y, a.start.heading, a.radius, a.t_start, a.v_max, a.a_max, legs.length, ...legs.flatMap(pair)], k * stride);
+  });
 }
 
 const KEYS = {
   top: ["format", "version", "name", "agents", "warnings"], agent: ["id", "label", "radius", "v_max", "a_max", "t_start", "start", "path"],
   start: ["x", "y", "heading"], line: ["kind", "length"], arc: ["kind", "radius", "sweep"],
 };
+
+// As the tool: the largest magnitude of a number, the longest label, and what would end a line or turn around what is beside it.
+const LIMIT = 1e10, LABEL = 200, CONTROL = /[\0-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff]/;
+const RANGES = { any: [-LIMIT, "-1e10 to 1e10"], "from 0": [0, "0 to 1e10"], "above 0": [Number.MIN_VALUE, "above 0, up to 1e10"] };
+const RANGE_OF = { radius: "above 0", v_max: "above 0", a_max: "above 0", length: "from 0" };
 
 /** What a file has that this page does not know is refused, never dropped, and so is what the tool would refuse. */
 function read(found) {
@@ -29,12 +43,22 @@ function read(found) {
     const other = Object.keys(value).find((name) => !keys.includes(name));
     return other === undefined ? value : refuse(`${where}"${other}" is not known here`);
   };
-  const number = (value, what) => (typeof value === "number" && isFinite(value) ? value : refuse(`${what} is not a number`));
+  const number = (value, what, range = "any") => {
+    if (typeof value !== "number" || !isFinite(value)) refuse(`${what} is not a number`);
+    const [least, allowed] = RANGES[range];
+    return least <= value && value <= LIMIT ? value : refuse(`${what}: ${value} is out of range; allowed is ${allowed}`);
+  };
   const text = (value, what) => (typeof value === "string" ? value : refuse(`${what} is not a text`));
+  const printable = (value, what) => {
+    const control = CONTROL.exec(value), length = [...value].length;
+    if (control) refuse(`${what} has the control character U+${control[0].charCodeAt(0).toString(16).toUpperCase().padStart(4, "0")}`);
+    if (length > LABEL) refuse(`${what} has ${length} characters; allowed are up to ${LABEL}`);
+  };
   if (!Array.isArray(found?.agents)) refuse("not a scenario: no agents");
   object(found, KEYS.top, "");
   if (found.format !== undefined && found.format !== "pcr-scenario") refuse(`format ${found.format} is not pcr-scenario`);
   if (found.version !== undefined && found.version !== 1) refuse(`version ${found.version} is not 1`);
+  if (found.warnings !== undefined && !(Array.isArray(found.warnings) && found.warnings.every((warning) => typeof warning === "string"))) refuse("the warnings are not a list of texts");
   if (found.agents.length > AGENTS) refuse(`${found.agents.length} agents: there is room for ${AGENTS}`);
   const ids = new Set();
   const agents = found.agents.map((agent, k) => {
@@ -42,25 +66,39 @@ function read(found) {
     object(agent, KEYS.agent, `${name}: `);
     // Beyond 2^53 two numbers of a file can be one here.
     if (!(typeof agent.id === "string" && agent.id) && !(Number.isSafeInteger(agent.id) && agent.id >= 0)) refuse(`${name}: its id is no whole number from 0 to 2^53, and no name`);
+    if (typeof agent.id === "string") {
+      printable(agent.id, `${name}: its id`);
+      if (/^\+?\d+$/.test(agent.id) && BigInt(agent.id.replace("+", "")) < 2n ** 64n) refuse(`${name}: its id "${agent.id}" could be taken for the number; write it without quotation marks, or give a name`);
+      if (agent.label !== undefined) refuse(`${name}: it has a label, and its id is a text`);
+    }
     if (typeof agent.id !== typeof found.agents[0].id) refuse(`${name}: some ids are numbers and others names`);
     if (ids.has(agent.id)) refuse(`${name}: its id ${agent.id} is given twice`);
     ids.add(agent.id);
-    if (agent.label !== undefined) text(agent.label, `${name}, label`);
+    if (agent.label !== undefined) printable(text(agent.label, `${name}, label`), `${name}, label`);
     if (!Array.isArray(agent.path) || agent.path.length > LEGS) refuse(`${name}: 0 to ${LEGS} legs`);
-    for (const field of ["radius", "v_max", "a_max"]) number(agent[field], `${name}, ${field}`);
+    for (const field of ["radius", "v_max", "a_max"]) number(agent[field], `${name}, ${field}`, RANGE_OF[field]);
     object(agent.start, KEYS.start, `${name}, start: `);
     for (const field of KEYS.start) number(agent.start[field], `${name}, ${field}`);
     const path = agent.path.map((leg, at) => {
       const where = `${name}, leg ${at + 1}`;
       if (!["line", "arc"].includes(leg?.kind)) refuse(`${where}: only lines and arcs can be edited here`);
       object(leg, KEYS[leg.kind], `${where}: `);
-      for (const field of KEYS[leg.kind].slice(1)) number(leg[field], `${where}, ${field}`);
+      for (const field of KEYS[leg.kind].slice(1)) number(leg[field], `${where}, ${field}`, RANGE_OF[field]);
       return leg.sweep === 0 ? refuse(`${where}: an arc that does not turn`) : { ...leg };
     });
-    return { ...agent, t_start: number(agent.t_start ?? 0, `${name}, t_start`), start: { ...agent.start }, path };
+    const t_start = agent.t_start === undefined ? 0 : number(agent.t_start, `${name}, t_start`);
+    if (path.reduce((sum, leg) => sum + turns(leg), 0) > LEGS) refuse(`${name}: 0 to ${LEGS} legs, each turn of an arc counted`);
+    const length = path.reduce((sum, leg) => sum + whole(leg), 0), peak = Math.min(agent.v_max, Math.sqrt(length * agent.a_max));
+    const duration = length && length / peak + peak / agent.a_max;
+    if (length > LIMIT) refuse(`${name}, path: ${length} m long; allowed is up to 1e10`);
+    if (!(duration <= LIMIT && Math.abs(t_start + duration) <= LIMIT)) refuse(`${name}: the motion takes ${duration} s from ${t_start} s; allowed is up to 1e10 s`);
+    return { ...agent, t_start, start: { ...agent.start }, path };
   });
-  return { format: "pcr-scenario", version: 1, name: text(found.name ?? "playground", "the name"), agents };
+  return { format: "pcr-scenario", version: 1, name: found.name === undefined ? "playground" : text(found.name, "the name"), agents };
 }
+
+/** The length of a leg. */
+const whole = (leg) => (leg.kind === "line" ? leg.length : leg.radius * Math.abs(leg.sweep));
 
 /** The poses at the ends of all legs of an agent, its start first. */
 function joints({ start, path }) {
@@ -80,12 +118,12 @@ function joints({ start, path }) {
 function along(agent, length) {
   let rest = length, poses = joints(agent);
   for (let k = 0; k < agent.path.length; k++) {
-    const leg = agent.path[k], whole = leg.kind === "line" ? leg.length : leg.radius * Math.abs(leg.sweep);
-    if (rest <= whole) {
-      const part = leg.kind === "line" ? { ...leg, length: rest } : { ...leg, sweep: leg.sweep * rest / whole };
+    const leg = agent.path[k];
+    if (rest <= whole(leg)) {
+      const part = leg.kind === "line" ? { ...leg, length: rest } : { ...leg, sweep: leg.sweep * rest / whole(leg) };
       return joints({ start: poses[k], path: [part] })[1];
     }
-    rest -= whole;
+    rest -= whole(leg);
   }
   return poses.at(-1);
 }

@@ -101,7 +101,8 @@ typedef enum PcrStatus {
    */
   PCR_STATUS_BUFFER_TOO_SMALL,
   /*
-   The table does not belong to the agents: `pcr_fleet_build` was not called since the last agent was added.
+   The table does not belong to the agents: it was not built since the last agent was added, or an agent was
+   replaced or removed after `pcr_fleet_build_row`.
    */
   PCR_STATUS_NOT_BUILT,
   /*

@@ -423,18 +423,19 @@ PcrStatus pcr_f64_fleet_delay(struct PcrF64Fleet *place,
                               double delay);
 
 /*
- Replaces an agent and, if the table was built, computes its regions. The memory needs room for the segments and
- phases of the new agent in addition to those of the old one, which become free. The new agent is at the start of its
- path, and its regions are undecided; the orders between the other agents stay. A call that fails leaves everything
- unchanged.
+ Replaces an agent and, if the regions of all pairs were built, computes its regions. Those of one agent
+ (`pcr_f64_fleet_build_row`) are computed again if it is that agent and the fleet has no memory for orders; otherwise the
+ table is then not built. The memory needs room for the segments and phases of the new agent in addition to those of
+ the old one, which become free. The new agent is at the start of its path, and its regions are undecided; the orders
+ between the other agents stay. A call that fails leaves everything unchanged.
  */
 PcrStatus pcr_f64_fleet_replace(struct PcrF64Fleet *place,
                                 size_t agent,
                                 const struct PcrF64Agent *by);
 
 /*
- Removes an agent; the number of every agent behind it decreases by one, orders included. A table that was built
- stays built.
+ Removes an agent; the number of every agent behind it decreases by one, orders included. If the regions of all pairs
+ were built, they stay so; those of one agent (`pcr_f64_fleet_build_row`) do not.
  */
 PcrStatus pcr_f64_fleet_remove(struct PcrF64Fleet *place,
                                size_t agent);

@@ -33,7 +33,8 @@ pub enum PcrStatus {
     TableFull,
     /// The buffer is too small. The required count was written.
     BufferTooSmall,
-    /// The table does not belong to the agents: `pcr_fleet_build` was not called since the last agent was added.
+    /// The table does not belong to the agents: it was not built since the last agent was added, or an agent was
+    /// replaced or removed after `pcr_fleet_build_row`.
     NotBuilt,
     /// The order does not list every agent exactly once.
     BadOrder,

@@ -231,6 +231,34 @@ fn a_table_without_an_agent_that_was_added_answers_nothing() {
     assert_eq!(regions(&fleet, 0).len(), 1);
 }
 
+/// What is said of the regions of each agent.
+fn told(fleet: &PcrFleet) -> Vec<PcrStatus> {
+    let mut count = 0;
+    let agents = 0..pcr_fleet_agents(Some(fleet));
+    agents.map(|ego| pcr_fleet_regions(Some(fleet), ego, null_mut(), 0, Some(&mut count))).collect()
+}
+
+#[test]
+fn a_row_is_kept_only_if_its_own_agent_is_replaced() {
+    let agents = [agent(0.0), agent(0.7), agent(1.4)];
+    let row = || {
+        let mut fleet = fleet(&memory(4, 16, 32), &agents);
+        assert_eq!(pcr_fleet_build_row(Some(&mut fleet), 1), PcrStatus::Ok);
+        fleet
+    };
+    // The buffer has no room: the row is there.
+    let kept = [PcrStatus::OnlyRow, PcrStatus::BufferTooSmall, PcrStatus::OnlyRow];
+    assert_eq!(told(&row()), kept);
+    for (index, after) in [(1, kept), (0, [PcrStatus::NotBuilt; 3]), (2, [PcrStatus::NotBuilt; 3])] {
+        let mut fleet = row();
+        assert_eq!(pcr_fleet_replace(Some(&mut fleet), index, Some(&agent(2.1))), PcrStatus::Ok);
+        assert_eq!(told(&fleet), after, "{index} replaced");
+        let mut fleet = row();
+        assert_eq!(pcr_fleet_remove(Some(&mut fleet), index), PcrStatus::Ok);
+        assert_eq!(told(&fleet), [PcrStatus::NotBuilt; 2], "{index} removed");
+    }
+}
+
 /// A fleet of agents through the origin at these angles, built.
 fn star(agents: &[PcrAgent]) -> PcrFleet {
     let mut fleet = fleet(&memory(agents.len() + 1, 16, 32), agents);

@@ -208,6 +208,10 @@ macro_rules! formats {
                 let mut other = PcrHold::default();
                 assert_eq!(pcr_fleet_hold(Some(&fleet), 0, Some(&mut other)), PcrStatus::OnlyRow);
                 assert_eq!(pcr_fleet_hold(Some(&fleet), 1, None), PcrStatus::Null);
+                let mut replaced = self::fleet(4, &agents);
+                assert_eq!(pcr_fleet_build_row(Some(&mut replaced), 1), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_replace(Some(&mut replaced), 1, Some(&agents[0])), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_hold(Some(&replaced), 1, Some(&mut other)), PcrStatus::NotBuilt);
                 let mut none = self::fleet(0, &agents);
                 assert_eq!(pcr_fleet_hold(Some(&none), 1, Some(&mut other)), PcrStatus::NoOrders);
                 assert_eq!(report(&mut none, 1, 1.0), PcrStatus::NoOrders);

@@ -251,7 +251,10 @@ class Answers(unittest.TestCase):
         region = fleet.regions()[5]
         for other in (pickle.loads(pickle.dumps(region)), copy.deepcopy(region)):
             self.assertEqual((other, other.outline(4)), (region, region.outline(4)))
-        self.assertEqual(pickle.loads(pickle.dumps(fleet.regions())), fleet.regions())
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            for value in (fleet, fleet.regions(), region):
+                self.assertEqual(pickle.loads(pickle.dumps(value, protocol)), value)
+            self.assertEqual(pickle.loads(pickle.dumps(fleet.regions(), protocol))[5].outline(4), region.outline(4))
         with self.assertRaises(pcr.Error):
             region._replace(i=region.j).outline(4)
 
@@ -268,6 +271,10 @@ class Answers(unittest.TestCase):
         later = pcr.Fleet([CROSSING[0], dict(CROSSING[1], t_start=5.0)])
         self.assertEqual(later.holds(numpy.zeros(2, dtype=numpy.float32)), later.holds([0.0, (0.0, 0.0)]))
         self.assertEqual(fleet.places(numpy.float32(1)), fleet.places(1))
+        long = [dict(agent, radius=numpy.longdouble(0.25), start={name: numpy.longdouble(at) for name, at in agent["start"].items()}) for agent in CROSSING]
+        self.assertEqual(pcr.Fleet(long), fleet)
+        with self.assertRaises(TypeError):
+            pcr.Fleet([dict(CROSSING[0], radius=numpy.clongdouble(0.25))])
 
     def test_who_sets_off_before_0_is_drawn_from_there(self) -> None:
         import matplotlib
@@ -357,9 +364,25 @@ class Refusals(unittest.TestCase):
                     lambda: fleet.safe_intervals(1, -0.5, (0.0, 50.0)), lambda: fleet.safe_intervals(1, 99.0, (0.0, 50.0)),
                     lambda: fleet.closest(1, 1), lambda: fleet.map(-1, 0.0, 1.0, 5), lambda: fleet.map(1, 0.0, 1.0, -5), lambda: fleet.map(1, 0.0, 1.0, 2**70),
                     lambda: fleet.map(2**70, 0.0, 1.0, 5), lambda: fleet.report(slices=2**40), lambda: fleet.safe_intervals(1, (1.0, 2.0, 3.0), (0.0, 1.0)),
+                    # A time that overflows is not one at which nothing is in the way.
+                    lambda: fleet.map(1, 0, 1e308, 10), lambda: fleet.map(1, -1e308, -1e308, 2),
                     lambda: fleet.plot(columns=0), lambda: fleet.passings(1), lambda: fleet.passings(99)):
             with self.assertRaises(pcr.Error):
                 ask()
+        later = pcr.Fleet([CROSSING[0], dict(CROSSING[1], t_start=5.0)])
+        for place in (-1, 100, (-2, -1), (4.1, 5.0)):
+            with self.assertRaisesRegex(pcr.Error, "agent 2: .* is not on the path, 0 to 4"):
+                later.holds([0, place])
+        # Partly on the path, and at its ends.
+        self.assertEqual(later.holds([(-0.1, 0.1), (-0.1, 0.0)]), later.holds([0, 0]))
+        self.assertEqual(len(later.holds([4, (3.9, 4.1)])), 2)
+        for value in ("12", "1", b"12", bytearray(b"12"), {1, 2}, frozenset((1, 2)), {1: 2, 2: 3}, {1: 2, 2: 3}.keys(), ["1", "2"], [b"1", 2]):
+            with self.assertRaises(TypeError):
+                later.safe_intervals(1, value, (0.0, 20.0))  # type: ignore[arg-type]
+            with self.assertRaises(TypeError):
+                later.safe_intervals(1, 1.0, value)  # type: ignore[arg-type]
+            with self.assertRaises(TypeError):
+                later.holds([0.0, value])  # type: ignore[list-item]
         with self.assertRaises(IndexError):
             fleet.regions()[10_000]
         for mistaken in (lambda: pcr.Fleet(None), lambda: pcr.Fleet([{1, 2}]), lambda: fleet.map("1", 0.0, 1.0, 5), lambda: fleet.places("1"),  # type: ignore[arg-type, list-item]

@@ -162,14 +162,14 @@ impl Fleet {
         self.phases.take(motion.profile().phases().len());
     }
 
-    /// Replaces an agent. If the table was built, it is so afterwards.
+    /// Replaces an agent. If the table of all pairs was built, it is so afterwards.
     pub(super) fn replace(&mut self, index: usize, agent: &PcrAgent) -> Result<(), PcrStatus> {
         let before = *self.motion(index)?;
         let motion = self.placed(agent)?;
         match self.table.replace(self.motions.values_mut(), index, motion) {
             Err(Unchanged::Full(full)) => return Err(full.into()),
             Ok(()) => {}
-            // The table was not built before.
+            // The table was not built before, or has one row only, which does not belong to the new fleet.
             Err(_) => *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion,
         }
         if let Some(progress) = self.progress.get_mut(index) {
@@ -200,11 +200,11 @@ impl Fleet {
         self.close(&before).map_err(silent)
     }
 
-    /// Removes an agent; the number of every agent behind it decreases by one. If the table was built, it is so
-    /// afterwards.
+    /// Removes an agent; the number of every agent behind it decreases by one. If the table of all pairs was built, it is
+    /// so afterwards.
     pub(super) fn remove(&mut self, index: usize) -> Result<(), PcrStatus> {
         let gone = *self.motion(index)?;
-        // A table that did not belong to the fleet before does not belong to it now.
+        // A table that did not belong to the fleet before, or has one row only, does not belong to it now.
         let _ = self.table.erase(self.motions.values(), index);
         self.motions.remove(index);
         self.progress.remove(index);

@@ -50,17 +50,18 @@ pub extern "C" fn pcr_fleet_delay(place: Option<&mut PcrFleet>, agent: usize, de
     change(place, |fleet| fleet.delay(agent, number(delay)?))
 }
 
-/// Replaces an agent and, if the table was built, computes its regions. The memory needs room for the segments and
-/// phases of the new agent in addition to those of the old one, which become free. The new agent is at the start of its
-/// path, and its regions are undecided; the orders between the other agents stay. A call that fails leaves everything
-/// unchanged.
+/// Replaces an agent and, if the regions of all pairs were built, computes its regions. Those of one agent
+/// (`pcr_fleet_build_row`) are computed again if it is that agent and the fleet has no memory for orders; otherwise the
+/// table is then not built. The memory needs room for the segments and phases of the new agent in addition to those of
+/// the old one, which become free. The new agent is at the start of its path, and its regions are undecided; the orders
+/// between the other agents stay. A call that fails leaves everything unchanged.
 #[unsafe(export_name = name!("fleet_replace"))]
 pub extern "C" fn pcr_fleet_replace(place: Option<&mut PcrFleet>, agent: usize, by: Option<&PcrAgent>) -> PcrStatus {
     change(place, |fleet| fleet.replace(agent, given(by)?))
 }
 
-/// Removes an agent; the number of every agent behind it decreases by one, orders included. A table that was built
-/// stays built.
+/// Removes an agent; the number of every agent behind it decreases by one, orders included. If the regions of all pairs
+/// were built, they stay so; those of one agent (`pcr_fleet_build_row`) do not.
 #[unsafe(export_name = name!("fleet_remove"))]
 pub extern "C" fn pcr_fleet_remove(place: Option<&mut PcrFleet>, agent: usize) -> PcrStatus {
     change(place, |fleet| fleet.remove(agent))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import struct
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsFloat, SupportsIndex
@@ -129,7 +130,10 @@ class Fleet:
     def map(self, agent: SupportsIndex, start: SupportsFloat, step: SupportsFloat, times: SupportsIndex) -> list[tuple[int, int, float, float]]:
         """The collision map of an agent at ``times`` times: number of the time, other agent, and the lengths forbidden then, from, to."""
         finite(start=start, step=step)
-        rows = self._fleet.map(whole("agent", agent), float(start), float(step), whole("times", times, TIMES))
+        begin, by, count = float(start), float(step), whole("times", times, TIMES)
+        if count and not math.isfinite(begin + by * (count - 1)):
+            raise Error(f"times: the last one, {begin} + {count - 1} * {by}, is too large")
+        rows = self._fleet.map(whole("agent", agent), begin, by, count)
         return list(struct.iter_unpack("<QQ2d", rows))
 
     def places(self, time: SupportsFloat) -> list[tuple[float, float, float, float]]:
@@ -169,9 +173,13 @@ class Fleet:
         """How far every agent may go in the order in which the motions pass one another, whatever the delays.
 
         ``places`` are the travelled lengths, exact or from-to, in the order of :attr:`agents`. Infinite where nobody is in the
-        way; minus infinity for an agent that is where it should have waited. Motions that meet have no order: that is an error.
+        way; minus infinity for an agent that is where it should have waited. Places off the path are an error. Motions that meet have no order: that is an error.
         """
-        return self._fleet.holds([span("place", place) for place in places])
+        spans = [span("place", place) for place in places]
+        for (lo, hi), agent in zip(spans, self.agents):
+            if hi < 0 or lo > agent["length"]:
+                raise Error(f"place: agent {agent['id']}: {lo} to {hi} is not on the path, 0 to {agent['length']}")
+        return self._fleet.holds(spans)
 
     def plot(self, ax: Any = None, *, agent: Optional[SupportsIndex] = None, columns: SupportsIndex = 400) -> Any:
         """Draws the paths, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
+from numbers import Real
 from typing import Any, SupportsFloat, SupportsIndex, Union
 
 from ._pcr import Error
@@ -12,6 +13,7 @@ from ._pcr import Error
 Span = tuple[float, float]
 #: A number, or from and to.
 Ranged = Union[SupportsFloat, Sequence[SupportsFloat]]
+TEXTS = (str, bytes, bytearray)
 
 
 def finite(**numbers: SupportsFloat) -> None:
@@ -30,12 +32,17 @@ def whole(name: str, number: SupportsIndex, most: int = 2**64 - 1) -> int:
 
 def span(name: str, value: Ranged) -> Span:
     """The same number twice where there is one."""
+    # Two digits of a text would be from and to, and what has no order is neither.
+    if isinstance(value, (*TEXTS, Set, Mapping)):
+        raise TypeError(f"{name}: {value!r} is neither a number nor from and to")
     try:
         lo, hi = value  # type: ignore[misc]
     except TypeError:
         lo = hi = value
     except ValueError:
         raise Error(f"{name}: {value} is neither a number nor from and to") from None
+    if isinstance(lo, TEXTS) or isinstance(hi, TEXTS):
+        raise TypeError(f"{name}: from {lo!r} to {hi!r} are no numbers")
     return float(lo), float(hi)
 
 
@@ -44,5 +51,10 @@ def plain(value: object) -> Any:
     if isinstance(value, Mapping):
         return dict(value)
     if hasattr(value, "tolist"):
-        return value.tolist()
+        found = value.tolist()
+        # A longdouble remains one, and would be asked for without end.
+        if type(found) is not type(value):
+            return found
+        if isinstance(found, Real):
+            return float(found)
     raise TypeError(f"{type(value).__name__} is nothing that a scenario file can hold")

@@ -76,6 +76,10 @@ class Regions(Sequence[Region]):
     def __init__(self, rows: bytes, fleet: Fleet) -> None:
         self._rows, self._fleet = rows, fleet
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Without it, protocols 0 and 1 refuse what has slots.
+        return Regions, (self._rows, self._fleet)
+
     def __len__(self) -> int:
         return len(self._rows) // _REGION.size
 

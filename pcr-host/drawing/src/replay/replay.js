@@ -122,7 +122,10 @@ function drawMap() {
   const plan = run.plans.findLast((plan) => plan.time <= time + 1e-9), map = plan && plan.maps[ego];
   const [c, width, height] = surface("map");
   if (!map || !(map.to > map.from)) {
-    $("caption").textContent = run.plans.length ? "This robot stands, without a path to plan." : "This controller makes no plans: there is no collision map.";
+    const begun = run.journeys.some((journey) => journey.robot === ego && journey.begin <= now && !((journey.end ?? Infinity) <= now));
+    $("caption").textContent = !run.plans.length ? "This controller makes no plans: there is no collision map."
+      : !plan ? "There is no plan yet." : !begun ? "This robot stands: it has no mission now."
+        : `This robot has a mission, but no motion in the plan of ${plan.time.toFixed(2)} s: it stands where it is.`;
     return;
   }
   const [left, top, right, bottom] = [52, 12, width - 12, height - 40];
