@@ -48,6 +48,7 @@ mod ledger;
 mod lifelong;
 mod limits;
 mod loads;
+mod loads_turns;
 mod locks;
 mod locks_change;
 mod locks_footprints;

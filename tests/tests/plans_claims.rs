@@ -173,3 +173,61 @@ fn large_fleets_with_a_limit_of_time_are_answered() {
     let (plan, solved) = Plan::of(&scenario, &Request { effort, ..Request::default() }).unwrap();
     assert!(solved.is_none() && !plan.unsolved.is_empty());
 }
+
+fn head_on_and_one_apart() -> Scenario {
+    read(&[
+        agent(1, [0.0; 3], &json!([line(5.0)]), &json!({})),
+        agent(2, [5.0, 0.0, PI], &json!([line(5.0)]), &json!({})),
+        agent(3, [0.0, 10.0, 0.0], &json!([line(5.0)]), &json!({})),
+    ])
+}
+
+/// Who is left out may have been given a priority.
+#[test]
+fn an_order_may_name_who_is_left_out() {
+    for method in [Method::Delay, Method::Speed] {
+        for order in [vec![2, 1], vec![1, 2], vec![3, 2, 1]] {
+            let request = Request { leave_out: true, priority: Priority::Given(order), ..Request::of(method) };
+            let (plan, solved) = Plan::of(&head_on_and_one_apart(), &request).unwrap();
+            assert!(solved.is_some() && plan.left_out.len() == 1 && plan.agents.len() == 2, "{plan:?}");
+        }
+        let request = Request { priority: Priority::Given(vec![4]), leave_out: true, ..Request::of(method) };
+        assert!(Plan::of(&head_on_and_one_apart(), &request).is_err());
+    }
+}
+
+/// Discs that touch do not overlap, and neither do margins make them.
+#[test]
+fn what_is_too_near_is_said_as_it_is() {
+    let why = |y: f64, more: Value| {
+        let scenario = read(&[
+            agent(1, [0.0; 3], &json!([line(5.0)]), &json!({})),
+            agent(2, [0.0, y, 0.0], &json!([line(5.0)]), &more),
+        ]);
+        Plan::of(&scenario, &Request::default()).unwrap().0.unsolved[0].why.clone()
+    };
+    assert!(why(0.5, json!({})).starts_with("they overlap at their starts"));
+    assert!(why(0.6, json!({})).starts_with("they touch at their starts"));
+    assert!(why(0.7, json!({ "margin": 0.2 })).starts_with("they are nearer than their margins at their starts"));
+    assert!(why(0.5, json!({ "margin": 0.2 })).starts_with("they overlap at their starts"));
+}
+
+/// By either method, and not only the first that is found.
+#[test]
+fn all_pairs_that_meet_however_they_move_are_named() {
+    let scenario = read(
+        &(0..6).map(|k| agent(k, [0.0, 0.0, k as f64 / 10.0], &json!([line(3.0)]), &json!({}))).collect::<Vec<_>>(),
+    );
+    let ids = |plan: &Plan| {
+        let mut ids: Vec<Vec<u64>> = plan.unsolved.iter().map(|unsolved| unsolved.ids.clone()).collect();
+        ids.iter_mut().for_each(|ids| ids.sort_unstable());
+        ids.sort_unstable();
+        ids
+    };
+    let [delay, speed] =
+        [Method::Delay, Method::Speed].map(|method| Plan::of(&scenario, &Request::of(method)).unwrap().0);
+    assert_eq!((ids(&delay).len(), ids(&delay)), (15, ids(&speed)), "{speed:?}");
+    // A pair without a plan is no reason against others.
+    let speed = Plan::of(&head_on_and_one_apart(), &Request::of(Method::Speed)).unwrap().0;
+    assert_eq!(ids(&speed), [[1, 2]]);
+}

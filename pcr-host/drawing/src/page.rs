@@ -101,7 +101,7 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
 /// begins or ends, both outlines count.
 fn covering(agent: &Agent) -> Vec<[f64; 5]> {
     let outlines = agent.outlines();
-    let begin = |[first, last]: [usize; 2]| if first == 0 { 0.0 } else { agent.stretch(first, last).1 };
+    let begin = |[first, last]: [usize; 2]| if first == 0 { 0.0 } else { agent.stretch(first, last).from };
     let begins: Vec<f64> = outlines.iter().map(|outline| begin(outline.segments)).collect();
     let ends = begins.iter().skip(1).copied().chain([f64::MAX]);
     let mut all = Vec::new();

@@ -54,7 +54,7 @@ pub use fields::{LIMIT, ScenarioError};
 pub use labels::{LONGEST_LABEL, Labels};
 pub use labels::{label, printable};
 pub use load::Load;
-pub use parts::Part;
+pub use parts::{Part, Stretch};
 pub use placed::{KINK, Placed, TURN};
 pub use settled::speed_after;
 use std::f64::consts::TAU;
@@ -184,7 +184,8 @@ impl MotionSpec {
             Self::RestToRest { .. } if length <= 0.0 => (0.0, Vec::new()),
             Self::RestToRest { v_max, a_max } => {
                 let peak = v_max.min((length * a_max).sqrt());
-                let cruise = (length / peak - peak / a_max).max(0.0);
+                // Of a motion that does not reach the largest speed rounding would leave some.
+                let cruise = if peak < *v_max { 0.0 } else { (length / peak - peak / a_max).max(0.0) };
                 (0.0, vec![(peak / a_max, *a_max), (cruise, 0.0), (peak / a_max, -a_max)])
             }
         }

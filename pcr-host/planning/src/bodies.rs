@@ -6,8 +6,7 @@ mod offset;
 use crate::fleet::{Fleet, Format, Refused, Rounding};
 use offset::{Offset, Precision};
 use pcr_core::{Interval, Motion};
-use pcr_formats::scenario::Placed;
-use pcr_formats::scenario::{Agent, PathSegment, Scenario};
+use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario, Stretch};
 
 /// Rounding of lengths along a path, relative.
 const ROUNDING: f64 = 1e-12;
@@ -28,14 +27,14 @@ pub struct Disced {
     pub agent: usize,
     /// None where the agent is the disc.
     offset: Option<Box<Offset>>,
-    stretch: Stretch,
+    stretch: Range,
     /// How much larger than in the cover it is \[m\].
     pub growth: f64,
 }
 
 /// Where on the path of its agent a disc is there.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct Range {
     /// Length before it \[m\].
     from: f64,
     /// Length of the whole path \[m\].
@@ -49,7 +48,7 @@ struct Stretch {
 impl Disced {
     /// An agent that is a disc.
     fn whole(agent: &Agent, place: usize) -> Self {
-        let stretch = Stretch { from: 0.0, length: agent.length(), first: 0, ends: [true, true] };
+        let stretch = Range { from: 0.0, length: agent.length(), first: 0, ends: [true, true] };
         Self { agent: place, offset: None, stretch, growth: 0.0 }
     }
 
@@ -61,7 +60,7 @@ impl Disced {
     /// Lengths on the path of the agent, outward, of lengths on that of the disc.
     pub fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
         let [lo, hi] = self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths));
-        let Stretch { from, length, ends, .. } = self.stretch;
+        let Range { from, length, ends, .. } = self.stretch;
         if ends == [true, true] {
             return [lo, hi];
         }
@@ -160,9 +159,14 @@ fn discs<S: Format>(
     let outlines = agent.outlines();
     for outline in &outlines {
         let [first, last] = outline.segments;
-        let (part, from) = if outlines.len() > 1 { agent.stretch(first, last) } else { (agent.clone(), 0.0) };
+        let (part, parts, from) = if outlines.len() > 1 {
+            let Stretch { agent, parts, from } = agent.stretch(first, last);
+            (agent, parts, from)
+        } else {
+            (agent.clone(), agent.parts(), 0.0)
+        };
         let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
-        let stretch = Stretch { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
+        let stretch = Range { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
         let Some(footprint) = outline.footprint else {
             discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
             agents.push(if outlines.len() > 1 { settled::<S>(part) } else { part });
@@ -171,7 +175,7 @@ fn discs<S: Format>(
         let precision = Precision::of::<S>(&part);
         for disc in footprint.discs() {
             // Their number is that of the agent, by which errors name them.
-            let offset = rounded::<S>(Offset::of(&part, disc, agent.id, precision))?;
+            let offset = rounded::<S>(Offset::of(&part, &parts, disc, agent.id, precision))?;
             let growth = offset.agent.radius - disc.radius;
             agents.push(offset.agent.clone());
             discs.push(Disced { agent: place, offset: Some(Box::new(offset)), stretch, growth });

@@ -317,15 +317,13 @@ fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
     let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
     // Duration and speed after it.
     let mut reached: Vec<(f64, f64)> = Vec::new();
-    for (segment, parts) in agent.path.iter().zip(parts) {
-        let turns = turn_in_place::<S>(segment).is_some();
-        for part in parts {
-            let lost = |value: f64| S::from_f64(value) == S::ZERO;
-            let after = if lost(part.after) { 0.0 } else { part.after };
-            match reached.last_mut() {
-                Some(last) if lost(part.duration) => last.1 = after,
-                _ => reached.push((part.duration, if turns { 0.0 } else { after })),
-            }
+    for part in parts.into_iter().flatten() {
+        // As the speed of a turn in place is.
+        let lost = |value: f64| S::from_f64(value) == S::ZERO;
+        let after = if lost(part.after) { 0.0 } else { part.after };
+        match reached.last_mut() {
+            Some(last) if lost(part.duration) => last.1 = after,
+            _ => reached.push((part.duration, after)),
         }
     }
     let mut speed = v0;

@@ -89,6 +89,15 @@ impl Request {
     pub fn of(method: Method) -> Self {
         Self { method, ..Self::default() }
     }
+
+    /// The same for some of the agents.
+    fn among(&self, rest: &Scenario) -> Self {
+        let mut request = self.clone();
+        if let Priority::Given(given) = &mut request.priority {
+            given.retain(|id| rest.agents.iter().any(|agent| agent.id == *id));
+        }
+        request
+    }
 }
 
 /// A plan, or why there is none. The JSON output, field for field in this order.
@@ -228,6 +237,8 @@ impl Plan {
         };
         let fleet = Fleet::<f64>::new(&rest)?;
         let motions = grown(&fleet);
+        // An order may name those that are left out.
+        let request = &request.among(&rest);
         let of_rest = Planner { scenario: &rest, request, motions: &motions };
         let (mut partial, solved) = of_rest.plan(Some(starts.known(&staying)))?;
         partial.labels = plan.labels;

@@ -62,8 +62,8 @@ pub(super) struct Offset {
 }
 
 impl Offset {
-    /// The disc of the vehicle, as an agent of this number.
-    pub(super) fn of(vehicle: &Agent, disc: &Disc, id: u64, precision: Precision) -> Self {
+    /// The disc of the vehicle with these parts of its motion, as an agent of this number.
+    pub(super) fn of(vehicle: &Agent, parts: &[Vec<Part>], disc: &Disc, id: u64, precision: Precision) -> Self {
         let [x, y, heading] = vehicle.start;
         let (sin, cos) = heading.sin_cos();
         let Disc { ahead, left, radius } = *disc;
@@ -71,7 +71,7 @@ impl Offset {
         let mut tracer = Tracer::new(radius + NOTHING * (1.0 + x.abs() + y.abs()), precision);
         let mut reference = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
         let length = vehicle.length();
-        for (source, (&shape, parts)) in vehicle.path.iter().zip(vehicle.parts()).enumerate() {
+        for (source, (&shape, parts)) in vehicle.path.iter().zip(parts).enumerate() {
             reference = Placed { at: [0.0; 2], heading: reference.heading_at_end(), shape };
             let curvature = match shape {
                 PathSegment::Line { .. } => 0.0,
@@ -85,7 +85,7 @@ impl Offset {
             };
             // The rounding of lengths on the path of the vehicle is scaled as well.
             tracer.growth += 4.0 * f64::EPSILON * length * scale;
-            tracer.add(shape, reference.heading + turned, [scale, reference.shape.length()], &parts, source);
+            tracer.add(shape, reference.heading + turned, [scale, reference.shape.length()], parts, source);
         }
         tracer.finish(vehicle, at, id)
     }

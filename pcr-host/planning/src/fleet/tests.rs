@@ -149,3 +149,10 @@ fn a_pair_of_too_many_pieces_is_an_error_and_does_not_grow_for_ever() {
     let fleet = Fleet::<f64>::new(&scenario).unwrap();
     assert_eq!(build_ecm(&fleet.motions()).unwrap_err(), Full::Pair([1, 2]));
 }
+
+#[test]
+fn what_is_far_below_a_fixed_point_format_is_refused() {
+    for value in [-1e9, 1e9, -32768.0] {
+        assert!(number::<pcr_fixed::Q16>("start.x", value).is_err(), "{value}");
+    }
+}

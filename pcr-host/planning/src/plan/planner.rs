@@ -3,12 +3,13 @@
 use super::delays::Objective;
 use super::starts::Known;
 use super::task::Planner;
-use super::{Answer, Method, Plan, Planned, Unsolved, bound, speeds};
+use super::{Answer, Method, Plan, Planned, Unsolved, bound, sides, speeds};
 use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::regions::Failure;
 use pcr_core::{Drive, Motion, Unsolved as Never};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
+use rayon::prelude::*;
 
 /// Costs that are the same in print \[s\].
 const NEAR: f64 = 1e-4;
@@ -155,10 +156,19 @@ impl<'m> Planner<'_, 'm> {
             let why = "each has to let the next one pass first, the last one the first, however they move";
             unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
         }
-        unsolved.push(match never {
+        let never = match never {
             Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => {
-                Unsolved::of(self.scenario, ids(agents), true)
+                // The search stops at the first.
+                let mut all = self.never().unwrap_or_default();
+                if all.is_empty() {
+                    all.push(agents);
+                }
+                unsolved.par_extend(all.into_par_iter().map(|agents| Unsolved::of(self.scenario, ids(agents), true)));
+                return unsolved;
             }
+            other => other,
+        };
+        unsolved.push(match never {
             Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),
             Never::Full(agent) => {
                 let why = "its plan takes too many profiles or phases, or too long";
@@ -167,6 +177,17 @@ impl<'m> Planner<'_, 'm> {
             other => Unsolved::nowhere(Vec::new(), other.to_string()),
         });
         unsolved
+    }
+
+    /// All pairs that meet however they move.
+    fn never(&self) -> Result<Vec<[usize; 2]>, Failure> {
+        let ecm = self.ecm()?;
+        let regions = ecm.regions(self.motions).expect("the table of the fleet");
+        let pairs = regions.filter(|region| region.ego() > region.other() && sides(region) == [true; 2]);
+        let mut pairs: Vec<[usize; 2]> = pairs.map(|region| [region.ego(), region.other()]).collect();
+        pairs.sort_unstable_by_key(|&[ego, other]| [other, ego]);
+        pairs.dedup();
+        Ok(pairs)
     }
 
     /// The scenario with the motions of a plan.

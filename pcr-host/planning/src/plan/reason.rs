@@ -5,7 +5,7 @@ use super::{grown, sides_of};
 use crate::bodies::{Bodies, Disced};
 use crate::fleet::Fleet;
 use crate::rows::Row;
-use pcr_core::{Interval, Motion, RegionRef};
+use pcr_core::{Encounter, Interval, Motion, RegionRef};
 use pcr_formats::scenario::Scenario;
 use serde::Serialize;
 
@@ -76,24 +76,54 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     let last = all.iter().find(|met| met.sides()[0]);
     let first = all.iter().find(|met| met.sides()[1]);
     let longest = || all.iter().max_by(|a, b| a.region.length().length().total_cmp(&b.region.length().length()));
-    let overlap = |at_end: bool| {
+    let exact = bodies.fleet.motions();
+    let standing = |at_end: bool| {
         let there = |&disc: &usize| discs[disc].stands()[usize::from(at_end)];
         let at = |disc: usize| motions[disc].path().point_at(if at_end { motions[disc].path().length() } else { 0.0 });
-        of(0).filter(there).any(|a| {
-            of(1).filter(there).any(|b| {
-                let apart = [at(a).x - at(b).x, at(a).y - at(b).y];
-                apart[0].hypot(apart[1]) < motions[a].radius() + motions[b].radius()
-            })
-        })
+        let pairs = of(0).filter(there).flat_map(|a| of(1).filter(there).map(move |b| [a, b]));
+        let near = pairs.filter_map(|[a, b]| {
+            let apart = (at(a).x - at(b).x).hypot(at(a).y - at(b).y);
+            let gap = apart - exact[a].radius() - exact[b].radius();
+            let [margin, tolerance] =
+                [exact[a].margin() + exact[b].margin(), Encounter::new(&exact[a], &exact[b]).tolerance()];
+            (apart < motions[a].radius() + motions[b].radius()).then_some((gap, Contact::of(gap, margin, tolerance)))
+        });
+        let (_, nearest) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let place = if at_end { "at the ends of their paths" } else { "at their starts" };
+        Some((format!("{} {place}", nearest.words()), Spot::standing(references, at_end)))
     };
-    Some(match (always, first, last) {
-        (true, ..) if overlap(false) => ("they overlap at their starts".to_owned(), Spot::standing(references, false)),
-        (true, ..) if overlap(true) => {
-            ("they overlap at the ends of their paths".to_owned(), Spot::standing(references, true))
-        }
-        (true, Some(first), Some(last)) => (contradiction(last, first), last.spot(references[0])),
+    let stand = || always.then(|| standing(false).or_else(|| standing(true))).flatten();
+    Some(match (stand(), always, first, last) {
+        (Some(found), ..) => found,
+        (None, true, Some(first), Some(last)) => (contradiction(last, first), last.spot(references[0])),
         _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
     })
+}
+
+/// How near two agents stand that are too near.
+enum Contact {
+    Overlap,
+    Touch,
+    Margins,
+}
+
+impl Contact {
+    /// With this gap between them, margins, and what a gap may be off \[m\].
+    fn of(gap: f64, margins: f64, tolerance: f64) -> Self {
+        match () {
+            () if gap < -tolerance => Self::Overlap,
+            () if gap <= tolerance || margins == 0.0 => Self::Touch,
+            () => Self::Margins,
+        }
+    }
+
+    fn words(&self) -> &'static str {
+        match self {
+            Self::Overlap => "they overlap",
+            Self::Touch => "they touch",
+            Self::Margins => "they are nearer than their margins",
+        }
+    }
 }
 
 /// A region of two discs.

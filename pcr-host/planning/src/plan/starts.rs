@@ -7,6 +7,7 @@ use super::{Priority, Unsolved};
 use crate::regions::Failure;
 use pcr_core::Motion;
 use rayon::prelude::*;
+use std::collections::HashSet;
 
 /// Delays of some agents of a fleet, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,14 +118,13 @@ impl Starts {
             return found;
         }
         let mut all = if self.outlined { Vec::new() } else { found };
-        for unsolved in self.unsolved(planner) {
-            let known = |other: &Unsolved| {
-                other.ids.len() == unsolved.ids.len() && unsolved.ids.iter().all(|id| other.ids.contains(id))
-            };
-            if !all.iter().any(known) {
-                all.push(unsolved);
-            }
-        }
+        let sorted = |unsolved: &Unsolved| {
+            let mut ids = unsolved.ids.clone();
+            ids.sort_unstable();
+            ids
+        };
+        let known: HashSet<Vec<u64>> = all.iter().map(sorted).collect();
+        all.extend(self.unsolved(planner).into_iter().filter(|unsolved| !known.contains(&sorted(unsolved))));
         all
     }
 
