@@ -102,10 +102,10 @@ fn who_is_slow_for_a_reason_is_not_made_faster() {
             assert_eq!((status, &report["agents"]), (1, &json!([])), "head-on, {report}");
         }
         let simulated = run(&["simulate", &file("plan", name, alone.to_string()), "--json", "-q"]).json();
-        assert!(
-            simulated["warnings"][0].as_str().is_some_and(|warning| warning.starts_with("agent 1: its ")),
-            "{simulated}"
-        );
+        // Turns are simulated as they are, and within one segment one limit holds.
+        let warned =
+            simulated["warnings"][0].as_str().is_some_and(|it| it.starts_with("agent 1: its own motion takes"));
+        assert_eq!(warned, name == "slow", "{simulated}");
     }
 }
 

@@ -127,7 +127,7 @@ fn who_goes_straight_to_the_end_has_nothing_to_do_on_a_circle_and_that_is_told()
     for (controller, least, told) in [("pcr", 7.2, false), ("orca", 5.0, false), ("potential", 0.0, true)] {
         let said = run(&["simulate", &name, "--controller", controller, "--json"]);
         assert_eq!(said.err.contains("agent 1: its path ends where it begins"), told, "{controller}: {}", said.err);
-        let run = &said.json()["runs"][0];
+        let run = &serde_json::from_str::<serde_json::Value>(&said.out).unwrap()["runs"][0];
         assert!(run["done"] == 1 && run["travel"].as_f64().unwrap() >= least, "{controller}: {run}");
     }
 }
