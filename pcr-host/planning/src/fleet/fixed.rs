@@ -14,7 +14,7 @@ macro_rules! impl_format {
             fn from_f64(value: f64) -> Self {
                 // The least number of all has no magnitude.
                 let largest = $t::from_bits(if value < 0.0 { -i32::MAX } else { i32::MAX });
-                $t::from_f64(value).filter(|number| number.to_bits() != i32::MIN).unwrap_or(largest)
+                $t::from_f64(value).ok().filter(|number| number.to_bits() != i32::MIN).unwrap_or(largest)
             }
             fn to_f64(self) -> f64 {
                 $t::to_f64(self)
