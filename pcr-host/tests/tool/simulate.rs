@@ -121,7 +121,7 @@ fn margins_are_no_part_of_those_that_stand() {
 
 #[test]
 fn who_goes_straight_to_the_end_has_nothing_to_do_on_a_circle_and_that_is_told() {
-    let circle = json!({ "id": 1, "radius": 0.2, "v_max": 1, "a_max": 1, "path": [{ "kind": "arc", "radius": 1, "sweep": 6.283185307179586 }],
+    let circle = json!({ "id": 1, "radius": 0.2, "v_max": 1, "a_max": 1, "path": [{ "kind": "arc", "radius": 1, "sweep": std::f64::consts::TAU }],
         "start": { "x": 0, "y": 0, "heading": 0 } });
     let name = file("simulate", "circle.json", json!({ "agents": [circle] }).to_string());
     for (controller, least, told) in [("pcr", 7.2, false), ("orca", 5.0, false), ("potential", 0.0, true)] {
