@@ -206,9 +206,9 @@ fn loads_of_other_outlines_are_told_where_they_are_carried() {
 fn a_turn_takes_its_time_with_a_load_as_without() {
     let pole = [[1.1, 0.1], [0.9, 0.1], [0.9, -0.1], [1.1, -0.1]];
     let first = json!({ "id": 1, "v_max": 0.8, "a_max": 5, "turn_v_max": 1, "turn_a_max": 1, "start": { "x": 0, "y": 0, "heading": 0 },
-        "path": [line(0.5), turn(3.141_592_6), line(1.0)], "footprint": outline(&pole) });
+        "path": [line(0.5), turn(PI), line(1.0)], "footprint": outline(&pole) });
     let second = json!({ "id": 2, "radius": 0.1, "v_max": 1, "a_max": 1, "t_start": 0.7,
-        "start": { "x": 2.21, "y": 0.96, "heading": 3.141_592_6 }, "path": [line(4.0)] });
+        "start": { "x": 2.21, "y": 0.96, "heading": PI }, "path": [line(4.0)] });
     fn check<S: Format>(scenario: &Scenario, slack: f64) {
         let conflicts = Verdict::of::<S>(scenario, false).unwrap().conflicts;
         let [only] = conflicts.as_slice() else { panic!("{}: {conflicts:?}", S::NAME) };
