@@ -101,7 +101,8 @@ impl std::error::Error for Refused {}
 /// The number of the format for a field; what it would overflow or lose altogether is refused.
 fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
     let number = S::from_f64(value);
-    if !number.is_finite() || number.abs() > S::LIMIT {
+    // Not by its magnitude: the least number of fixed point has none.
+    if !number.is_finite() || !(-S::LIMIT..=S::LIMIT).contains(&number) {
         let (value, limit) = (figure(value), S::LIMIT.to_f64());
         Err(format!("{field}: {value} is out of range; allowed is up to {limit:e} in magnitude"))
     } else if number == S::ZERO && value != 0.0 {

@@ -12,9 +12,8 @@ macro_rules! impl_format {
             const STEP: f64 = 1.0 / Self::ONE.to_bits() as f64;
             /// Saturates: what is beyond the format is above its limit, too, and refused by name.
             fn from_f64(value: f64) -> Self {
-                // The least number of all has no magnitude.
-                let largest = $t::from_bits(if value < 0.0 { -i32::MAX } else { i32::MAX });
-                $t::from_f64(value).ok().filter(|number| number.to_bits() != i32::MIN).unwrap_or(largest)
+                let largest = if value < 0.0 { i32::MIN } else { i32::MAX };
+                $t::from_f64(value).unwrap_or($t::from_bits(largest))
             }
             fn to_f64(self) -> f64 {
                 $t::to_f64(self)
