@@ -1,6 +1,7 @@
 //! One robot as the supervisor knows it.
 
 use super::FRAME;
+use super::body::AT_TURN;
 use super::braking::stopping_length;
 use super::course::{Course, Drive};
 use super::replan::State;
@@ -52,7 +53,10 @@ impl Agent {
         // half the way from one of its ends, however sharp the path turns.
         let way = limits.speed * FRAME;
         let least = robot.missions.iter().map(|mission| mission.course.least_radius()).fold(f64::INFINITY, f64::min);
-        let off = errors.drift + (way * way / (8.0 * least)).min(way / 2.0);
+        // Where it turns in place, it cuts the corner by how far it may be before it.
+        let turns = robot.missions.iter().any(|mission| mission.course.in_place(0).is_some());
+        let corner = if turns { AT_TURN } else { 0.0 };
+        let off = errors.drift + (way * way / (8.0 * least)).min(way / 2.0) + corner;
         let agent = Self {
             limits,
             radius: robot.radius,
