@@ -151,7 +151,7 @@ impl Body {
     pub(super) fn step(&mut self, time: f64, command: Command, course: Option<&Course>) {
         let part = self.part_that_counts(time);
         match command {
-            Command::Stay => {}
+            Command::Stay => self.speed = 0.0,
             Command::Along(speed) => {
                 let Some(course) = course else { return };
                 // A robot knows the end of its path and where it turns, say from marks on the floor, and how fast it may be.
